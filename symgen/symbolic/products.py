@@ -32,6 +32,7 @@ class Products:
         self._graph = graph
         self._known: dict[Scalar, Monomial] = {}
         self._turning: set[Scalar] = set()  # those with a sine or cosine among their factors
+        self._sums: dict[int, Scalar] = {}  # by their fingerprints, those that stand for what is opposite too
 
     def monomial(self, a: Scalar) -> Monomial:
         """`a` as coefficient times powers of factors, whatever the order in which they were multiplied."""
@@ -39,7 +40,8 @@ class Products:
         if known is not None:
             return known
         if a.op not in _COMPOSED:
-            result: Monomial = (1, {a: 1})
+            sign, factor = self._upright(a)
+            result: Monomial = (sign, {factor: 1})
         elif (value := a.constant) is not None:
             result = (_whole(value), {})
         elif a.op == "neg":
@@ -62,10 +64,21 @@ class Products:
                 break
         return result
 
+    def _upright(self, a: Scalar) -> tuple[int, Scalar]:
+        """A factor as a sign times one that is known: -1 - x as -(1 + x) where that was met before."""
+        if a.op not in ("add", "sub"):
+            return 1, a
+        opposite = self._sums.get(-a.value % PRIME)
+        if opposite is None or opposite is a:
+            self._sums.setdefault(a.value, a)
+            return 1, a
+        return -1, opposite
+
     def forget(self, stays: Callable[[Scalar], bool]) -> None:
         """Lets go of scalars, see `Graph.forget`; factors of a product that stays stay with it."""
         self._known = {a: found for a, found in self._known.items() if stays(a) and all(map(stays, found[1]))}
         self._turning = {a for a in self._turning if a in self._known}
+        self._sums = {value: a for value, a in self._sums.items() if stays(a)}
 
     def combined(self, a: Scalar, b: Scalar, sign: int) -> Scalar | None:
         """a + sign * b where the two are products that differ in constants or in a pair of sines and cosines only."""

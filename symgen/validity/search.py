@@ -30,6 +30,9 @@ from symgen.validity.floats import FloatGradients
 SEED = 20120731
 STARTS = 12
 STEPS = 40
+# A way on which so many steps in turn come closer by less than this share leads to no zero: towards one, even where
+# slopes vanish too, each step takes away more.
+STALLED, STALLED_STEPS = 0.9, 8
 MOST_TERMS = 12  # of a sum of squares that are driven to 0 one by one
 VANISHED = Decimal("1e-12")  # of the scalar's usual size, and of the constraint residuals
 NEAR, FINISHED = 1e-8, 1e-14  # the same in double precision: where decimals go on, and where no step gains any more
@@ -132,9 +135,12 @@ class ZeroSearch:
         weights = [1.0] * rows + [1 / usual] * (len(values) - rows)
         limits = [(float(lower), float(upper)) for lower, upper in (self._box[name] for name in names)]
         damping, size = 1e-3, max(abs(v) * w for v, w in zip(values, weights, strict=True))
+        slow = 0
         for _ in range(STEPS):
             if size <= FINISHED:
                 break
+            if slow == STALLED_STEPS:
+                return None
             scaled = [
                 {k: w * slope * (limits[k][1] - limits[k][0]) for k, slope in row.items()}
                 for w, row in zip(weights, slopes, strict=True)
@@ -153,6 +159,7 @@ class ZeroSearch:
                 if fresh is None:
                     return None
             fresh_size = math.inf if fresh is None else max(abs(v) * w for v, w in zip(fresh[0], weights, strict=True))
+            slow = slow + 1 if fresh_size > STALLED * size else 0
             if fresh is not None and fresh_size < size:
                 at, (values, slopes), size, damping = trial, fresh, fresh_size, damping / 10
             elif size <= NEAR:

@@ -22,8 +22,10 @@ from symgen.methods.inverse_dynamics.by_space import minor_derivation
 from symgen.methods.inverse_dynamics.printed import printed_form
 from symgen.methods.selection import InverseDynamics, Offer
 from symgen.methods.system import MethodInput
+from symgen.runtime.effort import done
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.scalar import Graph, Scalar
+from symgen.validity import search as search_module
 from symgen.validity.decimals import DIGITS, DecimalEvaluator, sine_cosine
 from symgen.validity.proof import Proof
 from symgen.validity.search import ZeroSearch
@@ -166,6 +168,22 @@ def test_the_search_ends_without_a_zero_where_there_is_none() -> None:
     found = search.zero_of(1 + graph.trig("cos", graph.symbol("theta")))
     assert found is not None
     assert abs(float(dict(found.point)["theta"]) % 6.283185307179586 - 3.141592653589793) < 1e-5
+
+
+def test_ways_that_come_no_closer_are_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    system = fresh("rapkm_2rrr_rr")
+    graph = system.mechanics.graph
+    angle = graph.trig("cos", graph.symbol(system.mechanics.model.coordinates[0].name))
+
+    def work(scalar: Scalar) -> tuple[bool, int]:
+        before = done()
+        found = ZeroSearch(system.mechanics, system.generic).zero_of(scalar)
+        return found is not None, done() - before
+
+    hopeless, far = 2 + angle, work(2 + angle)
+    monkeypatch.setattr(search_module, "STALLED_STEPS", search_module.STEPS)
+    assert far[0] is work(hopeless)[0] is False
+    assert far[1] < 0.6 * work(hopeless)[1]
 
 
 SCRIPT = """

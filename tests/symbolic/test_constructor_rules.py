@@ -230,6 +230,9 @@ def test_addition_theorem(graph: Graph) -> None:
     assert cx * sy - sx * cy is graph.trig("sin", y - x)
     assert f * (sx * cy) + (f * cx) * sy is f * graph.trig("sin", x + y)
     assert f * sx * sx + cx * f * cx is f
+    # coefficients that are sums, the same but for their sign
+    m, tenth = graph.symbol("m"), graph.const(Fraction(1, 10))
+    assert sx * cy * (-tenth - m) + cx * sy * (tenth + m) is (tenth + m) * graph.trig("sin", y - x)
     # other coefficients do not combine
     mixed = 2 * (cx * cy) + sx * sy
     assert mixed.op == "add"

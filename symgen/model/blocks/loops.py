@@ -109,7 +109,7 @@ class Rows:
             remedy = "write its size; points that meet are joined with `type: point`"
             check_length(self._scope, member(node, "length"), length, self._defaults, f"the length of {what}", remedy)
             if length is not None:
-                yield "length", minus(squared_distance(one, other, self._carrier(one, other)), Power(length, TWO))
+                yield "length", minus(squared_distance(one, other, self._meeting(one, other)), Power(length, TWO))
             return
         axis = _main_axis(text_of(member(node, "axis")), 2)
         across = [index for index in range(3) if index != axis]
@@ -126,14 +126,22 @@ class Rows:
         if turned:
             yield "turn", Name(Component(one, f"r{across[0] + 1}{across[1] + 1}", other).name)
 
+    def _meeting(self, one: str, other: str) -> str:
+        """The frame that carries both ends of a rod: in its axes the length knows nothing of how that moves."""
+        return self._kinematics.meeting(*self._sides(one, other))
+
+    def _sides(self, one: str, other: str) -> list[str]:
+        """The frames that carry both sides of a loop."""
+        points = self._kinematics.points
+        return [points[owner].frame if owner in points else owner for owner in (one, other)]
+
     def _carrier(self, one: str, other: str) -> str:
         """The moving frame that carries both sides of a loop where they move in a plane of it, else the world.
 
         In its axes the rows know nothing of how it moves itself, and those across the plane always hold.
         """
         kinematics = self._kinematics
-        points = kinematics.points
-        sides = [points[owner].frame if owner in points else owner for owner in (one, other)]
+        sides = self._sides(one, other)
         carrier = kinematics.meeting(*sides)
         turned: set[int] = set()
         for side in sides:
