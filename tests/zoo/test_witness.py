@@ -19,7 +19,7 @@ from symgen.laboratory.zoo.mechanics import equations
 from symgen.laboratory.zoo.reader import System
 from symgen.laboratory.zoo.run import run_command
 from symgen.laboratory.zoo.states import Walker
-from symgen.laboratory.zoo.tape import Tape
+from symgen.laboratory.zoo.tape import Program, Tape
 from symgen.laboratory.zoo.witness import Witness
 from symgen.pipeline import generate
 
@@ -100,6 +100,17 @@ def test_derivatives_of_every_function(name: str) -> None:
         assert float((values[0] - slope).mid()) == pytest.approx(0, abs=1e-50)
         assert float((values[1] - slope).mid()) == pytest.approx(0, abs=1e-50)
         assert float((values[2] - curve).mid()) == pytest.approx(0, abs=1e-30)
+
+
+def test_equal_numbers_of_a_file_are_rounded_each_alone() -> None:
+    tape = Tape()
+    node = read_expression(tape, "0.3*x - 0.3*y + 2*x - 2*y", tape.symbol)
+    program = Program(tape, [node])
+    assert [literal.value for literal in program.literals] == [Fraction(3, 10)] * 2
+    first, second = program.literals
+    values = {"x": 1.0, "y": 1.0}
+    assert program.run(values, Floats(), {first: 0.5, second: 0.25}) == [0.25]
+    assert program.run(values, Floats()) == [0.0]
 
 
 def test_literals_are_exact() -> None:

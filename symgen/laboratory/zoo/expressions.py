@@ -34,7 +34,7 @@ class _Reader:
         tape = self._tape
         match tree:
             case ast.Constant():
-                return tape.number(Fraction(ast.get_source_segment(self._source, tree) or ""))
+                return tape.written(Fraction(ast.get_source_segment(self._source, tree) or ""))
             case ast.Name(id="pi"):
                 return tape.pi()
             case ast.Name(id=name):

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any
 
 from symgen.laboratory.zoo.linear import (
@@ -24,7 +23,7 @@ from symgen.laboratory.zoo.linear import (
     transposed,
 )
 from symgen.laboratory.zoo.mechanics import Equations
-from symgen.laboratory.zoo.tape import Program
+from symgen.laboratory.zoo.tape import Program, Written
 
 
 @dataclass(frozen=True)
@@ -61,7 +60,7 @@ class Evaluator:
         self._m = len(equations.control[0]) if equations.control else 0
 
     def __call__(
-        self, values: Mapping[str, Any], field: Any, literals: Mapping[Fraction, Any] | None = None
+        self, values: Mapping[str, Any], field: Any, literals: Mapping[Written, Any] | None = None
     ) -> Numbers:
         """At these values of coordinates, rates and parameters."""
         n, r, m = self._n, self._r, self._m

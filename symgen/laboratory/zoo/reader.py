@@ -51,6 +51,7 @@ class System:
     blocks: Mapping[str, Any]
     tape: Tape = field(default_factory=Tape)
     _definitions: dict[str, Node] = field(default_factory=dict)
+    _places: dict[str, Vector] = field(default_factory=dict)
 
     @cached_property
     def coordinates(self) -> tuple[str, ...]:
@@ -127,17 +128,17 @@ class System:
 
     def place(self, owner: str) -> Vector:
         """A point, or the origin of a frame, in the world."""
-        if owner in self._points:
+        if owner not in self._points:
+            return self.frames.pose(owner).origin
+        if owner not in self._places:
             entry = self._points[owner]
-            return self.frames.place(entry.get("frame", "world"), self._at(entry))
-        return self.frames.pose(owner).origin
+            at = read_vector(self.tape, entry.get("at"), self.read)
+            self._places[owner] = self.frames.place(entry.get("frame", "world"), at)
+        return self._places[owner]
 
     def _frame(self, owner: str) -> str:
         """The frame that a point stands in; a frame itself."""
         return self._points[owner].get("frame", "world") if owner in self._points else owner
-
-    def _at(self, entry: Mapping[str, Any]) -> Vector:
-        return read_vector(self.tape, entry.get("at"), self.read)
 
     def velocity(self, owner: str) -> Vector:
         """Of the material point that is there, or of the origin of a frame."""

@@ -6,11 +6,20 @@ Shared with nothing else in symgen, so that a mistake in the product's own expre
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 # how often an expression may be differentiated is bounded by what it is asked for: twice for a force
 ZERO, ONE, TWO = Fraction(0), Fraction(1), Fraction(2)
+
+
+@dataclass(frozen=True)
+class Written:
+    """A number that stands in a file, and which of its numbers it is: two that are equal are rounded each alone."""
+
+    value: Fraction
+    place: int
 
 
 class Node:
@@ -39,7 +48,11 @@ class Node:
     @property
     def number(self) -> Fraction | None:
         """The value of a literal, None for everything else."""
-        return self.payload if isinstance(self.payload, Fraction) and self.op == "number" else None
+        if self.op != "number":
+            return None
+        payload = self.payload.value if isinstance(self.payload, Written) else self.payload
+        assert isinstance(payload, Fraction)
+        return payload
 
 
 class Tape:
@@ -61,8 +74,14 @@ class Tape:
         return found
 
     def number(self, value: Fraction | int) -> Node:
-        """A literal."""
+        """A number of mechanics, or a whole one, which no type rounds."""
         return self._node("number", (), Fraction(value))
+
+    def written(self, value: Fraction) -> Node:
+        """A number of the file; one that is not whole is a node of its own each time."""
+        if value.denominator == 1:
+            return self.number(value)
+        return self._node("number", (), Written(value, len(self.nodes)))
 
     def pi(self) -> Node:
         """The number pi."""
@@ -233,10 +252,10 @@ class Program:
             (node.index, node.op, tuple(arg.index for arg in node.args), node.payload) for node in tape.reached(outputs)
         ]
         self._outputs = [node.index for node in outputs]
-        self.literals = tuple(dict.fromkeys(p for _, _, _, p in self._steps if isinstance(p, Fraction)))
+        self.literals = tuple(payload for _, _, _, payload in self._steps if isinstance(payload, Written))
 
-    def run(self, values: Mapping[str, Any], field: Any, literals: Mapping[Fraction, Any] | None = None) -> list[Any]:
-        """Values of the outputs; `literals` replaces some of the numbers."""
+    def run(self, values: Mapping[str, Any], field: Any, literals: Mapping[Written, Any] | None = None) -> list[Any]:
+        """Values of the outputs; `literals` replaces numbers of the file."""
         found: dict[int, Any] = {}
         functions = field.functions
         moved = literals or {}
@@ -252,7 +271,10 @@ class Program:
             elif op == "symbol":
                 value = values[payload]  # type: ignore[index]
             elif op == "number":
-                value = moved[payload] if payload in moved else field.number(payload)  # type: ignore[index]
+                if isinstance(payload, Written):
+                    value = moved[payload] if payload in moved else field.number(payload.value)
+                else:
+                    value = field.number(payload)
             elif op == "pi":
                 value = field.pi()
             elif op == "power":

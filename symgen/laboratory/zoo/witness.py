@@ -23,7 +23,7 @@ from symgen.laboratory.zoo.mechanics import equations
 from symgen.laboratory.zoo.pinocchio_trees import SAME, disagreement
 from symgen.laboratory.zoo.reader import System
 from symgen.laboratory.zoo.states import State, Walker, rounded
-from symgen.laboratory.zoo.tape import Program
+from symgen.laboratory.zoo.tape import Program, Written
 from symgen.laboratory.zoo.urdf_file import expanded
 
 STATES = 20
@@ -208,12 +208,11 @@ class Witness:
         values = {name: ball(x) for name, x in zip(names, (*state.q, *state.qd), strict=True)}
         parameters = [ball(x) for x in state.parameters]
         values |= dict(zip((*self._system.parameters, *self._allocation()), parameters, strict=True))
-        literals: dict[Fraction, Any] | None = None
+        literals: dict[Written, Any] | None = None
         if moved:
             literals = {
-                literal: number(literal + _sign(moved[0]) * Fraction(moved[1]) * literal)
+                literal: number(literal.value + _sign(moved[0]) * Fraction(moved[1]) * literal.value)
                 for literal in self._evaluate.program.literals
-                if literal.denominator != 1
             }
         at = self._evaluate(values, self._balls, literals)
         one = number(Fraction(1))
