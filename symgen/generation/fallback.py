@@ -20,6 +20,7 @@ from symgen.generation.results import AUTO, Options
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.methods.quantity import scalars
 from symgen.quantities.alternatives import TIERS, Alternative, Alternatives, grouped
+from symgen.quantities.everything import WIDE_OPERATIONS, asked_for, too_wide
 from symgen.quantities.select import Choice, Rejection
 from symgen.records import dataclass
 from symgen.runtime.garbage import let_go, let_go_and_keep
@@ -71,6 +72,8 @@ class Fallback:
         self._weighed: set[str] = set()
         self._inaccurate: defaultdict[str, list[Alternative]] = defaultdict(list)
         self._widened: set[str] = set()
+        # by quantities that are made because all are: what they count at least along ways that lose digits
+        self._too_wide: dict[str, int] = {}
 
     def other(self, draft: Draft, certificate: Certificate, expected: Expected) -> Draft | None:
         """The draft with other ways for what is rejected, or for what keeps no margin; None where nothing is better."""
@@ -137,6 +140,8 @@ class Fallback:
         if all(fault.scalar == "float32" for fault in faults):
             passing.append(_Candidate(0.0, ("float64",), draft.taken(quantity), kernels))
         found = self._next(draft, quantity, expected)
+        if found is None and quantity in self._too_wide:
+            return draft.without(quantity, tuple(kernels), too_wide(self._too_wide[quantity]))
         draft = draft.rejecting(tuple(Rejection(quantity, way, why) for way, why in tried[known:]))
         if found is not None:
             draft = draft.along(found.way, found.kernels)
@@ -217,7 +222,12 @@ class Fallback:
         passing.sort(key=lambda one: (one.largest > MARGIN, one.way.cost))
         single: tuple[Scalar, ...] = ("float32",)
         chosen = [(one.way, single) for one in passing]
-        chosen += [(way, scalars) for way in sorted(self._inaccurate.pop(quantity, ()), key=lambda way: way.cost)]
+        inaccurate = sorted(self._inaccurate.pop(quantity, ()), key=lambda way: way.cost)
+        asked = asked_for(self._options.outputs or draft.model.outputs, self._options.forms)
+        if inaccurate and quantity not in asked and inaccurate[0].cost > WIDE_OPERATIONS:
+            self._too_wide[quantity] = inaccurate[0].cost
+        else:
+            chosen += [(way, scalars) for way in inaccurate]
         for way, wide in [one for one in chosen if one[0].cost <= LONGEST][:WIDENED]:
             self._progress(f"twice the digits for {quantity}, {way.choice.way}")
             way = grouped(way)

@@ -5,7 +5,7 @@ u, accelerations and multipliers are always made, and so is what is asked for by
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 
 from symgen.methods.quantity import Quantity
@@ -14,6 +14,8 @@ from symgen.runtime.effort import SCALAR, TooLongError, at_most, done, worth_try
 MAIN = ("inverse_dynamics", "forward_dynamics", "multipliers")
 # Of all quantities together, as counted cost: what takes a minute to print, to compile and to verify.
 OPERATIONS = 100_000
+# Of one quantity along a way that loses digits: with twice as many it takes some twenty times as long.
+WIDE_OPERATIONS = 4_000
 # Scalars that are made along one way to one quantity before the others are tried, and for all quantities together.
 FIRST_SCALARS, SCALARS = 150_000, 800_000
 # What is asked for and takes longer along all ways is tried once more with so many times the scalars.
@@ -26,7 +28,7 @@ class Everything:
     """What is left of the work that `all` may take; `asked` are the quantities that are made whatever they take."""
 
     def __init__(self, outputs: Sequence[str], forms: Mapping[str, str]) -> None:
-        self._asked = {*outputs, *forms, *MAIN}
+        self._asked = asked_for(outputs, forms)
         self._left = SCALAR * SCALARS
 
     def derived(
@@ -65,6 +67,17 @@ class Everything:
                 without.append(name)
                 total -= costs[name]
         return without
+
+
+def asked_for(outputs: Sequence[str], forms: Iterable[str]) -> frozenset[str]:
+    """The quantities that are made whatever they take."""
+    return frozenset((*outputs, *forms, *MAIN))
+
+
+def too_wide(operations: int) -> str:
+    """Why `all` leaves a quantity out of which every short way loses digits."""
+    takes = f"{operations} operations at least, more than {WIDE_OPERATIONS}, which twice the digits make many times"
+    return f"{OF_ALL}, as it loses digits and takes {takes}; {REMEDY}"
 
 
 def too_long(operations: int = 0) -> str:

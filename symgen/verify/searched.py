@@ -1,8 +1,8 @@
 """States at which a kernel is worst, searched for: a few dozen drawn ones do not meet them.
 
-Rounding errors are estimated at hundreds of states near those of the verification, then a step further from the worst
-of these.  Only where the estimate leaves a doubt are states judged, in units of d + eps |y*| by the reference, as at
-any state of the verification.  A status there is an answer.
+Rounding errors are estimated at hundreds of states near those of the verification, then some steps further from the
+worst of these.  Only where the estimate leaves a doubt are states judged, in units of d + eps |y*| by the reference, as
+at any state of the verification.  A status there is an answer.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ from symgen.verify.tolerance import FACTOR, Expectation, expectations
 # States drawn; fewer of long kernels, so that no more numbers are held at a time.
 DRAWN, ALIGNED, IN_MODES = 512, 256, 256
 NUMBERS = 4_000_000
-# Of the worst of them, how many go further, and in how many directions.
-KEPT, DIRECTIONS = 32, 8
+# Of the worst of them, how many go further, in how many directions, and how often.
+KEPT, DIRECTIONS, STEPS = 32, 8, 3
 # Units; what is estimated counts every rounding with all that it may do, and d for less than it is.
 DOUBTFUL = FACTOR / 2
 # How many are judged, and how many are brought onto V at most: not all that lie near come to a regular state.
@@ -90,9 +90,10 @@ class WorstStateSearch:
             others = np.linspace(samples, len(states), max(0, count - samples), endpoint=False).astype(int)
             states = states.only(np.append(np.arange(samples), others))
         units = estimates(kernel, states.parts)
-        if units.max() > DOUBTFUL:
+        for step in range(STEPS if units.max() > DOUBTFUL else 0):
             worst = states.only(_worst(units, KEPT))
-            further = self._surroundings.moved(worst.only(np.arange(len(worst)).repeat(DIRECTIONS)), kernel.name)
+            starts = worst.only(np.arange(len(worst)).repeat(DIRECTIONS))
+            further = self._surroundings.moved(starts, f"{kernel.name} {step}")
             if len(further):
                 states, units = joined(states, further), np.append(units, estimates(kernel, further.parts))
         return states, units

@@ -414,6 +414,22 @@ def test_kernels_that_are_too_long_stay_as_they_are(yoke: Path, monkeypatch: pyt
     assert [one.quantity for one in made(yoke).left_out] == ["multipliers"]
 
 
+@pytest.mark.parametrize("asked", [True, False])
+def test_twice_the_digits_of_what_is_long_are_for_those_who_ask(
+    asked: bool, yoke: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    spoil_choice(monkeypatch, losing_digits)
+    spoil_named(monkeypatch, losing_digits)
+    monkeypatch.setattr(fallback, "WIDE_OPERATIONS", 20)
+    if not asked:
+        monkeypatch.setattr(fallback, "asked_for", lambda _outputs, _forms: frozenset())
+    result = made(yoke)
+    assert result.left_out == ()
+    assert ("multipliers" in derived(result)["kernels"]) is asked
+    told = [one for one in result.notices if "`all` leaves it out, as it loses digits" in one.message]
+    assert len(told) == (not asked)
+
+
 def test_a_form_that_was_asked_for_is_not_replaced(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     spoil_named(monkeypatch, cancelling)
     result = made(yoke, replace(FAST, forms={"multipliers": "kkt"}))
