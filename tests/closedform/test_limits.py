@@ -6,8 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from symgen.closedform.algebra.fourier import fourier_series
 from symgen.closedform.algebra.limits import LIMIT_OF_THE_REST, WORK_LIMIT, TooLargeError, WorkCounter
+from symgen.closedform.algebra.translate import Translator
 from symgen.closedform.forms import derive_closed_forms
+from symgen.model.expressions.expression import Binary, Call, Expression, Name
 from symgen.model.load import load_model
 
 LINKS = 9
@@ -28,6 +31,17 @@ def test_what_has_a_limit_is_held_to_it_whatever_was_done_before() -> None:
     work.spend(LIMIT_OF_THE_REST)
     with pytest.raises(TooLargeError, match="a matrix needs more than"), work.limited("a matrix"):
         work.spend(WORK_LIMIT + 1)
+
+
+def test_products_of_many_sines_are_not_spread_into_their_waves() -> None:
+    names = [f"a_{k}" for k in range(30)]
+    product: Expression = Call("sin", (Name(names[0]),))
+    for name in names[1:]:
+        product = Binary("*", product, Call("sin", (Name(name),)))
+    translated = Translator(names, names, {}, [product], [])
+    # 2^30 of them
+    with pytest.raises(TooLargeError):
+        fourier_series(translated.ring, translated.value(product).numerator)
 
 
 def test_a_rod_across_a_long_chain_has_no_null_space_in_print(tmp_path: Path) -> None:

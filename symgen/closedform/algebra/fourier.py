@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from math import prod
 from operator import sub
 from typing import TypeAlias
 
@@ -58,7 +59,11 @@ def _factors_and_powers(monomial: tuple[int, ...]) -> int:
 
 
 def fourier_series(ring: TrigRing, p: PolyElement) -> Series:
-    """Frequencies of the atoms to the coefficients of cosine and sine; the first non-zero frequency is positive."""
+    """Frequencies of the atoms to the coefficients of cosine and sine; the first non-zero frequency is positive.
+
+    Raises TooLargeError where that is more work than is left: each power of a factor multiplies the waves of a product.
+    """
+    ring.work.spend(sum(_waves_of(ring, monomial) for monomial in p))
     waves: dict[tuple[int, ...], tuple[PolyElement, PolyElement]] = {}
     for monomial, coefficient in p.terms():
         rest = list(monomial)
@@ -81,6 +86,11 @@ def fourier_series(ring: TrigRing, p: PolyElement) -> Series:
     if constant in waves:
         waves[constant] = (waves[constant][0], ring.zero)
     return {key: value for key, value in sorted(waves.items()) if value[0] or value[1]}
+
+
+def _waves_of(ring: TrigRing, monomial: tuple[int, ...]) -> int:
+    """How many waves the sines and cosines of a monomial are at most."""
+    return prod([1 + monomial[s] + monomial[c] for s, c in zip(ring.sine, ring.cosine, strict=True)])
 
 
 def _wave_product(ring: TrigRing, monomial: tuple[int, ...]) -> dict[tuple[int, ...], tuple[int, int]]:
