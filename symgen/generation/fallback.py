@@ -54,6 +54,14 @@ class _Candidate:
     kernels: Kernels
 
 
+@dataclass(frozen=True, slots=True)
+class _Searched:
+    """Kernels whose worst states were looked for, and their largest error there."""
+
+    kernels: Kernels
+    largest: float
+
+
 class Fallback:
     """The ways of one model that are left, through all rounds of its verification."""
 
@@ -63,7 +71,7 @@ class Fallback:
         self._alternatives: Alternatives | None = None
         self._search: WorstStateSearch | None = None
         self.measurements = Measurements()
-        self._searched: dict[str, tuple[Kernels, float]] = {}
+        self._searched: dict[str, _Searched] = {}
         self._left: dict[tuple[str, int], deque[Alternative]] = {}
         self._passing: defaultdict[str, list[_Candidate]] = defaultdict(list)
         self._tried: defaultdict[str, list[tuple[str, str]]] = defaultdict(list)
@@ -89,7 +97,8 @@ class Fallback:
         if not certificate.faults:
             worst = {one.quantity: one for one in sorted(certificate.errors, key=lambda record: record.largest)}
             for quantity, record in worst.items():
-                largest = max(record.largest, self._searched[quantity][1] if quantity in self._searched else 0.0)
+                searched = self._searched.get(quantity)
+                largest = max(record.largest, searched.largest if searched is not None else 0.0)
                 if largest > MARGIN and quantity not in self._weighed:
                     made = self._with_margin(made, quantity, largest, expected)
                     let_go()
@@ -106,12 +115,13 @@ class Fallback:
         found = {}
         for quantity in (kernel.name for kernel in draft.program.kernels):
             kernels = draft.kernels(quantity)
-            if quantity in certificate.rejected or self._searched.get(quantity, ({}, 0.0))[0] == kernels:
+            searched = self._searched.get(quantity)
+            if quantity in certificate.rejected or (searched is not None and searched.kernels == kernels):
                 continue
             self._progress(f"verifying: where {quantity} is worst")
             judged = {scalar: kernel for scalar, kernel in kernels.items() if scalar in expected.scalars}
             errors = self._at_worst(draft, judged, _plain(draft.choice(quantity), kernels)) if judged else {}
-            self._searched[quantity] = kernels, max(errors.values(), default=0.0)
+            self._searched[quantity] = _Searched(kernels, max(errors.values(), default=0.0))
             if faults := _faults(quantity, errors):
                 found[quantity] = faults
         return found
@@ -258,7 +268,7 @@ class Fallback:
         scalars = tuple(passed) if "float64" in passed else ()
         worst = max((worst, *(error for scalar, error in errors.items() if scalar in scalars)))
         if scalars:
-            self._searched[way.choice.quantity] = kernels, worst
+            self._searched[way.choice.quantity] = _Searched(kernels, worst)
         return _Candidate(worst, scalars, way, kernels)
 
     def _note(self, way: Alternative, fault: Fault, inaccurate: bool) -> None:

@@ -139,8 +139,3 @@ def _locked(mechanics: System, held: Sequence[int]) -> tuple[int, ...]:
 
 def _lies_in(row: Sequence[Scalar], columns: Sequence[int]) -> bool:
     return all(entry.is_zero for j, entry in enumerate(row) if j not in columns)
-
-
-def locked_in(mechanics: System, generic: Genericity) -> tuple[int, ...]:
-    """The numbers of locked coordinates where a system is described in the model's own."""
-    return generic.locked if type(mechanics) is System and mechanics.change is None else ()

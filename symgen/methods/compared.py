@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from symgen.linear_algebra.null_spaces import MINOR_LIMIT, MinorSpace, NullSpace
-from symgen.linear_algebra.pivoted import reflected
-from symgen.mechanics.genericity import Genericity, genericity, locked_in
+from symgen.mechanics.genericity import Genericity, genericity
+from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.mechanics.system import System
 from symgen.methods.derivation import Derivation
 from symgen.methods.forward_dynamics.articulated import articulated
@@ -58,7 +58,7 @@ def _space(mechanics: System, generic: Genericity, name: str) -> NullSpace | Non
     graph, rows, n = mechanics.graph, mechanics.constraint_jacobian, mechanics.n
     few = generic.minors <= MINOR_LIMIT
     if rows and (name in ORTHONORMAL or (not few and name != "minor")):
-        return reflected(graph, rows, n, generic.rank, locked=locked_in(mechanics, generic))
+        return reflected_rows(mechanics, generic)
     return MinorSpace(graph, rows, n, generic.rank) if few and (rows or name not in ORTHONORMAL) else None
 
 

@@ -24,7 +24,8 @@ from symgen.linear_algebra.null_spaces import (
     residual,
 )
 from symgen.linear_algebra.pivoted import reflected
-from symgen.mechanics.genericity import Genericity, locked_in
+from symgen.mechanics.genericity import Genericity
+from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.mechanics.system import System
 from symgen.methods.allocation import InputAllocation
 from symgen.methods.forward_dynamics.absolute import in_absolute_angles, motion_brought_back
@@ -110,9 +111,7 @@ class Derivation:
             return FreeInertia(self.graph, mass_matrix)
         if isinstance(space, HouseholderSpace):
             return BasisInertia(space, mass_matrix)
-        locked = locked_in(self.mechanics, self.generic)
-        basis = reflected(self.graph, space.rows, self.n, self.generic.rank, locked=locked)
-        return BasisInertia(basis, mass_matrix)
+        return BasisInertia(reflected_rows(self.mechanics, self.generic), mass_matrix)
 
     @cached_property
     def _motions(self) -> dict[MotionName, MotionMethod]:

@@ -9,8 +9,8 @@ from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import replace
 
-from symgen.linear_algebra.pivoted import reflected
 from symgen.mechanics.genericity import Genericity
+from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.mechanics.system import System
 from symgen.methods.compared import MOTIONS, quantities_by
 from symgen.methods.forward_dynamics.motions import BY_BODIES, BY_FRAMES
@@ -148,7 +148,7 @@ class Alternatives:
 
         by = weighted_projection if name == "schur_qr" else projection_of_bodies
         mechanics = System(self._model)
-        space = reflected(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, self._generic.rank)
+        space = reflected_rows(mechanics, self._generic)
         found = by(mechanics, self._generic, quantity, space.guards)
         if found is None:
             return None

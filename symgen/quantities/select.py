@@ -12,8 +12,8 @@ from symgen.ir.kernel import Scalar
 from symgen.linear_algebra.block_space import BlockSpace
 from symgen.linear_algebra.blocks import components
 from symgen.linear_algebra.null_spaces import MINOR_LIMIT, MinorSpace
-from symgen.linear_algebra.pivoted import reflected
-from symgen.mechanics.genericity import Genericity, genericity, locked_in
+from symgen.mechanics.genericity import Genericity, genericity
+from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.mechanics.system import System
 from symgen.methods.derivation import Derivation
 from symgen.methods.forward_dynamics.absolute import brought_back, in_absolute_angles
@@ -106,8 +106,7 @@ def ways(mechanics: System, generic: Genericity) -> dict[str, Derivation]:
         space = MinorSpace(mechanics.graph, rows, n, generic.rank)
         found["minors"] = Derivation(mechanics, generic, space)
     if rows:
-        turned = reflected(mechanics.graph, rows, n, generic.rank, locked=locked_in(mechanics, generic))
-        found["householder"] = Derivation(mechanics, generic, turned)
+        found["householder"] = Derivation(mechanics, generic, reflected_rows(mechanics, generic))
     return found
 
 
@@ -128,7 +127,7 @@ def absolute_way(model: Model, generic: Genericity) -> Derivation | None:
     seen = in_absolute_angles(model) if model.constraints and generic.delta > LARGEST_DELTA else None
     if seen is None:
         return None
-    return Derivation(seen, generic, reflected(seen.graph, seen.constraint_jacobian, seen.n, generic.rank))
+    return Derivation(seen, generic, reflected_rows(seen, generic))
 
 
 def articulated_motion(model: Model, generic: Genericity) -> dict[str, Quantity]:

@@ -41,7 +41,7 @@ def difference(kernel: Kernel, expected: Expected, worst: int = 0) -> str:
     reference = expected.reference
     varied = ParameterValues(reference.model, [p.name for p in reference.model.parameters if p.range is not None])
     same = SAME_ROUNDED if reference.ranks.rounded else SAME
-    values, samples = expected.values("float64"), expected.samples("float64")
+    samples, values = expected.samples("float64"), expected.values("float64")
     with precision(EXACT_BITS):
         for index in dict.fromkeys((worst, *range(0, len(samples), max(1, len(samples) // STATES)))):
             state = exact_state(reference, samples[index].state, varied)

@@ -29,7 +29,8 @@ class Expected:
     """States of a model, and the reference values and error units of its quantities there by scalar type.
 
     Up to 64 `states` become fewer (8 at least) where a count of operations predicts more than 20 s; more are taken as
-    asked.  Raises VerificationError when fewer than 8 are found, ReferenceValueError when there is no configuration.
+    asked.  `drawn` are they before they are rounded to a type.  Raises VerificationError when fewer than 8 are found,
+    ReferenceValueError when there is no configuration.
     """
 
     def __init__(self, model: Model, quantities: Sequence[str], states: int, progress: Progress) -> None:
@@ -40,8 +41,8 @@ class Expected:
         count = states if states > USUAL_STATES else affordable_states(self.reference, quantities, states)
         with working("assembly modes"):
             self.modes = modes(self.reference)
-        doubles = sample_states(self.reference, quantities, count, modes=self.modes)
-        self._samples: dict[Scalar, tuple[Sample, ...]] = {"float64": doubles}
+        self.drawn = sample_states(self.reference, quantities, count, modes=self.modes)
+        self._samples: dict[Scalar, tuple[Sample, ...]] = {}
         self._values: dict[Scalar, list[dict[str, Expectation]]] = {}
 
     @property
@@ -50,9 +51,8 @@ class Expected:
         return tuple(self._values)
 
     def samples(self, scalar: Scalar) -> tuple[Sample, ...]:
-        """The states, rounded to the scalar type; those that lie on a singularity then are none, see `values`."""
-        if scalar not in self._samples:
-            self._samples[scalar] = tuple(rounded(sample, scalar) for sample in self._samples["float64"])
+        """The states, rounded to the scalar type, at which `values` are."""
+        self.values(scalar)
         return self._samples[scalar]
 
     def values(self, scalar: Scalar) -> list[dict[str, Expectation]]:
@@ -62,11 +62,10 @@ class Expected:
         fewer than 8 are left.
         """
         if scalar not in self._values:
-            found, chosen = [], self.samples(scalar)
-            kept = []
-            for index, sample in each("", list(enumerate(chosen))):
+            found, kept = [], []
+            for index, sample in each("", [(k, rounded(drawn, scalar)) for k, drawn in enumerate(self.drawn)]):
                 if index % 8 == 0:
-                    self._progress(f"verifying: reference for {scalar}, state {index + 1} of {len(chosen)}")
+                    self._progress(f"verifying: reference for {scalar}, state {index + 1} of {len(self.drawn)}")
                 with suppress(ReferenceValueError):
                     made = expectations(self.reference, sample.state, self._quantities, scalar, f"{scalar} {index}")
                     found.append(made)

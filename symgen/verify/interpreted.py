@@ -19,7 +19,7 @@ def measured(
     kernel: Kernel, sincos: Function | None, scalar: Scalar, expected: Expected
 ) -> tuple[ErrorRecord, Fault | None]:
     """The errors of a kernel at the states of a verification in units of d + eps |y*|, and what is wrong."""
-    values, samples = expected.values(scalar), expected.samples(scalar)
+    samples, values = expected.samples(scalar), expected.values(scalar)
     with working(f"trying it in {scalar}"):
         found = outcomes(kernel, sincos, scalar, [sample.state for sample in samples])
     record = compare(kernel.name, scalar, [value[kernel.name] for value in values], found)

@@ -115,11 +115,11 @@ def _verified(
     model = reference.model
     scalars: dict[Scalar, None] = dict.fromkeys((*compilations, *(("float64",) if python_source is not None else ())))
     values = {scalar: expected.values(scalar) for scalar in scalars}
-    samples, doubles = {scalar: expected.samples(scalar) for scalar in scalars}, expected.samples("float64")
+    samples = {scalar: expected.samples(scalar) for scalar in scalars}
     progress("verifying: running C and Python")
     results, faults = _run_c(model, kernels, c_sources, compilations, samples)
     if python_source is not None:
-        outcomes, wrong = _run_python(python_source, kernels["float64"], doubles)
+        outcomes, wrong = _run_python(python_source, kernels["float64"], samples["float64"])
         results["Python float64"] = ("float64", outcomes)
         faults += wrong
     errors: list[ErrorRecord] = []
@@ -147,7 +147,7 @@ def _verified(
         ]
     return replace(
         blank,
-        states=len(doubles),
+        states=len(expected.drawn),
         ranks=(
             ("constraints", reference.ranks.constraints),
             ("geometric constraints", reference.ranks.geometric),
@@ -155,7 +155,7 @@ def _verified(
         ),
         errors=tuple(errors),
         invariants=tuple(laws),
-        conditions=tuple(ConditionRecord(*record) for record in condition_numbers(reference, doubles)),
+        conditions=tuple(ConditionRecord(*record) for record in condition_numbers(reference, expected.drawn)),
         faults=tuple(faults),
     )
 

@@ -101,7 +101,7 @@ class WorstStateSearch:
     @cached_property
     def _surroundings(self) -> Surroundings:
         expected = self._expected
-        return Surroundings(expected.reference, expected.samples("float64"), expected.modes)
+        return Surroundings(expected.reference, expected.drawn, expected.modes)
 
     @cached_property
     def _drawn(self) -> Nearby:
@@ -111,7 +111,7 @@ class WorstStateSearch:
 
     @cached_property
     def _settling(self) -> Settling:
-        return Settling(self._expected.reference, self._expected.samples("float64"))
+        return Settling(self._expected.reference, self._expected.drawn)
 
 
 def _worst(units: Lanes, count: int) -> Lanes:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from symgen.linear_algebra.null_spaces import MINOR_LIMIT, MinorSpace
-from symgen.linear_algebra.pivoted import reflected
-from symgen.mechanics.genericity import locked_in
+from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.methods.derivation import Derivation
 from symgen.methods.form import FormName, Method, form
 from symgen.methods.system import MethodInput
@@ -24,9 +23,7 @@ def householder_derivation(system: MethodInput) -> Derivation | str:
     mechanics, generic = system.mechanics, system.generic
     if not mechanics.r:
         return "there are no constraints"
-    rows, locked = mechanics.constraint_jacobian, locked_in(mechanics, generic)
-    space = reflected(mechanics.graph, rows, mechanics.n, generic.rank, locked=locked)
-    return Derivation(mechanics, generic, space)
+    return Derivation(mechanics, generic, reflected_rows(mechanics, generic))
 
 
 def form_along(system: MethodInput, name: FormName, derivation: Derivation | str) -> Method | str:
