@@ -245,7 +245,10 @@ def _scaled(rows: list[list[flint.arb]], units: Sequence[int]) -> list[list[flin
 def _step(
     point: Point, mechanics: ExactSystem, residual: list[list[flint.arb]], units: Sequence[int], damping: float
 ) -> flint.arb_mat | None:
-    """J' (J J' + shift)^-1 g; None where rounding leaves the matrix singular, so that more damping is due."""
+    """J' (J J' + shift)^-1 g; None where rounding leaves the matrix singular, so that more damping is due.
+
+    A number without bounds, which would grow by 1 / damping for each row that depends on others.
+    """
     with _working_precision():
         jacobian = flint.arb_mat(_scaled(point.flint_matrix(mechanics.jacobian[: len(residual)]), units))
         gram = (jacobian * jacobian.transpose()).mid()
@@ -253,7 +256,7 @@ def _step(
         for i in range(len(residual)):
             gram[i, i] += shift
         try:
-            return jacobian.transpose() * gram.solve(flint.arb_mat(residual))
+            return jacobian.transpose() * gram.solve(flint.arb_mat(residual), algorithm="approx")
         except ZeroDivisionError:
             return None
 

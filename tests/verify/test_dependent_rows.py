@@ -8,10 +8,16 @@ from math import atan, pi, sin, tan
 
 import pytest
 from flint import arb, arb_mat
+from linkages import cranks_on_one_coupler
 
+from symgen.closedform.mechanics import ExactSystem, make_translator
+from symgen.closedform.points import generic_points
+from symgen.model.kinematics.energy_form import energy_form
 from symgen.model.load import load_text
+from symgen.verify.reference.closing import closed
 from symgen.verify.reference.linear import determinant, norm, right_pseudoinverse, rows_of, solve
 from symgen.verify.reference.reference import Reference
+from symgen.verify.reference.system import default_parameters
 from symgen.verify.reference.tape import precision
 from symgen.verify.states import sample_states
 
@@ -127,3 +133,50 @@ def test_what_a_search_leaves_of_coordinates_and_rates_that_are_held_is_nothing(
         assert y == tilt == 0
         if sample.admissible:
             assert sample.state.qd[1:] == sample.state.qdd[1:] == (0, 0)
+
+
+@pytest.mark.parametrize("count", [5, 6])
+def test_loops_close_to_all_digits_however_many_rows_depend_on_others(count: int) -> None:
+    """The bounds of a step held no digit of it, and loops of exact lengths closed up to rounding only."""
+    model = load_text(cranks_on_one_coupler(count), "cranks.yaml")
+    reference = Reference(model)
+    assert model.assembly is not None
+    standing = [place.q for place in model.assembly.places if abs(sin(place.q[0])) > 0.2]
+    assert len(standing) > 8
+    with precision(128):
+        for place in standing:
+            start = [x + 1e-3 * (j + 1) for j, x in enumerate(place)]
+            q, still_open = closed(reference.system, start, default_parameters(model), reference.literals(), 1e-35)
+            assert not still_open
+            assert all(abs(x - q[0]) < 1e-30 for x in q[:count])
+
+
+def table_on_posts(count: int) -> str:
+    """Equal posts a0, a1, ... that turn about the floor and carry one board, which turns by b on the first."""
+    posts = range(count)
+    others = posts[1:]
+    return "\n".join(
+        [
+            "model: table_on_posts",
+            "parameters: {w: 0.3}",
+            "gravity: [0, -9.81, 0]",
+            "joints:",
+            *(f"  p{k}: {{type: revolute, axis: z, at: [{k}*w, 0, 0], coordinate: a{k}}}" for k in posts),
+            "  board: {type: revolute, axis: z, parent: p0, at: [0.7, 0, 0], coordinate: b}",
+            "bodies:",
+            "  board: {mass: 2, com: [w, 0.05, 0], inertia: {zz: 0.08}}",
+            "points:",
+            *(f"  top{k}: {{frame: p{k}, at: [0.7, 0, 0]}}" for k in others),
+            *(f"  pin{k}: {{frame: board, at: [{k}*w, 0, 0]}}" for k in others),
+            "loops:",
+            *(f"  loop{k}: {{type: point, between: [pin{k}, top{k}]}}" for k in others),
+            "inputs: {drive: {joint: a0}}",
+        ]
+    )
+
+
+def test_exact_lengths_are_no_rounded_ones_however_many_rows_depend_on_others() -> None:
+    model = load_text(table_on_posts(5), "table.yaml")
+    assert not Reference(model).ranks.rounded
+    written = energy_form(model)
+    assert len(generic_points(written, ExactSystem(written, make_translator(written, ())), 3)) == 3

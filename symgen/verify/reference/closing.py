@@ -8,7 +8,7 @@ from typing import Any
 
 from flint import arb_mat
 
-from symgen.verify.reference.linear import column, identity, norm, solve
+from symgen.verify.reference.linear import column, identity, norm
 from symgen.verify.reference.parts import Part, piece, placed
 from symgen.verify.reference.system import System
 
@@ -120,11 +120,15 @@ class _Loop:
 
 
 def _step(residual: Any, jacobian: Any, damping: float) -> Any:
-    """J' (J J' + shift)^-1 g (n x 1); None where rounding leaves the matrix singular, so that more damping is due."""
+    """J' (J J' + shift)^-1 g (n x 1); None where rounding leaves the matrix singular, so that more damping is due.
+
+    A step is a number: bounds of it would grow by 1 / damping for each row that depends on others, until they hold no
+    digit of a step that is exact to half of the working precision.
+    """
     gram = (jacobian * jacobian.transpose()).mid()
     shift = damping * max(float(gram.trace()) / gram.nrows(), 1e-30)
     try:
-        return jacobian.transpose() * solve(gram + identity(gram.nrows()) * shift, residual)
+        return jacobian.transpose() * (gram + identity(gram.nrows()) * shift).solve(residual, algorithm="approx")
     except ZeroDivisionError:
         return None
 
