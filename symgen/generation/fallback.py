@@ -20,7 +20,7 @@ from symgen.generation.results import AUTO, Options
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.methods.quantity import scalars
 from symgen.quantities.alternatives import TIERS, Alternative, Alternatives, grouped
-from symgen.quantities.everything import WIDE_OPERATIONS, asked_for, too_wide
+from symgen.quantities.everything import most_with_twice_the_digits, too_wide
 from symgen.quantities.select import Choice, Rejection
 from symgen.records import dataclass
 from symgen.runtime.garbage import let_go, let_go_and_keep
@@ -120,7 +120,7 @@ class Fallback:
                 continue
             self._progress(f"verifying: where {quantity} is worst")
             judged = {scalar: kernel for scalar, kernel in kernels.items() if scalar in expected.scalars}
-            errors = self._at_worst(draft, judged, _plain(draft.choice(quantity), kernels)) if judged else {}
+            errors = self._at_worst(draft, judged, _plain(draft.taken(quantity), kernels)) if judged else {}
             self._searched[quantity] = _Searched(kernels, max(errors.values(), default=0.0))
             if faults := _faults(quantity, errors):
                 found[quantity] = faults
@@ -233,8 +233,8 @@ class Fallback:
         single: tuple[Scalar, ...] = ("float32",)
         chosen = [(one.way, single) for one in passing]
         inaccurate = sorted(self._inaccurate.pop(quantity, ()), key=lambda way: way.cost)
-        asked = asked_for(self._options.outputs or draft.model.outputs, self._options.forms)
-        if inaccurate and quantity not in asked and inaccurate[0].cost > WIDE_OPERATIONS:
+        asked = self._options.outputs or draft.model.outputs
+        if inaccurate and inaccurate[0].cost > most_with_twice_the_digits(quantity, asked, self._options.forms):
             self._too_wide[quantity] = inaccurate[0].cost
         else:
             chosen += [(way, scalars) for way in inaccurate]
@@ -261,13 +261,13 @@ class Fallback:
                 worst = max(worst, record.largest)
             passed[scalar] = kernel
         judged = {scalar: kernel for scalar, kernel in passed.items() if scalar in expected.scalars}
-        errors = self._at_worst(draft, judged, _plain(way.choice, kernels)) if judged else {}
+        errors = self._at_worst(draft, judged, _plain(way, kernels)) if judged else {}
         for fault in _faults(way.choice.quantity, errors):
             self._note(way, fault, inaccurate=True)
             passed.pop(fault.scalar)
         scalars = tuple(passed) if "float64" in passed else ()
         worst = max((worst, *(error for scalar, error in errors.items() if scalar in scalars)))
-        if scalars:
+        if scalars and way.grouped:
             self._searched[way.choice.quantity] = _Searched(kernels, worst)
         return _Candidate(worst, scalars, way, kernels)
 
@@ -297,9 +297,9 @@ def _faults(quantity: str, errors: Mapping[Scalar, float]) -> tuple[Fault, ...]:
     return tuple(Fault(what.format(error), quantity, scalar) for scalar, error in errors.items() if error > FACTOR)
 
 
-def _plain(choice: Choice, kernels: Kernels) -> Kernel | None:
-    """The kernel of plain numbers among those of a way: where it is worst is looked for."""
-    return None if "float64" in choice.wide else kernels["float64"]
+def _plain(way: Alternative, kernels: Kernels) -> Kernel | None:
+    """The kernel of plain numbers among those of a way that may be taken: where it is worst is looked for."""
+    return kernels["float64"] if way.grouped and "float64" not in way.choice.wide else None
 
 
 def _check_algebra(kernel: Kernel, way: str, expected: Expected, worst: int) -> None:

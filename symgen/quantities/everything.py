@@ -1,10 +1,12 @@
 """What `all` takes of the quantities of a system: beyond counted limits the longest are left out, and told.
 
-u, accelerations and multipliers are always made, and so is what is asked for by name.
+u is always made, and so is what is asked for by name; accelerations and multipliers are where they are not too long
+with twice the digits.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 
@@ -14,8 +16,9 @@ from symgen.runtime.effort import SCALAR, TooLongError, at_most, done, worth_try
 MAIN = ("inverse_dynamics", "forward_dynamics", "multipliers")
 # Of all quantities together, as counted cost: what takes a minute to print, to compile and to verify.
 OPERATIONS = 100_000
-# Of one quantity along a way that loses digits: with twice as many it takes some twenty times as long.
-WIDE_OPERATIONS = 4_000
+# Of one quantity along a way that loses digits: with twice as many it takes some twenty times as long.  Accelerations
+# and multipliers may take more of that than the others.
+WIDE_OPERATIONS, WIDE_MAIN_OPERATIONS = 4_000, 10_000
 # Scalars that are made along one way to one quantity before the others are tried, and for all quantities together.
 FIRST_SCALARS, SCALARS = 150_000, 800_000
 # What is asked for and takes longer along all ways is tried once more with so many times the scalars.
@@ -74,9 +77,16 @@ def asked_for(outputs: Sequence[str], forms: Iterable[str]) -> frozenset[str]:
     return frozenset((*outputs, *forms, *MAIN))
 
 
+def most_with_twice_the_digits(quantity: str, outputs: Iterable[str], forms: Iterable[str]) -> float:
+    """The counted cost up to which a way takes twice the digits; what is asked for by name has no limit, nor has u."""
+    if quantity in (*outputs, *forms, "inverse_dynamics"):
+        return math.inf
+    return WIDE_MAIN_OPERATIONS if quantity in MAIN else WIDE_OPERATIONS
+
+
 def too_wide(operations: int) -> str:
     """Why `all` leaves a quantity out of which every short way loses digits."""
-    takes = f"{operations} operations at least, more than {WIDE_OPERATIONS}, which twice the digits make many times"
+    takes = f"{operations} operations at least, which twice the digits make some twenty times as many"
     return f"{OF_ALL}, as it loses digits and takes {takes}; {REMEDY}"
 
 

@@ -10,9 +10,13 @@ import gc
 from contextlib import suppress
 
 
+# Objects, some hundred bytes each; fewer are not worth looking through all the others.
+MANY = 250_000
+
+
 def let_go() -> None:
-    """Lets go of what holds itself, of all that was made since the last `let_go_and_keep`."""
-    if not gc.isenabled():
+    """Lets go of what holds itself, of all that was made since the last `let_go_and_keep`, once that is much."""
+    if not gc.isenabled() and gc.get_count()[0] > MANY:
         gc.collect()
 
 

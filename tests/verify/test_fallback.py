@@ -23,7 +23,7 @@ from symgen.methods import by_name, compared, derivation
 from symgen.methods.forward_dynamics.motion import MotionMethod
 from symgen.methods.quantity import Quantity
 from symgen.pipeline import generate
-from symgen.quantities import alternatives
+from symgen.quantities import alternatives, everything
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.verify.reference.reference import State
 from symgen.verify.searched import JUDGED
@@ -420,10 +420,8 @@ def test_twice_the_digits_of_what_is_long_are_for_those_who_ask(
 ) -> None:
     spoil_choice(monkeypatch, losing_digits)
     spoil_named(monkeypatch, losing_digits)
-    monkeypatch.setattr(fallback, "WIDE_OPERATIONS", 20)
-    if not asked:
-        monkeypatch.setattr(fallback, "asked_for", lambda _outputs, _forms: frozenset())
-    result = made(yoke)
+    monkeypatch.setattr(everything, "WIDE_MAIN_OPERATIONS", 20)
+    result = made(yoke, replace(FAST, outputs=("multipliers",) if asked else ("all",)))
     assert result.left_out == ()
     assert ("multipliers" in derived(result)["kernels"]) is asked
     told = [one for one in result.notices if "`all` leaves it out, as it loses digits" in one.message]
