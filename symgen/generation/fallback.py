@@ -21,7 +21,7 @@ from symgen.ir.kernel import Kernel, Scalar
 from symgen.methods.quantity import scalars
 from symgen.quantities.alternatives import TIERS, Alternative, Alternatives, grouped
 from symgen.quantities.everything import most_with_twice_the_digits, too_wide
-from symgen.quantities.select import Choice, Rejection
+from symgen.quantities.select import Rejection
 from symgen.records import dataclass
 from symgen.runtime.garbage import let_go, let_go_and_keep
 from symgen.symbolic.traverse import cost

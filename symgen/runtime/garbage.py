@@ -9,7 +9,6 @@ from __future__ import annotations
 import gc
 from contextlib import suppress
 
-
 # Objects, some hundred bytes each; fewer are not worth looking through all the others.
 MANY = 250_000
 
