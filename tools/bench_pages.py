@@ -18,6 +18,7 @@ TARGET = ROOT / "docs" / "bench"
 
 
 def main(generated: Path, names: list[str]) -> None:
+    """Writes docs/bench/README.md and its charts, and prints where a peer differs from the study."""
     TARGET.mkdir(parents=True, exist_ok=True)
     for old in TARGET.glob("*.svg"):
         old.unlink()

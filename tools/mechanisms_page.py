@@ -15,6 +15,7 @@ TARGET = Path(__file__).resolve().parent.parent / "docs" / "bench" / "mechanisms
 
 
 def main(folder: Path, names: list[str]) -> None:
+    """Writes the page from the models that have results below the folder."""
     files = {name: folder / name / "bench.bodies.json" for name in names}
     results = {name: json.loads(file.read_text(encoding="utf-8")) for name, file in files.items() if file.exists()}
     TARGET.write_text(page(results), encoding="utf-8")

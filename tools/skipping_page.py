@@ -12,6 +12,7 @@ TARGET = Path(__file__).resolve().parent.parent / "docs" / "skipping.md"
 
 
 def main(paths: list[str]) -> None:
+    """Writes the page from the models that have inputs."""
     models = [load_model(Path(path)) for path in paths]
     TARGET.write_text(page([skipped(model) for model in models if model.inputs]), encoding="utf-8")
 

@@ -17,6 +17,7 @@ IN_FULL = "rapkm_2rrr_rr"  # the model whose forms are drawn quantity by quantit
 
 
 def main(generated: Path, names: list[str]) -> None:
+    """Writes docs/stress/README.md and its charts."""
     TARGET.mkdir(parents=True, exist_ok=True)
     for old in TARGET.glob("*.svg"):
         old.unlink()

@@ -50,10 +50,12 @@ class BlockSpace:
 
     @property
     def size(self) -> Scalar:
+        """What det(B B^T) is measured by: the product of those of the blocks."""
         return self.graph.product(part.space.size for part in self._parts)
 
     @cached_property
     def projector(self) -> Matrix:
+        """N_B (21), n x n, block diagonal up to the order of the coordinates."""
         entries = [list(row) for row in identity(self.graph, self.n)]
         for part in self._parts:
             own = part.space.projector
@@ -64,9 +66,11 @@ class BlockSpace:
 
     @cached_property
     def pseudoinverse(self) -> Matrix:
+        """B^+, n x r."""
         return transpose(tuple(self.lift(e) for e in identity(self.graph, len(self.rows))), self.n)
 
     def project(self, x: Vector) -> Vector:
+        """N_B x, each block by its own way."""
         result = list(x)
         for part in self._parts:
             projected = part.space.project(part.of_coordinates(x))
@@ -75,6 +79,7 @@ class BlockSpace:
         return tuple(result)
 
     def lift(self, a: Vector) -> Vector:
+        """B^+ a, each block by its own way."""
         result = [self.graph.zero] * self.n
         for part in self._parts:
             for j, entry in zip(part.places.columns, part.space.lift(part.of_rows(a)), strict=True):
@@ -82,6 +87,7 @@ class BlockSpace:
         return tuple(result)
 
     def lift_transposed(self, x: Vector) -> Vector:
+        """(B^+)^T x, each block by its own way."""
         result = [self.graph.zero] * len(self.rows)
         for part in self._parts:
             own = part.space.lift_transposed(part.of_coordinates(x))
@@ -94,6 +100,7 @@ class BlockSpace:
         return HouseholderSpace(self.graph, self.rows, self.n).actuation(inputs, degree)
 
     def listed_actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[ActuationForms, Restriction]:
+        """The same by determinants, however many they are."""
         return HouseholderSpace(self.graph, self.rows, self.n).listed_actuation(inputs, degree)
 
 

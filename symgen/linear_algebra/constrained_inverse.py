@@ -101,6 +101,7 @@ class FreeInertia:
         self.guards = self._factor.guards
 
     def solve(self, force: Vector) -> Vector:
+        """K f = G^-1 f, by L D L^T of G."""
         return self._factor.solve(force)
 
 
@@ -144,6 +145,7 @@ class MinorInertia:
         self.guards = (*space.guards, guard)
 
     def solve(self, force: Vector) -> Vector:
+        """K f: one product with the n x n matrix of polynomials, and one division."""
         inverse = 1 / self._denominator
         return tuple(x * inverse for x in matvec(self._graph, self._entries, force))
 
@@ -163,4 +165,5 @@ class BasisInertia:
         self.guards = (*space.guards, *self._factor.guards)
 
     def solve(self, force: Vector) -> Vector:
+        """K f = F (F^T G F)^-1 F^T f."""
         return matvec(self._graph, self._basis, self._factor.solve(matvec(self._graph, self._transposed, force)))

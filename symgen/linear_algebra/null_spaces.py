@@ -119,6 +119,7 @@ class MinorSpace:
 
     @property
     def guards(self) -> tuple[Guard, ...]:
+        """The sum of the squared minors, of dependent rows taken at one length; none without constraints."""
         if self.rank == 0:
             return ()
         if self.rank < len(self.rows):
@@ -139,26 +140,33 @@ class MinorSpace:
 
     @cached_property
     def size(self) -> Scalar:
+        """What that sum is measured by: over the row subsets of size rho, the products of the squared lengths."""
         return self.graph.sum(self.graph.product(self.squares[k] for k in subset) for subset in self.forms.subsets)
 
     @cached_property
     def projector(self) -> Matrix:
+        """N_B (21), n x n."""
         return self.forms.projector()
 
     @cached_property
     def pseudoinverse(self) -> Matrix:
+        """B^+, n x r."""
         return self.forms.pseudoinverse()
 
     def project(self, x: Vector) -> Vector:
+        """N_B x."""
         return matvec(self.graph, self.projector, x)
 
     def lift(self, a: Vector) -> Vector:
+        """B^+ a."""
         return matvec(self.graph, self.pseudoinverse, a)
 
     def lift_transposed(self, x: Vector) -> Vector:
+        """(B^+)^T x."""
         return matvec(self.graph, transpose(self.pseudoinverse, len(self.rows)), x)
 
     def actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[InputEquations, Restriction]:
+        """By determinants where these are few, by reflections otherwise."""
         if small_family(self.forms.forms, inputs, degree):
             return self.listed_actuation(inputs, degree)
         from symgen.linear_algebra.pivoted import reflected  # which is made of what is here
@@ -166,6 +174,7 @@ class MinorSpace:
         return reflected(self.graph, self.rows, self.n, self.rank).actuation(inputs, degree)
 
     def listed_actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[ActuationForms, Restriction]:
+        """By determinants of all coordinates: forces stay as they are."""
         return ActuationForms(self.forms, inputs, degree), Restriction(None, 0)
 
 
@@ -270,6 +279,7 @@ class HouseholderSpace:
 
     @cached_property
     def size(self) -> Scalar:
+        """What det(B B^T) is measured by: the product of the squared lengths of the rows."""
         return self.graph.product(self.lengths)
 
     @property
@@ -285,15 +295,18 @@ class HouseholderSpace:
 
     @cached_property
     def projector(self) -> Matrix:
+        """N_B = F F^T (21), n x n, exactly symmetric."""
         graph, n = self.graph, self.n
         upper = {(i, j): dot(graph, self.basis[i], self.basis[j]) for i in range(n) for j in range(i, n)}
         return tuple(tuple(upper[min(i, j), max(i, j)] for j in range(n)) for i in range(n))
 
     @cached_property
     def pseudoinverse(self) -> Matrix:
+        """B^+, n x r."""
         return transpose(tuple(self.lift(e) for e in identity(self.graph, self.rank)), self.n)
 
     def project(self, x: Vector) -> Vector:
+        """N_B x: reflected, without its components along the rows, and reflected back."""
         zeros = (self.graph.zero,) * self.rank
         along = self.reflections.apply_transposed(without(x, self.locked))[self.rank :]
         return without(self.reflections.apply((*zeros, *along)), self.locked)
@@ -316,6 +329,7 @@ class HouseholderSpace:
         return tuple(y)
 
     def actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[InputEquations, Restriction]:
+        """By determinants of F^T M where these are few, by reflections of it otherwise."""
         restriction = Restriction(self.reflections, self.rank, self.locked)
         columns = [restriction(column) for column in inputs]
         if small_family([[0]], columns, degree):
@@ -325,6 +339,7 @@ class HouseholderSpace:
         return ReflectedInputs(self.graph, columns, self.delta, degree, self.reflections.everywhere), restriction
 
     def listed_actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[ActuationForms, Restriction]:
+        """By determinants of F^T M, however many they are."""
         restriction = Restriction(self.reflections, self.rank, self.locked)
         free = RowForms(self.graph, (), self.delta, 0)
         return ActuationForms(free, [restriction(column) for column in inputs], degree), restriction

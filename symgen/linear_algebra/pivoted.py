@@ -138,6 +138,7 @@ class PivotedSpace(HouseholderSpace):
 
     @cached_property
     def pseudoinverse(self) -> Matrix:
+        """B^+ = Q_1 L^+, n x r."""
         return transpose(tuple(self.lift(axis) for axis in identity(self.graph, len(self.rows))), self.n)
 
     def lift(self, a: Vector) -> Vector:

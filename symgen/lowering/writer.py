@@ -32,10 +32,12 @@ class Test:
 
 
 def angles_of(outputs: Sequence[Node]) -> list[Node]:
+    """The arguments of sines and cosines that the outputs need, each once."""
     return angles_among(topological(outputs))
 
 
 def angles_among(nodes: Sequence[Node]) -> list[Node]:
+    """The arguments of sines and cosines among the nodes, each once, in their order."""
     return list(dict.fromkeys(node.args[0] for node in nodes if node.op in ("sin", "cos")))
 
 

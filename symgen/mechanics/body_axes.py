@@ -49,6 +49,7 @@ class BodyAxes(System):
 
     @cached_property
     def turnings(self) -> tuple[tuple[tuple[int, int, int], Rows[Scalar]], ...]:
+        """Of each free body: the coordinates that turn it, and its angular velocity by their rates (3 x 3)."""
         return tuple((body.angles, self._turning[body.frame]) for body in self.free)
 
     @cached_property
@@ -64,6 +65,7 @@ class BodyAxes(System):
 
     @cached_property
     def geometric_jacobian(self) -> Matrix:
+        """The rows of B that stem from geometric constraints, by quasi-velocities."""
         return tuple(self._row(row.expression) for row in self.model.constraints if row.kind == "geometric")
 
     @cached_property

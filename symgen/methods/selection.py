@@ -322,9 +322,11 @@ class Moved:
         self._graph = graph
 
     def scalars(self, given: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
+        """The scalars on the other graph."""
         return tuple(transplanted(self._graph, given))
 
     def guards(self, given: tuple[Guard, ...]) -> tuple[Guard, ...]:
+        """The guards with all their scalars on the other graph."""
         return tuple(map(self._guard, given))
 
     def _guard(self, guard: Guard) -> Guard:

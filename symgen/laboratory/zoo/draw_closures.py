@@ -35,6 +35,7 @@ def surplus(sketch: Sketch) -> None:
 
 
 def add_point(sketch: Sketch, plain: str, frame: str, at: list[str]) -> str:
+    """A point at `at` (lengths in the axes of the frame) under a free name near the plain one, which is returned."""
     name = sketch.name(plain)
     sketch.block("points")[name] = {"at": at} if frame == "world" else {"frame": frame, "at": at}
     return name
@@ -51,6 +52,7 @@ def carried(sketch: Sketch, place: Numbers, frame: str) -> list[str]:
 
 
 def planar_loop(sketch: Sketch, parts: list[Part], index: int, room: int) -> int:
+    """The tip of a chain held by a rod (1 row) or, where `room` for 2 rows is left, mostly in a point; the rows."""
     dice = sketch.dice
     deep = [k for k in range(len(parts)) if depth(parts, k) >= 3] or [len(parts) - 1]
     leaf = dice.choice(deep)

@@ -197,10 +197,12 @@ def _body(sketch: Sketch, style: Style, k: int, tip: tuple[str, str, str]) -> di
 
 
 def depth(parts: list[Part], index: int) -> int:
+    """How many coordinates move a part: its own and those of the parts that carry it."""
     return 0 if index < 0 else len(parts[index].coordinates) + depth(parts, parts[index].parent)
 
 
 def chain_of(parts: list[Part], index: int) -> set[int]:
+    """A part and all that carry it, by their indices."""
     found = set()
     while index >= 0:
         found.add(index)

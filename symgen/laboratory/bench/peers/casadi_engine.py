@@ -21,42 +21,53 @@ class CasadiEngine(Engine):
         self._arrays: dict[str, Any] = {}
 
     def symbols(self, array: str, length: int) -> list[Symbol]:
+        """The entries of one SX column, which `c_function` takes as it is."""
         self._arrays[array] = casadi.SX.sym(array, length)
         return [self._arrays[array][i] for i in range(length)]
 
     def number(self, value: Fraction) -> Symbol:
+        """A constant of SX, rounded to a float64."""
         return casadi.SX(float(value))
 
     def pi(self) -> Symbol:
+        """The number π as a constant."""
         return casadi.SX(pi)
 
     def power(self, base: Symbol, exponent: Fraction) -> Symbol:
+        """base ** exponent; half-integer ones by the square root."""
         if exponent.denominator == 2:
             return casadi.sqrt(base) ** exponent.numerator
         return base ** float(exponent)
 
     def call(self, function: str, arguments: Sequence[Symbol]) -> Symbol:
+        """The function of CasADi with that name."""
         return getattr(casadi, function)(*arguments)
 
     def derivative(self, value: Symbol, by: Symbol) -> Symbol:
+        """∂value/∂by, dense."""
         return casadi.densify(casadi.jacobian(value, by))
 
     def gradient(self, value: Symbol, by: Sequence[Symbol]) -> list[Symbol]:
+        """All derivatives at once, by CasADi's reverse mode."""
         found = casadi.densify(casadi.gradient(value, casadi.vertcat(*by)))
         return [found[i] for i in range(len(by))]
 
     def rates(self, values: Sequence[Symbol], by: Sequence[Symbol], direction: Sequence[Symbol]) -> list[Symbol]:
+        """All derivatives along the direction at once, by CasADi's forward mode."""
         column = casadi.vertcat(*values)
         found = casadi.densify(casadi.jtimes(column, casadi.vertcat(*by), casadi.vertcat(*direction)))
         return [found[i] for i in range(len(values))]
 
     def is_zero(self, value: Symbol) -> bool:
+        """Whether SX knows the value as 0."""
         return bool(value.is_zero())
 
     def name(self, value: Symbol) -> Symbol:
+        """The value itself: SX shares it without a name."""
         return value
 
     def c_function(self, name: str, inputs: Inputs, outputs: Sequence[Symbol]) -> tuple[str, tuple[str, ...], bool]:
+        """C of CasADi's code generator, called by its arg/res arrays."""
         third = "qdd" if "qdd" in inputs else "u"
         arrays = [self._arrays[array] for array in ("q", "qd", third, "p")]
         source, functions = generated(name, arrays, casadi.vertcat(*outputs))

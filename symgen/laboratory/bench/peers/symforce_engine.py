@@ -24,30 +24,39 @@ class SymforceEngine(Engine):
     tool: ClassVar[str] = "SymForce"
 
     def symbols(self, array: str, length: int) -> list[Symbol]:
+        """One symbol an entry, named array_index."""
         return [sf.Symbol(f"{array}_{i}") for i in range(length)]
 
     def number(self, value: Fraction) -> Symbol:
+        """An exact rational."""
         return sf.Rational(value.numerator, value.denominator)
 
     def pi(self) -> Symbol:
+        """SymForce's exact π."""
         return sf.pi
 
     def power(self, base: Symbol, exponent: Fraction) -> Symbol:
+        """base ** exponent, exact."""
         return base ** self.number(exponent)
 
     def call(self, function: str, arguments: Sequence[Symbol]) -> Symbol:
+        """The function of SymForce with that name."""
         return getattr(sf, function)(*arguments)
 
     def derivative(self, value: Symbol, by: Symbol) -> Symbol:
+        """∂value/∂by by SymEngine."""
         return value.diff(by)
 
     def is_zero(self, value: Symbol) -> bool:
+        """Whether the value is the constant 0 as it stands."""
         return bool(value == 0)
 
     def name(self, value: Symbol) -> Symbol:
+        """The value itself: SymForce finds what is common by itself."""
         return value
 
     def c_function(self, name: str, inputs: Inputs, outputs: Sequence[Symbol]) -> tuple[str, tuple[str, ...], bool]:
+        """The statements of SymForce's C++ as the body of a C function of pointers."""
         third = "qdd" if "qdd" in inputs else "u"
         given = Values(**{str(symbol): symbol for symbols in inputs.values() for symbol in symbols})
         wanted = Values(**{f"y_{k}": output for k, output in enumerate(outputs)})

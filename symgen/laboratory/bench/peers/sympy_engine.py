@@ -25,27 +25,35 @@ class SympyEngine(Engine):
         self._named: list[tuple[Any, Any]] = []
 
     def symbols(self, array: str, length: int) -> list[Symbol]:
+        """One real symbol an entry, named array_index."""
         return [sympy.Symbol(f"{array}_{i}", real=True) for i in range(length)]
 
     def number(self, value: Fraction) -> Symbol:
+        """An exact rational."""
         return sympy.Rational(value.numerator, value.denominator)
 
     def pi(self) -> Symbol:
+        """SymPy's exact π."""
         return sympy.pi
 
     def power(self, base: Symbol, exponent: Fraction) -> Symbol:
+        """base ** exponent, exact."""
         return base ** self.number(exponent)
 
     def call(self, function: str, arguments: Sequence[Symbol]) -> Symbol:
+        """The function of SymPy with that name."""
         return getattr(sympy, function)(*arguments)
 
     def derivative(self, value: Symbol, by: Symbol) -> Symbol:
+        """∂value/∂by; what was named before counts as constant."""
         return sympy.diff(value, by)
 
     def is_zero(self, value: Symbol) -> bool:
+        """Whether the value is the constant 0 as it stands."""
         return bool(value == 0)
 
     def name(self, value: Symbol) -> Symbol:
+        """A symbol for the value, unless it is one already up to its sign."""
         if value.is_Atom or (-value).is_Atom:
             return value
         symbol = sympy.Symbol(f"n_{len(self._named)}", real=True)
@@ -53,6 +61,7 @@ class SympyEngine(Engine):
         return symbol
 
     def c_function(self, name: str, inputs: Inputs, outputs: Sequence[Symbol]) -> tuple[str, tuple[str, ...], bool]:
+        """C after one `cse` over the named values and the outputs, as a function of pointers."""
         third = "qdd" if "qdd" in inputs else "u"
         symbols = [symbol for symbol, _ in self._named]
         values = [*(value for _, value in self._named), *outputs]

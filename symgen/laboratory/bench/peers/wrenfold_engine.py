@@ -21,30 +21,39 @@ class WrenfoldEngine(Engine):
     tool: ClassVar[str] = "wrenfold"
 
     def symbols(self, array: str, length: int) -> list[Symbol]:
+        """One real symbol an entry, named array_index."""
         return [sym.symbol(f"{array}_{i}", REAL) for i in range(length)]
 
     def number(self, value: Fraction) -> Symbol:
+        """An exact rational."""
         return sym.rational(value.numerator, value.denominator)
 
     def pi(self) -> Symbol:
+        """wrenfold's exact π."""
         return sym.pi
 
     def power(self, base: Symbol, exponent: Fraction) -> Symbol:
+        """base ** exponent, exact."""
         return sym.pow(base, self.number(exponent))
 
     def call(self, function: str, arguments: Sequence[Symbol]) -> Symbol:
+        """The function of wrenfold with that name."""
         return getattr(sym, function)(*arguments)
 
     def derivative(self, value: Symbol, by: Symbol) -> Symbol:
+        """∂value/∂by by wrenfold."""
         return value.diff(by)
 
     def is_zero(self, value: Symbol) -> bool:
+        """Whether the value is identical to the constant 0."""
         return bool(value.is_identical_to(sym.zero))
 
     def name(self, value: Symbol) -> Symbol:
+        """The value itself: wrenfold shares it without a name."""
         return value
 
     def c_function(self, name: str, inputs: Inputs, outputs: Sequence[Symbol]) -> tuple[str, tuple[str, ...], bool]:
+        """The statements of wrenfold's C++ as the body of a C function of pointers."""
         third = "qdd" if "qdd" in inputs else "u"
         text = _generated(name, inputs, outputs)
         body = text[text.index("{") + 1 : text.rindex("}")]
