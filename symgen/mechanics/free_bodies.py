@@ -45,8 +45,8 @@ def free_bodies(mechanics: System) -> tuple[FreeBody, ...]:
     """The frames whose six coordinates do nothing but move them, driven and braked by nothing but constraints."""
     if not mechanics.model.mechanism.has_mass or mechanics.change is not None:
         return ()
-    parents = {frame.parent for frame in mechanics.model.mechanism.frames}
-    frames = [frame.name for frame in mechanics.model.mechanism.frames if frame.name not in parents]
+    parents = {frame.parent for frame in mechanics.bodies.mechanism.frames}
+    frames = [frame.name for frame in mechanics.bodies.mechanism.frames if frame.name not in parents]
     return tuple(found for name in frames if (found := _free_body(mechanics, name)) is not None)
 
 
@@ -75,7 +75,7 @@ def _moved_along(mechanics: System, place: Scalar) -> int | None:
 
 def _carries_alone(mechanics: System, frame: str, symbols: set[Scalar]) -> bool:
     """Whether the frames on the way are there for this one only, without bodies, and no other frame moves with them."""
-    mechanism, kinematics = mechanics.model.mechanism, mechanics.bodies.kinematics
+    mechanism, kinematics = mechanics.bodies.mechanism, mechanics.bodies.kinematics
     line = {*kinematics.lineage(frame)} - {WORLD}
     if any(body.frame in line - {frame} for body in mechanism.bodies):
         return False

@@ -11,6 +11,7 @@ from functools import cached_property
 
 from symgen.mechanics.absolute_angles import AbsoluteAngles
 from symgen.mechanics.bodies import Bodies, Vector3
+from symgen.mechanics.joint_axes import along_joints
 from symgen.model.checks.signs import nonnegative_parameters, positive_parameters
 from symgen.model.expressions.expression import Expression
 from symgen.model.kinematics.components import components_in, definitions_before_frames
@@ -73,7 +74,7 @@ class System:
         """The bodies, and every component of points and frames that a formula uses, entered in `names`."""
         for definition in definitions_before_frames(self.model):
             self.names[definition.name] = translate(self.graph, definition.value, self.names)
-        bodies = Bodies(self.model.mechanism, self.graph, dict(self.names), self.q, self.qd)
+        bodies = Bodies(along_joints(self.model.mechanism), self.graph, dict(self.names), self.q, self.qd)
         for name in components_in(self.model):
             self.names[name] = bodies.component(name)
         return bodies

@@ -41,7 +41,7 @@ class _Loose(Kinematics[Scalar, Scalar]):
     """Every frame moves by itself: its turning rates and the velocity of its origin are symbols."""
 
     def __init__(self, mechanics: System) -> None:
-        super().__init__(mechanics.model.mechanism, mechanics.bodies.scalars)
+        super().__init__(mechanics.bodies.mechanism, mechanics.bodies.scalars)
         self._graph: Graph = mechanics.graph
 
     def symbols(self, name: str) -> Six:
@@ -263,7 +263,7 @@ def _forces(mechanics: System) -> list[tuple[Vector, Mapping[str, Six]]]:
         speed = graph.sum(x * rates[name] for x, name in zip(slopes, used, strict=True) if not x.is_zero)
         direct = tuple(a + b for a, b in zip(own, gradient(graph, speed, mechanics.qd), strict=True))
         wrenches = {}
-        for frame in model.mechanism.frames:
+        for frame in mechanics.bodies.mechanism.frames:
             wrench = tuple(gradient(graph, speed, loose.symbols(frame.name)))
             if not all(entry.is_zero for entry in wrench):
                 wrenches[frame.name] = wrench
