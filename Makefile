@@ -9,7 +9,7 @@ CAMPAIGN_FILES := $(CAMPAIGN:%=models/%.yaml)
 MODELS := $(wildcard models/*.yaml)
 MECHANISMS := $(filter-out $(CAMPAIGN_FILES),$(MODELS))
 
-.PHONY: run test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms generation stress skipping trig zoo zoo-case docs lock robots
+.PHONY: run test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms generation stress skipping trig zoo zoo-case docs api lock robots
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -98,6 +98,10 @@ proof: $(VENV)/installed
 # The marked blocks of README.md and the generated pages of docs/, with times measured on this machine.
 docs: $(VENV)/installed
 	$(BIN)/python tools/fill_readme.py
+
+# Every public name of the package with its docstring, as HTML: open build/api/symgen.html.
+api: $(VENV)/installed
+	$(BIN)/python tools/api_reference.py build/api
 
 # One lock for every platform and Python from 3.11 on; editables is what the build backend needs for `pip install -e`.
 lock: $(VENV)/installed

@@ -99,7 +99,7 @@ class Bodies:
 
     @cached_property
     def potential_energy(self) -> Scalar:
-        """- sum of m g.r over the centres of mass."""
+        """The sum of -m g·r over the centres of mass."""
         total = self.graph.zero
         if all(entry.is_zero for entry in self.gravity):
             return total

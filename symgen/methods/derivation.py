@@ -417,5 +417,5 @@ class Derivation:
         return self.mechanics.kinetic_energy, self.mechanics.potential_energy
 
     def singularity(self) -> Vector:
-        """[det(B B^T) / prod |b_k|^2, e(M~)/e(M)]: how far both ranks are from dropping."""
+        """Measures det(B B^T) / prod |b_k|^2 and e(M~)/e(M): how far both ranks are from dropping."""
         return rank_measures(self.mechanics, self.generic, self.space)

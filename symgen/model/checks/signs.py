@@ -1,6 +1,6 @@
 """Which parameters are positive although no range says so: masses, lengths and moments of inertia are by their nature.
 
-A parameter in kg, m or kg*m**2 (any prefixes), or one that stands alone for a body's mass, a principal element of its
+A parameter in kg, m or kg m² (any prefixes), or one that stands alone for a body's mass, a principal element of its
 inertia or a rotor's inertia, is taken to be positive where its value is and no range is declared.  Products of inertia
 are not: their sign is that of the axes.  Where the value is 0, a mass or a moment of inertia is not negative, and a
 length may become anything.
