@@ -328,9 +328,14 @@ class HouseholderSpace:
                 head[i] = head[i] - self.reflections.triangle[k][i] * y[k]
         return tuple(y)
 
+    @property
+    def restriction(self) -> Restriction:
+        """Components of a force along the null space, F^T f."""
+        return Restriction(self.reflections, self.rank, self.locked)
+
     def actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[InputEquations, Restriction]:
         """By determinants of F^T M where these are few, by reflections of it otherwise."""
-        restriction = Restriction(self.reflections, self.rank, self.locked)
+        restriction = self.restriction
         columns = [restriction(column) for column in inputs]
         if small_family([[0]], columns, degree):
             return ActuationForms(RowForms(self.graph, (), self.delta, 0), columns, degree), restriction
@@ -340,9 +345,14 @@ class HouseholderSpace:
 
     def listed_actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[ActuationForms, Restriction]:
         """By determinants of F^T M, however many they are."""
-        restriction = Restriction(self.reflections, self.rank, self.locked)
+        restriction = self.restriction
         free = RowForms(self.graph, (), self.delta, 0)
         return ActuationForms(free, [restriction(column) for column in inputs], degree), restriction
+
+
+def rests_on_rank(space: NullSpace) -> bool:
+    """Whether results hold where B has its rank even if nothing of B is left in them: where rows lock something."""
+    return isinstance(space, HouseholderSpace) and bool(space.locked)
 
 
 def residual(space: NullSpace, force: Vector, inputs: Sequence[Vector], u: Vector) -> Vector:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from symgen.diagnostics import SymgenBug
 from symgen.linear_algebra.blocks import components
+from symgen.linear_algebra.proportional_columns import families, folded
 from symgen.mechanics.system import System
 from symgen.model.configurations.assembly import Assembly
 from symgen.model.configurations.branches import branches
@@ -26,7 +27,8 @@ class Genericity:
     """Generic ranks on V: rho = rank B, delta = n - rho, alpha = rank of the projected control matrix (26).
 
     The ranks of B and of [B; M^T] are identical where no configuration, on V or off it, exceeds them.  `locked` are the
-    numbers of coordinates that rows without others lock, as many as the rank of these rows.
+    numbers of coordinates that rows without others lock, as many as the rank of these rows; where columns of B are
+    multiples of each other, of the first coordinate of each family whose sum is locked.
     """
 
     n: int
@@ -117,24 +119,37 @@ def genericity(mechanics: System) -> Genericity:
 
 
 def _locked(mechanics: System, held: Sequence[int]) -> tuple[int, ...]:
-    """Of the coordinates that cannot move those that rows without others lock, whatever the configuration.
+    """Of coordinates that cannot move, or sums over families of them, what rows without others lock everywhere.
 
     Such rows have as many columns as their rank, which is tested at run time: where they have it, nothing moves there.
     Others are held along this branch alone, and may move along another.
     """
-    if not held:
+    found = families(mechanics.constraint_jacobian, mechanics.n)
+    gathered = any(len(family.members) > 1 for family in found)
+    if not held and not gathered:
         return ()
-    rows = mechanics.constraint_jacobian
-    own = tuple(tuple(row[j] for j in held) for row in rows if _lies_in(row, held))
-    flat = [entry for row in own for entry in row]
-    evaluate, width = Evaluator(flat), len(held)
-    places = [evaluate(point) for point in configurations(mechanics)]
+    rows = tuple(folded(row, found) for row in mechanics.constraint_jacobian)
+    evaluate, width = Evaluator([entry for row in rows for entry in row]), len(found)
+    flat = [evaluate(point) for point in configurations(mechanics)]
+    places = [[at[start : start + width] for start in range(0, len(at), width)] for at in flat]
+    if gathered:
+        still = [k for k in range(width) if all(_holds(at, k) for at in places)]
+    else:
+        still = [k for k, family in enumerate(found) if family.members[0] in held]
+    own = [i for i, row in enumerate(rows) if _lies_in(row, still)]
     locked: list[int] = []
-    for part in components(own):
-        ranks = {rank([[at[i * width + j] for j in part.columns] for i in part.rows]) for at in places}
+    for part in components(tuple(tuple(rows[i][k] for k in still) for i in own)):
+        ranks = {rank([[at[own[i]][still[k]] for k in part.columns] for i in part.rows]) for at in places}
         if ranks == {len(part.columns)}:
-            locked += (held[j] for j in part.columns)
+            locked += (found[still[k]].members[0] for k in part.columns)
     return tuple(sorted(locked))
+
+
+def _holds(rows: Sequence[Sequence[float]], column: int) -> bool:
+    """Whether rows leave no motion along a column."""
+    axis = [float(k == column) for k in range(len(rows[0]))]
+    known = rank(rows)
+    return known is not None and rank([*rows, axis]) == known
 
 
 def _lies_in(row: Sequence[Scalar], columns: Sequence[int]) -> bool:

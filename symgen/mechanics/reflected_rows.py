@@ -4,11 +4,20 @@ from __future__ import annotations
 
 from symgen.linear_algebra.null_spaces import HouseholderSpace
 from symgen.linear_algebra.pivoted import reflected
+from symgen.linear_algebra.proportional_columns import FamilySpace, families
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
 
 
 def reflected_rows(mechanics: System, generic: Genericity) -> HouseholderSpace:
-    """B = [R^T 0] Q^T, with 0 in N_B for coordinates that are locked where they are the model's own."""
+    """B = [R^T 0] Q^T, one column for those that are multiples of each other.
+
+    N_B is 0, without a rounding, for what is locked where coordinates are the model's own.
+    """
+    graph, rows, n = mechanics.graph, mechanics.constraint_jacobian, mechanics.n
     locked = generic.locked if type(mechanics) is System and mechanics.change is None else ()
-    return reflected(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, generic.rank, locked=locked)
+    found = families(rows, n)
+    if all(len(family.members) == 1 for family in found):
+        return reflected(graph, rows, n, generic.rank, locked=locked)
+    first = [k for k, family in enumerate(found) if family.members[0] in locked]
+    return FamilySpace(graph, rows, n, generic.rank, found, first)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from symgen.linear_algebra.guards import Guard
+from symgen.linear_algebra.null_spaces import rests_on_rank
 from symgen.mechanics.genericity import Genericity
 from symgen.methods.derivation import Derivation
 from symgen.methods.quantity import Quantity, is_fixed
@@ -216,5 +217,7 @@ def derive(entry: Entry, derivation: Derivation) -> Quantity:
     """A quantity along one null space."""
     shape = entry.shape(sizes(derivation.mechanics.model, derivation.generic))
     outputs = entry.outputs(derivation)
-    guards = () if is_fixed(outputs) else tuple(g for g in entry.guards(derivation) if g.denominator.constant is None)
+    if is_fixed(outputs) and not rests_on_rank(derivation.space):
+        return Quantity(entry.name, shape, outputs, ())
+    guards = tuple(guard for guard in entry.guards(derivation) if guard.denominator.constant is None)
     return Quantity(entry.name, shape, outputs, guards)

@@ -265,7 +265,9 @@ def complete(mechanics: System, generic: Genericity, derived: Quantity) -> Quant
     """A quantity without entries that are 0 unseen, with ranks tested that other branches may exceed, told what its
     reader must know, rows in the units of the file."""
     outputs = without_hidden_zeros(derived.outputs)
-    derived = replace(derived, outputs=outputs, guards=() if is_fixed(outputs) else derived.guards)
+    # what is locked is so where B has its rank, and results that are fixed may rest on that
+    needless = is_fixed(outputs) and not (generic.locked and is_fixed(derived.outputs))
+    derived = replace(derived, outputs=outputs, guards=() if needless else derived.guards)
     tested = with_test_of_excess(mechanics, generic, derived)
     tested = in_units_of_the_file(mechanics.graph, mechanics.model, tested)
     return _remarked(tested, generic)

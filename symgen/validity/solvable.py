@@ -15,13 +15,14 @@ from functools import reduce
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.exterior import ActuationForms
 from symgen.linear_algebra.guards import Guard, magnitude
-from symgen.linear_algebra.null_spaces import InputEquations, MinorSpace, NullSpace
+from symgen.linear_algebra.null_spaces import InputEquations, MinorSpace, NullSpace, rests_on_rank
 from symgen.linear_algebra.pivoted import elementary_symmetric
 from symgen.linear_algebra.reflected_inputs import ReflectedInputs
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
 from symgen.symbolic.matrix import Vector, dot
 from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.traverse import reached
 
 
 def solvable(
@@ -32,12 +33,16 @@ def solvable(
     columns: Sequence[Vector],
     status: Status,
 ) -> tuple[Guard, ...]:
-    """The guards with `status` of the determinants of `columns`; a drop of the rank of B is named first."""
+    """The guards with `status` of the determinants of `columns`; a drop of the rank of B is named first.
+
+    Where rows lock what they hold, whatever the configuration, determinants hold nothing of the rank of these rows.
+    """
     graph, denominator = mechanics.graph, forms.denominator()
-    if denominator.constant is not None:
-        return ()
+    apart = space.guards if rests_on_rank(space) else ()
+    if all(node.op != "symbol" for node in reached([denominator])):
+        return apart
     if isinstance(forms, ActuationForms) and mechanics.factoring.fixed(denominator):
-        return (Guard(status, denominator, 1 if forms.single else 2, space.guards),)
+        return (*apart, Guard(status, denominator, 1 if forms.single else 2, space.guards))
     lengths = [dot(graph, column, column) for column in columns]
     bounds = magnitude(graph, lengths)
     sizes = [bound if _near(mechanics, x) else own for x, own, bound in zip(columns, lengths, bounds, strict=True)]
@@ -47,7 +52,7 @@ def solvable(
         assert isinstance(forms, ActuationForms)
         directions = _by_minors(mechanics, generic, space, forms, sizes, status)
     short = _short(graph, sizes, bounds, forms.degree)
-    return (*(Guard(status, measure, 2, space.guards, scale) for measure, scale in short), directions)
+    return (*apart, *(Guard(status, measure, 2, space.guards, scale) for measure, scale in short), directions)
 
 
 def _near(mechanics: System, vector: Vector) -> bool:
