@@ -116,8 +116,14 @@ def test_the_reference_solves_nothing_larger_than_a_loop(monkeypatch: pytest.Mon
         sizes.append(matrix.nrows())
         return solve(matrix, right)
 
-    for module in (reference_closing, reference_evaluation, reference_linear):
+    def stepped(residual: Any, jacobian: Any, damping: float) -> Any:
+        sizes.append(jacobian.nrows())
+        return step(residual, jacobian, damping)
+
+    for module in (reference_evaluation, reference_linear):
         monkeypatch.setattr(module, "solve", noted)
+    step = reference_closing._step
+    monkeypatch.setattr(reference_closing, "_step", stepped)
     reference = Reference(sliders(5))
     (sample, *_) = sample_states(reference, ["singularity"], 8)
     reference.precise(sample.state, ("inverse_dynamics", "forward_dynamics", "multipliers", "singularity"))
