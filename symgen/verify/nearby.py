@@ -10,7 +10,7 @@ from __future__ import annotations
 import random
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import prod
+from math import hypot, prod
 from typing import Any
 
 import numpy as np
@@ -18,8 +18,9 @@ import numpy as np
 from symgen.verify.lanes import Lanes
 from symgen.verify.loops_in_lanes import DEPENDENT, Loops, lengths_of, times
 from symgen.verify.ranks_in_lanes import is_regular, matrices, ranked_parts
-from symgen.verify.reference.reference import Reference, State
+from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference.system import default_parameters
+from symgen.verify.regular import values_at
 from symgen.verify.states import Sample
 
 # Shares of the ranges of coordinates: how far states are drawn from samples, and moved from where they are.
@@ -28,6 +29,11 @@ FURTHER = 0.05
 QUARTER = np.pi / 2
 # Powers of ten: how far an angle is from a multiple of a quarter turn.
 OFF = (1.0, 5.0)
+# Powers of ten by which inputs of half of the states are smaller than those of samples, where weights or springs drive
+# the machine too: inputs that hold its heaviest body hide what rounding does to light ones that nothing else moves.
+LITTLE = (1.0, 4.0)
+# In how many samples that is looked at, and how large these forces are beside inputs.
+LOOKED_AT, FELT = 8, 0.1
 # A step of differences along the rates, in radians and metres a unit of time.
 DIFFERENCE = 1e-5
 
@@ -88,6 +94,7 @@ class Surroundings:
         self._rates = np.array([float(c.rate_range[1]) for c in coordinates])
         self._accelerations = np.array([float(c.acceleration_range[1]) for c in coordinates])
         self._inputs = np.abs(parts["u"]).max(axis=1, initial=1.0)[:, None]
+        self._driven_by_itself = any(_driven_by_itself(reference, state) for state in states[:LOOKED_AT])
 
     def drawn(self, count: int) -> Nearby:
         """About so many: a step off each sample in turn, with other rates, accelerations and inputs."""
@@ -133,12 +140,21 @@ class Surroundings:
         parts = dict(start.parts)
         q = parts["q"] + reach * _shifts(dice, parts["q"]) * self._widths
         parts["q"] = np.clip(q, self._low, self._high)
-        widths = {"qd": self._rates, "qdd": self._accelerations, "u": self._inputs[start.origins]}
+        widths = {"qd": self._rates, "qdd": self._accelerations, "u": self._inputs_of(start, afresh)}
         for name, width in widths.items():
             parts[name] = kept * parts[name] + share * _shifts(dice, parts[name]) * width
         admissible = np.arange(count) // len(self.samples) % 2 == 0 if afresh else start.admissible
         with np.errstate(all="ignore"):
             return self._settled(Nearby(parts, admissible, start.origins), start.parts["q"])
+
+    def _inputs_of(self, start: Nearby, afresh: bool) -> Lanes:
+        """How large inputs are made, a row for each state; those of a state that goes on stay about as large."""
+        if not afresh:
+            return np.abs(start.parts["u"]).max(axis=1, initial=0.0)[:, None]
+        dice = random.Random("inputs")
+        little = np.array([10.0 ** -dice.uniform(*LITTLE) for _ in range(len(start))])
+        whole = not self._driven_by_itself or np.arange(len(start)) // len(self.samples) // 2 % 2 == 0
+        return self._inputs[start.origins] * np.where(whole, 1.0, little)[:, None]
 
     def _settled(self, states: Nearby, start: Lanes) -> Nearby:
         """Brought onto V, rates and accelerations too where they are to be.
@@ -183,6 +199,15 @@ class Surroundings:
     def _matrices(self, q: Lanes, p: Lanes) -> list[tuple[Lanes, Lanes]]:
         """B and M of each part."""
         return matrices(self._system, self._parts, self._loops, q, p)
+
+
+def _driven_by_itself(reference: Reference, state: State) -> bool:
+    """Whether the potential's force along the motion is felt beside the inputs."""
+    try:
+        (force,) = values_at(reference, state, ["projected_potential_force"]).values()
+    except ReferenceValueError:
+        return False
+    return hypot(*force) > FELT * max(map(abs, state.u), default=0.0)
 
 
 def _finite(values: Lanes) -> Lanes:

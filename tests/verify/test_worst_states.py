@@ -115,3 +115,23 @@ def test_ranges_that_configurations_leave_are_no_bounds(tmp_path: Path) -> None:
     samples = sample_states(far, ["inverse_dynamics"], 16)
     assert min(float(sample.state.q[0]) for sample in samples) > 3
     assert len(Surroundings(far, samples).drawn(64)) > 32
+
+
+@pytest.mark.parametrize(("weight", "least"), [("9.81*m*y/2", 1e-4), ("0.001*m*y", 0.1)])
+def test_inputs_are_small_too_where_weights_move_the_machine(tmp_path: Path, weight: str, least: float) -> None:
+    """Else they would be small beside what rates do alone, as where everything is small."""
+    path = tmp_path / "inputs.yaml"
+    path.write_text(LADDER.replace("9.81*m*y/2", weight), encoding="utf-8")
+    found = Reference(load_model(path))
+    samples = sample_states(found, ["forward_dynamics"], 16)
+    surroundings = Surroundings(found, samples)
+    drawn = surroundings.drawn(256)
+    largest = np.array([max(map(abs, map(float, sample.state.u)), default=0.0) for sample in samples])
+    shares = np.abs(drawn.parts["u"]).max(axis=1) / np.maximum(largest, 1.0)[drawn.origins]
+    low, middle = np.quantile(shares, [0.1, 0.7])
+    assert middle > 0.1
+    assert least * 0.1 < low < least * 100
+    assert (low < 0.01) == (least < 0.01)
+    further = surroundings.moved(drawn.only(shares < 0.01), "inputs")
+    again = np.abs(further.parts["u"]).max(axis=1, initial=0.0) / np.maximum(largest, 1.0)[further.origins]
+    assert (again < 0.02).all()
