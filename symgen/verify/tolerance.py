@@ -5,7 +5,8 @@ all inputs, run-time parameters and literals of the model.  So d holds the condi
 
 Verification is stricter: literals that the scalar type holds do not move, such as the ones in the direction of a slide
 along [1, 1, 0], which stays parallel to the axis of its joint.  Moved they would make an over-constrained linkage count
-as ill-conditioned where nothing that is rounded makes it so.  Sweeps towards singular sets take the rule as it stands.
+as ill-conditioned where nothing that is rounded makes it so.  Axes and quarter turns are no literals here.  Sweeps
+towards singular sets take the rule as it stands.
 """
 
 from __future__ import annotations

@@ -186,6 +186,30 @@ def test_perturbations_leave_literals_that_the_type_holds() -> None:
             assert {x for x, shift in pairs if abs(shift) > 1e-17} == moving
 
 
+MAST = """\
+model: mast
+gravity: [0, 0, -9.81]
+joints:
+  post: {{type: revolute, axis: z, coordinate: a}}
+  head: {{type: revolute, parent: post, rotation: [[x, {turn}]], axis: y, coordinate: b}}
+bodies: {{post: {{mass: 2, inertia: {{zz: 0.25}}}}, head: {{mass: 1, com: [0.5, 0, 0], inertia: {{yy: 0.125}}}}}}
+points: {{tip: {{frame: head, at: [0.75, 0, 0]}}, anchor: {{at: [1.25, 0.5, 0]}}}}
+loops: {{rod: {{type: distance, between: [tip, anchor], length: 1}}}}
+inputs: {{drive: {{joint: a}}}}
+"""
+
+
+@pytest.mark.parametrize(("turn", "stays"), [("pi/2", True), ("-3*pi/2", True), ("pi*0.49", False)])
+def test_quarter_turns_are_directions(turn: str, stays: bool) -> None:
+    """No kernel rounds the pi of a quarter turn, with which the axes were not parallel and N_B not constant."""
+    reference = Reference(load_text(MAST.format(turn=turn), "mast.yaml"))
+    with precision(100):
+        assert any(abs(x - arb.pi()) < 1e-20 for x in reference.literals()) != stays
+    state = sample_states(reference, ["nullspace_projector"], 8)[0].state
+    unit = expectations(reference, state, ["nullspace_projector"], "float64", "seed")["nullspace_projector"].unit
+    assert (unit < 1.001 * 2.0**-53) == stays
+
+
 def test_equal_numbers_do_not_always_move_together() -> None:
     """By chance they did for one seed in 256, and what vanishes where they are equal had no unit of error."""
     reference = Reference(build("twins", "x y", "x_dot**2/2 + y_dot**2/2", "(x - y)**2/2"))

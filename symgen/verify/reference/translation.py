@@ -13,6 +13,7 @@ from symgen.diagnostics import SymgenBug
 from symgen.model.expressions.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
 from symgen.model.mechanism import Mechanism, Quaternion, is_component
 from symgen.model.model import Model
+from symgen.verify.reference.fixed_turns import is_known
 from symgen.verify.reference.tape import Register, ball
 from symgen.verify.reference.taylor import CONSTANT, Polynomial, Taylor
 
@@ -143,12 +144,18 @@ def _formulas(model: Model) -> Iterator[Expression]:
 
 
 def _of_mechanism(mechanism: Mechanism) -> Iterator[Expression]:
-    """What places frames and points and what bodies weigh; axes are directions, their literals are exact."""
+    """What places frames and points and what bodies weigh; axes are directions, their literals are exact.
+
+    So are turns by angles whose sines everybody knows, such as pi/2: no kernel rounds the pi of a quarter turn.
+    """
     yield from mechanism.gravity
     for frame in mechanism.frames:
         yield from frame.translation
         rotation = frame.rotation
-        yield from rotation.parts if isinstance(rotation, Quaternion) else (turn.angle for turn in rotation)
+        if isinstance(rotation, Quaternion):
+            yield from rotation.parts
+        else:
+            yield from (turn.angle for turn in rotation if not is_known(turn.angle))
     for body in mechanism.bodies:
         yield body.mass
         yield from body.com
