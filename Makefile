@@ -1,4 +1,4 @@
-# make run: set up and generate the paper's models; make test: everything that CI checks.
+# make run: set up and generate the paper's models; make quick: what takes a minute; make test: everything that CI checks.
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 VENV := .venv
 BIN := $(VENV)/bin
@@ -9,16 +9,22 @@ CAMPAIGN_FILES := $(CAMPAIGN:%=models/%.yaml)
 MODELS := $(wildcard models/*.yaml)
 MECHANISMS := $(filter-out $(CAMPAIGN_FILES),$(MODELS))
 
-.PHONY: run test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms generation stress skipping trig zoo zoo-case docs api lock robots
+.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms generation stress skipping trig zoo zoo-case docs api lock robots
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
 
-test: $(VENV)/installed
+test: lint
+	$(BIN)/pytest -n 2 --dist loadgroup
+
+# In the minute between two edits: all but tests of other packages, of several at once, and slow ones.
+quick: lint
+	$(BIN)/pytest -n 2 --dist loadfile --unit
+
+lint: $(VENV)/installed
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/pytest -n 2 --dist loadgroup
 
 # Every model; git keeps four whole folders, and of the others the derivation and the checksums of their files.
 generated: $(VENV)/installed

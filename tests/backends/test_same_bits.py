@@ -76,6 +76,7 @@ def test_c(tool: Callable[[str], str], tmp_path: Path, name: str, scalar: Scalar
             assert same(list(output), wanted), (kernel.name, state)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", shipped.SWEPT)
 def test_python(tmp_path: Path, name: str) -> None:
     shipped.write_sources(name, tmp_path)

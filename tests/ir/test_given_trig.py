@@ -16,6 +16,8 @@ from symgen.ir.given_trig import given_trig
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Argument, Block, Check, Kernel, Local, Status
 
+# Kernels of shipped models, with sines given and without.
+pytestmark = pytest.mark.slow
 QUANTITIES = ("inverse_dynamics", "forward_dynamics", "multipliers")
 
 

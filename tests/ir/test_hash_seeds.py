@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPT = """
 import hashlib, sys
@@ -41,6 +43,7 @@ def digest(seed: str) -> str:
     return done.stdout.strip()
 
 
+@pytest.mark.slow
 def test_bytes_do_not_depend_on_the_hash_seed() -> None:
     first = digest("0")
     assert len(first) == 64

@@ -10,6 +10,8 @@ from laws_harness import shipped, system
 from symgen.ir.kernel import UNIT_ROUNDOFF, Block, Kernel, Literal, Local, Operand, Scalar, Status
 from symgen.ir.sincos import ANGLE_LIMIT, sincos
 
+# Every kernel of five models is made.
+pytestmark = pytest.mark.slow
 MODELS = ("skate", "rear_car", "rapkm_2rrr_rr", "slider_crank", "double_pendulum")
 ORDER = (Status.ANGLE_RANGE, Status.CONSTRAINT_RANK, Status.MASS_RANK, Status.ACTUATION_RANK)
 

@@ -108,6 +108,7 @@ def state(model: Model, seed: int, **given: float) -> dict[str, float]:
     return {**at, "z": source.uniform(0.8, 1), **given}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SAME)
 def test_u_is_the_same_and_shorter(name: str) -> None:
     model, (apart, twists) = described(*SAME[name]), both(name)
@@ -171,6 +172,7 @@ def test_the_rank_of_b_is_that_in_the_coordinates() -> None:
     assert measure(guard, still | {"theta": 0.2}) > 1e-12
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", OTHERWISE)
 def test_bodies_that_something_else_knows_keep_their_rates(name: str) -> None:
     assert free_bodies(System(described(OTHERWISE[name]))) == ()

@@ -17,6 +17,8 @@ from symgen.symbolic.calculus import derivative_along
 from symgen.symbolic.evaluate import Evaluator
 from symgen.verify.reference.reference import State
 
+# Every quantity of eight models is derived.
+pytestmark = pytest.mark.slow
 MODELS = (
     "skate",
     "front_car",

@@ -58,6 +58,7 @@ def test_a_component_that_all_but_vanishes_is_not_divided_by(place: int) -> None
     assert found == pytest.approx(np.linalg.pinv(matrix, rcond=1e-10) @ force, rel=1e-9, abs=1e-10)
 
 
+@pytest.mark.slow
 def test_a_form_is_found_where_components_of_inputs_vanish_in_turn() -> None:
     # one force turns from x to y, another does what the first drive does
     names = [*(f"q_{k}" for k in range(7)), "x", "y"]
@@ -124,6 +125,7 @@ def test_twelve_directions_are_solved_and_measured(drives: int) -> None:
     assert found[drives + 1] == pytest.approx(squared_minors(projector @ control) / squared_minors(control), rel=1e-6)
 
 
+@pytest.mark.slow
 def test_directions_cost_by_their_cube() -> None:
     def nodes(beads: int) -> int:
         mechanics = System(load_text(rope(beads, beads - 1), "rope.yaml"))

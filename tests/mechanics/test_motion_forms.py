@@ -103,6 +103,7 @@ def test_only_forms_without_squared_condition_numbers_are_chosen(system: str) ->
 
 
 # at 90 degrees the rows a_x, b_x and d_x have no other entries but those of x and p: a choice without one of them fails
+@pytest.mark.slow
 @pytest.mark.parametrize("crank", [0.9, math.pi / 2, 2.5, -math.pi / 2])
 def test_dependent_rows_with_three_degrees_of_freedom(crank: float) -> None:
     mechanics = System(load_text(CRANKS, "sliding_cranks.yaml"))

@@ -129,6 +129,7 @@ def test_a_pass_keeps_every_value(name: str) -> None:
     assert changed, "no draw gives this pass anything to do"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ALL)
 def test_shipped_models_are_derived_and_written_by_identities(name: str) -> None:
     """Every check of generation with exact evaluation in place of fingerprints, and what it leaves unchecked."""

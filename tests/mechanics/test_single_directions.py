@@ -143,6 +143,7 @@ def test_inertias_are_measured_by_themselves() -> None:
     assert tiny[0] < 8 * float(SINGLE)
 
 
+@pytest.mark.slow
 def test_single_precision_is_kept_where_bounds_are_far_above_inertias(tmp_path: Path) -> None:
     file = tmp_path / "arm.yaml"
     file.write_text(ARM)

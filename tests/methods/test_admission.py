@@ -200,6 +200,7 @@ for name in ("front_car", "rapkm_2rrr_rr", "slider_crank"):
 """
 
 
+@pytest.mark.slow
 def test_choice_and_singular_states_do_not_depend_on_the_hash_seed() -> None:
     def told(seed: str) -> str:
         environment = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)}

@@ -72,6 +72,7 @@ def test_the_kernel_is_that_of_the_form(form: str, tmp_path: Path) -> None:
     assert auto["name"] != form
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["minor", "schur_qr", "shifted", "kkt"])
 def test_multipliers_by_the_form_asked_for_are_verified(form: str, tmp_path: Path) -> None:
     assert form in FORMS["multipliers"]

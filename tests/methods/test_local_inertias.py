@@ -71,6 +71,7 @@ def test_nor_do_point_masses() -> None:
     assert weights(model)["forward_dynamics"] <= weights(swing(7, ranges=False))["forward_dynamics"]
 
 
+@pytest.mark.slow
 def test_a_link_more_costs_as_much_as_the_one_before() -> None:
     counts = [weights(swing(links, ranges=False))["forward_dynamics"] for links in (8, 10, 12, 14)]
     steps = [after - before for before, after in pairwise(counts)]

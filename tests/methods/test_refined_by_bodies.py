@@ -19,6 +19,8 @@ from symgen.symbolic.evaluate import Evaluator
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import measured
 
+# Tables on cranks, derived and compared with the reference.
+pytestmark = pytest.mark.slow
 # a table on three equal cranks; in space it is free but for the three points
 PLANE = """model: table
 gravity: [0, -9.81, 0]

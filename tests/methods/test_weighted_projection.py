@@ -48,6 +48,7 @@ def beam_on_three_cranks() -> Model:
     return load_text("\n".join(lines), "beam.yaml")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("quantity", QUANTITIES)
 @pytest.mark.parametrize("make", [hanging_chain, beam_on_three_cranks])
 def test_within_what_verification_allows(make: Callable[[], Model], quantity: str) -> None:

@@ -64,6 +64,7 @@ def outcome(text: str) -> ModelError | None:
     return None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["skate", "front_car", "slider_crank", "scara", "rolling_disc"])
 def test_damage_is_survived(name: str) -> None:
     text = (FOLDER / f"{name}.yaml").read_text(encoding="utf-8")
@@ -82,6 +83,7 @@ def test_damage_is_survived(name: str) -> None:
     assert spoiled > 50
 
 
+@pytest.mark.slow
 def test_long_chains_of_definitions() -> None:
     chain = "\n".join(f"  d{i}: d{i - 1} + x_dot" for i in range(1, 600))
     positions = "\n".join(f"  e{i}: e{i - 1} + x" for i in range(1, 600))
