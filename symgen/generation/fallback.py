@@ -27,7 +27,7 @@ from symgen.runtime.garbage import let_go, let_go_and_keep
 from symgen.symbolic.traverse import cost
 from symgen.verify.certificate import Certificate, Fault, LeftOut
 from symgen.verify.comparison import INACCURATE, VIOLATES
-from symgen.verify.exactness import difference
+from symgen.verify.exactness import ExactStates
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import Measurements
 from symgen.verify.searched import WorstStateSearch
@@ -70,6 +70,7 @@ class Fallback:
         self._progress = progress
         self._alternatives: Alternatives | None = None
         self._search: WorstStateSearch | None = None
+        self._exactly: ExactStates | None = None
         self.measurements = Measurements()
         self._searched: dict[str, _Searched] = {}
         self._left: dict[tuple[str, int], deque[Alternative]] = {}
@@ -90,6 +91,7 @@ class Fallback:
             derivations = draft.derivations
             self._alternatives = Alternatives(draft.model, derivations.generic, derivations.inverse)
             self._search = WorstStateSearch(expected)
+            self._exactly = ExactStates(expected)
         made = draft
         for quantity, faults in (certificate.rejected | self._worst(draft, certificate, expected)).items():
             made = self._replaced(made, quantity, faults, expected)
@@ -141,7 +143,7 @@ class Fallback:
         tried, passing = self._tried[quantity], self._passing[quantity]
         known, kernels = len(tried), draft.kernels(quantity)
         self._weighed.add(quantity)
-        _check_algebra(kernels["float64"], draft.way(quantity), expected, faults[0].state)
+        self._check_algebra(kernels["float64"], draft.way(quantity), faults[0].state)
         tried.append((draft.way(quantity), f"{faults[0].what} ({faults[0].target})"))
         self._seen[quantity].add(_digest(kernels))
         # laws that a number with few digits violates beside are no reason of their own: its algebra is right
@@ -179,11 +181,14 @@ class Fallback:
                 return one
             if "float64" in one.scalars:
                 passing.append(one)
-        if not passing:
-            return None
-        best = min(passing, key=lambda one: (-len(one.scalars), one.largest))
-        passing.remove(best)
-        return best
+        while passing:
+            best = min(passing, key=lambda one: (-len(one.scalars), one.largest))
+            passing.remove(best)
+            if best.way.grouped:
+                return best
+            if "float64" in (best := self._with_groups(draft, best, expected)).scalars:
+                passing.append(best)
+        return None
 
     def _with_margin(self, draft: Draft, quantity: str, largest: float, expected: Expected) -> Draft:
         """The draft with a quantity that passes narrowly along a way with half of its error, where that is not long."""
@@ -217,10 +222,17 @@ class Fallback:
             if (digest := _digest(kernels)) not in self._seen[quantity]:
                 self._seen[quantity].add(digest)
                 one = self._measured(draft, way, kernels, expected)
-                if not way.grouped and "float64" in one.scalars:
-                    way = grouped(way)
-                    one = self._measured(draft, way, draft.kernels_along(way, tuple(kernels)), expected)
-                yield one
+                yield self._with_groups(draft, one, expected) if one.scalars == tuple(kernels) else one
+
+    def _with_groups(self, draft: Draft, one: _Candidate, expected: Expected) -> _Candidate:
+        """What becomes of a long way once its numbers are grouped, which takes as long as all the rest of it.
+
+        It is of use then: rounding of the way as it is was within bounds, at its own worst states too.
+        """
+        if one.way.grouped:
+            return one
+        way = grouped(one.way)
+        return self._measured(draft, way, draft.kernels_along(way, tuple(one.kernels)), expected)
 
     def _with_more_digits(self, draft: Draft, quantity: str, expected: Expected) -> Iterator[_Candidate]:
         """What loses digits in float32 alone with twice as many there, then the shortest ways with more in both."""
@@ -253,7 +265,7 @@ class Fallback:
                 record, fault = self.measurements.of(kernel, draft.programs[scalar].sincos, scalar, expected)
                 if fault is not None:
                     name = way.choice.way + way.choice.digits
-                    _check_algebra(kernels["float64"], name, expected, record.worst_state)
+                    self._check_algebra(kernels["float64"], name, record.worst_state)
                     self._note(way, fault, inaccurate=not record.refused)
                     if scalar == "float64":
                         break  # float32 alone is of no use: the other type is what Python and the report are made of
@@ -278,6 +290,12 @@ class Fallback:
         if inaccurate and way not in self._inaccurate[fault.quantity]:
             self._inaccurate[fault.quantity].append(way)
 
+    def _check_algebra(self, kernel: Kernel, way: str, worst: int) -> None:
+        """Raises SymgenBug where a rejected kernel computes something else: falling back would hide wrong algebra."""
+        assert self._exactly is not None
+        if wrong := self._exactly.difference(kernel, worst):
+            raise SymgenBug(f"{kernel.name} by {way}: {wrong}, in exact arithmetic")
+
     def _remedy(self, quantity: str, without: Sequence[Scalar]) -> str:
         asked = self._options.forms.get(quantity, AUTO)
         if asked != AUTO:
@@ -298,11 +316,5 @@ def _faults(quantity: str, errors: Mapping[Scalar, float]) -> tuple[Fault, ...]:
 
 
 def _plain(way: Alternative, kernels: Kernels) -> Kernel | None:
-    """The kernel of plain numbers among those of a way that may be taken: where it is worst is looked for."""
-    return kernels["float64"] if way.grouped and "float64" not in way.choice.wide else None
-
-
-def _check_algebra(kernel: Kernel, way: str, expected: Expected, worst: int) -> None:
-    """Raises SymgenBug where a rejected kernel computes something else: falling back would hide wrong algebra."""
-    if wrong := difference(kernel, expected, worst):
-        raise SymgenBug(f"{kernel.name} by {way}: {wrong}, in exact arithmetic")
+    """The kernel of plain numbers among those of a way: where it is worst is looked for."""
+    return None if "float64" in way.choice.wide else kernels["float64"]

@@ -63,9 +63,13 @@ def run_batch(
 ) -> tuple[dict[str, list[Outcome]], list[Fault]]:
     """Outcomes of every batch kernel at every state, and faults where they are not those of one state `alone`.
 
-    A batch has one set of parameters, so it is run for the parameters of each state.
+    A batch has one set of parameters.  One holds all states, with the parameters of the first; states that have others
+    are run in a batch with those that share theirs.
     """
     states = [sample.state for sample in samples]
+    together: dict[tuple[Any, ...], list[int]] = {}
+    for k, state in enumerate(states):
+        together.setdefault(state.parameters, []).append(k)
     outcomes: dict[str, list[Outcome]] = {}
     faults = []
     for kernel in kernels:
@@ -73,16 +77,21 @@ def run_batch(
             continue
         batch = BatchFunction(library, model, kernel, scalar, states)
         single = CFunction(library, model, kernel, scalar)
-        rows = [batch(c_array(scalar, state.parameters)) for state in states]
-        outcomes[kernel.name] = [row[k] for k, row in enumerate(rows)]
+        whole = batch(c_array(scalar, states[0].parameters))
+        outcomes[kernel.name] = whole[: len(states)]
+        for parameters, places in list(together.items())[1:]:
+            others = BatchFunction(library, model, kernel, scalar, [states[k] for k in places])
+            made = others(c_array(scalar, parameters))
+            for k, one in zip(places, made[: len(places)], strict=True):
+                outcomes[kernel.name][k] = one
         place = kernel.name, f"C {scalar} batch"
         for k, (one, many) in enumerate(zip(alone[kernel.name], outcomes[kernel.name], strict=True)):
             if one.valid and one != many:
                 faults.append(Fault(f"state {k} alone and in a batch differ", *place))
                 break
-        parameters = c_array(scalar, states[0].parameters)
-        for value, many in zip(HARD, rows[0][len(states) :], strict=True):
+        first = c_array(scalar, states[0].parameters)
+        for value, many in zip(HARD, whole[len(states) :], strict=True):
             arrays: dict[str, Any] = {a.name: c_array(scalar, [value] * a.length) for a in array_arguments(kernel)}
-            if single(arrays, parameters).status != many.status:
+            if single(arrays, first).status != many.status:
                 faults.append(Fault(f"other status than alone where every input is {value}", *place))
     return outcomes, faults

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from math import hypot
 from typing import Any
 
 from flint import arb
 
-from symgen.ir.kernel import UNIT_ROUNDOFF, Kernel, Literal, Operand
+from symgen.ir.kernel import UNIT_ROUNDOFF, Kernel, Literal, Operand, Statement
 from symgen.ir.wide_functions import is_wide, plain_operation
 from symgen.verify.expected import Expected
 from symgen.verify.reference.closing import onto_manifold
@@ -32,24 +33,67 @@ SAME, SAME_ROUNDED = 2.0**-80, 2.0**-20
 STATES = 8
 
 
-def difference(kernel: Kernel, expected: Expected, worst: int = 0) -> str:
-    """Where a kernel is another function than the reference, and by how much; empty where they are the same.
+class ExactStates:
+    """States of a verification at which kernels are held against the reference, whose values there are kept."""
 
-    Looked at are a few states, that of index `worst` among them.  Statuses are left out, and states that tell nothing:
-    where the kernel divides by 0, or V is not reached.
-    """
-    reference = expected.reference
-    varied = ParameterValues(reference.model, [p.name for p in reference.model.parameters if p.range is not None])
-    same = SAME_ROUNDED if reference.ranks.rounded else SAME
-    samples, values = expected.samples("float64"), expected.values("float64")
-    with precision(EXACT_BITS):
-        for index in dict.fromkeys((worst, *range(0, len(samples), max(1, len(samples) // STATES)))):
-            state = exact_state(reference, samples[index].state, varied)
-            distance = 0.0 if state is None else _distance(kernel, reference, state)
-            unit, size = values[index][kernel.name].unit, values[index][kernel.name].size
-            if distance > same * unit / float(UNIT_ROUNDOFF["float64"]):
-                return f"it differs from the reference by {distance:.3g} at state {index}, of {size:.3g}"
-    return ""
+    def __init__(self, expected: Expected) -> None:
+        self._expected = expected
+        model = expected.reference.model
+        self._varied = ParameterValues(model, [p.name for p in model.parameters if p.range is not None])
+        self._states: dict[int, State | None] = {}
+        self._values: dict[tuple[str, int], Any] = {}
+
+    def difference(self, kernel: Kernel, worst: int = 0) -> str:
+        """Where a kernel is another function than the reference, and by how much; empty where they are the same.
+
+        Looked at are a few states, that of index `worst` among them.  Statuses are left out, and states that tell
+        nothing: where the kernel divides by 0, or V is not reached.
+        """
+        expected = self._expected
+        same = SAME_ROUNDED if expected.reference.ranks.rounded else SAME
+        samples, values = expected.samples("float64"), expected.values("float64")
+        with precision(EXACT_BITS):
+            function = ExactFunction(kernel)
+            for index in dict.fromkeys((worst, *range(0, len(samples), max(1, len(samples) // STATES)))):
+                distance = self._distance(function, kernel.name, index)
+                unit, size = values[index][kernel.name].unit, values[index][kernel.name].size
+                if distance > same * unit / float(UNIT_ROUNDOFF["float64"]):
+                    return f"it differs from the reference by {distance:.3g} at state {index}, of {size:.3g}"
+        return ""
+
+    def _distance(self, function: ExactFunction, quantity: str, index: int) -> float:
+        """The distance from the reference, 0 where that is no more than what literals and points on V leave open."""
+        state, value = self._state(index), self._value(quantity, index)
+        if state is None or value is None:
+            return 0.0
+        try:
+            entries = function(state)
+        except ZeroDivisionError:
+            return 0.0
+        apart = [entry - right for entry, right in zip(entries, value.entries(), strict=True)]
+        distance, noise = hypot(*(float(x.mid()) for x in apart)), hypot(*(float(x.rad()) for x in apart))
+        return distance if distance > noise * LEFT_OPEN else 0.0
+
+    def _state(self, index: int) -> State | None:
+        if index not in self._states:
+            sample = self._expected.samples("float64")[index]
+            self._states[index] = exact_state(self._expected.reference, sample.state, self._varied)
+        return self._states[index]
+
+    def _value(self, quantity: str, index: int) -> Any:
+        """What the reference has there; None where it has nothing."""
+        if (quantity, index) not in self._values:
+            state, found = self._state(index), None
+            if state is not None:
+                with suppress(ReferenceValueError):
+                    found = self._expected.reference.matrices(state, [quantity], EXACT_BITS)[quantity]
+            self._values[quantity, index] = found
+        return self._values[quantity, index]
+
+
+def difference(kernel: Kernel, expected: Expected, worst: int = 0) -> str:
+    """What `ExactStates` tell of one kernel alone."""
+    return ExactStates(expected).difference(kernel, worst)
 
 
 def exact_state(reference: Reference, state: State, varied: ParameterValues) -> State | None:
@@ -67,38 +111,56 @@ def exact_state(reference: Reference, state: State, varied: ParameterValues) -> 
     return None if q is None else replace(state, q=tuple(q), parameters=tuple(parameters))
 
 
-def _distance(kernel: Kernel, reference: Reference, state: State) -> float:
-    """The distance from the reference, 0 where that is no more than what literals and points on V leave open."""
-    try:
-        value = reference.matrices(state, [kernel.name], EXACT_BITS)[kernel.name]
-        entries = exact_outputs(kernel, state)
-    except (ReferenceValueError, ZeroDivisionError):
-        return 0.0
-    apart = [entry - right for entry, right in zip(entries, value.entries(), strict=True)]
-    distance, noise = hypot(*(float(x.mid()) for x in apart)), hypot(*(float(x.rad()) for x in apart))
-    return distance if distance > noise * LEFT_OPEN else 0.0
+class ExactFunction:
+    """A kernel without its checks, in balls of the working precision; operands are found by place."""
+
+    def __init__(self, kernel: Kernel) -> None:
+        self._loads = [("parameters" if load.argument == "p" else load.argument, load.index) for load in kernel.loads]
+        self._places = {load.local: place for place, load in enumerate(kernel.loads)}
+        self._count = len(kernel.loads)
+        for statement in kernel.statements:
+            for target in statement.targets:
+                self._places[target] = self._count
+                self._count += 1
+        self._numbers: list[Any] = []
+        self._steps = [self._step(statement) for statement in kernel.statements]
+        self._outputs = [self._place(which) for which in kernel.outputs]
+
+    def __call__(self, state: State) -> list[Any]:
+        """The outputs at a state."""
+        values: list[Any] = [ball(getattr(state, name)[index]) for name, index in self._loads]
+        # numbers stand at the end, at negative places
+        values += [None] * (self._count - len(values)) + self._numbers[::-1]
+        for function, operands, targets in self._steps:
+            found = function(*[values[place] for place in operands])
+            if len(targets) == 1:
+                values[targets[0]] = found
+            else:
+                values[targets[0]], values[targets[1]] = found
+        return [values[place] for place in self._outputs]
+
+    def _step(self, statement: Statement) -> tuple[Callable[..., Any], list[int], list[int]]:
+        operands = [self._place(which) for which in statement.operands]
+        targets = [self._places[target] for target in statement.targets]
+        if is_wide(statement):
+            return _of_pairs(EXACT[plain_operation(statement.operation)]), operands, targets
+        return EXACT[statement.operation], operands, targets
+
+    def _place(self, which: Operand) -> int:
+        if not isinstance(which, Literal):
+            return self._places[which.name]
+        self._numbers.append(ball(which.value))
+        return -len(self._numbers)
 
 
 def exact_outputs(kernel: Kernel, state: State) -> list[Any]:
     """The outputs in balls of the working precision; checks are left out."""
-    values: dict[str, Any] = {}
+    return ExactFunction(kernel)(state)
 
-    def operand(which: Operand) -> Any:
-        return ball(which.value) if isinstance(which, Literal) else values[which.name]
 
-    for load in kernel.loads:
-        values[load.local] = ball(getattr(state, "parameters" if load.argument == "p" else load.argument)[load.index])
-    for statement in kernel.statements:
-        operands = [operand(which) for which in statement.operands]
-        if statement.operation == "sincos":
-            values.update(zip(statement.targets, operands[0].sin_cos(), strict=True))
-        elif is_wide(statement):
-            sums = map(operator.add, operands[::2], operands[1::2])
-            values[statement.targets[0]] = EXACT[plain_operation(statement.operation)](*sums)
-            values[statement.targets[1]] = arb(0)
-        else:
-            values[statement.targets[0]] = EXACT[statement.operation](*operands)
-    return [operand(which) for which in kernel.outputs]
+def _of_pairs(function: Callable[..., Any]) -> Callable[..., tuple[Any, Any]]:
+    """A function of numbers that are pairs: of their sums, with nothing left for the second number of the result."""
+    return lambda *parts: (function(*map(operator.add, parts[::2], parts[1::2])), arb(0))
 
 
 def _ratio_or_zero(a: Any, b: Any) -> Any:
@@ -127,6 +189,7 @@ EXACT: dict[str, Callable[..., Any]] = {
     "ratio_or_zero": _ratio_or_zero,
     "min": lambda a, b: a if a < b else b,
     "max": lambda a, b: a if a > b else b,
+    "sincos": arb.sin_cos,
     "tan": arb.tan,
     "asin": arb.asin,
     "acos": arb.acos,

@@ -19,94 +19,167 @@ from symgen.verify.many_states import VECTORISED
 Lanes: TypeAlias = Any
 # Combinations of outputs with random signs, which stand for all of them.
 COMBINATIONS = 3
+# An operation, places of what it works on and of what it makes, and whether nothing is rounded.
+_Step: TypeAlias = tuple[OperationName, tuple[int, ...], tuple[int, ...], bool]
 # The largest of 8 random changes of what is given, in root mean squares.
 LARGEST = 1.5
 # Their results need no rounding.
 EXACT = frozenset({"neg", "abs", "copysign", "min", "max"})
 
 
-def estimates(kernel: Kernel, given: Mapping[str, Lanes]) -> Lanes:
-    """The rounding errors of a kernel in units of d + eps |y|, as if all were independent, and 0 where it refuses.
+class RoundingErrors:
+    """The rounding errors of a kernel in units of d + eps |y|, as if all were independent.
 
-    `given` holds the arguments and the parameters `p`, a row for each state.  d is that of the kernel itself for
-    arguments and parameters; what literals of the model add is left out, so that this is more than there is rather
-    than less.
+    Operands are found by place: long kernels are looked at at a few hundred states at a time, several times, where
+    finding what a statement works on would take as long as working it out.
     """
-    own, unit = _weighed(kernel, given)
-    return np.sqrt(sum(own.values(), np.zeros(unit.shape))) / unit
 
+    def __init__(self, kernel: Kernel) -> None:
+        self._kernel = kernel
+        generator = random.Random(kernel.name)
+        signs = [[generator.choice((-1.0, 1.0)) for _ in kernel.outputs] for _ in range(COMBINATIONS)]
+        self._signs = np.array(signs)
+        self._numbers: list[float] = []
+        self._locals: dict[str, int] = {}
+        for load in kernel.loads:
+            self._put(load.local)
+        blocks = []
+        for block in kernel.blocks:
+            steps = [self._step(statement) for statement in block.statements]
+            blocks.append((steps, [(c.inclusive, self._place(c.value), self._place(c.limit)) for c in block.checks]))
+        self._blocks = blocks
+        self._outputs = [self._place(output) for output in kernel.outputs]
 
-def _weighed(kernel: Kernel, given: Mapping[str, Lanes]) -> tuple[dict[str, Lanes], Lanes]:
-    """Mean squares of what one roundoff of each target does to combinations of outputs, and d + eps |y|.
+    def at(self, given: Mapping[str, Lanes]) -> Lanes:
+        """The estimates, and 0 where the kernel refuses.
 
-    In units of the roundoff; infinite are the units where the kernel refuses.
-    """
-    count = len(next(iter(given.values())))
-    generator = random.Random(kernel.name)
-    signs = [[generator.choice((-1.0, 1.0)) for _ in kernel.outputs] for _ in range(COMBINATIONS)]
-    with np.errstate(all="ignore"):
-        values, regular = _values(kernel, given, count)
-        outputs = [_value(x, values) for x in kernel.outputs]
-        own, inputs = _shares(kernel, values, np.array(signs))
-        unit = np.sqrt(sum(x * x for x in outputs)) + LARGEST * np.sqrt(inputs)
-        regular &= np.isfinite(unit) & (unit > 0) & np.isfinite(sum(own.values(), np.zeros(count)))
-    return {target: np.where(regular, share, 0.0) for target, share in own.items()}, np.where(regular, unit, np.inf)
+        `given` holds the arguments and the parameters `p`, a row for each state.  d is that of the kernel itself for
+        arguments and parameters; what literals of the model add is left out, so that this is more than there is rather
+        than less.
+        """
+        count = len(next(iter(given.values())))
+        with np.errstate(all="ignore"):
+            values, regular = self._values(given, count)
+            outputs = [values[place] for place in self._outputs]
+            own, inputs = self._shares(values, count)
+            unit = np.sqrt(sum(x * x for x in outputs)) + LARGEST * np.sqrt(inputs)
+            regular &= np.isfinite(unit) & (unit > 0) & np.isfinite(own)
+        return np.sqrt(np.where(regular, own, 0.0)) / np.where(regular, unit, np.inf)
 
+    def _put(self, name: str) -> int:
+        """The place of what is worked out next; numbers stand before all of it, at negative places."""
+        place = self._locals[name] = len(self._locals)
+        return place
 
-def _value(operand: Operand, values: Mapping[str, Lanes]) -> Lanes:
-    return float(operand.value) if isinstance(operand, Literal) else values[operand.name]
-
-
-def _values(kernel: Kernel, given: Mapping[str, Lanes], count: int) -> tuple[dict[str, Lanes], Lanes]:
-    """What every local is on the way of a regular state, and where no check fails."""
-    values: dict[str, Lanes] = {load.local: given[load.argument][:, load.index] for load in kernel.loads}
-    regular = np.ones(count, dtype=bool)
-    for block in kernel.blocks:
-        for statement in block.statements:
-            x = [_value(operand, values) for operand in statement.operands]
-            if statement.operation == "sincos":
-                values |= zip(statement.targets, (np.sin(x[0]), np.cos(x[0])), strict=True)
-            else:
-                values[statement.targets[0]] = _VALUES[statement.operation](*x)
-        for check in block.checks:
-            value, limit = _value(check.value, values), _value(check.limit, values)
-            regular &= value >= limit if check.inclusive else value > limit
-    return values, regular
-
-
-def _shares(kernel: Kernel, values: Mapping[str, Lanes], signs: Lanes) -> tuple[dict[str, Lanes], Lanes]:
-    """Mean squares over combinations of outputs of what one roundoff of each target, and of all that is given, does
-    to them."""
-    slopes: dict[str, Lanes] = {}
-    own: dict[str, Lanes] = {}
-    inputs = np.zeros(1)
-
-    def add(operand: Operand, slope: Lanes) -> None:
+    def _place(self, operand: Operand) -> int:
         if not isinstance(operand, Literal):
-            known = slopes.get(operand.name)
-            slopes[operand.name] = slope if known is None else known + slope
+            return self._locals[operand.name]
+        self._numbers.append(float(operand.value))
+        return -len(self._numbers)
 
-    for place, output in enumerate(kernel.outputs):
-        add(output, signs[:, place : place + 1])
-    for statement in reversed(kernel.statements):
-        above = [slopes.pop(target, None) for target in statement.targets]
-        if not _is_exact(statement):
-            for target, slope in zip(statement.targets, above, strict=True):
-                if slope is not None:
-                    own[target] = np.mean((slope * values[target]) ** 2, axis=0)
-        if statement.operation == "sincos":
-            sine, cosine = (values[target] for target in statement.targets)
-            along = (0.0 if slope is None else slope * x for slope, x in zip(above, (cosine, -sine), strict=True))
-            add(statement.operands[0], sum(along))
-        elif above[0] is not None:
-            x = [_value(operand, values) for operand in statement.operands]
-            taken = _SLOPES[statement.operation](x, values[statement.targets[0]])
-            for operand, slope in zip(statement.operands, taken, strict=True):
-                add(operand, above[0] * slope)
-    for load in kernel.loads:
-        if load.local in slopes:
-            inputs = inputs + np.mean((slopes[load.local] * values[load.local]) ** 2, axis=0)
-    return own, inputs
+    def _step(self, statement: Statement) -> _Step:
+        operands = tuple(self._place(operand) for operand in statement.operands)
+        return statement.operation, operands, tuple(map(self._put, statement.targets)), _is_exact(statement)
+
+    def _values(self, given: Mapping[str, Lanes], count: int) -> tuple[list[Lanes], Lanes]:
+        """What every local is on the way of a regular state, numbers last, and where no check fails."""
+        values: list[Lanes] = [None] * len(self._locals) + self._numbers[::-1]
+        for place, load in enumerate(self._kernel.loads):
+            values[place] = given[load.argument][:, load.index]
+        regular = np.ones(count, dtype=bool)
+        for steps, checks in self._blocks:
+            for operation, operands, targets, _ in steps:
+                if operation == "sincos":
+                    angle = values[operands[0]]
+                    values[targets[0]], values[targets[1]] = np.sin(angle), np.cos(angle)
+                else:
+                    values[targets[0]] = _VALUES[operation](*[values[place] for place in operands])
+            for inclusive, value, limit in checks:
+                met = values[value] >= values[limit] if inclusive else values[value] > values[limit]
+                regular &= met
+        return values, regular
+
+    def _shares(self, values: Sequence[Lanes], count: int) -> tuple[Lanes, Lanes]:
+        """Mean squares over combinations of outputs of what one roundoff of each target, all of them together, and of
+        all that is given, does to them."""
+        slopes: list[Lanes] = [None] * len(self._locals)
+        own = _Squares(count)
+
+        def add(place: int, slope: Lanes) -> None:
+            if place >= 0:
+                known = slopes[place]
+                slopes[place] = slope if known is None else known + slope
+
+        for column, place in enumerate(self._outputs):
+            add(place, np.broadcast_to(self._signs[:, column : column + 1], (COMBINATIONS, count)))
+        for steps, _ in reversed(self._blocks):
+            for operation, operands, targets, exact in reversed(steps):
+                above = [slopes[target] for target in targets]
+                for target, slope in zip(targets, above, strict=True):
+                    if slope is not None:
+                        slopes[target] = None
+                        if not exact:
+                            own.add(slope, values[target])
+                if operation == "sincos":
+                    sine, cosine = (values[target] for target in targets)
+                    for slope, factor in zip(above, (cosine, -sine), strict=True):
+                        if slope is not None:
+                            add(operands[0], slope * factor)
+                    continue
+                slope = above[0]
+                if slope is None:
+                    continue
+                if operation == "mul":
+                    left, right = operands
+                    if left >= 0:
+                        add(left, slope * values[right])
+                    if right >= 0:
+                        add(right, slope * values[left])
+                elif operation == "add":
+                    add(operands[0], slope)
+                    add(operands[1], slope)
+                elif operation == "sub":
+                    add(operands[0], slope)
+                    if operands[1] >= 0:
+                        add(operands[1], -slope)
+                else:
+                    taken = _SLOPES[operation]([values[place] for place in operands], values[targets[0]])
+                    for place, factor in zip(operands, taken, strict=True):
+                        if place >= 0:
+                            add(place, slope * factor)
+        inputs = _Squares(count)
+        for place, slope in enumerate(slopes[: len(self._kernel.loads)]):
+            if slope is not None:
+                inputs.add(slope, values[place])
+        return own.mean(), inputs.mean()
+
+
+class _Squares:
+    """Sums of squares of products, many at a time."""
+
+    AT_ONCE = 64
+
+    def __init__(self, count: int) -> None:
+        self._products = np.empty((self.AT_ONCE, COMBINATIONS, count))
+        self._held = 0
+        self._sum = np.zeros(count)
+
+    def add(self, slope: Lanes, value: Lanes) -> None:
+        """Adds (slope value)^2."""
+        np.multiply(slope, value, out=self._products[self._held])
+        self._held += 1
+        if self._held == self.AT_ONCE:
+            self._settle()
+
+    def mean(self) -> Lanes:
+        """The sum of all, in the mean over combinations."""
+        self._settle()
+        return self._sum / COMBINATIONS
+
+    def _settle(self) -> None:
+        held = self._products[: self._held]
+        self._sum += np.einsum("ijk,ijk->k", held, held)
+        self._held = 0
 
 
 def _is_exact(statement: Statement) -> bool:
@@ -144,9 +217,6 @@ _VALUES: dict[OperationName, Callable[..., Lanes]] = {
 }
 
 _SLOPES: dict[OperationName, Callable[[Sequence[Lanes], Lanes], tuple[Lanes, ...]]] = {
-    "add": lambda _x, _y: (1.0, 1.0),
-    "sub": lambda _x, _y: (1.0, -1.0),
-    "mul": lambda x, _y: (x[1], x[0]),
     "div": lambda x, y: (np.divide(1.0, x[1]), np.divide(-y, x[1])),
     "ratio_or_zero": lambda x, y: (_ratio(1.0, x[1]), _ratio(-y, x[1])),
     "neg": lambda _x, _y: (-1.0,),

@@ -17,7 +17,7 @@ from symgen.ir.kernel import Function, Kernel, Scalar
 from symgen.runtime.activity import working
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import outcomes
-from symgen.verify.lanes import Lanes, estimates
+from symgen.verify.lanes import Lanes, RoundingErrors
 from symgen.verify.nearby import Nearby, Surroundings, joined
 from symgen.verify.reference.reference import ReferenceValueError
 from symgen.verify.settling import Settling
@@ -89,13 +89,14 @@ class WorstStateSearch:
             samples = len(self._surroundings.samples)
             others = np.linspace(samples, len(states), max(0, count - samples), endpoint=False).astype(int)
             states = states.only(np.append(np.arange(samples), others))
-        units = estimates(kernel, states.parts)
+        errors = RoundingErrors(kernel)
+        units = errors.at(states.parts)
         for step in range(STEPS if units.max() > DOUBTFUL else 0):
             worst = states.only(_worst(units, KEPT))
             starts = worst.only(np.arange(len(worst)).repeat(DIRECTIONS))
             further = self._surroundings.moved(starts, f"{kernel.name} {step}")
             if len(further):
-                states, units = joined(states, further), np.append(units, estimates(kernel, further.parts))
+                states, units = joined(states, further), np.append(units, errors.at(further.parts))
         return states, units
 
     @cached_property

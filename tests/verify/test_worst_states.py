@@ -10,7 +10,7 @@ import pytest
 
 from symgen.ir.kernel import Block, Kernel, Literal, Load, Local, Statement
 from symgen.model.load import load_model
-from symgen.verify.lanes import estimates
+from symgen.verify.lanes import RoundingErrors
 from symgen.verify.nearby import Surroundings
 from symgen.verify.reference.reference import Reference
 from symgen.verify.states import sample_states
@@ -67,7 +67,7 @@ def test_estimates_are_shares_of_roundings_in_units_of_what_inputs_do() -> None:
     rounded = [1e6 * a, x + 1e6 * a, (1e6 - 1) * a, x + a]
     unit = (x + a) + 1.5 * (x**2 + a**2) ** 0.5
     state = {"q": np.array([[x, a], [2 * x, 2 * a]])}
-    assert estimates(DETOUR, state) == pytest.approx([np.linalg.norm(rounded) / unit] * 2)
+    assert RoundingErrors(DETOUR).at(state) == pytest.approx([np.linalg.norm(rounded) / unit] * 2)
 
 
 def test_states_nearby_satisfy_the_constraints_as_samples_do(reference: Reference) -> None:
