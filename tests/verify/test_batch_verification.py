@@ -43,14 +43,17 @@ def complaints(folder: Path, edit: Callable[[str], str]) -> list[str]:
     library = Compilation(compiler, edited, folder).library()
     parameters = tuple(float(value) for value in default_values(model).values())
     n, m = len(model.coordinates), len(model.inputs)
-    states = [State((a,) * n, (a / 2,) * n, (0.3,) * n, (a - 1,) * m, parameters) for a in (0.2, 0.7, 1.1)]
+    states = [
+        State((a,) * n, (a / 2,) * n, (0.3,) * n, (a - 1,) * m, tuple(scale * x for x in parameters))
+        for a, scale in ((0.2, 1.0), (0.7, 1.25), (1.1, 1.0))
+    ]
     alone = {}
     for kernel in program().kernels:
         single = CFunction(library, model.name, kernel, "float64")
         alone[kernel.name] = [
             single(
                 {a.name: c_array("float64", getattr(s, a.name)) for a in kernel.arguments},
-                c_array("float64", parameters),
+                c_array("float64", s.parameters),
             )
             for s in states
         ]

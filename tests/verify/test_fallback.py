@@ -24,6 +24,7 @@ from symgen.methods.forward_dynamics.motion import MotionMethod
 from symgen.methods.quantity import Quantity
 from symgen.pipeline import generate
 from symgen.quantities import alternatives, everything
+from symgen.quantities.alternatives import Alternative
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.verify.reference.reference import State
 from symgen.verify.searched import JUDGED
@@ -251,6 +252,30 @@ def test_a_loss_that_no_state_of_the_verification_meets_is_searched_for(
     wide = derived(result)["kernels"].get("multipliers", {}).get("twice_the_digits")
     assert wide or [one.quantity for one in result.left_out] == ["multipliers"]
     assert made(yoke).files["derivation.json"] == result.files["derivation.json"]
+
+
+def test_a_long_way_has_its_numbers_grouped_once_its_worst_states_speak_for_it(
+    yoke: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(alternatives, "LONG", 0)
+    monkeypatch.setattr(fallback, "WIDENED", 0)
+    regrouped: list[str] = []
+
+    def noted(way: Alternative) -> Alternative:
+        regrouped.append(way.choice.way)
+        return alternatives.grouped(way)
+
+    monkeypatch.setattr(fallback, "grouped", noted)
+    spoil_choice(monkeypatch, edgy)
+    result = made(yoke)
+    assert result.left_out == ()
+    assert regrouped == [derived(result)["kernels"]["multipliers"]["way"]]
+    # every way passes at the states of the verification, and none where it is worst
+    regrouped.clear()
+    spoil_named(monkeypatch, edgy)
+    (left_out,) = made(yoke).left_out
+    assert left_out.quantity == "multipliers"
+    assert regrouped == []
 
 
 def test_states_that_lead_nowhere_do_not_end_the_search(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
