@@ -36,6 +36,8 @@ from symgen.verify.tolerance import FACTOR
 TOO_LONG = "not tried: it takes many times as long to derive"
 # Of the error that is allowed; what way a quantity takes is decided at a few dozen states.
 MARGIN = FACTOR / 2
+# What a long way may need at its worst states before its numbers are grouped: that takes off some roundings.
+UNGROUPED = 2 * FACTOR
 # What keeping a margin may cost, in operations.
 MARGIN_WORTH = Fraction(1, 2)
 # Ways that are tried once more with twice the digits, and what the longest one counts.
@@ -227,7 +229,7 @@ class Fallback:
     def _with_groups(self, draft: Draft, one: _Candidate, expected: Expected) -> _Candidate:
         """What becomes of a long way once its numbers are grouped, which takes as long as all the rest of it.
 
-        It is of use then: rounding of the way as it is was within bounds, at its own worst states too.
+        It is of use then: the way as it is was nowhere far beyond what is allowed, not at its own worst states either.
         """
         if one.way.grouped:
             return one
@@ -274,7 +276,7 @@ class Fallback:
             passed[scalar] = kernel
         judged = {scalar: kernel for scalar, kernel in passed.items() if scalar in expected.scalars}
         errors = self._at_worst(draft, judged, _plain(way, kernels)) if judged else {}
-        for fault in _faults(way.choice.quantity, errors):
+        for fault in _faults(way.choice.quantity, errors, FACTOR if way.grouped else UNGROUPED):
             self._note(way, fault, inaccurate=True)
             passed.pop(fault.scalar)
         scalars = tuple(passed) if "float64" in passed else ()
@@ -309,10 +311,10 @@ def _digest(kernels: Kernels) -> int:
     return hash(tuple(kernels.items()))
 
 
-def _faults(quantity: str, errors: Mapping[Scalar, float]) -> tuple[Fault, ...]:
-    """What is wrong at the states that were searched for."""
+def _faults(quantity: str, errors: Mapping[Scalar, float], most: float = FACTOR) -> tuple[Fault, ...]:
+    """What is wrong at the states that were searched for, where errors are beyond `most`."""
     what = f"{INACCURATE} {{:.3g}} times d + eps |y*| at a state searched for, {FACTOR:g} is allowed"
-    return tuple(Fault(what.format(error), quantity, scalar) for scalar, error in errors.items() if error > FACTOR)
+    return tuple(Fault(what.format(error), quantity, scalar) for scalar, error in errors.items() if error > most)
 
 
 def _plain(way: Alternative, kernels: Kernels) -> Kernel | None:
