@@ -9,7 +9,7 @@ CAMPAIGN_FILES := $(CAMPAIGN:%=models/%.yaml)
 MODELS := $(wildcard models/*.yaml)
 MECHANISMS := $(filter-out $(CAMPAIGN_FILES),$(MODELS))
 
-.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms generation stress skipping trig zoo zoo-case docs api lock robots
+.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms generation stress skipping passes trig zoo zoo-case docs api lock robots
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -90,6 +90,10 @@ zoo-case: $(VENV)/installed
 # What each part of the structure analysis is worth in operations: docs/skipping.md.
 skipping: $(VENV)/installed
 	$(BIN)/python tools/skipping_page.py $(CAMPAIGN_FILES) $(MECHANISMS)
+
+# What each rewriting pass is worth in operations, with models drawn for it too: docs/passes.md.
+passes: $(VENV)/installed
+	$(BIN)/python tools/passes_page.py $(MODELS)
 
 # Every kernel of every model under libFuzzer and the sanitizers, a minute each: raw bits in, see proof/*_fuzz.c.
 FUZZ_SECONDS ?= 60

@@ -254,6 +254,10 @@ class Graph:
         node = self._nodes.get(key)
         return self._new(key, op, args, payload) if node is None else node
 
+    def over(self, node: Scalar, args: tuple[Scalar, ...]) -> Scalar:
+        """The operation of a scalar over other arguments, as it stands; the scalar itself over its own."""
+        return node if args == node.args else self.raw(node.op, args, node.payload)
+
     def sum(self, terms: Iterable[Scalar]) -> Scalar:
         """Left-to-right sum; 0 for no terms."""
         total = self.zero

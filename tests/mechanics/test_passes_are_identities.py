@@ -24,18 +24,13 @@ from symgen.symbolic.angles import share_angles
 from symgen.symbolic.content import divided, usual_number
 from symgen.symbolic.identity import every_identity_evaluated, same_values
 from symgen.symbolic.passes import grouping
-from symgen.symbolic.passes.early_factors import early_factors, with_early_factor
 from symgen.symbolic.passes.factoring import Factoring
-from symgen.symbolic.passes.late_factors import with_late_factors
-from symgen.symbolic.passes.opposites import with_one_difference
-from symgen.symbolic.passes.shared_parts import with_shared_products, with_shared_sums
-from symgen.symbolic.passes.sum_factors import with_common_factors
 from symgen.symbolic.polynomial import Multiplier, refactored
 from symgen.symbolic.scalar import Graph, Scalar
 
 SEEDS = range(60)
 PARAMETERS, STATES = "abcd", "pqrs"
-Pass = Callable[[Graph, Factoring, Sequence[Scalar]], Sequence[Scalar]]
+Rewriting = Callable[[Graph, Factoring, Sequence[Scalar]], Sequence[Scalar]]
 
 
 def _sums(graph: Graph, draw: random.Random) -> list[Scalar]:
@@ -79,17 +74,6 @@ def _made(graph: Graph, draw: random.Random, op: str, args: tuple[Scalar, Scalar
     return graph.raw(op, args)
 
 
-def _early(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> Sequence[Scalar]:
-    for factor in early_factors(factoring, outputs):
-        outputs = with_early_factor(graph, factoring, outputs, factor)
-    return outputs
-
-
-def _late(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> Sequence[Scalar]:
-    found = with_late_factors(graph, factoring, outputs, with_shared_products)
-    return with_late_factors(graph, factoring, found)
-
-
 def _divided(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) -> Sequence[Scalar]:
     number = usual_number(outputs[:1])
     return [divided(graph, output, number) * number for output in outputs]
@@ -99,15 +83,8 @@ def _out(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) -> Sequence[Scal
     return refactored(graph, outputs, Multiplier(graph, lambda _: False), lambda _: False)
 
 
-PASSES: dict[str, Pass] = {
-    **{step.__name__: step for step in (*grouping._SIGNS_AND_NUMBERS, *grouping._STEPS, *grouping._LAST_STEPS)},
-    **{step.__name__: step for step in (grouping._with_common_factors, grouping._with_quotients)},
-    "with_parameters_taken_out": grouping._with_parameters_taken_out,
-    "with_common_factors": lambda graph, _, outputs: with_common_factors(graph, outputs),
-    "with_one_difference": lambda graph, _, outputs: with_one_difference(graph, outputs),
-    "with_shared_sums": lambda graph, _, outputs: with_shared_sums(graph, outputs),
-    "early factors": _early,
-    "late factors": _late,
+PASSES: dict[str, Rewriting] = {
+    **{one.name: one.rewrite for one in (*grouping.PASSES, *grouping.BEGINNINGS)},
     "dividing by a number": _divided,
     "multiplying out": _out,
     "sharing angles": lambda graph, _, outputs: share_angles(graph, outputs),
@@ -157,8 +134,8 @@ def test_a_wrong_pass_ends_generation_and_is_named(monkeypatch: pytest.MonkeyPat
     def wrong(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
         return [graph.raw("neg", (output,)) for output in outputs]
 
-    monkeypatch.setattr(grouping, "_SIGNS_AND_NUMBERS", (wrong,))
-    with pytest.raises(SymgenBug, match="wrong: changes the value of"):
+    monkeypatch.setattr(grouping, "PASSES", (grouping.Pass("made wrong", "is not to be noticed", wrong),))
+    with pytest.raises(SymgenBug, match="made wrong: changes the value of"):
         derive_quantities(model("scara"), ("inverse_dynamics",))
 
 

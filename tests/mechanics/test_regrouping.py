@@ -7,10 +7,9 @@ from collections.abc import Sequence
 import pytest
 
 from symgen.symbolic.evaluate import Evaluator
-from symgen.symbolic.passes.early_factors import early_factors, with_early_factor
 from symgen.symbolic.passes.factoring import Factoring
 from symgen.symbolic.passes.grouping import grouped
-from symgen.symbolic.passes.late_factors import with_late_factors
+from symgen.symbolic.passes.quotients import with_quotients
 from symgen.symbolic.passes.sum_factors import MOST_TERMS, with_common_factors
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import cost, topological
@@ -92,29 +91,13 @@ def test_sums_beyond_the_limit_stay(graph: Graph) -> None:
     assert multiplications([shorter]) == 1
 
 
-def test_a_factor_of_several_values_is_multiplied_in_once(graph: Graph) -> None:
-    a, b, c, f, g, _, k, x, y, z = symbols(graph)
-    first, second = f * (a + x), f * (b + y)
-    outputs = [z - k * (x * first + y * second), c + k * (second / (x * x + g))]
-    found = with_late_factors(graph, Factoring(graph, [f, k]), outputs)
-    assert multiplications(found) == multiplications(outputs) - 1
-    assert values(found) == pytest.approx(values(outputs))
-
-
-def test_a_factor_stays_where_values_are_added_to_others(graph: Graph) -> None:
-    a, b, _, f, *_ = symbols(graph)
-    outputs = [f * a + b, f * b + a]
-    assert with_late_factors(graph, Factoring(graph, [f]), outputs) == outputs
-
-
 def test_results_and_divisors_get_their_factor_back(graph: Graph) -> None:
     a, b, c, f, g, _, k, x, y, _ = symbols(graph)
     first, second, third = f * (a + x), f * (b + y), f * (c + g)
     outputs = [k * (x * first), k * (y * second), k * third, first, graph.one / second]
-    for regroup in (with_late_factors, grouped):
-        found = regroup(graph, Factoring(graph, [f, k]), outputs)
-        assert cost(found).weight <= cost(outputs).weight
-        assert values(found) == pytest.approx(values(outputs))
+    found = grouped(graph, Factoring(graph, [f, k]), outputs)
+    assert cost(found).weight <= cost(outputs).weight
+    assert values(found) == pytest.approx(values(outputs))
 
 
 def test_an_operation_made_twice_counts_once(graph: Graph) -> None:
@@ -125,19 +108,10 @@ def test_an_operation_made_twice_counts_once(graph: Graph) -> None:
     assert multiplications(grouped(graph, Factoring(graph, [f, g]), outputs)) == 3
 
 
-def test_a_parameter_is_multiplied_early_where_its_products_exist(graph: Graph) -> None:
-    """p (x a + y b) beside p x and p y needs no product with p of its own; q p x beside p x needs no q p."""
-    a, b, _, f, g, h, k, x, y, _ = symbols(graph)
-    factoring = Factoring(graph, (f, g))
-    outputs = [f * x + a, f * y + b, f * (x * h + y * k), (g * f) * x, (f / (h * k)) * (x - y)]
-    assert early_factors(factoring, outputs) == [f]
-    found = with_early_factor(graph, factoring, outputs, f)
-    assert multiplications(found) == multiplications(outputs) - 2
+def test_a_reciprocal_that_serves_one_product_is_a_quotient(graph: Graph) -> None:
+    a, b, c, *_ = symbols(graph)
+    once, twice = graph.raw("div", (graph.one, b)), graph.raw("div", (graph.one, c))
+    outputs = [graph.raw("mul", (a, once)), graph.raw("mul", (a, twice)), graph.raw("mul", (b, twice))]
+    found = with_quotients(graph, outputs)
+    assert [node.op for node in found] == ["div", "mul", "mul"]
     assert values(found) == pytest.approx(values(outputs))
-
-
-def test_what_has_no_product_with_a_parameter_keeps_it(graph: Graph) -> None:
-    a, b, _, f, _, h, k, x, y, _ = symbols(graph)
-    factoring = Factoring(graph, (f,))
-    outputs = [f * x + a, f * (x * h + y * k), f * b]
-    assert with_early_factor(graph, factoring, outputs, f) == outputs

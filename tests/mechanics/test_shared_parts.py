@@ -1,4 +1,4 @@
-"""Parts that several sums and products share, differences the other way round, factors that parameters hide."""
+"""Parts that several sums and products share, factors that parameters hide."""
 
 from __future__ import annotations
 
@@ -12,9 +12,6 @@ from symgen.linear_algebra.guards import magnitude
 from symgen.quantities.select import derive_quantities
 from symgen.symbolic.content import divided
 from symgen.symbolic.evaluate import Evaluator
-from symgen.symbolic.passes.factoring import Factoring
-from symgen.symbolic.passes.late_factors import with_late_factors
-from symgen.symbolic.passes.opposites import with_one_difference
 from symgen.symbolic.passes.shared_parts import with_shared_products, with_shared_sums
 from symgen.symbolic.passes.sum_factors import with_common_factors
 from symgen.symbolic.scalar import Graph, Scalar
@@ -62,17 +59,7 @@ def test_angles_stay_as_they_are() -> None:
     a, b, c, d, _, _ = symbols(graph, "abcdef")
     angles = [sum_of(graph, [(1, x), (1, a), (-1, b)]) for x in (c, d)]
     sines = [graph.function("sin", (angle,)) for angle in angles]
-    for step in (with_shared_sums, with_one_difference):
-        assert step(graph, sines) == sines
-
-
-def test_differences_the_other_way_round_are_one() -> None:
-    graph = Graph()
-    a, b, c, d, _, _ = symbols(graph, "abcdef")
-    one, other = graph.raw("sub", (a, b)), graph.raw("sub", (b, a))
-    outputs = [graph.raw("mul", (c, one)), graph.raw("add", (d, graph.raw("mul", (c, other))))]
-    found = taken(with_one_difference, graph, outputs, 4 - 1)
-    assert all(node.op != "neg" for node in reached(found))
+    assert with_shared_sums(graph, sines) == sines
 
 
 def test_parameters_are_taken_out_of_sums_that_share_them() -> None:
@@ -87,22 +74,6 @@ def test_parameters_are_taken_out_of_sums_that_share_them() -> None:
 
     assert cost(with_common_factors(graph, sums)).weight == 7
     taken(step, graph, sums, 6)
-
-
-def test_a_late_factor_meets_what_several_products_share() -> None:
-    graph = Graph()
-    a, b, c, d, e, f, p, q = symbols(graph, "abcdefpq")
-    share = graph.raw("div", (q, f))
-    outputs = [
-        graph.raw("sub", (base, graph.raw("mul", (graph.raw("mul", (p, x)), share)))) for base, x in ((a, b), (c, d))
-    ]
-    factoring = Factoring(graph, (p, q))
-
-    def late(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
-        return with_late_factors(graph, factoring, outputs, with_shared_products)
-
-    assert with_late_factors(graph, factoring, outputs) == outputs
-    taken(late, graph, [*outputs, graph.raw("mul", (e, share))], 6 + 3 + 2 + 1)
 
 
 def test_a_number_is_divided_into_the_term_that_holds_it() -> None:

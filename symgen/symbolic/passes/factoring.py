@@ -38,16 +38,6 @@ class Factoring:
             self._fixed = {node: fixed for node, fixed in self._fixed.items() if stays(node)}
             self._multipliers.clear()
 
-    def factors(self, nodes: Iterable[Scalar]) -> dict[Scalar, int]:
-        """What depends on parameters only and multiplies what does not: in how many products, as they are met."""
-        found: dict[Scalar, int] = {}
-        for node in nodes:
-            if node.op == "mul" and not self.fixed(node):
-                for argument in node.args:
-                    if argument.constant is None and self.fixed(argument):
-                        found[argument] = found.get(argument, 0) + 1
-        return found
-
     def shorten(self, outputs: Sequence[Scalar], kept: frozenset[Scalar] = frozenset()) -> tuple[Scalar, ...]:
         """The scalars multiplied out, cancelled and factored where they are not too long."""
         multiplier = self._multipliers.get(kept)

@@ -59,7 +59,7 @@ class _Sharing:
             terms = self._terms.get(node)
             if terms is None or node in self._long or not any(part in pairs for _, part in terms):
                 args = tuple(map(image.__getitem__, node.args))
-                image[node] = node if args == node.args else self._graph.raw(node.op, args, node.payload)
+                image[node] = self._graph.over(node, args)
             else:
                 image[node] = self._built(terms, pairs, image, made)
         return [image[output] for output in self._outputs]

@@ -45,7 +45,7 @@ def with_common_factors(
     image: dict[Scalar, Scalar] = {}
     for node in order:
         args = tuple(map(image.__getitem__, node.args))
-        image[node] = node if args == node.args else graph.raw(node.op, args, node.payload)
+        image[node] = graph.over(node, args)
         if node.op in SUMS and (node not in inside or uses[node] > 1):
             plain = terms_of(node, inside)
             kept = without_opposites(plain, uses) if len(plain) <= MOST_TERMS else plain
