@@ -13,6 +13,8 @@ from symgen.model.expressions.names import did_you_mean, nearest
 
 FEWEST_STATES = 8
 USUAL = "inverse_dynamics"
+# Names that methods once had.
+FORMER = {(USUAL, "range"): "elimination"}
 UNKNOWN = "unrecognized arguments: "  # how argparse begins
 
 
@@ -93,6 +95,7 @@ def form_of(text: str) -> tuple[str, str]:
     if quantity not in FORMS:
         remedy = did_you_mean(quantity, [*FORMS], f"those that have forms are {', '.join(FORMS)}")
         raise argparse.ArgumentTypeError(f"{quantity!r} has no forms; {remedy}")
+    form = FORMER.get((quantity, form), form)
     if form != AUTO and form not in FORMS[quantity]:
         choices = ", ".join((AUTO, *FORMS[quantity]))
         raise argparse.ArgumentTypeError(f"{form!r} is no form of {quantity}: choose from {choices}")

@@ -23,7 +23,7 @@ AUTO = "auto"
 _MOTIONS = ("minor", "schur_qr", "schur_ldl", "nullspace", "shifted", "kkt", "articulated", "articulated_refined")
 # By quantity, the forms that may be asked for.
 FORMS: Mapping[str, tuple[str, ...]] = {
-    "inverse_dynamics": ("minor", "nullspace", "range", "householder", "printed", "weighted", "kkt"),
+    "inverse_dynamics": ("minor", "nullspace", "elimination", "householder", "printed", "weighted", "kkt"),
     "forward_dynamics": _MOTIONS,
     "multipliers": _MOTIONS,
     "nullspace_projector": ("minor", "householder"),

@@ -17,8 +17,8 @@ from symgen.symbolic.matrix import Vector
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost, topological
 
-FormName: TypeAlias = Literal["minor", "nullspace", "range", "householder", "printed", "weighted", "kkt"]
-FORM_NAMES: tuple[FormName, ...] = ("minor", "nullspace", "range", "householder", "printed", "weighted", "kkt")
+FormName: TypeAlias = Literal["minor", "nullspace", "elimination", "householder", "printed", "weighted", "kkt"]
+FORM_NAMES: tuple[FormName, ...] = ("minor", "nullspace", "elimination", "householder", "printed", "weighted", "kkt")
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,7 @@
 """The inverse dynamics u along the cheapest admitted form, or along the form that is asked for.
 
 Forms are counted on graphs of their own; the chosen one is brought to the graph of the other quantities.  A form that
-is not cheaper than one already admitted is not examined.  Chosen by themselves are range, minor, nullspace and
+is not cheaper than one already admitted is not examined.  Chosen by themselves are elimination, minor, nullspace and
 householder; the others work on whole matrices and are there to be asked for.
 """
 
@@ -21,7 +21,7 @@ from symgen.methods.derivation import Derivation
 from symgen.methods.form import FORM_NAMES, Method, form
 from symgen.methods.inverse_dynamics.by_space import form_along, householder_derivation, minor_derivation
 from symgen.methods.inverse_dynamics.estimates import least_costs
-from symgen.methods.inverse_dynamics.forces_eliminated import range_form
+from symgen.methods.inverse_dynamics.forces_eliminated import elimination_form
 from symgen.methods.inverse_dynamics.nullspace import nullspace_form
 from symgen.methods.inverse_dynamics.printed import printed_form
 from symgen.methods.inverse_dynamics.weighted import kkt_form, weighted_form
@@ -34,7 +34,7 @@ from symgen.symbolic.transplant import transplanted
 from symgen.symbolic.traverse import cost
 from symgen.validity.resolution import stands_out
 
-AUTOMATIC = ("range", "minor", "nullspace", "householder")
+AUTOMATIC = ("elimination", "minor", "nullspace", "householder")
 # Longer outputs are not multiplied out; multiplied out, terms that vanish have cancelled exactly, which is worth a few
 # operations more where minors were summed.
 FACTORING_LIMIT = 450
@@ -105,7 +105,7 @@ class InverseDynamics:
                 system = MethodInput(derivation.mechanics, self._generic)
             else:
                 system = MethodInput.fresh(self._model, self._generic, self._lumped)
-            if name == "range":
+            if name == "elimination":
                 system = self._in_body_axes(system)
             made = _BUILDERS[name](self, system)
             self._offers[name] = made if isinstance(made, str) else Offer(name, system, made)
@@ -192,7 +192,7 @@ class InverseDynamics:
         return best, MethodChoice(best.way, verdicts[best.way], others)
 
     def _built(self) -> dict[str, Offer]:
-        """The forms that may be the cheapest: those that cannot fall below an admitted range form are not derived."""
+        """The forms that may be the cheapest: those that cannot fall below an admitted elimination are not derived."""
         offers: dict[str, Offer] = {}
         limit: int | None = None
         for name in AUTOMATIC[:-1]:
@@ -202,7 +202,7 @@ class InverseDynamics:
             if isinstance(offer, str):
                 continue
             offers[name] = offer
-            if name == "range" and self._first_verdict(offer).admitted:
+            if name == "elimination" and self._first_verdict(offer).admitted:
                 limit = max(offer.form.weight, _factoring_limit(offer))
         last = AUTOMATIC[-1]
         if not offers or self._least_costs[last] < min(offer.form.weight for offer in offers.values()):
@@ -251,12 +251,12 @@ class InverseDynamics:
 
     def _measures(self, offer: Offer) -> list[Scalar]:
         """Denominators that vanish only where a rank drops, by theorem: minors, pivots of reflections, or else the
-        rest that the range form's invertible steps leave."""
+        rest that the elimination's invertible steps leave."""
         found = self.minor_measures
         if offer.form.name == "householder":
             derivation = householder_derivation(offer.system)
             return [*found, *([] if isinstance(derivation, str) else _denominators(derivation))]
-        if not found and offer.form.name == "range":
+        if not found and offer.form.name == "elimination":
             return [guard.denominator for guard in offer.form.guards]
         return found
 
@@ -274,10 +274,10 @@ def _nullspace(forms: InverseDynamics, system: MethodInput) -> Method | str:
     return nullspace_form(system, proof_for(system, forms.minor_measures).shown)
 
 
-def _range(_: InverseDynamics, system: MethodInput) -> Method | str:
+def _elimination(_: InverseDynamics, system: MethodInput) -> Method | str:
     if system.driven is not None:
         return system.driven
-    made = range_form(_in_absolute_angles(system.mechanics), system.generic)
+    made = elimination_form(_in_absolute_angles(system.mechanics), system.generic)
     return "its steps leave more than a few rows, or M does not select rows" if made is None else made
 
 
@@ -292,7 +292,7 @@ def _in_absolute_angles(mechanics: System) -> System:
 _BUILDERS: dict[str, Callable[[InverseDynamics, MethodInput], Method | str]] = {
     "minor": lambda forms, system: form_along(system, "minor", forms.minor),
     "nullspace": _nullspace,
-    "range": _range,
+    "elimination": _elimination,
     "householder": lambda _, system: form_along(system, "householder", householder_derivation(system)),
     "printed": lambda _, system: printed_form(system),
     "weighted": lambda _, system: weighted_form(system),

@@ -17,7 +17,7 @@ from symgen.mechanics.free_bodies import free_bodies
 from symgen.mechanics.genericity import genericity
 from symgen.mechanics.system import System
 from symgen.methods.form import Method
-from symgen.methods.inverse_dynamics.forces_eliminated import range_form
+from symgen.methods.inverse_dynamics.forces_eliminated import elimination_form
 from symgen.methods.selection import InverseDynamics, Offer
 from symgen.model.load import load_text
 from symgen.model.model import Model
@@ -93,7 +93,7 @@ def both(name: str) -> tuple[Method, Method]:
     """u by rates of coordinates and by twists."""
     model = described(*SAME[name])
     generic = genericity(System(model))
-    first, second = (range_form(mechanics, generic) for mechanics in (System(model), BodyAxes(model)))
+    first, second = (elimination_form(mechanics, generic) for mechanics in (System(model), BodyAxes(model)))
     assert first is not None
     assert second is not None
     return first, second
@@ -122,7 +122,7 @@ def test_u_is_the_same_and_shorter(name: str) -> None:
 def test_the_cheapest_form_is_that_in_body_axes() -> None:
     model = described()
     forms = InverseDynamics(model, genericity(System(model)))
-    offer = forms.offer("range")
+    offer = forms.offer("elimination")
     assert isinstance(offer, Offer)
     assert isinstance(offer.system.mechanics, BodyAxes)
     verdict = forms.verdict(offer)

@@ -14,7 +14,7 @@ from symgen.mechanics.genericity import genericity, parameter_values
 from symgen.mechanics.system import System
 from symgen.methods.forward_dynamics.articulated import articulated
 from symgen.methods.inverse_dynamics.elimination import Elimination
-from symgen.methods.inverse_dynamics.forces_eliminated import range_form
+from symgen.methods.inverse_dynamics.forces_eliminated import elimination_form
 from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.symbolic.evaluate import Evaluator
@@ -42,7 +42,7 @@ def test_rows_of_the_legs_are_solved(platform: Model, kind: type[System], rows: 
 
 def test_the_lengths_are_tested(platform: Model) -> None:
     mechanics = System(platform)
-    form = range_form(mechanics, genericity(mechanics))
+    form = elimination_form(mechanics, genericity(mechanics))
     assert form is not None
     assert cost(form.outputs).weight < 2600  # by reflections 8976
     (guard,) = form.guards
@@ -63,7 +63,7 @@ def test_the_lengths_are_tested(platform: Model) -> None:
 def test_the_rank_of_b_is_told_apart(platform: Model, kind: type[System]) -> None:
     """One leg of no length leaves B its rank; four leave eight forces on a body with six motions."""
     mechanics, plain = kind(platform), System(platform)
-    form = range_form(mechanics, genericity(plain))
+    form = elimination_form(mechanics, genericity(plain))
     assert form is not None
     (guard,) = form.guards
     (cause,) = guard.first

@@ -57,7 +57,7 @@ def test_frames_that_share_parameters_are_shorter_lumped() -> None:
 @pytest.mark.parametrize(("name", "most"), [("arm7", 716), ("delta", 150), ("rapkm_bodies", 155), ("chain8", 355)])
 def test_products_and_sums_of_u(name: str, most: int) -> None:
     one = described(name)
-    offer = InverseDynamics(one, genericity(System(one))).offer("range")
+    offer = InverseDynamics(one, genericity(System(one))).offer("elimination")
     assert isinstance(offer, Offer)
     found = cost(share_angles(offer.form.outputs[0].graph, offer.form.outputs))
     assert found.additive + found.multiplications <= most

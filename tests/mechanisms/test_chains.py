@@ -25,7 +25,7 @@ def test_u_grows_linearly(tmp_path: Path) -> None:
     for links in (8, 16, 32):
         found = derived(links, tmp_path, "inverse_dynamics").form
         assert found is not None
-        assert [name for name, _ in found.costs] == ["range"]
+        assert [name for name, _ in found.costs] == ["elimination"]
         weights += [weight for _, weight in found.costs]
     assert weights[2] - weights[1] == pytest.approx(2 * (weights[1] - weights[0]), rel=0.05)
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from symgen.cli.arguments import form_of
 from symgen.cli.main import main
 from symgen.generation.results import FORMS
 
@@ -40,7 +41,7 @@ def generated(folder: Path, model: str, *options: str) -> dict[str, object]:
 
 def test_auto_names_its_form_and_why_it_is_valid(tmp_path: Path) -> None:
     form = generated(tmp_path, RAPKM)
-    assert form["name"] == "range"
+    assert form["name"] == "elimination"
     assert form["valid_at_every_regular_state"] is True
     assert form["because"] == "denominators and pivots: 3 proved to vanish only where a rank drops"
 
@@ -151,3 +152,7 @@ def test_forms_a_system_lacks_and_forms_of_what_is_not_generated(
     capsys.readouterr()
     assert main([PENDULUM, *given, *FEW[:2], "--form", "forward_dynamics=kkt"]) == 0
     assert "--form forward_dynamics=kkt: forward_dynamics is not generated" in capsys.readouterr().err
+
+
+def test_a_name_that_a_form_once_had_is_taken_for_it() -> None:
+    assert form_of("range") == form_of("inverse_dynamics=range") == ("inverse_dynamics", "elimination")

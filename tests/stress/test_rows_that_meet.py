@@ -19,7 +19,7 @@ ONE = "cos(p)*e_dot + sin(p)*h_dot + 0.3*p_dot"
 OTHER = "cos(s)*e_dot + sin(s)*h_dot + 0.3*p_dot"
 SUM = f"({ONE}) + ({OTHER})"
 APART = (1.0, 1e-2, 1e-4, 1e-6)
-STABLE = ("minor", "schur_qr", "nullspace", "householder", "range")
+STABLE = ("minor", "schur_qr", "nullspace", "householder", "elimination")
 
 SYSTEMS = {
     "two_wheels": {"left": ONE, "right": OTHER},

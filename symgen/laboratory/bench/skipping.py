@@ -17,7 +17,7 @@ from symgen.mechanics.genericity import Genericity, genericity
 from symgen.mechanics.system import System
 from symgen.methods.derivation import Derivation
 from symgen.methods.inverse_dynamics.elimination import Elimination
-from symgen.methods.inverse_dynamics.forces_eliminated import range_form
+from symgen.methods.inverse_dynamics.forces_eliminated import elimination_form
 from symgen.model.model import Model
 from symgen.quantities.select import derive_quantities
 from symgen.symbolic.angles import share_angles
@@ -122,7 +122,7 @@ class _FullMatrices(System):
 
 
 class _WorldAxes(Elimination):
-    """The steps of the range form without turning rows and multipliers into the axes of the bodies."""
+    """The steps of elimination without turning rows and multipliers into the axes of the bodies."""
 
     def _direction(self, a: Scalar, b: Scalar, lengths: bool = False) -> None:
         del a, b, lengths
@@ -184,13 +184,13 @@ def _of_matrices(model: Model, generic: Genericity) -> Iterator[Kept]:
 
 
 def _of_axes(model: Model, generic: Genericity) -> Kept:
-    """What body-fixed axes save in the range form."""
+    """What body-fixed axes save in elimination."""
 
     def weight(steps: Callable[[System], Elimination]) -> int | None:
         mechanics = System(model)
         change = absolute_angles(mechanics.graph, mechanics.q, mechanics.constraint_jacobian)
         seen = mechanics if change.is_identity else System(model, mechanics, change)
-        form = range_form(seen, generic, steps)
+        form = elimination_form(seen, generic, steps)
         return None if form is None else _weight(form.outputs)
 
     plain, world = weight(Elimination), weight(_WorldAxes)
@@ -268,8 +268,8 @@ TABLE
 - *groups of parameters*: sums and products of parameters alone formed wherever they are used.
 - *sines by addition*: a sine and cosine of its own for each angle.
 - *zeros of G and C*: what stands where they are zero as numbers at run time, against τ by these matrices.
-- *body-fixed axes*: the range form whose rows and multipliers stay in the axes of the model, against the range form.
-- A small minus is a product that happens to be shared; the slider-crank does not take the range form. Where bodies are
+- *body-fixed axes*: elimination whose rows and multipliers stay in the axes of the model, against elimination.
+- A small minus is a product that happens to be shared; the slider-crank does not take elimination. Where bodies are
   given, τ comes from their frames, and the matrices of a small mechanism can be shorter; so is *u as generated*, which
   eliminates on the way through the frames.
 - *too long*: with the zeros kept, every choice of 16 or 32 columns has a minor of its own; 18 rows of 24 columns have

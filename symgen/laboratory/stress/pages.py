@@ -16,7 +16,7 @@ CAPTIONS = {
 }
 ORDER = tuple(CAPTIONS)
 FORM_NAMES = (
-    *("minor", "nullspace", "range", "householder", "printed", "weighted", "kkt"),  # of u; some also of q̈, λ and N_B
+    *("minor", "nullspace", "elimination", "householder", "printed", "weighted", "kkt"),  # some not of u alone
     *("schur_qr", "schur_ldl", "shifted", "articulated"),
 )
 FORMS = (

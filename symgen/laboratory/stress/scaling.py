@@ -31,7 +31,7 @@ from symgen.verify.tolerance import FACTOR, expectations
 QUANTITIES = ("inverse_dynamics", "forward_dynamics", "multipliers")
 STATES = 4
 BITS = 256
-POLYNOMIAL = ("minor", "minor factored", "range", "nullspace")  # forms without square roots
+POLYNOMIAL = ("minor", "minor factored", "elimination", "nullspace")  # forms without square roots
 SAME = 1e-40
 RANKS = (Status.CONSTRAINT_RANK, Status.ACTUATION_RANK)
 # exponents of two for mass, length, time

@@ -1,4 +1,4 @@
-"""The range form of u: forces are eliminated until a small core is left, u follows from it, internal forces come out.
+"""u by elimination: of forces, until a small core is left; u follows from it, internal forces come out.
 
 Where M selects rows, the passive rows give the multipliers and the drive rows give u; in general inputs are unknowns
 like the multipliers.  N_B, B B^T or any choice of coordinates do not occur.
@@ -34,10 +34,10 @@ from symgen.symbolic.traverse import cost, substitute
 MOST_MINORS = 3
 
 
-def range_form(
+def elimination_form(
     mechanics: System, generic: Genericity, steps: Callable[[System], Elimination] = Elimination
 ) -> Method | None:
-    """u by the range form, or None where it does not apply; `mechanics` may be in absolute angles.
+    """u by elimination, or None where it does not apply; `mechanics` may be in absolute angles.
 
     Needs full actuation and independent constraints.  `steps` makes the elimination.
     """
@@ -58,7 +58,7 @@ def range_form(
     back = _symbols_back(mechanics, mechanics.change) | _positive_sizes(mechanics)
     outputs = tuple(substitute(graph, u, back))
     moved = [_moved(graph, guard, back) for guard in open_guards]
-    return form("range", "inverse_dynamics", outputs, moved, substitute(graph, mechanics.balance, back))
+    return form("elimination", "inverse_dynamics", outputs, moved, substitute(graph, mechanics.balance, back))
 
 
 class _Core:

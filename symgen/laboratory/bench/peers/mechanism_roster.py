@@ -12,7 +12,7 @@ from symgen.laboratory.bench.peers.algebra import DeadPivotError, ldl_solve
 from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine, adaptor, generated
 from symgen.laboratory.bench.peers.engine import Engine, Symbol
 from symgen.laboratory.bench.peers.expert import free_multipliers, independent_coordinates
-from symgen.laboratory.bench.peers.forms import lean, part, range_form, selected_rows
+from symgen.laboratory.bench.peers.forms import elimination_form, lean, part, selected_rows
 from symgen.laboratory.bench.peers.frames import lagrange_by_frames, mechanics_by_frames
 from symgen.laboratory.bench.peers.householder import householder_units
 from symgen.laboratory.bench.peers.mechanics import PeerSystem, mechanics
@@ -82,7 +82,7 @@ def _others(left_out: list[tuple[str, str]]) -> list[type[Engine]]:
 def _forms(model: Model, states: Any, left_out: list[tuple[str, str]]) -> dict[str, Build]:
     """lean up to a size, part, and range where M selects coordinates; a serial arm has one form."""
     if not model.r:
-        return {SERIAL: lambda engine, s: range_form(engine, s, ())} if _selects(model) else {"lean": lean}
+        return {SERIAL: lambda engine, s: elimination_form(engine, s, ())} if _selects(model) else {"lean": lean}
     forms: dict[str, Build] = {}
     if model.n <= MOST_LEAN or model.r > model.n // 2:
         forms["lean"] = lean
@@ -94,9 +94,9 @@ def _forms(model: Model, states: Any, left_out: list[tuple[str, str]]) -> dict[s
     if independent is not None:
         forms["part"] = lambda engine, s: part(engine, s, independent, ldl_solve, direct=True)
     if free is not None:
-        forms["range"] = lambda engine, s: range_form(engine, s, free)
+        forms["elimination"] = lambda engine, s: elimination_form(engine, s, free)
     else:
-        left_out.append(("form range", "the control matrix does not select coordinates"))
+        left_out.append(("form elimination", "the control matrix does not select coordinates"))
     return forms
 
 

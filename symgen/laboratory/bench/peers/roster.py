@@ -77,7 +77,7 @@ def in_single(candidate: CCandidate) -> CCandidate:
 def _forms(model: Model, s: Lagrange, states: Any) -> tuple[dict[str, Build], list[tuple[str, str]]]:
     from symgen.laboratory.bench.peers.algebra import ldl_solve
     from symgen.laboratory.bench.peers.expert import free_multipliers, independent_coordinates
-    from symgen.laboratory.bench.peers.forms import lean, part, range_form
+    from symgen.laboratory.bench.peers.forms import elimination_form, lean, part
 
     forms: dict[str, Build] = {"lean": lean, "lean LDLᵀ": lambda engine, system: lean(engine, system, ldl_solve)}
     left_out = []
@@ -89,9 +89,9 @@ def _forms(model: Model, s: Lagrange, states: Any) -> tuple[dict[str, Build], li
         forms["part LDLᵀ"] = lambda engine, system: part(engine, system, independent, ldl_solve, direct=True)
     free = free_multipliers(model, s, states)
     if free is None:
-        left_out.append(("form range", "the control matrix does not select coordinates"))
+        left_out.append(("form elimination", "the control matrix does not select coordinates"))
     else:
-        forms["range"] = lambda engine, system: range_form(engine, system, free)
+        forms["elimination"] = lambda engine, system: elimination_form(engine, system, free)
     return forms, left_out
 
 
