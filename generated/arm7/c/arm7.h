@@ -22,8 +22,8 @@
  *
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics     380    381      0      0      6      0
- * forward_dynamics     800    861     32      0      6      0
+ * inverse_dynamics     380    382      0      0      6      0
+ * forward_dynamics     800    858     32      0      6      0
  * singularity            0      0      0      0      0      0
  * (changes of sign are not counted)
  *

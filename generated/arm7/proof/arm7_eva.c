@@ -129,7 +129,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t163, t205, t399, t438, t664, t712. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t169, t211, t405, t444, t636, t710. */
 void eva_forward_dynamics(void) {
     double q[7];
     double qd[7];

@@ -24,18 +24,18 @@
  * constraint_pseudoinverse              7     23      2      0      2      0
  * nullspace_projector                   3     16      1      0      2      0
  * nullspace_projector_dot              14     52      2      0      2      0
- * weighted_pseudoinverse               16     45      3      0      2      0
- * weighted_nullspace_projector         15     50      4      0      2      0
+ * weighted_pseudoinverse               16     46      3      0      2      0
+ * weighted_nullspace_projector         15     52      4      0      2      0
  * control_matrix                        1      1      0      0      2      0
  * projected_control_matrix              3     12      3      0      2      0
  * projected_control_pseudoinverse       0      2      1      0      2      0
  * orthogonal_complement                 1      5      2      0      2      0
- * projected_mass_matrix                10     32      3      0      2      0
- * projected_coriolis_matrix            62    132     10      0      2      0
+ * projected_mass_matrix                10     33      3      0      2      0
+ * projected_coriolis_matrix            62    131     10      0      2      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                   3     11      1      0      2      0
- * minimal_coriolis_matrix              13     33      1      0      2      0
+ * minimal_coriolis_matrix              13     35      1      0      2      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                1      6      1      0      2      0
@@ -45,7 +45,7 @@
  * inverse_dynamics                      7     14      1      0      2      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     3      4      0      0      2      0
- * actuator_mass_matrix                  2      6      1      0      1      0
+ * actuator_mass_matrix                  2      7      1      0      1      0
  * actuator_bias                        11     26      1      0      2      0
  * forward_dynamics                     34     83      1      0      2      0
  * multipliers                          37     84      1      0      2      0

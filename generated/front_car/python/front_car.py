@@ -23,18 +23,18 @@ constraint_jacobian_dot               3     10      0      0      2      0
 constraint_pseudoinverse              7     23      2      0      2      0
 nullspace_projector                   3     16      1      0      2      0
 nullspace_projector_dot              14     52      2      0      2      0
-weighted_pseudoinverse               16     45      3      0      2      0
-weighted_nullspace_projector         15     50      4      0      2      0
+weighted_pseudoinverse               16     46      3      0      2      0
+weighted_nullspace_projector         15     52      4      0      2      0
 control_matrix                        1      1      0      0      2      0
 projected_control_matrix              3     12      3      0      2      0
 projected_control_pseudoinverse       0      2      1      0      2      0
 orthogonal_complement                 1      5      2      0      2      0
-projected_mass_matrix                10     32      3      0      2      0
-projected_coriolis_matrix            62    132     10      0      2      0
+projected_mass_matrix                10     33      3      0      2      0
+projected_coriolis_matrix            62    131     10      0      2      0
 projected_potential_force             0      0      0      0      0      0
 projected_applied_force               0      0      0      0      0      0
 minimal_mass_matrix                   3     11      1      0      2      0
-minimal_coriolis_matrix              13     33      1      0      2      0
+minimal_coriolis_matrix              13     35      1      0      2      0
 minimal_potential_force               0      0      0      0      0      0
 minimal_applied_force                 0      0      0      0      0      0
 minimal_control_matrix                1      6      1      0      2      0
@@ -44,7 +44,7 @@ projected_configuration               0      0      0      0      0      0
 inverse_dynamics                      7     14      1      0      2      0
 inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     3      4      0      0      2      0
-actuator_mass_matrix                  2      6      1      0      1      0
+actuator_mass_matrix                  2      7      1      0      1      0
 actuator_bias                        11     26      1      0      2      0
 forward_dynamics                     34     83      1      0      2      0
 multipliers                          37     84      1      0      2      0
@@ -706,11 +706,11 @@ def weighted_pseudoinverse(q, p=PARAMETERS):
         t17 = t16 * 7.888609052210118e-31
         status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = Theta_1 * t7
-        t19 = L * L
-        t20 = m_1 * t4
-        t21 = t4 * t20
-        t22 = m_2 + t21
-        t23 = t19 * t22
+        t19 = m_1 * t4
+        t20 = t4 * t19
+        t21 = m_2 + t20
+        t22 = L * t21
+        t23 = L * t22
         t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
@@ -736,44 +736,45 @@ def weighted_pseudoinverse(q, p=PARAMETERS):
         t45 = t6 * t3
         t46 = t44 + t45
         t47 = m_2 * t46
-        t48 = t5 * t20
+        t48 = t5 * t19
         t49 = t47 + t48
         t50 = t43 * t49
         t51 = t6 * t4
         t52 = t5 * t3
         t53 = t51 - t52
-        t54 = m_2 * t19
-        t55 = Theta_1 + t54
-        t56 = Theta_2 * t55
-        t57 = t3 * t56
-        t58 = t53 * t57
-        t59 = t50 - t58
-        t60 = t41 * t59
-        t61 = t56 / t25
-        t62 = t3 * t61
-        t63 = t6 * t62
-        t64 = t46 * t57
+        t54 = L * L
+        t55 = m_2 * t54
+        t56 = Theta_1 + t55
+        t57 = Theta_2 * t56
+        t58 = t3 * t57
+        t59 = t53 * t58
+        t60 = t50 - t59
+        t61 = t41 * t60
+        t62 = t57 / t25
+        t63 = t3 * t62
+        t64 = t6 * t63
         t65 = m_2 * t53
-        t66 = t6 * t20
+        t66 = t6 * t19
         t67 = t65 + t66
         t68 = t43 * t67
-        t69 = t64 + t68
-        t70 = t41 * t69
-        t71 = -t70
-        t72 = t5 * t62
-        t73 = t42 / t25
-        t74 = t22 * t73
-        t75 = m_1 + m_2
-        t76 = t4 * t75
-        t77 = t76 * t73
-        t78 = -t77
+        t69 = t46 * t58
+        t70 = t68 + t69
+        t71 = t41 * t70
+        t72 = -t71
+        t73 = t5 * t63
+        t74 = t42 / t25
+        t75 = t21 * t74
+        t76 = m_1 + m_2
+        t77 = t4 * t76
+        t78 = t77 * t74
+        t79 = -t78
         entries = (
-            t60,
-            t63,
-            t71,
+            t61,
+            t64,
             t72,
-            t74,
-            t78,
+            t73,
+            t75,
+            t79,
             0.0,
             0.0,
         )
@@ -813,11 +814,11 @@ def weighted_nullspace_projector(q, p=PARAMETERS):
         t17 = t16 * 7.888609052210118e-31
         status = _first(status, ~np.asarray(t14 > t17), 2)
         t18 = Theta_1 * t7
-        t19 = L * L
-        t20 = m_1 * t6
-        t21 = t6 * t20
-        t22 = m_2 + t21
-        t23 = t19 * t22
+        t19 = m_1 * t6
+        t20 = t6 * t19
+        t21 = m_2 + t20
+        t22 = L * t21
+        t23 = L * t22
         t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
@@ -842,53 +843,55 @@ def weighted_nullspace_projector(q, p=PARAMETERS):
         t44 = t41 - t43
         t45 = m_2 * t44
         t46 = t42 + t45
-        t47 = Theta_2 * t19
-        t48 = t6 * t6
-        t49 = m_1 * t48
-        t50 = m_2 + t49
-        t51 = t19 * t50
-        t52 = t18 + t51
-        t53 = Theta_2 * t52
-        t54 = t47 / t53
-        t55 = t41 * t54
-        t56 = t46 * t55
-        t57 = t3 * t6
-        t58 = m_1 * t57
-        t59 = t4 * t5
-        t60 = t57 + t59
-        t61 = m_2 * t60
-        t62 = t58 + t61
-        t63 = t62 * t55
-        t64 = m_2 * t19
-        t65 = Theta_1 + t64
-        t66 = L * Theta_2
-        t67 = t65 * t66
-        t68 = t67 / t53
-        t69 = t5 * t68
-        t70 = t41 * t69
-        t71 = t57 * t54
-        t72 = t46 * t71
-        t73 = t62 * t71
-        t74 = t57 * t69
-        t75 = t66 / t53
-        t76 = t5 * t75
-        t77 = t46 * t76
-        t78 = t62 * t76
-        t79 = Theta_2 * t65
-        t80 = t79 / t53
-        t81 = t7 * t80
+        t47 = L * L
+        t48 = Theta_2 * t47
+        t49 = t6 * t6
+        t50 = m_1 * t49
+        t51 = m_2 + t50
+        t52 = L * t51
+        t53 = L * t52
+        t54 = t53 + t18
+        t55 = Theta_2 * t54
+        t56 = t48 / t55
+        t57 = t41 * t56
+        t58 = t46 * t57
+        t59 = t3 * t6
+        t60 = m_1 * t59
+        t61 = t4 * t5
+        t62 = t59 + t61
+        t63 = m_2 * t62
+        t64 = t60 + t63
+        t65 = t64 * t57
+        t66 = m_2 * t47
+        t67 = Theta_1 + t66
+        t68 = L * Theta_2
+        t69 = t67 * t68
+        t70 = t69 / t55
+        t71 = t5 * t70
+        t72 = t41 * t71
+        t73 = t59 * t56
+        t74 = t46 * t73
+        t75 = t64 * t73
+        t76 = t59 * t71
+        t77 = t68 / t55
+        t78 = t5 * t77
+        t79 = t46 * t78
+        t80 = t64 * t78
+        t81 = Theta_2 * t67
+        t82 = t81 / t55
+        t83 = t7 * t82
         entries = (
-            t56,
-            t63,
-            t70,
-            0.0,
+            t58,
+            t65,
             t72,
-            t73,
-            t74,
             0.0,
-            t77,
-            t78,
-            t81,
+            t74,
+            t75,
+            t76,
+            0.0,
+            t79,
+            t80,
+            t83,
             0.0,
             0.0,
             0.0,
@@ -1100,47 +1103,48 @@ def projected_mass_matrix(q, p=PARAMETERS):
         t20 = t18 / t19
         t21 = t6 * t20
         t22 = t4 * t21
-        t23 = Theta_1 * t7
-        t24 = t6 * t6
-        t25 = m_1 * t24
-        t26 = m_2 + t25
-        t27 = t18 * t26
-        t28 = t23 + t27
-        t29 = t6 * t28
-        t30 = t4 * t29
-        t31 = t22 * t30
-        t32 = t3 * t29
-        t33 = t22 * t32
-        t34 = L / t19
-        t35 = t5 * t34
-        t36 = t30 * t35
-        t37 = t21 * t32
-        t38 = t3 * t37
-        t39 = t32 * t35
-        t40 = m_2 * t18
-        t41 = Theta_1 + t40
-        t42 = t24 + (-2.0)
-        t43 = t41 * t42
-        t44 = m_1 + m_2
-        t45 = t44 * t18
-        t46 = t7 * t45
-        t47 = t43 + t46
-        t48 = t6 * t47
+        t23 = t6 * t6
+        t24 = m_1 * t23
+        t25 = m_2 + t24
+        t26 = L * t25
+        t27 = L * t26
+        t28 = Theta_1 * t7
+        t29 = t27 + t28
+        t30 = t6 * t29
+        t31 = t4 * t30
+        t32 = t22 * t31
+        t33 = t3 * t30
+        t34 = t22 * t33
+        t35 = L / t19
+        t36 = t5 * t35
+        t37 = t31 * t36
+        t38 = t21 * t33
+        t39 = t3 * t38
+        t40 = t33 * t36
+        t41 = m_2 * t18
+        t42 = Theta_1 + t41
+        t43 = t23 + (-2.0)
+        t44 = t42 * t43
+        t45 = m_1 + m_2
+        t46 = t45 * t18
+        t47 = t7 * t46
+        t48 = t44 + t47
         t49 = t6 * t48
-        t50 = t41 + t49
-        t51 = t50 / t19
+        t50 = t6 * t49
+        t51 = t42 + t50
+        t52 = t51 / t19
         entries = (
-            t31,
-            t33,
-            t36,
+            t32,
+            t34,
+            t37,
             0.0,
-            t33,
-            t38,
+            t34,
             t39,
+            t40,
             0.0,
-            t36,
-            t39,
-            t51,
+            t37,
+            t40,
+            t52,
             0.0,
             0.0,
             0.0,
@@ -1186,211 +1190,210 @@ def projected_coriolis_matrix(q, qd, p=PARAMETERS):
         t16 = 1.0 + t15
         t17 = t16 * 7.888609052210118e-31
         status = _first(status, ~np.asarray(t14 > t17), 2)
-        t24 = L * L
+        t23 = L * L
+        t24 = t6 * t23
         t25 = t6 * t24
-        t26 = t6 * t25
-        t27 = t4 * t26
-        t49 = t3 * t26
+        t26 = t4 * t25
+        t48 = t3 * t25
         t18 = 1.0 / t14
         t90 = t7 * t18
         t19 = t5 * t18
         t20 = t12 * t19
-        t28 = theta_dot * t5
-        t29 = x_dot * t4
-        t30 = y_dot * t3
-        t31 = t29 + t30
-        t32 = t8 * t31
-        t33 = t28 + t32
-        t34 = t19 * t33
-        t35 = phi_dot + t34
+        t27 = theta_dot * t5
+        t28 = x_dot * t4
+        t29 = y_dot * t3
+        t30 = t28 + t29
+        t31 = t8 * t30
+        t32 = t27 + t31
+        t33 = t19 * t32
+        t34 = phi_dot + t33
         t63 = t9 * t19
         t92 = t8 * t5
-        t39 = phi_dot * t5
-        t40 = L * t39
-        t36 = t27 * t35
-        t37 = t36 / t14
-        t38 = t6 * t37
-        t41 = t40 * t20
-        t42 = t38 + t41
-        t60 = t49 * t35
+        t38 = phi_dot * t5
+        t39 = L * t38
+        t35 = t26 * t34
+        t36 = t35 / t14
+        t37 = t6 * t36
+        t40 = t39 * t20
+        t41 = t37 + t40
+        t60 = t48 * t34
         t61 = t60 / t14
         t62 = t6 * t61
-        t64 = t40 * t63
+        t64 = t39 * t63
         t65 = t62 + t64
-        t91 = t90 * t40
-        t93 = t92 * t35
+        t91 = t90 * t39
+        t93 = t92 * t34
         t94 = t93 / t14
         t95 = t6 * t94
         t96 = t91 + t95
-        t45 = t5 * t33
-        t98 = t92 * t45
-        t46 = t27 * t45
-        t67 = t45 * t49
+        t44 = t5 * t32
+        t98 = t92 * t44
+        t45 = t26 * t44
+        t67 = t44 * t48
+        t46 = t45 / t14
         t47 = t46 / t14
-        t48 = t47 / t14
         t68 = t67 / t14
         t69 = t68 / t14
         t99 = t98 / t14
         t100 = t99 / t14
-        t50 = t4 * t6
-        t51 = t3 * t5
-        t52 = t50 - t51
-        t53 = t5 * t52
-        t54 = t49 - t53
-        t55 = t18 * t54
+        t49 = t4 * t6
+        t50 = t3 * t5
+        t51 = t49 - t50
+        t52 = t5 * t51
+        t53 = t48 - t52
+        t54 = t18 * t53
         t85 = t8 * t18
-        t43 = t4 * t19
+        t42 = t4 * t19
         t86 = t6 * t85
-        t44 = t42 * t43
-        t56 = t48 * t55
-        t57 = t44 + t56
-        t87 = t48 * t86
-        t88 = t85 * t42
+        t43 = t41 * t42
+        t55 = t47 * t54
+        t56 = t43 + t55
+        t87 = t47 * t86
+        t88 = t85 * t41
         t89 = t87 - t88
-        t97 = t43 * t96
-        t101 = t100 * t55
+        t97 = t42 * t96
+        t101 = t100 * t54
         t102 = t97 + t101
         t103 = t89 + t102
-        t66 = t43 * t65
+        t66 = t42 * t65
         t72 = t3 * t6
         t73 = t4 * t5
         t74 = t72 + t73
         t75 = t5 * t74
-        t76 = t27 + t75
+        t76 = t26 + t75
         t77 = t18 * t76
-        t70 = t69 * t55
+        t70 = t69 * t54
         t71 = t66 + t70
-        t78 = t48 * t77
+        t78 = t47 * t77
         t79 = t66 - t78
         t80 = t71 + t79
-        t130 = t3 * t19
-        t131 = t65 * t130
-        t132 = t69 * t77
-        t133 = t131 - t132
-        t136 = t69 * t86
-        t137 = t85 * t65
-        t138 = t136 - t137
-        t139 = t96 * t130
-        t140 = t100 * t77
-        t141 = t139 - t140
-        t142 = t138 + t141
-        t158 = t100 * t86
-        t159 = t85 * t96
-        t160 = t158 - t159
+        t128 = t3 * t19
+        t129 = t65 * t128
+        t130 = t69 * t77
+        t131 = t129 - t130
+        t135 = t69 * t86
+        t136 = t85 * t65
+        t137 = t135 - t136
+        t138 = t96 * t128
+        t139 = t100 * t77
+        t140 = t138 - t139
+        t141 = t137 + t140
+        t157 = t100 * t86
+        t158 = t85 * t96
+        t159 = t157 - t158
+        t160 = 2.0 * t159
         t21 = L * m_2
+        t22 = t3 * t21
         t59 = t4 * t21
-        t108 = t3 * t21
-        t114 = t59 * t34
-        t149 = t108 * t34
-        t83 = m_2 * t24
+        t113 = t59 * t33
+        t148 = t22 * t33
+        t83 = m_2 * t23
         t84 = Theta_1 + t83
-        t109 = t108 * t103
-        t151 = t59 * t142
-        t175 = 2.0 * t84
-        t174 = t109 - t151
-        t176 = t175 * t160
-        t177 = t174 - t176
-        t110 = m_1 + m_2
-        t111 = 2.0 * t110
-        t112 = t111 * t57
-        t113 = t109 - t112
-        t115 = t20 * t114
-        t116 = t113 - t115
-        t150 = t63 * t149
-        t152 = t111 * t133
-        t153 = t151 + t152
-        t154 = t150 + t153
-        t22 = 2.0 * t21
-        t23 = t3 * t22
-        t129 = t4 * t22
-        t58 = t23 * t57
+        t108 = t22 * t103
+        t109 = m_1 + m_2
+        t110 = 2.0 * t109
+        t151 = t59 * t141
+        t174 = t108 - t151
+        t175 = t84 * t160
+        t176 = t174 - t175
+        t111 = t110 * t56
+        t112 = t108 - t111
+        t114 = t20 * t113
+        t115 = t112 - t114
+        t149 = t63 * t148
+        t150 = t110 * t131
+        t152 = t150 + t151
+        t153 = t149 + t152
+        t167 = t90 * t148
+        t168 = t59 * t160
+        t169 = t109 * t141
+        t170 = t168 + t169
+        t171 = t167 + t170
+        t161 = t22 * t160
+        t162 = t109 * t103
+        t163 = t161 - t162
+        t164 = t90 * t113
+        t165 = t163 - t164
+        t120 = t63 * t113
+        t121 = t109 * t80
+        t122 = t120 + t121
+        t57 = t22 * t56
+        t58 = 2.0 * t57
         t81 = t59 * t80
         t82 = t58 - t81
         t104 = t84 * t103
         t105 = t82 - t104
-        t128 = t108 * t80
-        t134 = t129 * t133
-        t135 = t128 - t134
-        t143 = t84 * t142
-        t144 = t135 - t143
-        t167 = t90 * t149
-        t168 = t129 * t160
-        t169 = t110 * t142
-        t170 = t168 + t169
-        t171 = t167 + t170
-        t161 = t23 * t160
-        t162 = t110 * t103
-        t163 = t161 - t162
-        t164 = t90 * t114
-        t165 = t163 - t164
-        t121 = t63 * t114
-        t122 = t110 * t80
-        t123 = t121 + t122
-        t120 = t59 * t103
-        t124 = t120 + t123
-        t146 = t108 * t142
-        t147 = t146 - t123
-        t118 = t9 * t12
+        t127 = t22 * t80
+        t132 = t59 * t131
+        t133 = 2.0 * t132
+        t134 = t127 - t133
+        t142 = t84 * t141
+        t143 = t134 - t142
+        t119 = t59 * t103
+        t123 = t119 + t122
+        t145 = t22 * t141
+        t146 = t145 - t122
+        t117 = t9 * t12
         t107 = t13 * t18
-        t119 = t18 * t118
-        t182 = t10 * t18
+        t118 = t18 * t117
+        t181 = t10 * t18
         t106 = t20 * t105
-        t117 = t107 * t116
-        t125 = t119 * t124
-        t126 = t117 - t125
-        t127 = t106 + t126
-        t180 = t63 * t105
-        t181 = t119 * t116
-        t183 = t182 * t124
-        t184 = t181 - t183
-        t185 = t180 + t184
-        t196 = t90 * t105
-        t197 = t20 * t116
-        t198 = t63 * t124
-        t199 = t197 - t198
-        t200 = t196 + t199
-        t145 = t20 * t144
-        t148 = t107 * t147
-        t155 = t119 * t154
-        t156 = t148 - t155
-        t157 = t145 + t156
-        t186 = t63 * t144
-        t187 = t119 * t147
-        t188 = t182 * t154
-        t189 = t187 - t188
-        t190 = t186 + t189
-        t201 = t90 * t144
-        t202 = t20 * t147
-        t203 = t63 * t154
-        t204 = t202 - t203
-        t205 = t201 + t204
+        t116 = t107 * t115
+        t124 = t118 * t123
+        t125 = t116 - t124
+        t126 = t106 + t125
+        t179 = t63 * t105
+        t180 = t118 * t115
+        t182 = t181 * t123
+        t183 = t180 - t182
+        t184 = t179 + t183
+        t195 = t90 * t105
+        t196 = t20 * t115
+        t197 = t63 * t123
+        t198 = t196 - t197
+        t199 = t195 + t198
+        t144 = t20 * t143
+        t147 = t107 * t146
+        t154 = t118 * t153
+        t155 = t147 - t154
+        t156 = t144 + t155
+        t185 = t63 * t143
+        t186 = t118 * t146
+        t187 = t181 * t153
+        t188 = t186 - t187
+        t189 = t185 + t188
+        t200 = t90 * t143
+        t201 = t20 * t146
+        t202 = t63 * t153
+        t203 = t201 - t202
+        t204 = t200 + t203
         t166 = t107 * t165
-        t172 = t119 * t171
+        t172 = t118 * t171
         t173 = t166 - t172
-        t178 = t20 * t177
-        t179 = t173 + t178
-        t191 = t119 * t165
-        t192 = t182 * t171
-        t193 = t191 - t192
-        t194 = t63 * t177
-        t195 = t193 + t194
-        t206 = t20 * t165
-        t207 = t63 * t171
-        t208 = t206 - t207
-        t209 = t90 * t177
-        t210 = t208 + t209
+        t177 = t20 * t176
+        t178 = t173 + t177
+        t190 = t118 * t165
+        t191 = t181 * t171
+        t192 = t190 - t191
+        t193 = t63 * t176
+        t194 = t192 + t193
+        t205 = t20 * t165
+        t206 = t63 * t171
+        t207 = t205 - t206
+        t208 = t90 * t176
+        t209 = t207 + t208
         entries = (
-            t127,
-            t157,
-            t179,
+            t126,
+            t156,
+            t178,
             0.0,
-            t185,
-            t190,
-            t195,
+            t184,
+            t189,
+            t194,
             0.0,
-            t200,
-            t205,
-            t210,
+            t199,
+            t204,
+            t209,
             0.0,
             0.0,
             0.0,
@@ -1523,34 +1526,36 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         t25 = t20 * t24
         t26 = (-1.0) + t18
         t27 = t26 * t23
-        t28 = t4 * t24
-        t29 = t4 * t4
-        t30 = t29 + (-2.0)
-        t31 = t20 * t30
-        t32 = m_1 + m_2
-        t33 = t32 * t18
-        t34 = t29 * t33
-        t35 = t32 + t20
-        t36 = t7 * t35
-        t37 = t34 + t36
-        t38 = t18 * t37
-        t39 = t31 + t38
-        t40 = t28 * t39
-        t41 = t27 + t40
-        t42 = t4 * t41
-        t43 = t25 + t42
+        t28 = t4 * t4
+        t29 = t28 + (-2.0)
+        t30 = t20 * t29
+        t31 = m_1 + m_2
+        t32 = t31 * t18
+        t33 = t28 * t32
+        t34 = t31 + t20
+        t35 = t3 * t34
+        t36 = t3 * t35
+        t37 = t33 + t36
+        t38 = L * t37
+        t39 = L * t38
+        t40 = t30 + t39
+        t41 = t4 * t24
+        t42 = t40 * t41
+        t43 = t27 + t42
         t44 = t4 * t43
-        t45 = t23 + t44
-        t46 = t6 * t18
-        t47 = t6 * t46
-        t48 = t6 * t47
-        t49 = t4 * t48
-        t50 = t4 * t49
+        t45 = t25 + t44
+        t46 = t4 * t45
+        t47 = t23 + t46
+        t48 = t6 * t18
+        t49 = t6 * t48
+        t50 = t6 * t49
         t51 = t4 * t50
-        t52 = t14 * t51
-        t53 = t45 / t52
+        t52 = t4 * t51
+        t53 = t4 * t52
+        t54 = t14 * t53
+        t55 = t47 / t54
         entries = (
-            t53,
+            t55,
             0.0,
             0.0,
             0.0,
@@ -1837,8 +1842,8 @@ def inverse_dynamics(q, qd, qdd, p=PARAMETERS):
         t10 = t8 + t9
         t11 = t7 * t10
         t12 = L * m_2
-        t13 = theta_dot * theta_dot
-        t14 = t12 * t13
+        t13 = theta_dot * t12
+        t14 = theta_dot * t13
         t15 = t11 - t14
         t16 = t4 * t15
         t17 = L * t12
@@ -1949,17 +1954,18 @@ def actuator_mass_matrix(q, p=PARAMETERS):
             status = _first(status, _failed_ & ~np.asarray(100000.0 >= t18), 4)
             status = _first(status, _failed_ & ~np.asarray(t14 > t17), 2)
             status = _first(status, _failed_, 3)
-        t19 = t2 * t2
-        t20 = Theta_1 * t19
-        t21 = L * L
-        t22 = t3 * t3
-        t23 = m_1 * t22
-        t24 = m_2 + t23
-        t25 = t21 * t24
-        t26 = t20 + t25
-        t27 = t26 / t21
+        t19 = t3 * t3
+        t20 = m_1 * t19
+        t21 = m_2 + t20
+        t22 = L * t21
+        t23 = L * t22
+        t24 = t2 * t2
+        t25 = Theta_1 * t24
+        t26 = t23 + t25
+        t27 = L * L
+        t28 = t26 / t27
         entries = (
-            t27,
+            t28,
             0.0,
             0.0,
             Theta_2,
@@ -2100,65 +2106,66 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         t67 = y_dot * t55
         t68 = x_dot * t47
         t69 = t67 + t68
-        t81 = theta_dot * t42
-        t82 = phi_dot * t81
-        t83 = theta_dot + phi_dot
-        t84 = x_dot * t51
-        t85 = y_dot * t59
-        t86 = t84 + t85
-        t87 = t83 * t86
-        t88 = t82 + t87
-        t89 = t6 * t88
-        t90 = t69 * t51
-        t91 = t89 - t90
-        t97 = t5 * t88
-        t98 = t69 * t59
-        t99 = t97 - t98
-        t20 = m_1 * t4
+        t82 = theta_dot * t42
+        t83 = phi_dot * t82
+        t84 = theta_dot + phi_dot
+        t85 = x_dot * t51
+        t86 = y_dot * t59
+        t87 = t85 + t86
+        t88 = t84 * t87
+        t89 = t83 + t88
+        t81 = t69 * t51
+        t90 = t6 * t89
+        t91 = t81 - t90
+        t98 = t5 * t89
+        t99 = t69 * t59
+        t100 = t98 - t99
+        t19 = m_1 * t4
         t71 = L * Theta_2
         t72 = m_2 * t59
-        t73 = t5 * t20
+        t73 = t5 * t19
         t74 = t72 + t73
         t75 = t71 * t74
-        t101 = m_2 * t51
-        t102 = t6 * t20
-        t103 = t101 + t102
-        t104 = t71 * t103
+        t102 = m_2 * t51
+        t103 = t6 * t19
+        t104 = t102 + t103
+        t105 = t71 * t104
         t70 = t8 * t69
         t77 = L * t45
         t78 = Theta_1 + t77
         t79 = t3 * t78
         t80 = Theta_2 * t79
+        t97 = t9 * t65
+        t101 = t80 * t100
+        t106 = t70 * t105
+        t107 = t101 - t106
+        t108 = t97 - t107
+        t110 = t3 * t65
+        t111 = t91 * t105
+        t112 = t75 * t100
+        t113 = t111 - t112
+        t114 = t110 - t113
         t66 = t11 * t65
         t76 = t70 * t75
-        t92 = t80 * t91
-        t93 = t76 + t92
-        t94 = t66 - t93
-        t96 = t9 * t65
-        t100 = t80 * t99
-        t105 = t70 * t104
-        t106 = t100 - t105
-        t107 = t96 - t106
-        t109 = t3 * t65
-        t110 = t75 * t99
-        t111 = t91 * t104
-        t112 = t110 + t111
-        t113 = t109 + t112
-        t118 = T * t3
-        t119 = t45 * t118
-        t115 = m_1 + m_2
-        t116 = T * t115
-        t117 = t11 * t116
-        t120 = t5 * t119
-        t121 = t117 - t120
-        t122 = t11 * t121
-        t123 = t9 * t116
-        t124 = t6 * t119
-        t125 = t123 + t124
-        t126 = t9 * t125
-        t127 = t122 + t126
-        t128 = t118 * t79
-        t129 = t127 + t128
+        t92 = -t91
+        t93 = t80 * t92
+        t94 = t76 + t93
+        t95 = t66 - t94
+        t119 = T * t3
+        t120 = t45 * t119
+        t116 = m_1 + m_2
+        t117 = T * t116
+        t118 = t11 * t117
+        t121 = t5 * t120
+        t122 = t118 - t121
+        t123 = t11 * t122
+        t124 = t9 * t117
+        t125 = t6 * t120
+        t126 = t124 + t125
+        t127 = t9 * t126
+        t128 = t123 + t127
+        t129 = t119 * t79
+        t130 = t128 + t129
         t10 = t9 * t9
         t12 = t11 * t11
         t13 = t10 + t12
@@ -2183,24 +2190,24 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
         t39 = t27 * t38
         t40 = t39 * 8.881784197001252e-16
         t18 = Theta_1 * t7
-        t19 = L * L
-        t21 = t4 * t20
-        t22 = m_2 + t21
-        t23 = t19 * t22
+        t20 = t4 * t19
+        t21 = m_2 + t20
+        t22 = L * t21
+        t23 = L * t22
         t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
         status = _first(status, ~np.asarray(t26 > t40), 5)
         t41 = 1.0 / t25
-        t95 = t41 * t94
-        t108 = t41 * t107
-        t114 = t41 * t113
-        t130 = t41 * t129
+        t96 = t41 * t95
+        t109 = t41 * t108
+        t115 = t41 * t114
+        t131 = t41 * t130
         entries = (
-            t95,
-            t108,
-            t114,
-            t130,
+            t96,
+            t109,
+            t115,
+            t131,
         )
         return _result("forward_dynamics", status, batch, (4,), entries)
 
@@ -2259,12 +2266,12 @@ def multipliers(q, qd, u, p=PARAMETERS):
         t38 = t34 + t37
         t39 = t27 * t38
         t40 = t39 * 8.881784197001252e-16
-        t20 = m_1 * t4
+        t19 = m_1 * t4
         t18 = Theta_1 * t7
-        t19 = L * L
-        t21 = t4 * t20
-        t22 = m_2 + t21
-        t23 = t19 * t22
+        t20 = t4 * t19
+        t21 = m_2 + t20
+        t22 = L * t21
+        t23 = L * t22
         t24 = t18 + t23
         t25 = Theta_2 * t24
         t26 = np.abs(t25)
@@ -2277,95 +2284,96 @@ def multipliers(q, qd, u, p=PARAMETERS):
         t55 = t5 * t3
         t56 = t54 - t55
         t46 = m_2 * t45
-        t47 = t5 * t20
+        t47 = t5 * t19
         t48 = t46 + t47
         t49 = t42 * t48
-        t90 = m_2 * t56
-        t91 = t6 * t20
-        t92 = t90 + t91
-        t93 = t42 * t92
+        t87 = m_2 * t56
+        t88 = t6 * t19
+        t89 = t87 + t88
+        t90 = t42 * t89
         t41 = 1.0 / t25
         t52 = theta_dot * t6
         t61 = theta_dot * t5
-        t71 = L * t3
+        t72 = L * t3
         t62 = y_dot * t61
         t63 = x_dot * t52
         t64 = t62 + t63
-        t72 = theta_dot * t71
-        t73 = phi_dot * t72
-        t74 = theta_dot + phi_dot
-        t75 = x_dot * t56
-        t76 = y_dot * t45
-        t77 = t75 + t76
-        t78 = t74 * t77
-        t79 = t73 + t78
-        t80 = t6 * t79
-        t81 = t64 * t56
-        t82 = t80 - t81
-        t86 = t5 * t79
-        t87 = t64 * t45
-        t88 = t86 - t87
-        t89 = t49 * t88
-        t94 = t82 * t93
-        t95 = t89 + t94
-        t96 = t41 * t95
-        t116 = K_f * t71
+        t73 = theta_dot * t72
+        t74 = phi_dot * t73
+        t75 = theta_dot + phi_dot
+        t76 = x_dot * t56
+        t77 = y_dot * t45
+        t78 = t76 + t77
+        t79 = t75 * t78
+        t80 = t74 + t79
+        t71 = t64 * t56
+        t81 = t6 * t80
+        t82 = t71 - t81
+        t92 = t5 * t80
+        t93 = t64 * t45
+        t94 = t92 - t93
+        t91 = t82 * t90
+        t95 = t49 * t94
+        t96 = t91 - t95
+        t97 = t41 * t96
+        t117 = K_f * t72
         t50 = L * m_2
-        t117 = t50 * t64
+        t119 = t50 * t64
         t67 = L * t50
         t68 = Theta_1 + t67
-        t118 = t68 * t96
-        t119 = t117 + t118
-        t120 = t116 - t119
-        t97 = t50 * t96
+        t118 = t68 * t97
+        t120 = t118 - t119
+        t121 = t117 + t120
+        t98 = t50 * t97
         t51 = theta_dot * t50
         t53 = t51 * t52
         t57 = K_f * t56
         t58 = t53 + t57
-        t102 = t51 * t61
-        t103 = K_f * t45
-        t104 = t102 + t103
+        t103 = t51 * t61
+        t104 = K_f * t45
+        t105 = t103 + t104
         t65 = t8 * t64
         t69 = t3 * t68
         t70 = Theta_2 * t69
+        t106 = t70 * t94
+        t107 = t65 * t90
+        t108 = t106 - t107
         t66 = t65 * t49
-        t83 = t70 * t82
-        t84 = t66 + t83
-        t105 = t70 * t88
-        t106 = t65 * t93
-        t107 = t105 - t106
+        t83 = -t82
+        t84 = t70 * t83
+        t85 = t66 + t84
         t59 = m_1 + m_2
         t60 = t59 * t41
-        t85 = t60 * t84
-        t98 = t5 * t97
-        t99 = t85 + t98
-        t100 = t58 + t99
-        t108 = t60 * t107
-        t109 = t6 * t97
-        t110 = t108 - t109
-        t111 = t104 + t110
-        t115 = t70 * t100
-        t121 = t93 * t120
-        t122 = t115 - t121
-        t125 = t70 * t111
-        t126 = t49 * t120
-        t127 = t125 - t126
-        t101 = t49 * t100
-        t112 = t93 * t111
-        t113 = t101 - t112
-        t114 = t8 * t113
-        t123 = t56 * t122
-        t124 = t114 - t123
-        t128 = t45 * t127
-        t129 = t124 - t128
-        t130 = t41 * t129
-        t131 = t6 * t122
-        t132 = t5 * t127
-        t133 = t131 + t132
-        t134 = t41 * t133
+        t86 = t60 * t85
+        t99 = t5 * t98
+        t100 = t86 - t99
+        t101 = t58 + t100
+        t109 = t60 * t108
+        t110 = t6 * t98
+        t111 = t109 + t110
+        t112 = t105 + t111
+        t116 = t70 * t101
+        t122 = t90 * t121
+        t123 = t116 - t122
+        t126 = t70 * t112
+        t127 = t49 * t121
+        t128 = t126 - t127
+        t102 = t49 * t101
+        t113 = t90 * t112
+        t114 = t102 - t113
+        t115 = t8 * t114
+        t124 = t56 * t123
+        t125 = t115 - t124
+        t129 = t45 * t128
+        t130 = t125 - t129
+        t131 = t41 * t130
+        t132 = t5 * t128
+        t133 = t6 * t123
+        t134 = t132 + t133
+        t135 = t41 * t134
         entries = (
-            t130,
-            t134,
+            t131,
+            t135,
         )
         return _result("multipliers", status, batch, (2,), entries)
 

@@ -19,7 +19,7 @@
  *
  * Operations                          + -      *      /   sqrt sincos  other
  * mass_matrix                          15     18      0      0      3      0
- * coriolis_matrix                       4     16      0      0      3      0
+ * coriolis_matrix                       4     18      0      0      3      0
  * coriolis_force                        4     24      0      0      3      0
  * potential_force                       0      0      0      0      0      0
  * applied_force                         0      0      0      0      0      0
@@ -28,8 +28,8 @@
  * constraint_jacobian_dot              12     18      0      0      6      0
  * constraint_pseudoinverse            134    202     14      4      6      0
  * nullspace_projector                 105    168      4      4      6      0
- * nullspace_projector_dot             375    530     14      4      6      0
- * weighted_pseudoinverse              327    526      1      0      6      0
+ * nullspace_projector_dot             375    533     14      4      6      0
+ * weighted_pseudoinverse              333    532      1      0      6      0
  * weighted_nullspace_projector        207    320     17      4      6      0
  * control_matrix                        0      0      0      0      0      0
  * projected_control_matrix             99    173      1      0      6      0
@@ -39,20 +39,20 @@
  * projected_coriolis_matrix           706    971     14      4      6      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
- * minimal_mass_matrix                  73    128      1      0      6      0
- * minimal_coriolis_matrix             338    539      2      0      6      0
+ * minimal_mass_matrix                  73    130      1      0      6      0
+ * minimal_coriolis_matrix           11774   4816     34      4      6      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix               25     56      1      0      6      0
- * admissible_velocity                  92    131      4      4      6      0
+ * admissible_velocity                  92    132      4      4      6      0
  * admissible_acceleration             181    248      8      4      6      0
  * projected_configuration             217    234     16      8     12      0
- * inverse_dynamics                     51     76      3      0      5      0
+ * inverse_dynamics                     51     79      3      0      5      0
  * inverse_dynamics_residual             0      0      0      0      0      0
- * forward_dynamics                    339    468     18      3      6      0
- * multipliers                         320    444     18      3      6      0
+ * forward_dynamics                    338    467     18      3      6      0
+ * multipliers                         319    444     18      3      6      0
  * energy                               20     31      0      0      3      0
- * singularity                          53     91     17      4      6      0
+ * singularity                          55     96     17      4      6      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.
@@ -162,7 +162,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_applied_force_f(const float q[6], c
 /* Ḡ: mass matrix in the independent velocities, (9); 2 x 2, row-major */
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float G_bar[4]);
 
-/* C̄: Coriolis matrix in the independent velocities, (9); 2 x 2, row-major */
+/* C̄: Coriolis matrix in the independent velocities, (9); works with twice the digits; 2 x 2, row-major */
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix_f(const float q[6], const float qd[6], const rapkm_2rrr_rr_params_f *p, float C_bar[4]);
 
 /* Q̄: potential forces on the independent velocities, (9); length 2 */

@@ -19,7 +19,7 @@ typedef struct {
 
 rapkm_2rrr_rr_prepared rapkm_2rrr_rr_prepare(const rapkm_2rrr_rr_params *p);
 
-/* u: the smallest inputs that produce the motion, (27); 120 operations instead of 140 */
+/* u: the smallest inputs that produce the motion, (27); 123 operations instead of 143 */
 rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared(const double q[6], const double qd[6], const double qdd[6], const rapkm_2rrr_rr_prepared *p, double u[3]);
 
 #ifdef __cplusplus

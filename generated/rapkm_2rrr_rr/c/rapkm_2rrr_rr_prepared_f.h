@@ -19,7 +19,7 @@ typedef struct {
 
 rapkm_2rrr_rr_prepared_f rapkm_2rrr_rr_prepare_f(const rapkm_2rrr_rr_params_f *p);
 
-/* u: the smallest inputs that produce the motion, (27); 120 operations instead of 140 */
+/* u: the smallest inputs that produce the motion, (27); 123 operations instead of 143 */
 rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared_f(const float q[6], const float qd[6], const float qdd[6], const rapkm_2rrr_rr_prepared_f *p, float u[3]);
 
 #ifdef __cplusplus

@@ -399,7 +399,7 @@ void eva_nullspace_projector_dot(void) {
 
 void eva_weighted_pseudoinverse(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t363. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t380. */
 void eva_weighted_pseudoinverse(void) {
     float q[6];
     rapkm_2rrr_rr_params_f p;
@@ -494,7 +494,7 @@ void eva_control_matrix(void) {
 
 void eva_projected_control_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t162. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t164. */
 void eva_projected_control_matrix(void) {
     float q[6];
     rapkm_2rrr_rr_params_f p;
@@ -762,7 +762,7 @@ void eva_minimal_mass_matrix(void) {
 
 void eva_minimal_coriolis_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t170, t199. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t141, t200, t56, t97, t150, t202, t253. */
 void eva_minimal_coriolis_matrix(void) {
     float q[6];
     float qd[6];
@@ -941,7 +941,7 @@ void eva_admissible_velocity(void) {
 
 void eva_admissible_acceleration(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t79, t129, t199, t47, t88, t135, t201. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t79, t129, t200, t47, t88, t135, t202. */
 void eva_admissible_acceleration(void) {
     float q[6];
     float qd[6];
@@ -1110,7 +1110,7 @@ void eva_inverse_dynamics_residual(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t157, t227, t236, t261, t209, t293, t352, t307, t356, t434, t425. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t157, t236, t227, t261, t296, t209, t337, t419, t429, t434, t405. */
 void eva_forward_dynamics(void) {
     float q[6];
     float qd[6];
@@ -1153,7 +1153,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t157, t227, t236, t261, t307, t293, t209, t356, t352, t434, t425. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t157, t236, t227, t261, t296, t209, t337, t419, t429, t434, t405. */
 void eva_multipliers(void) {
     float q[6];
     float qd[6];
