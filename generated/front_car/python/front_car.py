@@ -1087,62 +1087,62 @@ def projected_mass_matrix(q, p=PARAMETERS):
         t3, t4 = _sincos(theta)
         t5, t6 = _sincos(phi)
         t7 = t5 * t5
-        t8 = L * t6
-        t9 = t3 * t8
-        t10 = t9 * t9
-        t11 = t7 + t10
-        t12 = t4 * t8
-        t13 = t12 * t12
-        t14 = t11 + t13
-        t15 = t8 * t8
-        t16 = 1.0 + t15
-        t17 = t16 * 7.888609052210118e-31
-        status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = L * L
-        t19 = t14 * t14
-        t20 = t18 / t19
-        t21 = t6 * t20
-        t22 = t4 * t21
-        t23 = t6 * t6
-        t24 = m_1 * t23
-        t25 = m_2 + t24
+        t8 = t3 * t3
+        t9 = t4 * t4
+        t10 = t8 + t9
+        t11 = L * L
+        t12 = t6 * t11
+        t13 = t6 * t12
+        t14 = t10 * t13
+        t15 = t7 + t14
+        t16 = L * t6
+        t17 = t16 * t16
+        t18 = 1.0 + t17
+        t19 = t18 * 7.888609052210118e-31
+        status = _first(status, ~np.asarray(t15 > t19), 2)
+        t20 = t15 * t15
+        t21 = t11 / t20
+        t22 = t6 * t6
+        t23 = m_1 * t22
+        t24 = m_2 + t23
+        t25 = L * t24
         t26 = L * t25
-        t27 = L * t26
-        t28 = Theta_1 * t7
-        t29 = t27 + t28
+        t27 = Theta_1 * t7
+        t28 = t26 + t27
+        t29 = t6 * t28
         t30 = t6 * t29
-        t31 = t4 * t30
-        t32 = t22 * t31
-        t33 = t3 * t30
-        t34 = t22 * t33
-        t35 = L / t19
-        t36 = t5 * t35
-        t37 = t31 * t36
-        t38 = t21 * t33
-        t39 = t3 * t38
-        t40 = t33 * t36
-        t41 = m_2 * t18
+        t31 = t21 * t30
+        t32 = t9 * t31
+        t33 = t3 * t31
+        t34 = t4 * t33
+        t35 = L / t20
+        t36 = t5 * t29
+        t37 = t35 * t36
+        t38 = t4 * t37
+        t39 = t8 * t31
+        t40 = t3 * t37
+        t41 = m_2 * t11
         t42 = Theta_1 + t41
-        t43 = t23 + (-2.0)
+        t43 = t22 + (-2.0)
         t44 = t42 * t43
         t45 = m_1 + m_2
-        t46 = t45 * t18
+        t46 = t45 * t11
         t47 = t7 * t46
         t48 = t44 + t47
         t49 = t6 * t48
         t50 = t6 * t49
         t51 = t42 + t50
-        t52 = t51 / t19
+        t52 = t51 / t20
         entries = (
             t32,
             t34,
-            t37,
+            t38,
             0.0,
             t34,
             t39,
             t40,
             0.0,
-            t37,
+            t38,
             t40,
             t52,
             0.0,

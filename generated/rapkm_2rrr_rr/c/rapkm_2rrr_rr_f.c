@@ -145,199 +145,6 @@ RAPKM_2RRR_RR_GROUP_F void rapkm_2rrr_rr_sincos_group_f(const int count, const f
     }
 }
 
-/* A number with twice the digits: what its value lacks stands beside it. */
-typedef struct {
-    float value;
-    float rest;
-} rapkm_2rrr_rr_wide_f;
-
-static rapkm_2rrr_rr_wide_f rapkm_2rrr_rr_wide_f_add(const float a, const float a_rest, const float b, const float b_rest) {
-    const float x0 = a + b;
-    const float x1 = x0 - a;
-    const float x2 = x0 - x1;
-    const float x3 = a - x2;
-    const float x4 = b - x1;
-    const float x5 = x3 + x4;
-    const float x6 = a_rest + b_rest;
-    const float x7 = x5 + x6;
-    const float x8 = x0 + x7;
-    const float x9 = x8 - x0;
-    const float x10 = x7 - x9;
-    const rapkm_2rrr_rr_wide_f pair = {x8, x10};
-    return pair;
-}
-
-static rapkm_2rrr_rr_wide_f rapkm_2rrr_rr_wide_f_div(const float a, const float a_rest, const float b, const float b_rest) {
-    const float x0 = a / b;
-    const float x1 = x0 * b;
-    const float x2 = a - x1;
-    const float x3 = 4097.0f * x0;
-    const float x4 = x3 - x0;
-    const float x5 = x3 - x4;
-    const float x6 = x0 - x5;
-    const float x7 = 4097.0f * b;
-    const float x8 = x7 - b;
-    const float x9 = x7 - x8;
-    const float x10 = b - x9;
-    const float x11 = x5 * x9;
-    const float x12 = x11 - x1;
-    const float x13 = x5 * x10;
-    const float x14 = x12 + x13;
-    const float x15 = x6 * x9;
-    const float x16 = x14 + x15;
-    const float x17 = x6 * x10;
-    const float x18 = x16 + x17;
-    const float x19 = x2 - x18;
-    const float x20 = x0 * b_rest;
-    const float x21 = a_rest - x20;
-    const float x22 = x19 + x21;
-    const float x23 = x22 / b;
-    const float x24 = x0 + x23;
-    const float x25 = x24 - x0;
-    const float x26 = x23 - x25;
-    const rapkm_2rrr_rr_wide_f pair = {x24, x26};
-    return pair;
-}
-
-static rapkm_2rrr_rr_wide_f rapkm_2rrr_rr_wide_f_mul(const float a, const float a_rest, const float b, const float b_rest) {
-    const float x0 = a * b;
-    const float x1 = a * b_rest;
-    const float x2 = a_rest * b;
-    const float x3 = x1 + x2;
-    const float x4 = 4097.0f * a;
-    const float x5 = x4 - a;
-    const float x6 = x4 - x5;
-    const float x7 = a - x6;
-    const float x8 = 4097.0f * b;
-    const float x9 = x8 - b;
-    const float x10 = x8 - x9;
-    const float x11 = b - x10;
-    const float x12 = x6 * x10;
-    const float x13 = x12 - x0;
-    const float x14 = x6 * x11;
-    const float x15 = x13 + x14;
-    const float x16 = x7 * x10;
-    const float x17 = x15 + x16;
-    const float x18 = x7 * x11;
-    const float x19 = x17 + x18;
-    const float x20 = x19 + x3;
-    const float x21 = x0 + x20;
-    const float x22 = x21 - x0;
-    const float x23 = x20 - x22;
-    const rapkm_2rrr_rr_wide_f pair = {x21, x23};
-    return pair;
-}
-
-static rapkm_2rrr_rr_wide_f rapkm_2rrr_rr_wide_f_sqrt(const float a, const float a_rest) {
-    const float x0 = sqrtf(a);
-    const float x1 = x0 * x0;
-    const float x2 = a - x1;
-    const float x3 = 4097.0f * x0;
-    const float x4 = x3 - x0;
-    const float x5 = x3 - x4;
-    const float x6 = x0 - x5;
-    const float x7 = x5 * x5;
-    const float x8 = x7 - x1;
-    const float x9 = x5 * x6;
-    const float x10 = x8 + x9;
-    const float x11 = x6 * x5;
-    const float x12 = x10 + x11;
-    const float x13 = x6 * x6;
-    const float x14 = x12 + x13;
-    const float x15 = x2 - x14;
-    const float x16 = x15 + a_rest;
-    const float x17 = 2.0f * x0;
-    const float x18 = ((x17 != 0.0f) ? x16 : 0.0f) / ((x17 != 0.0f) ? x17 : 1.0f);
-    const float x19 = x0 + x18;
-    const float x20 = x19 - x0;
-    const float x21 = x18 - x20;
-    const rapkm_2rrr_rr_wide_f pair = {x19, x21};
-    return pair;
-}
-
-static rapkm_2rrr_rr_wide_f rapkm_2rrr_rr_wide_f_sub(const float a, const float a_rest, const float b, const float b_rest) {
-    const float x0 = a - b;
-    const float x1 = x0 - a;
-    const float x2 = x0 - x1;
-    const float x3 = a - x2;
-    const float x4 = b + x1;
-    const float x5 = x3 - x4;
-    const float x6 = a_rest - b_rest;
-    const float x7 = x5 + x6;
-    const float x8 = x0 + x7;
-    const float x9 = x8 - x0;
-    const float x10 = x7 - x9;
-    const rapkm_2rrr_rr_wide_f pair = {x8, x10};
-    return pair;
-}
-
-/* An operation on values, by their places. */
-typedef struct {
-    unsigned short operation;
-    unsigned short to[2];
-    unsigned short of[4];
-} rapkm_2rrr_rr_step_f;
-
-/* The steps of a table from the first to before the end. */
-static void rapkm_2rrr_rr_steps_f(const rapkm_2rrr_rr_step_f step[], const int first, const int end, float v[]) {
-    rapkm_2rrr_rr_wide_f pair;
-    float sine;
-    float cosine;
-    for (int k = first; k < end; ++k) {
-        const unsigned short *const to = step[k].to;
-        const unsigned short *const of = step[k].of;
-        switch (step[k].operation) {
-        case 0: /* abs */
-            v[to[0]] = fabsf(v[of[0]]);
-            break;
-        case 1: /* add */
-            v[to[0]] = v[of[0]] + v[of[1]];
-            break;
-        case 2: /* copysign */
-            v[to[0]] = copysignf(v[of[0]], v[of[1]]);
-            break;
-        case 3: /* mul */
-            v[to[0]] = v[of[0]] * v[of[1]];
-            break;
-        case 4: /* neg */
-            v[to[0]] = -v[of[0]];
-            break;
-        case 5: /* sincos */
-            rapkm_2rrr_rr_sincos_f(v[of[0]], &sine, &cosine);
-            v[to[0]] = sine;
-            v[to[1]] = cosine;
-            break;
-        case 6: /* wide_add */
-            pair = rapkm_2rrr_rr_wide_f_add(v[of[0]], v[of[1]], v[of[2]], v[of[3]]);
-            v[to[0]] = pair.value;
-            v[to[1]] = pair.rest;
-            break;
-        case 7: /* wide_div */
-            pair = rapkm_2rrr_rr_wide_f_div(v[of[0]], v[of[1]], v[of[2]], v[of[3]]);
-            v[to[0]] = pair.value;
-            v[to[1]] = pair.rest;
-            break;
-        case 8: /* wide_mul */
-            pair = rapkm_2rrr_rr_wide_f_mul(v[of[0]], v[of[1]], v[of[2]], v[of[3]]);
-            v[to[0]] = pair.value;
-            v[to[1]] = pair.rest;
-            break;
-        case 9: /* wide_sqrt */
-            pair = rapkm_2rrr_rr_wide_f_sqrt(v[of[0]], v[of[1]]);
-            v[to[0]] = pair.value;
-            v[to[1]] = pair.rest;
-            break;
-        case 10: /* wide_sub */
-            pair = rapkm_2rrr_rr_wide_f_sub(v[of[0]], v[of[1]], v[of[2]], v[of[3]]);
-            v[to[0]] = pair.value;
-            v[to[1]] = pair.rest;
-            break;
-        default:
-            break;
-        }
-    }
-}
-
 rapkm_2rrr_rr_params_f rapkm_2rrr_rr_default_params_f(void) {
     rapkm_2rrr_rr_params_f p;
     p.l_1 = 0.2f;
@@ -402,30 +209,30 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_mass_matrix_f(const float q[6], const rapkm_2
     const float t20 = t16 + t19;
     const float t21 = t15 + t20;
     const float t22 = J_elbow_1 + t21;
-    const float t23 = l_1 * l_2;
-    const float t24 = m_2 * t23;
-    const float t25 = 0.5f * t24;
-    const float t26 = m_payload * t23;
-    const float t27 = t25 + t26;
+    const float t23 = 0.5f * m_2;
+    const float t24 = m_payload + t23;
+    const float t25 = l_1 * l_2;
     const float t5 = cosine[0];
-    const float t28 = t5 * t27;
-    const float t29 = 2.0f * t28;
-    const float t30 = t22 + t29;
-    rest *= t30;
-    const float t31 = J_elbow_1 + t28;
-    float term = t31 - t31;
-    const float t32 = J_elbow + t20;
+    const float t26 = t5 * t25;
+    const float t27 = t24 * t26;
+    const float t28 = 2.0f * t27;
+    const float t29 = t22 + t28;
+    rest *= t29;
+    const float t30 = J_elbow_1 + t27;
+    float term = t30 - t30;
+    const float t31 = J_elbow + t20;
+    const float t32 = m_2 * t25;
     const float t7 = cosine[1];
-    const float t33 = t7 * t24;
-    const float t34 = t32 + t33;
+    const float t33 = t7 * t32;
+    const float t34 = t31 + t33;
     term *= t34;
     const float t35 = 0.5f * t33;
     const float t36 = J_elbow + t35;
     term *= t36;
     rest += term;
     const float t9 = cosine[2];
-    const float t37 = t9 * t24;
-    const float t38 = t32 + t37;
+    const float t37 = t9 * t32;
+    const float t38 = t31 + t37;
     term = t38 - t38;
     const float t39 = 0.5f * t37;
     const float t40 = J_elbow + t39;
@@ -434,10 +241,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_mass_matrix_f(const float q[6], const rapkm_2
     if (RAPKM_2RRR_RR_RARELY_F(isnan(rest) != 0)) {
         return RAPKM_2RRR_RR_NOT_FINITE;
     }
-    G[0] = t30;
+    G[0] = t29;
     G[1] = 0.0f;
     G[2] = 0.0f;
-    G[3] = t31;
+    G[3] = t30;
     G[4] = 0.0f;
     G[5] = 0.0f;
     G[6] = 0.0f;
@@ -452,7 +259,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_mass_matrix_f(const float q[6], const rapkm_2
     G[15] = 0.0f;
     G[16] = 0.0f;
     G[17] = t40;
-    G[18] = t31;
+    G[18] = t30;
     G[19] = 0.0f;
     G[20] = 0.0f;
     G[21] = J_elbow_1;
@@ -3059,18 +2866,18 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_nullspace_projector_dot_f(const float q[6], c
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float B_G_pinv[24]) {
-    const float a_1 = q[0];
-    const float t1 = fabsf(a_1);
-    const float b_1 = q[3];
-    const float t2 = fabsf(b_1);
+    const float a_2 = q[1];
+    const float t1 = fabsf(a_2);
+    const float b_2 = q[4];
+    const float t2 = fabsf(b_2);
     const float a_3 = q[2];
     const float t3 = fabsf(a_3);
     const float b_3 = q[5];
     const float t4 = fabsf(b_3);
-    const float a_2 = q[1];
-    const float t5 = fabsf(a_2);
-    const float b_2 = q[4];
-    const float t6 = fabsf(b_2);
+    const float b_1 = q[3];
+    const float t5 = fabsf(b_1);
+    const float a_1 = q[0];
+    const float t6 = fabsf(a_1);
     if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= t1))) {
         return RAPKM_2RRR_RR_ANGLE_RANGE;
     }
@@ -3089,997 +2896,934 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse_f(const float q[6], co
     if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= t6))) {
         return RAPKM_2RRR_RR_ANGLE_RANGE;
     }
-    const float angle[8] = {a_1, b_1, a_3, b_3, a_2, b_2, b_2, b_2};
+    const float angle[8] = {a_2, b_2, a_3, b_3, b_1, a_1, a_1, a_1};
     float sine[8];
     float cosine[8];
     rapkm_2rrr_rr_sincos_group_f(6, angle, sine, cosine);
-    const float l_1 = p->l_1;
     const float l_2 = p->l_2;
-    const float t211 = l_1 * l_2;
+    const float t34 = l_2 * l_2;
     const float m_2 = p->m_2;
-    const float t212 = m_2 * t211;
-    const float t213 = 0.5f * t212;
-    const float m_payload = p->m_payload;
-    const float t231 = m_payload * t211;
-    const float t232 = t213 + t231;
-    const float t10 = cosine[1];
-    const float t233 = t10 * t232;
-    const float t29 = l_2 * l_2;
-    const float t209 = m_2 * t29;
-    const float t210 = 0.25f * t209;
+    const float t215 = 0.5f * m_2;
+    const float l_1 = p->l_1;
+    const float t217 = l_1 * l_2;
+    const float t212 = m_2 * t34;
+    const float t213 = 0.25f * t212;
     const float J_2 = p->J_2;
-    const float J_elbow = J_2 + t210;
-    const float t229 = m_payload * t29;
-    const float J_elbow_1 = J_elbow + t229;
-    const float t234 = J_elbow_1 + t233;
-    const float t246 = l_1 * l_1;
+    const float J_elbow = J_2 + t213;
+    const float m_payload = p->m_payload;
+    const float t214 = m_payload * t34;
+    const float J_elbow_1 = J_elbow + t214;
+    const float t216 = m_payload + t215;
+    const float t16 = cosine[4];
+    const float t218 = t16 * t217;
+    const float t219 = t216 * t218;
+    const float t220 = J_elbow_1 + t219;
+    const float t224 = l_1 * l_1;
     const float J_1 = p->J_1;
     const float J_motor = p->J_motor;
-    const float t245 = J_1 + J_motor;
+    const float t226 = J_1 + J_motor;
     const float m_1 = p->m_1;
-    const float t247 = 0.25f * m_1;
-    const float t248 = m_2 + t247;
-    const float t249 = t246 * t248;
-    const float t250 = t245 + t249;
-    const float t254 = m_payload * t246;
-    const float t255 = t254 + t250;
-    const float t256 = t233 + t234;
-    const float t257 = t255 + t256;
-    const float t384 = fabsf(l_2);
-    const float t385 = t384 * t384;
-    const float t394 = fabsf(l_1);
-    const float t401 = t394 * t384;
-    const float t395 = t394 * t394;
-    const float t383 = fabsf(m_2);
-    const float t410 = fabsf(m_payload);
-    const float t382 = fabsf(J_2);
-    const float t386 = t383 * t385;
-    const float t387 = 0.25f * t386;
-    const float t388 = t382 + t387;
-    const float t411 = t410 * t385;
-    const float t412 = t388 + t411;
-    const float t402 = 0.5f * t401;
-    const float t403 = t383 * t402;
-    const float t419 = t410 * t401;
-    const float t420 = t403 + t419;
-    const float t391 = fabsf(J_1);
-    const float t392 = fabsf(J_motor);
-    const float t393 = t391 + t392;
-    const float t396 = fabsf(m_1);
-    const float t397 = 0.25f * t396;
-    const float t398 = t383 + t397;
-    const float t399 = t395 * t398;
-    const float t400 = t393 + t399;
-    const float t417 = t395 * t410;
-    const float t418 = t417 + t400;
-    const float t421 = t412 + t420;
-    const float t422 = t420 + t421;
-    const float t423 = t418 + t422;
-    const float t424 = 3.7252903e-09f * t423;
-    const float t425 = t257 + t424;
+    const float t227 = 0.25f * m_1;
+    const float t228 = m_2 + t227;
+    const float t229 = t224 * t228;
+    const float t230 = t226 + t229;
+    const float t225 = m_payload * t224;
+    const float t231 = t225 + t230;
+    const float t232 = t219 + t220;
+    const float t233 = t231 + t232;
+    const float t389 = fabsf(l_2);
+    const float t390 = t389 * t389;
+    const float t399 = fabsf(l_1);
+    const float t411 = t399 * t389;
+    const float t400 = t399 * t399;
+    const float t388 = fabsf(m_2);
+    const float t394 = fabsf(m_payload);
+    const float t387 = fabsf(J_2);
+    const float t391 = t388 * t390;
+    const float t392 = 0.25f * t391;
+    const float t393 = t387 + t392;
+    const float t395 = t394 * t390;
+    const float t396 = t393 + t395;
+    const float t412 = 0.5f * t388;
+    const float t413 = t394 + t412;
+    const float t414 = t411 * t413;
+    const float t402 = fabsf(J_1);
+    const float t403 = fabsf(J_motor);
+    const float t404 = t402 + t403;
+    const float t405 = fabsf(m_1);
+    const float t406 = 0.25f * t405;
+    const float t407 = t388 + t406;
+    const float t408 = t400 * t407;
+    const float t409 = t404 + t408;
+    const float t401 = t400 * t394;
+    const float t410 = t401 + t409;
+    const float t415 = t396 + t414;
+    const float t416 = t414 + t415;
+    const float t417 = t410 + t416;
+    const float t418 = 3.7252903e-09f * t417;
+    const float t419 = t418 + t233;
+    const float t423 = t388 * t411;
+    const float t424 = 1.0f * t423;
+    const float t425 = t409 + t424;
+    const float t426 = t393 + t425;
+    const float t427 = 3.7252903e-09f * t426;
+    const float t238 = t217 * t215;
+    const float t10 = cosine[1];
+    const float t239 = t10 * t238;
     const float t14 = cosine[3];
-    const float t214 = t14 * t213;
-    const float t18 = cosine[5];
-    const float t217 = t18 * t213;
-    const float t218 = J_elbow + t217;
-    const float t251 = t217 + t218;
-    const float t252 = t250 + t251;
-    const float t215 = J_elbow + t214;
-    const float t271 = t214 + t215;
-    const float t272 = t250 + t271;
+    const float t254 = t14 * t238;
+    const float t240 = J_elbow + t239;
+    const float t246 = t239 + t240;
+    const float t247 = t230 + t246;
+    const float t255 = J_elbow + t254;
+    const float t256 = t254 + t255;
+    const float t257 = t230 + t256;
     const float t12 = cosine[2];
-    const float t19 = t12 * t14;
+    const float t23 = t12 * t14;
     const float t11 = sine[2];
     const float t13 = sine[3];
-    const float t20 = t11 * t13;
-    const float t21 = t19 - t20;
-    const float t22 = l_2 * t21;
-    const float t24 = t12 * t13;
-    const float t25 = t11 * t14;
-    const float t26 = t24 + t25;
-    const float t7 = sine[0];
-    const float t30 = t7 * t10;
-    const float t8 = cosine[0];
-    const float t9 = sine[1];
-    const float t31 = t8 * t9;
-    const float t32 = t30 + t31;
-    const float t37 = t8 * t10;
-    const float t38 = t7 * t9;
-    const float t39 = t37 - t38;
-    const float t175 = t32 * t21;
-    const float t176 = t39 * t26;
-    const float t177 = t175 - t176;
-    const float t178 = t29 * t177;
-    const float t27 = l_2 * t26;
-    const float t16 = cosine[4];
-    const float t33 = t16 * t18;
-    const float t15 = sine[4];
+    const float t24 = t11 * t13;
+    const float t25 = t23 - t24;
+    const float t26 = l_2 * t25;
+    const float t19 = t12 * t13;
+    const float t20 = t11 * t14;
+    const float t21 = t19 + t20;
+    const float t30 = l_2 * t21;
     const float t17 = sine[5];
-    const float t34 = t15 * t17;
-    const float t35 = t33 - t34;
-    const float t40 = t16 * t17;
-    const float t41 = t15 * t18;
-    const float t42 = t40 + t41;
-    const float t36 = t32 * t35;
-    const float t43 = t39 * t42;
-    const float t44 = t36 - t43;
-    const float t45 = t29 * t44;
-    const float t55 = l_2 * t39;
-    const float t57 = l_2 * t32;
-    const float t23 = l_1 * t11;
-    const float t28 = t23 + t27;
-    const float t46 = t28 * t45;
-    const float t50 = t27 * t45;
-    const float t48 = l_1 * t12;
-    const float t49 = t48 + t22;
-    const float t47 = t22 * t46;
-    const float t51 = t49 * t50;
-    const float t52 = t47 - t51;
-    const float t53 = -t52;
-    const float t59 = l_2 * t35;
-    const float t56 = l_1 * t7;
-    const float t58 = t56 + t57;
-    const float t60 = t58 * t59;
-    const float t63 = l_2 * t42;
-    const float t61 = l_1 * t8;
-    const float t62 = t61 + t55;
-    const float t64 = t62 * t63;
-    const float t65 = t60 - t64;
-    const float t66 = t27 * t65;
-    const float t89 = t28 * t65;
-    const float t76 = l_1 * t16;
-    const float t77 = t76 + t59;
-    const float t105 = t57 * t77;
-    const float t79 = l_1 * t15;
-    const float t80 = t79 + t63;
-    const float t104 = t55 * t80;
-    const float t106 = t104 - t105;
-    const float t107 = t28 * t106;
-    const float t109 = t27 * t106;
-    const float t135 = t58 * t77;
-    const float t136 = t62 * t80;
-    const float t137 = t135 - t136;
-    const float t142 = t27 * t137;
-    const float t149 = t28 * t137;
-    const float t161 = t22 * t149;
-    const float t162 = t49 * t142;
-    const float t163 = t161 - t162;
-    const float t164 = -t163;
-    const float t108 = t22 * t107;
-    const float t110 = t49 * t109;
-    const float t111 = t108 - t110;
-    const float t239 = -t111;
-    const float t90 = t22 * t89;
-    const float t91 = t49 * t66;
-    const float t92 = t90 - t91;
-    const float t253 = t234 * t92;
-    const float t258 = t257 * t53;
-    const float t259 = t253 + t258;
-    const float t261 = t234 * t164;
-    const float t262 = t257 * t239;
-    const float t263 = t261 + t262;
-    const float t260 = t252 * t259;
-    const float t264 = t218 * t263;
-    const float t265 = t260 + t264;
-    const float t324 = t218 * t259;
-    const float t325 = J_elbow * t263;
-    const float t326 = t324 + t325;
-    const float t78 = t63 * t77;
-    const float t81 = t80 * t59;
-    const float t82 = t78 - t81;
-    const float t83 = t28 * t82;
-    const float t85 = t27 * t82;
-    const float t94 = t58 * t82;
-    const float t100 = t57 * t82;
-    const float t179 = t82 * t178;
-    const float t95 = t22 * t94;
-    const float t96 = t62 * t85;
-    const float t97 = t95 - t96;
-    const float t274 = -t97;
-    const float t99 = t55 * t83;
-    const float t101 = t49 * t100;
-    const float t102 = t99 - t101;
-    const float t156 = t49 * t94;
-    const float t157 = t62 * t83;
-    const float t158 = t156 - t157;
-    const float t267 = t234 * t158;
-    const float t268 = t257 * t102;
-    const float t269 = t267 + t268;
-    const float t273 = t257 * t179;
-    const float t275 = t234 * t274;
-    const float t276 = t273 + t275;
-    const float t270 = t215 * t269;
-    const float t277 = t272 * t276;
-    const float t278 = t270 + t277;
-    const float t351 = J_elbow * t269;
-    const float t352 = t215 * t276;
-    const float t353 = t351 + t352;
-    const float t68 = t57 * t65;
-    const float t69 = t58 * t45;
-    const float t70 = t68 - t69;
-    const float t67 = t55 * t66;
-    const float t71 = t22 * t70;
-    const float t72 = t67 - t71;
-    const float t73 = t62 * t50;
-    const float t74 = t72 - t73;
-    const float t114 = t55 * t89;
-    const float t115 = t49 * t70;
-    const float t116 = t114 - t115;
-    const float t117 = t62 * t46;
-    const float t118 = t116 - t117;
-    const float t138 = t57 * t137;
-    const float t139 = t58 * t106;
-    const float t140 = t138 + t139;
-    const float t141 = t22 * t140;
-    const float t143 = t55 * t142;
-    const float t144 = t141 - t143;
-    const float t145 = t62 * t109;
-    const float t146 = t144 - t145;
-    const float t150 = t55 * t149;
-    const float t151 = t49 * t140;
-    const float t152 = t150 - t151;
-    const float t153 = t62 * t107;
-    const float t154 = t152 + t153;
-    const float t223 = -t118;
-    const float t281 = t218 * t146;
-    const float t282 = t252 * t74;
-    const float t283 = t281 + t282;
-    const float t285 = t218 * t154;
-    const float t286 = t252 * t223;
+    const float t35 = t17 * t16;
+    const float t18 = cosine[5];
+    const float t15 = sine[4];
+    const float t36 = t18 * t15;
+    const float t37 = t35 + t36;
+    const float t8 = cosine[0];
+    const float t38 = t8 * t10;
+    const float t7 = sine[0];
+    const float t9 = sine[1];
+    const float t39 = t7 * t9;
+    const float t40 = t38 - t39;
+    const float t42 = t18 * t16;
+    const float t43 = t17 * t15;
+    const float t44 = t42 - t43;
+    const float t45 = t8 * t9;
+    const float t46 = t7 * t10;
+    const float t47 = t45 + t46;
+    const float t41 = t37 * t40;
+    const float t48 = t44 * t47;
+    const float t49 = t41 - t48;
+    const float t50 = l_2 * t49;
+    const float t51 = t34 * t50;
+    const float t22 = l_1 * t12;
+    const float t27 = t22 + t26;
+    const float t29 = l_1 * t11;
+    const float t31 = t29 + t30;
+    const float t28 = t21 * t27;
+    const float t32 = t25 * t31;
+    const float t33 = t28 - t32;
+    const float t52 = t33 * t51;
+    const float t58 = l_2 * t40;
+    const float t62 = l_2 * t47;
+    const float t72 = l_2 * t44;
+    const float t77 = l_2 * t37;
+    const float t96 = -t33;
+    const float t71 = l_1 * t18;
+    const float t73 = t71 + t72;
+    const float t76 = l_1 * t17;
+    const float t78 = t76 + t77;
+    const float t79 = t78 * t40;
+    const float t80 = t73 * t47;
+    const float t81 = t79 - t80;
+    const float t82 = l_2 * t81;
+    const float t99 = l_2 * t82;
+    const float t57 = l_1 * t8;
+    const float t59 = t57 + t58;
+    const float t61 = l_1 * t7;
+    const float t63 = t61 + t62;
+    const float t113 = t44 * t63;
+    const float t114 = t37 * t59;
+    const float t115 = t113 - t114;
+    const float t116 = l_2 * t115;
+    const float t117 = l_2 * t116;
+    const float t118 = t96 * t117;
+    const float t138 = t78 * t59;
+    const float t139 = t73 * t63;
+    const float t140 = t138 - t139;
+    const float t155 = l_2 * t140;
+    const float t284 = t96 * t51;
+    const float t285 = t247 * t284;
+    const float t286 = t240 * t118;
     const float t287 = t285 + t286;
-    const float t284 = t272 * t283;
-    const float t288 = t215 * t287;
-    const float t289 = t284 + t288;
-    const float t356 = t215 * t283;
-    const float t357 = J_elbow * t287;
-    const float t358 = t356 + t357;
-    const float t404 = t388 + t403;
-    const float t405 = t403 + t404;
-    const float t406 = t400 + t405;
-    const float t407 = 3.7252903e-09f * t406;
-    const float t300 = t218 * t111;
-    const float t301 = t252 * t52;
-    const float t302 = t300 + t301;
-    const float t303 = t234 * t302;
-    const float t304 = t218 * t163;
-    const float t305 = -t92;
-    const float t306 = t252 * t305;
-    const float t307 = t304 + t306;
-    const float t308 = J_elbow_1 * t307;
-    const float t309 = t303 + t308;
-    const float t120 = t58 * t55;
-    const float t121 = t57 * t62;
-    const float t122 = t120 - t121;
-    const float t123 = -t122;
-    const float t124 = t28 * t123;
-    const float t126 = t27 * t123;
-    const float t369 = J_elbow_1 * t158;
-    const float t370 = t234 * t102;
-    const float t371 = t369 + t370;
-    const float t372 = J_elbow * t371;
-    const float t373 = J_elbow_1 * t274;
-    const float t374 = t234 * t179;
-    const float t375 = t373 + t374;
-    const float t376 = t215 * t375;
-    const float t377 = t372 + t376;
-    const float t159 = -t158;
-    const float t408 = t272 + t407;
-    const float t427 = t252 + t407;
-    const float t389 = 3.7252903e-09f * t388;
-    const float t390 = J_elbow + t389;
-    const float t125 = t22 * t124;
-    const float t127 = t49 * t126;
-    const float t128 = t125 - t127;
-    const float t329 = -t128;
-    const float t330 = t218 * t329;
-    const float t331 = t218 * t330;
-    const float t332 = t252 * t128;
-    const float t333 = J_elbow * t332;
-    const float t334 = t331 + t333;
-    const float t216 = J_elbow * t146;
-    const float t219 = t218 * t74;
-    const float t220 = t216 + t219;
-    const float t221 = t215 * t220;
-    const float t222 = J_elbow * t154;
-    const float t224 = t218 * t223;
-    const float t225 = t222 + t224;
-    const float t226 = J_elbow * t225;
-    const float t227 = t221 + t226;
-    const float t230 = J_elbow_1 * t92;
-    const float t235 = t234 * t53;
-    const float t236 = t230 + t235;
-    const float t237 = t218 * t236;
-    const float t238 = J_elbow_1 * t164;
-    const float t240 = t234 * t239;
-    const float t241 = t238 + t240;
-    const float t242 = J_elbow * t241;
-    const float t243 = t237 + t242;
-    const float t337 = t215 * t118;
-    const float t338 = -t74;
-    const float t339 = t272 * t338;
-    const float t340 = t337 + t339;
-    const float t341 = t218 * t340;
-    const float t342 = -t146;
-    const float t343 = t272 * t342;
-    const float t344 = t215 * t154;
-    const float t345 = t343 - t344;
-    const float t346 = J_elbow * t345;
-    const float t347 = t341 + t346;
-    const float t131 = t55 * t94;
-    const float t132 = t62 * t100;
+    const float t288 = t220 * t287;
+    const float t289 = t33 * t99;
+    const float t290 = t247 * t289;
+    const float t291 = t96 * t155;
+    const float t292 = t240 * t291;
+    const float t293 = t290 + t292;
+    const float t294 = J_elbow_1 * t293;
+    const float t295 = t288 + t294;
+    const float t100 = t96 * t99;
+    const float t156 = t33 * t155;
+    const float t241 = t33 * t117;
+    const float t242 = t233 * t241;
+    const float t243 = t220 * t156;
+    const float t244 = t242 + t243;
+    const float t248 = t233 * t52;
+    const float t249 = t220 * t100;
+    const float t250 = t248 + t249;
+    const float t245 = t240 * t244;
+    const float t251 = t247 * t250;
+    const float t252 = t245 + t251;
+    const float t311 = J_elbow * t244;
+    const float t312 = t240 * t250;
+    const float t313 = t311 + t312;
+    const float t60 = t47 * t59;
+    const float t64 = t40 * t63;
+    const float t65 = t60 - t64;
+    const float t66 = l_2 * t65;
+    const float t95 = l_2 * t66;
+    const float t108 = t44 * t31;
+    const float t109 = t37 * t27;
+    const float t110 = t108 - t109;
+    const float t111 = t95 * t110;
+    const float t128 = t73 * t31;
+    const float t102 = t73 * t21;
+    const float t103 = t78 * t25;
+    const float t104 = t102 - t103;
+    const float t259 = t95 * t104;
+    const float t151 = t78 * t27;
+    const float t152 = t128 - t151;
+    const float t264 = -t152;
+    const float t265 = t66 * t264;
+    const float t54 = t37 * t25;
+    const float t55 = t44 * t21;
+    const float t56 = t54 - t55;
+    const float t67 = t34 * t66;
+    const float t68 = t56 * t67;
+    const float t258 = t233 * t68;
+    const float t260 = t220 * t259;
+    const float t261 = t258 + t260;
+    const float t263 = t233 * t111;
+    const float t266 = t220 * t265;
+    const float t267 = t263 + t266;
+    const float t262 = t257 * t261;
+    const float t268 = t255 * t267;
+    const float t269 = t262 + t268;
+    const float t347 = J_elbow * t267;
+    const float t348 = t255 * t261;
+    const float t349 = t347 + t348;
+    const float t70 = t34 * t49;
+    const float t85 = t37 * t82;
+    const float t86 = t78 * t50;
+    const float t87 = t85 - t86;
+    const float t88 = l_2 * t87;
+    const float t129 = t128 * t70;
+    const float t130 = t31 * t82;
+    const float t131 = t72 * t130;
+    const float t132 = t27 * t88;
     const float t133 = t131 - t132;
-    const float t361 = t272 * t133;
-    const float t362 = J_elbow * t361;
-    const float t363 = -t133;
-    const float t364 = t215 * t363;
-    const float t365 = t215 * t364;
-    const float t366 = t362 + t365;
-    const float t312 = -t102;
-    const float t313 = t215 * t312;
-    const float t314 = t272 * t179;
-    const float t315 = t313 - t314;
-    const float t316 = t234 * t315;
-    const float t317 = t272 * t97;
-    const float t318 = t215 * t159;
-    const float t319 = t317 + t318;
-    const float t320 = J_elbow_1 * t319;
-    const float t321 = t316 + t320;
-    const float t84 = t22 * t83;
-    const float t86 = t49 * t85;
-    const float t87 = t84 - t86;
-    const float t292 = t257 * t87;
-    const float t293 = J_elbow_1 * t292;
-    const float t294 = -t87;
-    const float t295 = t234 * t294;
-    const float t296 = t234 * t295;
-    const float t297 = t293 + t296;
-    const float t413 = 3.7252903e-09f * t412;
-    const float t414 = J_elbow_1 + t413;
-    const float t103 = t102 * t102;
+    const float t134 = t129 - t133;
+    const float t74 = t73 * t30;
+    const float t83 = t44 * t30;
+    const float t75 = t70 * t74;
+    const float t84 = t82 * t83;
+    const float t89 = t25 * t88;
+    const float t90 = t84 - t89;
+    const float t91 = l_2 * t90;
+    const float t92 = t75 - t91;
+    const float t145 = t77 * t140;
+    const float t146 = t78 * t116;
+    const float t147 = t145 + t146;
+    const float t163 = t25 * t147;
+    const float t164 = t140 * t83;
+    const float t165 = t163 - t164;
+    const float t166 = l_2 * t165;
+    const float t167 = t116 * t74;
+    const float t168 = t166 - t167;
+    const float t141 = t72 * t140;
+    const float t142 = t73 * t116;
+    const float t143 = t141 + t142;
+    const float t144 = t31 * t143;
+    const float t148 = t27 * t147;
+    const float t149 = t144 - t148;
+    const float t93 = -t92;
+    const float t272 = t247 * t134;
+    const float t273 = t240 * t149;
+    const float t274 = t272 + t273;
+    const float t276 = t240 * t168;
+    const float t277 = t247 * t93;
+    const float t278 = t276 + t277;
+    const float t275 = t255 * t274;
+    const float t279 = t257 * t278;
+    const float t280 = t275 + t279;
+    const float t352 = J_elbow * t274;
+    const float t353 = t255 * t278;
+    const float t354 = t352 + t353;
+    const float t364 = J_elbow_1 * t265;
+    const float t365 = t220 * t111;
+    const float t366 = t364 + t365;
+    const float t367 = J_elbow * t366;
+    const float t368 = J_elbow_1 * t259;
+    const float t369 = t220 * t68;
+    const float t370 = t368 + t369;
+    const float t371 = t255 * t370;
+    const float t372 = t367 + t371;
+    const float t97 = t95 * t96;
+    const float t221 = t95 * t33;
+    const float t222 = t220 * t221;
+    const float t223 = t220 * t222;
+    const float t234 = t233 * t97;
+    const float t235 = J_elbow_1 * t234;
+    const float t236 = t223 + t235;
+    const float t105 = -t104;
+    const float t106 = t95 * t105;
+    const float t121 = t37 * t73;
+    const float t122 = t44 * t78;
+    const float t123 = t121 - t122;
+    const float t160 = -t123;
+    const float t161 = t95 * t160;
+    const float t299 = t255 * t95;
+    const float t336 = J_elbow_1 * t156;
+    const float t337 = t220 * t241;
+    const float t338 = t336 + t337;
+    const float t339 = J_elbow * t338;
+    const float t340 = J_elbow_1 * t100;
+    const float t341 = t220 * t52;
+    const float t342 = t340 + t341;
+    const float t343 = t240 * t342;
+    const float t344 = t339 + t343;
+    const float t153 = t66 * t152;
+    const float t298 = -t110;
+    const float t300 = t298 * t299;
+    const float t301 = t257 * t68;
+    const float t302 = t300 - t301;
+    const float t303 = t220 * t302;
+    const float t304 = t255 * t153;
+    const float t305 = t257 * t106;
+    const float t306 = t304 + t305;
+    const float t307 = J_elbow_1 * t306;
+    const float t308 = t303 + t307;
+    const float t357 = t255 * t299;
+    const float t358 = t123 * t357;
+    const float t359 = t257 * t161;
+    const float t360 = J_elbow * t359;
+    const float t361 = t358 + t360;
+    const float t135 = -t134;
+    const float t375 = J_elbow * t149;
+    const float t376 = t240 * t134;
+    const float t377 = t375 + t376;
+    const float t378 = J_elbow * t377;
+    const float t379 = J_elbow * t168;
+    const float t380 = t240 * t93;
+    const float t381 = t379 + t380;
+    const float t382 = t255 * t381;
+    const float t383 = t378 + t382;
+    const float t324 = t257 * t92;
+    const float t325 = t255 * t135;
+    const float t326 = t324 + t325;
+    const float t327 = t240 * t326;
+    const float t328 = -t168;
+    const float t329 = t257 * t328;
+    const float t330 = t255 * t149;
+    const float t331 = t329 - t330;
+    const float t332 = J_elbow * t331;
+    const float t333 = t327 + t332;
+    const float t124 = l_2 * t123;
+    const float t125 = l_2 * t124;
+    const float t126 = t96 * t125;
+    const float t316 = t33 * t125;
+    const float t317 = t240 * t316;
+    const float t318 = t240 * t317;
+    const float t319 = t247 * t126;
+    const float t320 = J_elbow * t319;
+    const float t321 = t318 + t320;
+    const float t428 = t427 + t247;
+    const float t433 = t427 + t257;
+    const float t397 = 3.7252903e-09f * t396;
+    const float t398 = J_elbow_1 + t397;
+    const float t440 = 3.7252903e-09f * t393;
+    const float t441 = J_elbow + t440;
     const float t112 = t111 * t111;
-    const float t113 = t103 + t112;
-    const float t228 = t154 * t227;
-    const float t244 = t164 * t243;
-    const float t266 = t53 * t265;
-    const float t279 = t179 * t278;
-    const float t280 = t266 + t279;
-    const float t290 = t74 * t289;
-    const float t291 = t280 + t290;
-    const float t298 = t87 * t297;
-    const float t299 = t291 + t298;
-    const float t310 = t92 * t309;
-    const float t311 = t299 - t310;
-    const float t322 = t97 * t321;
-    const float t323 = t311 + t322;
-    const float t327 = t111 * t326;
-    const float t328 = t323 - t327;
-    const float t335 = t128 * t334;
-    const float t336 = t328 + t335;
-    const float t348 = t146 * t347;
-    const float t349 = t336 - t348;
-    const float t350 = t244 + t349;
-    const float t354 = t102 * t353;
-    const float t355 = t350 + t354;
-    const float t359 = t118 * t358;
-    const float t360 = t355 - t359;
-    const float t367 = t133 * t366;
-    const float t368 = t360 + t367;
-    const float t378 = t159 * t377;
-    const float t379 = t368 - t378;
-    const float t380 = t228 + t379;
     const float t119 = t118 * t118;
-    const float t129 = t128 * t128;
-    const float t130 = t119 + t129;
-    const float t134 = t133 * t133;
-    const float t147 = t146 * t146;
-    const float t148 = t134 + t147;
-    const float t160 = t159 * t159;
-    const float t165 = t164 * t164;
-    const float t166 = t160 + t165;
-    const float t54 = t53 * t53;
-    const float t75 = t74 * t74;
-    const float t88 = t87 * t87;
-    const float t93 = t92 * t92;
+    const float t120 = t112 + t119;
+    const float t237 = t97 * t236;
+    const float t253 = t52 * t252;
+    const float t270 = t68 * t269;
+    const float t271 = t253 + t270;
+    const float t281 = t93 * t280;
+    const float t282 = t271 + t281;
+    const float t283 = t237 + t282;
+    const float t296 = t100 * t295;
+    const float t297 = t283 - t296;
+    const float t309 = t106 * t308;
+    const float t310 = t297 + t309;
+    const float t314 = t118 * t313;
+    const float t315 = t310 - t314;
+    const float t322 = t126 * t321;
+    const float t323 = t315 + t322;
+    const float t334 = t168 * t333;
+    const float t335 = t323 - t334;
+    const float t345 = t156 * t344;
+    const float t346 = t335 + t345;
+    const float t350 = t111 * t349;
+    const float t351 = t346 + t350;
+    const float t355 = t135 * t354;
+    const float t356 = t351 - t355;
+    const float t362 = t161 * t361;
+    const float t363 = t356 + t362;
+    const float t373 = t153 * t372;
+    const float t374 = t363 - t373;
+    const float t384 = t149 * t383;
+    const float t385 = t374 + t384;
+    const float t127 = t126 * t126;
+    const float t136 = t135 * t135;
+    const float t137 = t127 + t136;
+    const float t154 = t153 * t153;
+    const float t157 = t156 * t156;
+    const float t158 = t154 + t157;
+    const float t162 = t161 * t161;
+    const float t169 = t168 * t168;
+    const float t170 = t162 + t169;
+    const float t53 = t52 * t52;
+    const float t69 = t68 * t68;
+    const float t94 = t93 * t93;
     const float t98 = t97 * t97;
-    const float t155 = t154 * t154;
-    const float t180 = t179 * t179;
-    const float t409 = t408 * t148;
-    const float t415 = t414 * t166;
-    const float t416 = t390 * t155;
-    const float t426 = t425 * t113;
-    const float t428 = t427 * t130;
-    const float t429 = t426 + t428;
-    const float t430 = t416 + t429;
-    const float t431 = t415 + t430;
-    const float t432 = t409 + t431;
-    const float t433 = t390 * t432;
-    const float t434 = t425 * t180;
-    const float t435 = t414 * t98;
-    const float t436 = t427 * t75;
+    const float t101 = t100 * t100;
+    const float t107 = t106 * t106;
+    const float t150 = t149 * t149;
+    const float t420 = t398 * t419;
+    const float t421 = t420 * t98;
+    const float t429 = t398 * t101;
+    const float t430 = t419 * t53;
+    const float t431 = t429 + t430;
+    const float t432 = t428 * t431;
+    const float t434 = t419 * t69;
+    const float t435 = t398 * t107;
+    const float t436 = t428 * t94;
     const float t437 = t435 + t436;
     const float t438 = t434 + t437;
-    const float t439 = t408 * t438;
-    const float t440 = t414 * t425;
-    const float t441 = t440 * t88;
-    const float t442 = t414 * t93;
-    const float t443 = t425 * t54;
-    const float t444 = t442 + t443;
-    const float t445 = t427 * t444;
-    const float t446 = t441 + t445;
-    const float t447 = t439 + t446;
-    const float t448 = t433 + t447;
-    const float t449 = 4.7683716e-07f * t448;
-    const float t167 = t155 + t166;
-    const float t168 = t148 + t167;
-    const float t169 = t130 + t168;
-    const float t170 = t113 + t169;
-    const float t171 = t98 + t170;
-    const float t172 = t93 + t171;
-    const float t173 = t88 + t172;
-    const float t174 = t75 + t173;
-    const float t181 = t174 + t180;
-    const float t182 = t54 + t181;
-    const float t510 = t28 * t63;
-    const float t522 = t57 * t63;
-    const float t598 = t58 * t63;
-    const float t521 = t55 * t510;
-    const float t523 = t49 * t522;
-    const float t524 = t521 - t523;
-    const float t599 = t55 * t598;
-    const float t600 = t62 * t522;
-    const float t601 = t599 - t600;
-    const float t512 = t27 * t63;
-    const float t511 = t22 * t510;
-    const float t513 = t49 * t512;
-    const float t514 = t511 - t513;
-    const float t605 = t62 * t512;
-    const float t606 = t22 * t598;
-    const float t607 = t605 - t606;
-    const float t624 = t49 * t598;
-    const float t625 = t62 * t510;
-    const float t626 = t624 - t625;
-    const float t492 = t28 * t80;
-    const float t500 = t27 * t80;
-    const float t675 = t58 * t80;
-    const float t499 = t22 * t492;
-    const float t501 = t49 * t500;
-    const float t502 = t499 - t501;
-    const float t676 = t22 * t675;
-    const float t677 = t62 * t500;
-    const float t678 = t676 - t677;
-    const float t494 = t57 * t80;
-    const float t493 = t55 * t492;
-    const float t495 = t49 * t494;
-    const float t496 = t493 - t495;
-    const float t681 = t55 * t675;
-    const float t682 = t62 * t494;
-    const float t683 = t681 - t682;
-    const float t750 = t62 * t492;
-    const float t751 = t49 * t675;
-    const float t752 = t750 - t751;
-    const float t469 = l_2 * t178;
-    const float t508 = t42 * t469;
-    const float t504 = t80 * t178;
-    const float t464 = t22 * t28;
-    const float t465 = t27 * t49;
-    const float t466 = t464 - t465;
-    const float t506 = t57 * t466;
-    const float t515 = -t514;
-    const float t525 = -t524;
-    const float t602 = -t601;
-    const float t613 = t58 * t466;
-    const float t610 = t227 * t124;
-    const float t611 = t126 * t347;
-    const float t612 = t610 + t611;
-    const float t497 = -t496;
-    const float t498 = t227 * t497;
-    const float t503 = t243 * t502;
-    const float t505 = t347 * t504;
-    const float t507 = t334 * t506;
-    const float t509 = t289 * t508;
-    const float t516 = t309 * t515;
-    const float t517 = t509 - t516;
-    const float t518 = t507 + t517;
-    const float t519 = t505 + t518;
-    const float t520 = t503 + t519;
-    const float t526 = t358 * t525;
-    const float t527 = t520 - t526;
-    const float t528 = t498 + t527;
-    const float t603 = t366 * t602;
-    const float t604 = t353 * t525;
-    const float t608 = t321 * t607;
-    const float t609 = t297 * t515;
-    const float t614 = t243 * t613;
-    const float t615 = t612 + t614;
-    const float t616 = t609 + t615;
-    const float t617 = t278 * t508;
-    const float t618 = t616 - t617;
-    const float t619 = t608 + t618;
-    const float t620 = t326 * t506;
-    const float t621 = t619 - t620;
-    const float t622 = t604 + t621;
-    const float t623 = t603 + t622;
-    const float t627 = t377 * t626;
-    const float t628 = t623 - t627;
-    const float t759 = -t613;
-    const float t753 = t227 * t752;
-    const float t754 = t265 * t514;
-    const float t755 = t289 * t607;
-    const float t756 = t754 + t755;
-    const float t757 = t326 * t502;
-    const float t758 = t756 - t757;
-    const float t760 = t334 * t759;
-    const float t761 = t758 + t760;
-    const float t762 = t347 * t678;
-    const float t763 = t761 - t762;
-    const float t764 = -t626;
-    const float t765 = t358 * t764;
-    const float t766 = t763 - t765;
-    const float t767 = t753 + t766;
-    const float t824 = t366 * t683;
-    const float t825 = t289 * t126;
-    const float t826 = t124 * t358;
-    const float t827 = t825 - t826;
-    const float t828 = t824 + t827;
-    const float t818 = t353 * t496;
-    const float t819 = t321 * t678;
-    const float t820 = t297 * t502;
-    const float t821 = t265 * t506;
-    const float t822 = t278 * t504;
-    const float t823 = t821 + t822;
-    const float t829 = t823 + t828;
-    const float t830 = t820 + t829;
-    const float t831 = t309 * t759;
-    const float t832 = t830 - t831;
-    const float t833 = t819 + t832;
-    const float t834 = t818 + t833;
-    const float t835 = t377 * t752;
-    const float t836 = t834 - t835;
-    const float t872 = t124 * t334;
-    const float t873 = t347 * t683;
-    const float t874 = t872 - t873;
-    const float t875 = t289 * t602;
-    const float t876 = t243 * t752;
-    const float t877 = t265 * t524;
-    const float t878 = t876 + t877;
-    const float t879 = t875 + t878;
-    const float t880 = t309 * t626;
-    const float t881 = t879 - t880;
-    const float t882 = t326 * t496;
-    const float t883 = t881 - t882;
-    const float t884 = t874 + t883;
-    const float t680 = t358 * t602;
-    const float t684 = -t683;
-    const float t685 = t227 * t684;
-    const float t686 = t126 * t334;
-    const float t687 = t685 - t686;
-    const float t688 = t680 - t687;
-    const float t679 = t243 * t678;
-    const float t689 = t679 - t688;
-    const float t690 = t265 * t508;
-    const float t691 = t689 + t690;
-    const float t692 = t309 * t607;
-    const float t693 = t691 - t692;
-    const float t694 = t326 * t504;
-    const float t695 = t693 - t694;
-    const float t192 = t58 * t58;
-    const float t193 = t57 * t57;
-    const float t194 = t192 + t193;
-    const float t185 = t62 * t62;
-    const float t186 = t55 * t55;
-    const float t187 = t185 + t186;
-    const float t183 = t22 * t22;
-    const float t184 = t49 * t49;
-    const float t188 = t184 + t187;
-    const float t189 = t183 + t188;
-    const float t190 = t28 * t28;
-    const float t191 = t27 * t27;
-    const float t195 = t191 + t194;
-    const float t196 = t190 + t195;
-    const float t197 = t63 * t63;
-    const float t198 = t80 * t80;
-    const float t199 = t194 + t198;
-    const float t200 = t197 + t199;
-    const float t201 = t59 * t59;
-    const float t202 = t77 * t77;
-    const float t203 = t187 + t202;
-    const float t204 = t201 + t203;
-    const float t205 = t200 * t204;
-    const float t206 = t196 * t205;
-    const float t207 = t189 * t206;
-    const float t208 = 2.2737368e-13f * t207;
-    const float t470 = t35 * t469;
-    const float t462 = t77 * t178;
-    const float t451 = t28 * t77;
-    const float t458 = t27 * t77;
-    const float t472 = t28 * t59;
-    const float t474 = t27 * t59;
-    const float t484 = t57 * t59;
-    const float t483 = t55 * t472;
-    const float t485 = t49 * t484;
-    const float t486 = t483 - t485;
-    const float t565 = t55 * t60;
-    const float t566 = t62 * t484;
-    const float t567 = t565 - t566;
-    const float t473 = t22 * t472;
-    const float t475 = t49 * t474;
-    const float t476 = t473 - t475;
-    const float t571 = t62 * t474;
-    const float t572 = t22 * t60;
-    const float t573 = t571 - t572;
-    const float t592 = t49 * t60;
-    const float t593 = t62 * t472;
-    const float t594 = t592 - t593;
-    const float t452 = t55 * t451;
-    const float t453 = t49 * t105;
-    const float t454 = t452 - t453;
-    const float t657 = t55 * t135;
-    const float t658 = t62 * t105;
-    const float t659 = t657 - t658;
-    const float t457 = t22 * t451;
-    const float t459 = t49 * t458;
-    const float t460 = t457 - t459;
-    const float t662 = t22 * t135;
-    const float t663 = t62 * t458;
-    const float t664 = t662 - t663;
-    const float t731 = t62 * t451;
-    const float t732 = t49 * t135;
-    const float t733 = t731 - t732;
-    const float t467 = t55 * t466;
-    const float t576 = t62 * t466;
-    const float t584 = t22 * t122;
-    const float t586 = t49 * t122;
-    const float t477 = -t476;
-    const float t487 = -t486;
-    const float t568 = -t567;
-    const float t585 = t347 * t584;
-    const float t587 = t227 * t586;
-    const float t588 = t585 + t587;
-    const float t455 = -t454;
-    const float t456 = t227 * t455;
-    const float t461 = t243 * t460;
-    const float t463 = t347 * t462;
-    const float t468 = t334 * t467;
-    const float t471 = t289 * t470;
-    const float t478 = t309 * t477;
-    const float t479 = t471 - t478;
-    const float t480 = t468 + t479;
-    const float t481 = t463 + t480;
-    const float t482 = t461 + t481;
-    const float t488 = t358 * t487;
-    const float t489 = t482 - t488;
-    const float t490 = t456 + t489;
-    const float t569 = t366 * t568;
-    const float t570 = t353 * t487;
-    const float t574 = t321 * t573;
-    const float t575 = t297 * t477;
-    const float t577 = t243 * t576;
-    const float t578 = t575 + t577;
-    const float t579 = t278 * t470;
+    const float t439 = t433 * t438;
+    const float t442 = t441 * t150;
+    const float t443 = t398 * t158;
+    const float t444 = t433 * t170;
+    const float t445 = t419 * t120;
+    const float t446 = t428 * t137;
+    const float t447 = t445 + t446;
+    const float t448 = t444 + t447;
+    const float t449 = t443 + t448;
+    const float t450 = t442 + t449;
+    const float t451 = t441 * t450;
+    const float t452 = t439 + t451;
+    const float t453 = t432 + t452;
+    const float t454 = t421 + t453;
+    const float t455 = 4.7683716e-07f * t454;
+    const float t159 = t150 + t158;
+    const float t171 = t159 + t170;
+    const float t172 = t137 + t171;
+    const float t173 = t120 + t172;
+    const float t174 = t107 + t173;
+    const float t175 = t101 + t174;
+    const float t176 = t98 + t175;
+    const float t177 = t94 + t176;
+    const float t178 = t69 + t177;
+    const float t179 = t53 + t178;
+    const float t181 = t73 * t73;
+    const float t183 = t44 * t44;
+    const float t189 = t78 * t78;
+    const float t190 = t37 * t37;
+    const float t180 = t27 * t27;
+    const float t182 = t25 * t25;
+    const float t184 = t182 + t183;
+    const float t185 = t34 * t184;
+    const float t186 = t181 + t185;
+    const float t187 = t180 + t186;
+    const float t188 = t31 * t31;
+    const float t191 = t21 * t21;
+    const float t192 = t190 + t191;
+    const float t193 = t34 * t192;
+    const float t194 = t189 + t193;
+    const float t195 = t188 + t194;
+    const float t196 = t63 * t63;
+    const float t197 = t189 + t196;
+    const float t198 = t47 * t47;
+    const float t199 = t190 + t198;
+    const float t200 = t34 * t199;
+    const float t201 = t197 + t200;
+    const float t202 = t59 * t59;
+    const float t203 = t181 + t202;
+    const float t204 = t40 * t40;
+    const float t205 = t183 + t204;
+    const float t206 = t34 * t205;
+    const float t207 = t203 + t206;
+    const float t208 = t201 * t207;
+    const float t209 = t195 * t208;
+    const float t210 = t187 * t209;
+    const float t211 = 2.2737368e-13f * t210;
+    const float t493 = t34 * t47;
+    const float t482 = l_2 * t63;
+    const float t761 = t160 * t482;
+    const float t762 = t361 * t761;
+    const float t833 = t333 * t761;
+    const float t462 = t34 * t96;
+    const float t487 = t37 * t462;
+    const float t494 = t33 * t493;
+    const float t499 = t298 * t493;
+    const float t536 = t96 * t344;
+    const float t541 = t56 * t269;
+    const float t562 = t31 * t124;
+    const float t564 = t123 * t493;
+    const float t567 = l_2 * t78;
+    const float t569 = t104 * t493;
+    const float t573 = t21 * t124;
+    const float t584 = t62 * t264;
+    const float t706 = t33 * t567;
+    const float t563 = t383 * t562;
+    const float t565 = t361 * t564;
+    const float t566 = t349 * t499;
+    const float t568 = t536 * t567;
+    const float t570 = t308 * t569;
+    const float t571 = t236 * t494;
+    const float t572 = t493 * t541;
+    const float t574 = t333 * t573;
+    const float t575 = t572 - t574;
+    const float t576 = l_2 * t575;
+    const float t577 = t571 - t576;
+    const float t578 = t570 + t577;
+    const float t579 = t313 * t487;
     const float t580 = t578 - t579;
-    const float t581 = t574 + t580;
-    const float t582 = t326 * t467;
-    const float t583 = t581 - t582;
-    const float t589 = t583 - t588;
-    const float t590 = t570 + t589;
-    const float t591 = t569 + t590;
-    const float t595 = t377 * t594;
-    const float t596 = t591 - t595;
-    const float t740 = -t576;
-    const float t734 = t227 * t733;
-    const float t735 = t265 * t476;
-    const float t736 = t289 * t573;
-    const float t737 = t735 + t736;
-    const float t738 = t326 * t460;
-    const float t739 = t737 - t738;
-    const float t741 = t334 * t740;
-    const float t742 = t739 + t741;
-    const float t743 = t347 * t664;
-    const float t744 = t742 - t743;
-    const float t745 = -t594;
-    const float t746 = t358 * t745;
-    const float t747 = t744 - t746;
-    const float t748 = t734 + t747;
-    const float t805 = t289 * t584;
-    const float t806 = t358 * t586;
-    const float t807 = t805 - t806;
-    const float t798 = t366 * t659;
-    const float t799 = t353 * t454;
-    const float t800 = t321 * t664;
-    const float t801 = t297 * t460;
-    const float t802 = t265 * t467;
-    const float t803 = t278 * t462;
-    const float t804 = t802 + t803;
-    const float t808 = t804 - t807;
-    const float t809 = t801 + t808;
-    const float t810 = t309 * t740;
-    const float t811 = t809 - t810;
-    const float t812 = t800 + t811;
-    const float t813 = t799 + t812;
-    const float t814 = t798 + t813;
-    const float t815 = t377 * t733;
-    const float t816 = t814 - t815;
-    const float t867 = t334 * t586;
-    const float t868 = t347 * t659;
-    const float t869 = t867 + t868;
-    const float t858 = t289 * t568;
-    const float t859 = t243 * t733;
-    const float t860 = t265 * t486;
-    const float t861 = t859 + t860;
-    const float t862 = t858 + t861;
-    const float t863 = t309 * t594;
-    const float t864 = t862 - t863;
-    const float t865 = t326 * t454;
-    const float t866 = t864 - t865;
-    const float t870 = t866 - t869;
-    const float t654 = t334 * t584;
-    const float t655 = t358 * t568;
-    const float t656 = t654 - t655;
-    const float t660 = -t659;
-    const float t661 = t227 * t660;
-    const float t665 = t243 * t664;
-    const float t666 = t661 + t665;
-    const float t667 = t265 * t470;
-    const float t668 = t666 + t667;
-    const float t669 = t309 * t573;
-    const float t670 = t668 - t669;
-    const float t671 = t326 * t462;
-    const float t672 = t670 - t671;
-    const float t673 = t656 + t672;
-    const float t530 = t49 * t106;
-    const float t532 = t22 * t106;
-    const float t534 = t22 * t45;
-    const float t540 = t49 * t45;
-    const float t543 = t55 * t82;
-    const float t712 = t62 * t82;
-    const float t536 = t22 * t82;
-    const float t546 = t49 * t82;
-    const float t631 = t22 * t65;
-    const float t634 = t49 * t65;
-    const float t708 = t22 * t137;
-    const float t769 = t49 * t137;
-    const float t697 = t353 * t543;
-    const float t698 = t297 * t536;
-    const float t699 = t227 * t659;
-    const float t700 = t699 - t656;
-    const float t701 = t698 + t700;
-    const float t702 = t265 * t534;
-    const float t703 = t701 - t702;
-    const float t704 = t309 * t631;
-    const float t705 = t703 - t704;
-    const float t706 = t326 * t532;
-    const float t707 = t705 - t706;
-    const float t709 = t243 * t708;
-    const float t710 = t707 - t709;
-    const float t711 = t697 + t710;
-    const float t713 = t377 * t712;
-    const float t714 = t711 - t713;
-    const float t716 = t100 * t353;
-    const float t717 = t85 * t297;
-    const float t718 = t688 + t717;
-    const float t719 = t50 * t265;
-    const float t720 = t718 - t719;
-    const float t721 = t66 * t309;
-    const float t722 = t720 - t721;
-    const float t723 = t109 * t326;
-    const float t724 = t722 - t723;
-    const float t725 = t142 * t243;
-    const float t726 = t724 - t725;
-    const float t727 = t716 + t726;
-    const float t728 = t94 * t377;
-    const float t729 = t727 - t728;
-    const float t886 = t326 * t530;
-    const float t887 = t309 * t634;
-    const float t888 = t289 * t567;
-    const float t889 = t265 * t540;
-    const float t890 = t243 * t769;
-    const float t891 = t869 + t890;
-    const float t892 = t889 + t891;
-    const float t893 = t278 * t543;
-    const float t894 = t892 - t893;
-    const float t895 = t888 + t894;
-    const float t896 = t297 * t546;
-    const float t897 = t895 - t896;
-    const float t898 = t887 + t897;
-    const float t899 = t321 * t712;
-    const float t900 = t898 - t899;
-    const float t901 = t886 + t900;
-    const float t903 = t107 * t326;
-    const float t904 = t89 * t309;
-    const float t905 = t289 * t601;
-    const float t906 = t46 * t265;
-    const float t907 = t149 * t243;
-    const float t908 = t907 - t874;
-    const float t909 = t906 + t908;
-    const float t910 = t100 * t278;
-    const float t911 = t909 - t910;
-    const float t912 = t905 + t911;
-    const float t913 = t83 * t297;
-    const float t914 = t912 - t913;
-    const float t915 = t904 + t914;
-    const float t916 = t94 * t321;
-    const float t917 = t915 - t916;
-    const float t918 = t903 + t917;
-    const float t531 = t227 * t530;
-    const float t533 = t347 * t532;
-    const float t535 = t289 * t534;
-    const float t537 = t321 * t536;
-    const float t538 = t535 + t537;
-    const float t539 = t533 - t538;
-    const float t541 = t358 * t540;
-    const float t542 = t539 + t541;
-    const float t544 = t366 * t543;
-    const float t545 = t542 - t544;
-    const float t547 = t377 * t546;
-    const float t548 = t545 - t547;
-    const float t549 = t531 + t548;
-    const float t770 = t227 * t769;
-    const float t771 = t289 * t631;
-    const float t772 = t278 * t536;
-    const float t773 = t771 - t772;
-    const float t774 = t347 * t708;
-    const float t775 = t773 + t774;
-    const float t776 = t353 * t546;
-    const float t777 = t775 + t776;
-    const float t778 = t358 * t634;
+    const float t581 = t568 + t580;
+    const float t582 = t566 + t581;
+    const float t583 = t565 + t582;
+    const float t585 = t372 * t584;
+    const float t586 = t583 - t585;
+    const float t587 = t563 + t586;
+    const float t713 = t63 * t152;
+    const float t763 = t110 * t482;
+    const float t809 = t252 * t110;
+    const float t824 = t493 * t809;
+    const float t825 = t280 * t564;
+    const float t826 = t824 + t825;
+    const float t827 = t295 * t584;
+    const float t828 = t826 - t827;
+    const float t829 = t313 * t763;
+    const float t830 = t828 - t829;
+    const float t831 = t321 * t562;
+    const float t832 = t830 + t831;
+    const float t834 = t832 - t833;
+    const float t835 = t344 * t713;
+    const float t836 = t834 + t835;
+    const float t485 = t96 * t482;
+    const float t639 = t105 * t482;
+    const float t764 = t349 * t763;
+    const float t765 = t308 * t639;
+    const float t766 = t236 * t485;
+    const float t767 = t252 * t487;
+    const float t768 = t482 * t541;
+    const float t769 = t280 * t573;
+    const float t770 = t768 + t769;
+    const float t771 = l_2 * t770;
+    const float t772 = t767 + t771;
+    const float t773 = t766 + t772;
+    const float t774 = t295 * t706;
+    const float t775 = t773 - t774;
+    const float t776 = t765 + t775;
+    const float t777 = t764 + t776;
+    const float t778 = t354 * t562;
     const float t779 = t777 - t778;
-    const float t780 = t366 * t712;
-    const float t781 = t779 + t780;
-    const float t782 = t770 + t781;
-    const float t551 = t107 * t227;
-    const float t552 = t109 * t347;
-    const float t553 = t50 * t289;
-    const float t554 = t85 * t321;
-    const float t555 = t553 + t554;
-    const float t556 = t552 - t555;
-    const float t557 = t46 * t358;
-    const float t558 = t556 + t557;
-    const float t559 = t100 * t366;
-    const float t560 = t558 - t559;
-    const float t561 = t83 * t377;
-    const float t562 = t560 - t561;
-    const float t563 = t551 + t562;
-    const float t784 = t149 * t227;
-    const float t785 = t66 * t289;
-    const float t786 = t85 * t278;
-    const float t787 = t785 - t786;
-    const float t788 = t142 * t347;
-    const float t789 = t787 + t788;
-    const float t790 = t83 * t353;
-    const float t791 = t789 + t790;
-    const float t792 = t89 * t358;
-    const float t793 = t791 - t792;
-    const float t794 = t94 * t366;
-    const float t795 = t793 + t794;
-    const float t796 = t784 + t795;
-    const float t630 = t366 * t567;
-    const float t632 = t321 * t631;
-    const float t633 = t278 * t534;
-    const float t635 = t377 * t634;
-    const float t636 = t588 + t635;
-    const float t637 = t633 + t636;
-    const float t638 = t632 + t637;
-    const float t639 = t353 * t540;
-    const float t640 = t638 - t639;
-    const float t641 = t630 + t640;
-    const float t643 = t366 * t601;
-    const float t644 = t66 * t321;
-    const float t645 = t89 * t377;
-    const float t646 = t50 * t278;
-    const float t647 = t645 + t646;
-    const float t648 = t644 + t647;
-    const float t649 = t648 - t612;
-    const float t650 = t46 * t353;
-    const float t651 = t649 - t650;
-    const float t652 = t643 + t651;
-    const float t838 = t366 * t660;
-    const float t839 = t278 * t532;
-    const float t840 = t807 + t839;
-    const float t841 = t321 * t708;
-    const float t842 = t840 - t841;
-    const float t843 = t353 * t530;
-    const float t844 = t842 - t843;
-    const float t845 = t838 + t844;
-    const float t846 = t377 * t769;
-    const float t847 = t845 - t846;
-    const float t849 = t109 * t278;
-    const float t850 = t849 - t828;
-    const float t851 = t142 * t321;
-    const float t852 = t850 - t851;
-    const float t853 = t107 * t353;
-    const float t854 = t852 - t853;
-    const float t855 = t149 * t377;
-    const float t856 = t854 - t855;
-    if (RAPKM_2RRR_RR_RARELY_F(!(t182 > t208))) {
+    const float t780 = t762 + t779;
+    const float t781 = t372 * t713;
+    const float t782 = t780 - t781;
+    const float t471 = t34 * t40;
+    const float t463 = t44 * t462;
+    const float t538 = t104 * t471;
+    const float t555 = t58 * t264;
+    const float t472 = t33 * t471;
+    const float t535 = l_2 * t73;
+    const float t689 = t33 * t535;
+    const float t477 = t298 * t471;
+    const float t532 = t123 * t471;
+    const float t543 = l_2 * t160;
+    const float t544 = t25 * t543;
+    const float t558 = t27 * t543;
+    const float t533 = t361 * t532;
+    const float t534 = t349 * t477;
+    const float t537 = t535 * t536;
+    const float t539 = t308 * t538;
+    const float t540 = t236 * t472;
+    const float t542 = t471 * t541;
+    const float t545 = t333 * t544;
+    const float t546 = t542 + t545;
+    const float t547 = l_2 * t546;
+    const float t548 = t540 - t547;
+    const float t549 = t539 + t548;
+    const float t550 = t313 * t463;
+    const float t551 = t549 - t550;
+    const float t552 = t537 + t551;
+    const float t553 = t534 + t552;
+    const float t554 = t533 + t553;
+    const float t556 = t372 * t555;
+    const float t557 = t554 - t556;
+    const float t559 = t383 * t558;
+    const float t560 = t557 - t559;
+    const float t457 = l_2 * t59;
+    const float t741 = t110 * t457;
+    const float t652 = t160 * t457;
+    const float t697 = t59 * t152;
+    const float t819 = t333 * t652;
+    const float t810 = t471 * t809;
+    const float t811 = t280 * t532;
+    const float t812 = t810 + t811;
+    const float t813 = t295 * t555;
+    const float t814 = t812 - t813;
+    const float t815 = t313 * t741;
+    const float t816 = t814 - t815;
+    const float t817 = t321 * t558;
+    const float t818 = t816 - t817;
+    const float t820 = t818 - t819;
+    const float t821 = t344 * t697;
+    const float t822 = t820 + t821;
+    const float t619 = t105 * t457;
+    const float t460 = t96 * t457;
+    const float t739 = t361 * t652;
+    const float t740 = t354 * t558;
+    const float t742 = t349 * t741;
+    const float t743 = t308 * t619;
+    const float t744 = t236 * t460;
+    const float t745 = t252 * t463;
+    const float t746 = t457 * t541;
+    const float t747 = t280 * t544;
+    const float t748 = t746 - t747;
+    const float t749 = l_2 * t748;
+    const float t750 = t745 + t749;
+    const float t751 = t744 + t750;
+    const float t752 = t295 * t689;
+    const float t753 = t751 - t752;
+    const float t754 = t743 + t753;
+    const float t755 = t742 + t754;
+    const float t756 = t740 + t755;
+    const float t757 = t739 + t756;
+    const float t758 = t372 * t697;
+    const float t759 = t757 - t758;
+    const float t683 = t96 * t252;
+    const float t694 = t152 * t354;
+    const float t684 = t471 * t683;
+    const float t685 = t280 * t538;
+    const float t686 = t684 + t685;
+    const float t687 = t313 * t460;
+    const float t688 = t686 - t687;
+    const float t690 = t321 * t689;
+    const float t691 = t688 + t690;
+    const float t692 = t333 * t619;
+    const float t693 = t691 - t692;
+    const float t695 = t58 * t694;
+    const float t696 = t693 - t695;
+    const float t698 = t383 * t697;
+    const float t699 = t696 + t698;
+    const float t701 = t493 * t683;
+    const float t702 = t280 * t569;
+    const float t703 = t701 + t702;
+    const float t704 = t313 * t485;
+    const float t705 = t703 - t704;
+    const float t707 = t321 * t706;
+    const float t708 = t705 + t707;
+    const float t709 = t333 * t639;
+    const float t710 = t708 - t709;
+    const float t711 = t62 * t694;
+    const float t712 = t710 - t711;
+    const float t714 = t383 * t713;
+    const float t715 = t712 + t714;
+    const float t483 = t383 * t482;
+    const float t465 = l_2 * t56;
+    const float t466 = l_2 * t465;
+    const float t484 = t298 * t483;
+    const float t486 = t344 * t485;
+    const float t488 = t321 * t487;
+    const float t489 = t62 * t280;
+    const float t490 = t63 * t333;
+    const float t491 = t489 + t490;
+    const float t492 = t466 * t491;
+    const float t495 = t295 * t494;
+    const float t496 = t492 - t495;
+    const float t497 = t488 + t496;
+    const float t498 = t486 + t497;
+    const float t500 = t354 * t499;
+    const float t501 = t498 - t500;
+    const float t502 = t484 + t501;
+    const float t458 = t298 * t457;
+    const float t459 = t383 * t458;
+    const float t461 = t344 * t460;
+    const float t464 = t321 * t463;
+    const float t467 = t58 * t280;
+    const float t468 = t59 * t333;
+    const float t469 = t467 + t468;
+    const float t470 = t466 * t469;
+    const float t473 = t295 * t472;
+    const float t474 = t470 - t473;
+    const float t475 = t464 + t474;
+    const float t476 = t461 + t475;
+    const float t478 = t354 * t477;
+    const float t479 = t476 - t478;
+    const float t480 = t459 + t479;
+    const float t641 = t354 * t564;
+    const float t642 = t123 * t483;
+    const float t643 = t641 - t642;
+    const float t648 = t124 * t321;
+    const float t635 = t62 * t252;
+    const float t636 = t63 * t313;
+    const float t637 = t635 - t636;
+    const float t638 = t466 * t637;
+    const float t640 = t344 * t639;
+    const float t644 = t640 - t643;
+    const float t645 = t638 + t644;
+    const float t646 = t295 * t569;
+    const float t647 = t645 - t646;
+    const float t649 = t30 * t648;
+    const float t650 = t647 - t649;
+    const float t617 = t123 * t457;
+    const float t621 = t321 * t543;
+    const float t631 = t354 * t532;
+    const float t618 = t383 * t617;
+    const float t620 = t344 * t619;
+    const float t622 = t26 * t621;
+    const float t623 = t58 * t252;
+    const float t624 = t59 * t313;
+    const float t625 = t623 - t624;
+    const float t626 = t466 * t625;
+    const float t627 = t295 * t538;
+    const float t628 = t626 - t627;
+    const float t629 = t622 + t628;
+    const float t630 = t620 + t629;
+    const float t632 = t630 - t631;
+    const float t633 = t618 + t632;
+    const float t658 = t66 * t236;
+    const float t659 = t252 * t70;
+    const float t660 = t658 - t659;
+    const float t661 = t82 * t295;
+    const float t662 = t660 - t661;
+    const float t663 = t116 * t313;
+    const float t664 = t662 - t663;
+    const float t665 = t140 * t344;
+    const float t666 = t664 - t665;
+    const float t786 = t116 * t269;
+    const float t787 = t140 * t308;
+    const float t788 = t786 - t787;
+    const float t792 = t140 * t372;
+    const float t793 = t116 * t349;
+    const float t794 = t792 + t793;
+    const float t800 = t124 * t354;
+    const float t801 = t800 - t794;
+    const float t802 = t31 * t801;
+    const float t803 = t280 * t124;
+    const float t804 = t803 - t788;
+    const float t805 = t30 * t804;
+    const float t806 = t802 - t805;
+    const float t807 = t806 - t762;
+    const float t784 = t361 * t617;
+    const float t785 = t280 * t543;
+    const float t789 = t785 + t788;
+    const float t790 = t26 * t789;
+    const float t791 = t354 * t543;
+    const float t795 = t791 + t794;
+    const float t796 = t27 * t795;
+    const float t797 = t790 - t796;
+    const float t798 = t784 + t797;
+    const float t667 = t666 - t621;
+    const float t668 = -t667;
+    const float t653 = t383 * t652;
+    const float t654 = t72 * t349;
+    const float t655 = t73 * t372;
+    const float t656 = t654 - t655;
+    const float t657 = t66 * t656;
+    const float t669 = t26 * t668;
+    const float t670 = t631 - t669;
+    const float t671 = t657 + t670;
+    const float t672 = t653 + t671;
+    const float t589 = t160 * t471;
+    const float t838 = t280 * t589;
+    const float t839 = t27 * t668;
+    const float t840 = t819 + t839;
+    const float t841 = t72 * t269;
+    const float t842 = t73 * t308;
+    const float t843 = t841 + t842;
+    const float t844 = t66 * t843;
+    const float t845 = t840 - t844;
+    const float t846 = t838 + t845;
+    const float t606 = t160 * t493;
+    const float t592 = t70 * t349;
+    const float t593 = t82 * t372;
+    const float t594 = t592 - t593;
+    const float t598 = t82 * t308;
+    const float t599 = t269 * t70;
+    const float t600 = t598 + t599;
+    const float t590 = t361 * t589;
+    const float t591 = t383 * t543;
+    const float t595 = t591 - t594;
+    const float t596 = t27 * t595;
+    const float t597 = t333 * t543;
+    const float t601 = t597 + t600;
+    const float t602 = t26 * t601;
+    const float t603 = t596 + t602;
+    const float t604 = t590 + t603;
+    const float t607 = t361 * t606;
+    const float t608 = t124 * t333;
+    const float t609 = t608 - t600;
+    const float t610 = t30 * t609;
+    const float t611 = t607 - t610;
+    const float t612 = t124 * t383;
+    const float t613 = t594 + t612;
+    const float t614 = t31 * t613;
+    const float t615 = t611 - t614;
+    const float t674 = t648 + t666;
+    const float t848 = t280 * t606;
+    const float t849 = t31 * t674;
+    const float t850 = t833 - t849;
+    const float t851 = t77 * t269;
+    const float t852 = t78 * t308;
+    const float t853 = t851 + t852;
+    const float t854 = t66 * t853;
+    const float t855 = t850 - t854;
+    const float t856 = t848 + t855;
+    const float t506 = t116 * t333;
+    const float t507 = t70 * t280;
+    const float t508 = t506 - t507;
+    const float t509 = t66 * t308;
+    const float t510 = t508 - t509;
+    const float t724 = t66 * t269;
+    const float t725 = t82 * t280;
+    const float t726 = t724 - t725;
+    const float t727 = t140 * t333;
+    const float t728 = t726 - t727;
+    const float t675 = t30 * t674;
+    const float t676 = t77 * t349;
+    const float t677 = t78 * t372;
+    const float t678 = t676 - t677;
+    const float t679 = t66 * t678;
+    const float t680 = t643 + t679;
+    const float t681 = t675 + t680;
+    const float t718 = t140 * t383;
+    const float t719 = t66 * t349;
+    const float t720 = t82 * t354;
+    const float t721 = t719 - t720;
+    const float t722 = t718 + t721;
+    const float t517 = t66 * t372;
+    const float t518 = t116 * t383;
+    const float t519 = t517 - t518;
+    const float t504 = t50 * t354;
+    const float t513 = t66 * t361;
+    const float t505 = t27 * t504;
+    const float t511 = t25 * t510;
+    const float t512 = t505 + t511;
+    const float t514 = t44 * t513;
+    const float t515 = t512 - t514;
+    const float t516 = l_2 * t515;
+    const float t520 = t27 * t519;
+    const float t521 = t516 - t520;
+    const float t523 = t31 * t504;
+    const float t524 = t21 * t510;
+    const float t525 = t523 + t524;
+    const float t526 = t37 * t513;
+    const float t527 = t525 - t526;
+    const float t528 = l_2 * t527;
+    const float t529 = t31 * t519;
+    const float t530 = t528 - t529;
+    const float t717 = t73 * t513;
+    const float t723 = t27 * t722;
+    const float t729 = t26 * t728;
+    const float t730 = t723 - t729;
+    const float t731 = t717 + t730;
+    const float t733 = t78 * t513;
+    const float t734 = t31 * t722;
+    const float t735 = t30 * t728;
+    const float t736 = t734 - t735;
+    const float t737 = t733 + t736;
+    if (RAPKM_2RRR_RR_RARELY_F(!(t179 > t211))) {
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
-    const float t381 = fabsf(t380);
-    if (RAPKM_2RRR_RR_RARELY_F(!(t381 > t449))) {
+    const float t386 = fabsf(t385);
+    if (RAPKM_2RRR_RR_RARELY_F(!(t386 > t455))) {
         return RAPKM_2RRR_RR_MASS_RANK;
     }
-    const float t450 = 1.0f / t380;
-    const float t491 = t450 * t490;
-    float rest = t491 - t491;
-    const float t529 = t450 * t528;
-    rest *= t529;
-    const float t550 = t450 * t549;
-    rest *= t550;
-    const float t564 = t450 * t563;
-    float term = t564 - t564;
-    const float t597 = t450 * t596;
-    term *= t597;
-    const float t629 = t450 * t628;
-    term *= t629;
+    const float t456 = 1.0f / t385;
+    const float t481 = t456 * t480;
+    float rest = t481 - t481;
+    const float t503 = t456 * t502;
+    rest *= t503;
+    const float t522 = t456 * t521;
+    rest *= t522;
+    const float t531 = t456 * t530;
+    float term = t531 - t531;
+    const float t561 = t456 * t560;
+    term *= t561;
+    const float t588 = t456 * t587;
+    term *= t588;
     rest += term;
-    const float t642 = t450 * t641;
-    term = t642 - t642;
-    const float t653 = t450 * t652;
-    term *= t653;
-    const float t674 = t450 * t673;
-    term *= t674;
+    const float t605 = t456 * t604;
+    term = t605 - t605;
+    const float t616 = t456 * t615;
+    term *= t616;
+    const float t634 = t456 * t633;
+    term *= t634;
     rest += term;
-    const float t696 = t450 * t695;
-    term = t696 - t696;
-    const float t715 = t450 * t714;
-    term *= t715;
-    const float t730 = t450 * t729;
-    term *= t730;
+    const float t651 = t456 * t650;
+    term = t651 - t651;
+    const float t673 = t456 * t672;
+    term *= t673;
+    const float t682 = t456 * t681;
+    term *= t682;
     rest += term;
-    const float t749 = t450 * t748;
-    term = t749 - t749;
-    const float t768 = t450 * t767;
-    term *= t768;
-    const float t783 = t450 * t782;
+    const float t700 = t456 * t699;
+    term = t700 - t700;
+    const float t716 = t456 * t715;
+    term *= t716;
+    const float t732 = t456 * t731;
+    term *= t732;
+    rest += term;
+    const float t738 = t456 * t737;
+    term = t738 - t738;
+    const float t760 = t456 * t759;
+    term *= t760;
+    const float t783 = t456 * t782;
     term *= t783;
     rest += term;
-    const float t797 = t450 * t796;
-    term = t797 - t797;
-    const float t817 = t450 * t816;
-    term *= t817;
-    const float t837 = t450 * t836;
-    term *= t837;
+    const float t799 = t456 * t798;
+    term = t799 - t799;
+    const float t808 = t456 * t807;
+    term *= t808;
+    const float t823 = t456 * t822;
+    term *= t823;
     rest += term;
-    const float t848 = t450 * t847;
-    term = t848 - t848;
-    const float t857 = t450 * t856;
+    const float t837 = t456 * t836;
+    term = t837 - t837;
+    const float t847 = t456 * t846;
+    term *= t847;
+    const float t857 = t456 * t856;
     term *= t857;
-    const float t871 = t450 * t870;
-    term *= t871;
-    rest += term;
-    const float t885 = t450 * t884;
-    term = t885 - t885;
-    const float t902 = t450 * t901;
-    term *= t902;
-    const float t919 = t450 * t918;
-    term *= t919;
     rest += term;
     if (RAPKM_2RRR_RR_RARELY_F(isnan(rest) != 0)) {
         return RAPKM_2RRR_RR_NOT_FINITE;
     }
-    B_G_pinv[0] = t491;
-    B_G_pinv[1] = t529;
-    B_G_pinv[2] = t550;
-    B_G_pinv[3] = t564;
-    B_G_pinv[4] = t597;
-    B_G_pinv[5] = t629;
-    B_G_pinv[6] = t642;
-    B_G_pinv[7] = t653;
-    B_G_pinv[8] = t674;
-    B_G_pinv[9] = t696;
-    B_G_pinv[10] = t715;
-    B_G_pinv[11] = t730;
-    B_G_pinv[12] = t749;
-    B_G_pinv[13] = t768;
-    B_G_pinv[14] = t783;
-    B_G_pinv[15] = t797;
-    B_G_pinv[16] = t817;
-    B_G_pinv[17] = t837;
-    B_G_pinv[18] = t848;
-    B_G_pinv[19] = t857;
-    B_G_pinv[20] = t871;
-    B_G_pinv[21] = t885;
-    B_G_pinv[22] = t902;
-    B_G_pinv[23] = t919;
+    B_G_pinv[0] = t481;
+    B_G_pinv[1] = t503;
+    B_G_pinv[2] = t522;
+    B_G_pinv[3] = t531;
+    B_G_pinv[4] = t561;
+    B_G_pinv[5] = t588;
+    B_G_pinv[6] = t605;
+    B_G_pinv[7] = t616;
+    B_G_pinv[8] = t634;
+    B_G_pinv[9] = t651;
+    B_G_pinv[10] = t673;
+    B_G_pinv[11] = t682;
+    B_G_pinv[12] = t700;
+    B_G_pinv[13] = t716;
+    B_G_pinv[14] = t732;
+    B_G_pinv[15] = t738;
+    B_G_pinv[16] = t760;
+    B_G_pinv[17] = t783;
+    B_G_pinv[18] = t799;
+    B_G_pinv[19] = t808;
+    B_G_pinv[20] = t823;
+    B_G_pinv[21] = t837;
+    B_G_pinv[22] = t847;
+    B_G_pinv[23] = t857;
     return RAPKM_2RRR_RR_OK;
 }
 
@@ -4120,19 +3864,14 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector_f(const float q[
     rapkm_2rrr_rr_sincos_group_f(6, angle, sine, cosine);
     const float t11 = sine[2];
     const float t14 = cosine[3];
-    const float t25 = t11 * t14;
+    const float t28 = t11 * t14;
     const float t12 = cosine[2];
     const float t13 = sine[3];
-    const float t26 = t12 * t13;
-    const float t27 = t25 + t26;
+    const float t29 = t12 * t13;
+    const float t30 = t28 + t29;
     const float l_2 = p->l_2;
-    const float t28 = l_2 * t27;
-    const float t31 = t28 * t28;
-    const float l_1 = p->l_1;
-    const float t24 = l_1 * t11;
-    const float t29 = t24 + t28;
-    const float t30 = t29 * t29;
-    const float t32 = t30 + t31;
+    const float t31 = l_2 * t30;
+    const float t34 = t31 * t31;
     const float t8 = cosine[0];
     const float t9 = sine[1];
     const float t19 = t8 * t9;
@@ -4141,20 +3880,25 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector_f(const float q[
     const float t20 = t7 * t10;
     const float t21 = t19 + t20;
     const float t22 = l_2 * t21;
-    const float t33 = l_1 * t7;
-    const float t34 = t33 + t22;
+    const float l_1 = p->l_1;
+    const float t24 = l_1 * t7;
+    const float t25 = t24 + t22;
+    const float t27 = l_1 * t11;
+    const float t32 = t27 + t31;
+    const float t33 = t32 * t32;
+    const float t35 = t33 + t34;
     const float t23 = t22 * t22;
-    const float t35 = t34 * t34;
-    const float t36 = t32 + t35;
+    const float t26 = t25 * t25;
+    const float t36 = t26 + t35;
     const float t37 = t23 + t36;
     if (RAPKM_2RRR_RR_RARELY_F(!(t37 > 0.0f))) {
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
     const float t44 = sqrtf(t37);
-    const float t55 = -t29;
+    const float t55 = -t32;
     const float t56 = copysignf(t44, t55);
-    const float t57 = t56 - t29;
-    const float t45 = fabsf(t29);
+    const float t57 = t56 - t32;
+    const float t45 = fabsf(t32);
     const float t46 = t44 + t45;
     const float t47 = t44 * t46;
     const float t48 = 1.0f / t47;
@@ -4162,7 +3906,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector_f(const float q[
     const float t51 = t11 * t13;
     const float t52 = t50 - t51;
     const float t53 = l_2 * t52;
-    const float t59 = t28 * t53;
+    const float t59 = t31 * t53;
     const float t49 = l_1 * t12;
     const float t54 = t49 + t53;
     const float t58 = t54 * t57;
@@ -4173,24 +3917,24 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector_f(const float q[
     const float t42 = l_2 * t41;
     const float t38 = l_1 * t8;
     const float t43 = t38 + t42;
-    const float t61 = t34 * t43;
+    const float t61 = t25 * t43;
     const float t63 = t22 * t42;
     const float t62 = t60 - t61;
     const float t64 = t62 - t63;
     const float t65 = t48 * t64;
-    const float t78 = t54 * t54;
-    const float t79 = t53 * t53;
-    const float t80 = t78 + t79;
-    const float t66 = t34 * t65;
+    const float t79 = t54 * t54;
+    const float t80 = t53 * t53;
+    const float t81 = t79 + t80;
+    const float t66 = t25 * t65;
     const float t67 = t43 + t66;
     const float t77 = t42 * t42;
-    const float t81 = t43 * t43;
-    const float t82 = t80 + t81;
+    const float t78 = t43 * t43;
+    const float t82 = t78 + t81;
     const float t83 = t77 + t82;
     const float t84 = 8.185452e-12f * t83;
     const float t73 = t22 * t65;
     const float t74 = t42 + t73;
-    const float t69 = t28 * t65;
+    const float t69 = t31 * t65;
     const float t70 = t53 + t69;
     const float t68 = t67 * t67;
     const float t71 = t70 * t70;
@@ -4208,21 +3952,21 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector_f(const float q[
     const float t87 = t85 + t86;
     const float t88 = t85 * t87;
     const float t89 = 1.0f / t88;
-    const float t90 = t29 * t57;
-    const float t91 = t31 - t90;
+    const float t90 = t32 * t57;
+    const float t91 = t34 - t90;
     const float t92 = t48 * t91;
     const float t93 = t22 * t92;
     const float t94 = t74 * t93;
-    const float t95 = t28 * t92;
-    const float t96 = t95 - t28;
+    const float t95 = t31 * t92;
+    const float t96 = t95 - t31;
     const float t97 = t70 * t96;
-    const float t101 = t34 * t100;
+    const float t101 = t25 * t100;
     const float t102 = t101 * t92;
     const float t103 = t97 - t102;
     const float t104 = t94 + t103;
     const float t105 = t89 * t104;
     const float t125 = t48 * t60;
-    const float t126 = t28 * t125;
+    const float t126 = t31 * t125;
     const float t127 = t53 + t126;
     const float t128 = t22 * t125;
     const float t129 = t74 * t128;
@@ -4252,7 +3996,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector_f(const float q[
     const float t115 = t114 * t114;
     const float t116 = t113 * t113;
     const float t117 = t115 + t116;
-    const float t123 = t32 + t117;
+    const float t123 = t35 + t117;
     const float t124 = 8.185452e-12f * t123;
     const float t108 = t107 * t107;
     const float t120 = t119 * t119;
@@ -4345,7 +4089,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector_f(const float q[
     const float t317 = t266 + t316;
     const float t171 = t147 * t147;
     const float t172 = t148 * t148;
-    const float t173 = t172 + t80;
+    const float t173 = t172 + t81;
     const float t174 = t171 + t173;
     const float t175 = 8.185452e-12f * t174;
     const float t160 = t119 * t159;
@@ -4422,8 +4166,8 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector_f(const float q[
     const float t372 = t361 - t371;
     const float t219 = t100 * t216;
     const float t369 = t100 * t365;
-    const float t220 = t34 * t219;
-    const float t223 = t28 * t222;
+    const float t220 = t25 * t219;
+    const float t223 = t31 * t222;
     const float t224 = t220 - t223;
     const float t225 = t22 * t218;
     const float t226 = t224 + t225;
@@ -4431,20 +4175,20 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector_f(const float q[
     const float t228 = t22 * t227;
     const float t229 = t218 - t228;
     const float t368 = t22 * t367;
-    const float t370 = t34 * t369;
-    const float t373 = t28 * t372;
+    const float t370 = t25 * t369;
+    const float t373 = t31 * t372;
     const float t374 = t370 + t373;
     const float t375 = t368 - t374;
     const float t376 = t48 * t375;
     const float t377 = t22 * t376;
     const float t378 = t367 - t377;
-    const float t232 = t34 * t227;
+    const float t232 = t25 * t227;
     const float t233 = t219 - t232;
-    const float t380 = t34 * t376;
+    const float t380 = t25 * t376;
     const float t381 = t369 + t380;
-    const float t238 = t28 * t227;
+    const float t238 = t31 * t227;
     const float t239 = t222 + t238;
-    const float t385 = t28 * t376;
+    const float t385 = t31 * t376;
     const float t386 = t372 + t385;
     const float t246 = t57 * t227;
     const float t388 = t57 * t376;
@@ -4900,51 +4644,58 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_matrix_f(const float q[6], 
     const float t34 = l_2 * t16;
     const float t15 = cosine[2];
     const float t37 = l_2 * t15;
+    const float t74 = l_2 * l_2;
     const float l_1 = p->l_1;
-    const float t10 = sine[0];
-    const float t23 = l_1 * t10;
-    const float t25 = t23 + t24;
+    const float t21 = cosine[5];
+    const float t36 = l_1 * t21;
+    const float t38 = t36 + t37;
+    const float t166 = t38 * t38;
+    const float t168 = t15 * t15;
     const float t20 = sine[5];
     const float t26 = l_1 * t20;
     const float t28 = t26 + t27;
+    const float t174 = t28 * t28;
+    const float t175 = t14 * t14;
+    const float t10 = sine[0];
+    const float t23 = l_1 * t10;
+    const float t25 = t23 + t24;
     const float t19 = cosine[4];
     const float t29 = l_1 * t19;
     const float t31 = t29 + t30;
     const float t18 = sine[4];
     const float t33 = l_1 * t18;
     const float t35 = t33 + t34;
-    const float t21 = cosine[5];
-    const float t36 = l_1 * t21;
-    const float t38 = t36 + t37;
     const float t11 = cosine[0];
     const float t43 = l_1 * t11;
     const float t44 = t43 + t22;
-    const float t167 = t38 * t38;
-    const float t168 = t37 * t37;
+    const float t165 = t44 * t44;
+    const float t167 = t13 * t13;
     const float t169 = t167 + t168;
-    const float t174 = t28 * t28;
-    const float t175 = t27 * t27;
-    const float t176 = t174 + t175;
-    const float t165 = t22 * t22;
-    const float t166 = t44 * t44;
-    const float t170 = t166 + t169;
-    const float t171 = t165 + t170;
-    const float t172 = t25 * t25;
-    const float t173 = t24 * t24;
-    const float t177 = t173 + t176;
-    const float t178 = t172 + t177;
-    const float t179 = t34 * t34;
-    const float t180 = t35 * t35;
-    const float t181 = t180 + t176;
-    const float t182 = t179 + t181;
-    const float t183 = t30 * t30;
-    const float t184 = t31 * t31;
-    const float t185 = t184 + t169;
-    const float t186 = t183 + t185;
-    const float t187 = t182 * t186;
-    const float t188 = t178 * t187;
-    const float t189 = t171 * t188;
-    const float t190 = t189 * 2.2737368e-13f;
+    const float t170 = t74 * t169;
+    const float t171 = t166 + t170;
+    const float t172 = t165 + t171;
+    const float t173 = t25 * t25;
+    const float t176 = t12 * t12;
+    const float t177 = t175 + t176;
+    const float t178 = t74 * t177;
+    const float t179 = t174 + t178;
+    const float t180 = t173 + t179;
+    const float t181 = t35 * t35;
+    const float t182 = t174 + t181;
+    const float t183 = t16 * t16;
+    const float t184 = t175 + t183;
+    const float t185 = t74 * t184;
+    const float t186 = t182 + t185;
+    const float t187 = t31 * t31;
+    const float t188 = t166 + t187;
+    const float t189 = t17 * t17;
+    const float t190 = t189 + t168;
+    const float t191 = t74 * t190;
+    const float t192 = t188 + t191;
+    const float t193 = t186 * t192;
+    const float t194 = t180 * t193;
+    const float t195 = t172 * t194;
+    const float t196 = t195 * 2.2737368e-13f;
     const float t32 = t28 * t31;
     const float t39 = t35 * t38;
     const float t40 = t32 - t39;
@@ -4981,7 +4732,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_matrix_f(const float q[6], 
     const float t115 = t34 * t38;
     const float t116 = t114 - t115;
     const float t55 = t27 * t52;
-    const float t74 = l_2 * l_2;
     const float t120 = t14 * t17;
     const float t121 = t15 * t16;
     const float t122 = t120 - t121;
@@ -5040,103 +4790,103 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_matrix_f(const float q[6], 
     const float t78 = t76 - t77;
     const float t79 = t75 * t78;
     const float t96 = -t95;
-    const float t196 = -t152;
-    const float t198 = -t158;
-    const float t202 = -t130;
-    const float t226 = t57 * t95;
-    const float t227 = t66 * t47;
-    const float t228 = t226 + t227;
-    const float t229 = t112 * t79;
-    const float t230 = t228 - t229;
-    const float t231 = t138 * t143;
-    const float t232 = t230 + t231;
-    const float t234 = t72 * t143;
-    const float t235 = t112 * t202;
-    const float t236 = t47 * t196;
-    const float t237 = t95 * t198;
+    const float t202 = -t152;
+    const float t204 = -t158;
+    const float t208 = -t130;
+    const float t232 = t57 * t95;
+    const float t233 = t66 * t47;
+    const float t234 = t232 + t233;
+    const float t235 = t112 * t79;
+    const float t236 = t234 - t235;
+    const float t237 = t138 * t143;
     const float t238 = t236 + t237;
-    const float t239 = t235 + t238;
-    const float t240 = t234 + t239;
-    const float t242 = t72 * t79;
-    const float t243 = t101 * t95;
-    const float t244 = t107 * t47;
-    const float t245 = t243 + t244;
-    const float t246 = t138 * t202;
-    const float t247 = t245 + t246;
-    const float t248 = t242 + t247;
+    const float t240 = t72 * t143;
+    const float t241 = t112 * t208;
+    const float t242 = t47 * t202;
+    const float t243 = t95 * t204;
+    const float t244 = t242 + t243;
+    const float t245 = t241 + t244;
+    const float t246 = t240 + t245;
+    const float t248 = t72 * t79;
+    const float t249 = t101 * t95;
+    const float t250 = t107 * t47;
+    const float t251 = t249 + t250;
+    const float t252 = t138 * t208;
+    const float t253 = t251 + t252;
+    const float t254 = t248 + t253;
     const float t80 = t79 * t79;
-    const float t194 = -t138;
-    const float t264 = -t66;
+    const float t200 = -t138;
+    const float t270 = -t66;
     const float t58 = t57 * t57;
     const float t67 = t66 * t66;
     const float t68 = t58 + t67;
     const float t73 = t72 * t72;
     const float t81 = t73 + t80;
     const float t82 = t68 + t81;
-    const float t195 = t72 * t194;
-    const float t197 = t66 * t196;
-    const float t199 = t57 * t198;
-    const float t200 = t197 + t199;
-    const float t201 = t195 + t200;
-    const float t203 = t79 * t202;
-    const float t204 = t201 - t203;
-    const float t206 = t101 * t57;
-    const float t207 = t107 * t66;
-    const float t208 = t206 + t207;
-    const float t209 = t112 * t72;
-    const float t210 = t208 + t209;
-    const float t211 = t143 * t202;
-    const float t212 = t210 + t211;
-    const float t276 = t143 * t158;
-    const float t277 = t90 * t66;
-    const float t278 = t72 * t96;
-    const float t279 = t277 + t278;
-    const float t280 = t101 * t79;
-    const float t281 = t279 - t280;
-    const float t282 = t276 + t281;
-    const float t253 = -t107;
-    const float t250 = t90 * t57;
-    const float t251 = t72 * t47;
-    const float t252 = t250 + t251;
-    const float t254 = t79 * t253;
-    const float t255 = t252 - t254;
-    const float t256 = t196 * t143;
-    const float t257 = t255 + t256;
-    const float t259 = t47 * t194;
-    const float t260 = t90 * t198;
-    const float t261 = t259 + t260;
-    const float t262 = t253 * t202;
+    const float t201 = t72 * t200;
+    const float t203 = t66 * t202;
+    const float t205 = t57 * t204;
+    const float t206 = t203 + t205;
+    const float t207 = t201 + t206;
+    const float t209 = t79 * t208;
+    const float t210 = t207 - t209;
+    const float t212 = t101 * t57;
+    const float t213 = t107 * t66;
+    const float t214 = t212 + t213;
+    const float t215 = t112 * t72;
+    const float t216 = t214 + t215;
+    const float t217 = t143 * t208;
+    const float t218 = t216 + t217;
+    const float t282 = t143 * t158;
+    const float t283 = t90 * t66;
+    const float t284 = t72 * t96;
+    const float t285 = t283 + t284;
+    const float t286 = t101 * t79;
+    const float t287 = t285 - t286;
+    const float t288 = t282 + t287;
+    const float t259 = -t107;
+    const float t256 = t90 * t57;
+    const float t257 = t72 * t47;
+    const float t258 = t256 + t257;
+    const float t260 = t79 * t259;
+    const float t261 = t258 - t260;
+    const float t262 = t202 * t143;
     const float t263 = t261 + t262;
-    const float t265 = t264 * t143;
-    const float t266 = t263 + t265;
-    const float t216 = t79 * t143;
-    const float t217 = t112 * t194;
-    const float t218 = t107 * t196;
-    const float t219 = t101 * t198;
-    const float t220 = t218 + t219;
-    const float t221 = t217 + t220;
-    const float t222 = t216 + t221;
-    const float t268 = t79 * t264;
-    const float t269 = t90 * t101;
-    const float t270 = t112 * t47;
-    const float t271 = t269 + t270;
-    const float t272 = t196 * t202;
-    const float t273 = t271 + t272;
-    const float t274 = t268 + t273;
-    const float t284 = t57 * t143;
-    const float t285 = t194 * t96;
-    const float t286 = t90 * t196;
-    const float t287 = t285 + t286;
-    const float t288 = t101 * t202;
-    const float t289 = t287 + t288;
-    const float t290 = t284 + t289;
-    const float t292 = t57 * t79;
-    const float t293 = t90 * t107;
-    const float t294 = t112 * t96;
+    const float t265 = t47 * t200;
+    const float t266 = t90 * t204;
+    const float t267 = t265 + t266;
+    const float t268 = t259 * t208;
+    const float t269 = t267 + t268;
+    const float t271 = t270 * t143;
+    const float t272 = t269 + t271;
+    const float t222 = t79 * t143;
+    const float t223 = t112 * t200;
+    const float t224 = t107 * t202;
+    const float t225 = t101 * t204;
+    const float t226 = t224 + t225;
+    const float t227 = t223 + t226;
+    const float t228 = t222 + t227;
+    const float t274 = t79 * t270;
+    const float t275 = t90 * t101;
+    const float t276 = t112 * t47;
+    const float t277 = t275 + t276;
+    const float t278 = t202 * t208;
+    const float t279 = t277 + t278;
+    const float t280 = t274 + t279;
+    const float t290 = t57 * t143;
+    const float t291 = t96 * t200;
+    const float t292 = t90 * t202;
+    const float t293 = t291 + t292;
+    const float t294 = t101 * t208;
     const float t295 = t293 + t294;
-    const float t296 = t158 * t202;
-    const float t297 = t295 + t296;
-    const float t298 = t292 + t297;
+    const float t296 = t290 + t295;
+    const float t298 = t57 * t79;
+    const float t299 = t90 * t107;
+    const float t300 = t112 * t96;
+    const float t301 = t299 + t300;
+    const float t302 = t158 * t208;
+    const float t303 = t301 + t302;
+    const float t304 = t298 + t303;
     const float t131 = t130 * t130;
     const float t102 = t101 * t101;
     const float t108 = t107 * t107;
@@ -5160,68 +4910,68 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_matrix_f(const float q[6], 
     const float t162 = t134 + t161;
     const float t163 = t82 + t162;
     const float t164 = t49 + t163;
-    const float t191 = t144 + t82;
-    const float t214 = t131 + t161;
-    const float t224 = t80 + t133;
-    if (RAPKM_2RRR_RR_RARELY_F(!(t164 > t190))) {
+    const float t197 = t144 + t82;
+    const float t220 = t131 + t161;
+    const float t230 = t80 + t133;
+    if (RAPKM_2RRR_RR_RARELY_F(!(t164 > t196))) {
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
-    const float t192 = 1.0f / t164;
-    const float t193 = t191 * t192;
-    float rest = t193 - t193;
-    const float t205 = t192 * t204;
-    rest *= t205;
-    const float t213 = t192 * t212;
-    rest *= t213;
-    const float t215 = t192 * t214;
-    float term = t215 - t215;
-    const float t223 = t192 * t222;
-    term *= t223;
-    const float t225 = t192 * t224;
-    term *= t225;
+    const float t198 = 1.0f / t164;
+    const float t199 = t197 * t198;
+    float rest = t199 - t199;
+    const float t211 = t198 * t210;
+    rest *= t211;
+    const float t219 = t198 * t218;
+    rest *= t219;
+    const float t221 = t198 * t220;
+    float term = t221 - t221;
+    const float t229 = t198 * t228;
+    term *= t229;
+    const float t231 = t198 * t230;
+    term *= t231;
     rest += term;
-    const float t233 = t192 * t232;
-    term = t233 - t233;
-    const float t241 = t192 * t240;
-    term *= t241;
-    const float t249 = t192 * t248;
-    term *= t249;
+    const float t239 = t198 * t238;
+    term = t239 - t239;
+    const float t247 = t198 * t246;
+    term *= t247;
+    const float t255 = t198 * t254;
+    term *= t255;
     rest += term;
-    const float t258 = t192 * t257;
-    term = t258 - t258;
-    const float t267 = t192 * t266;
-    term *= t267;
-    const float t275 = t192 * t274;
-    term *= t275;
+    const float t264 = t198 * t263;
+    term = t264 - t264;
+    const float t273 = t198 * t272;
+    term *= t273;
+    const float t281 = t198 * t280;
+    term *= t281;
     rest += term;
-    const float t283 = t192 * t282;
-    term = t283 - t283;
-    const float t291 = t192 * t290;
-    term *= t291;
-    const float t299 = t192 * t298;
-    term *= t299;
+    const float t289 = t198 * t288;
+    term = t289 - t289;
+    const float t297 = t198 * t296;
+    term *= t297;
+    const float t305 = t198 * t304;
+    term *= t305;
     rest += term;
     if (RAPKM_2RRR_RR_RARELY_F(isnan(rest) != 0)) {
         return RAPKM_2RRR_RR_NOT_FINITE;
     }
-    M_tilde[0] = t193;
-    M_tilde[1] = t205;
-    M_tilde[2] = t213;
-    M_tilde[3] = t205;
-    M_tilde[4] = t215;
-    M_tilde[5] = t223;
-    M_tilde[6] = t213;
-    M_tilde[7] = t223;
-    M_tilde[8] = t225;
-    M_tilde[9] = t233;
-    M_tilde[10] = t241;
-    M_tilde[11] = t249;
-    M_tilde[12] = t258;
-    M_tilde[13] = t267;
-    M_tilde[14] = t275;
-    M_tilde[15] = t283;
-    M_tilde[16] = t291;
-    M_tilde[17] = t299;
+    M_tilde[0] = t199;
+    M_tilde[1] = t211;
+    M_tilde[2] = t219;
+    M_tilde[3] = t211;
+    M_tilde[4] = t221;
+    M_tilde[5] = t229;
+    M_tilde[6] = t219;
+    M_tilde[7] = t229;
+    M_tilde[8] = t231;
+    M_tilde[9] = t239;
+    M_tilde[10] = t247;
+    M_tilde[11] = t255;
+    M_tilde[12] = t264;
+    M_tilde[13] = t273;
+    M_tilde[14] = t281;
+    M_tilde[15] = t289;
+    M_tilde[16] = t297;
+    M_tilde[17] = t305;
     return RAPKM_2RRR_RR_OK;
 }
 
@@ -5350,33 +5100,39 @@ static RAPKM_2RRR_RR_APART_F rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_contro
     const float t220 = t141 + t219;
     const float t221 = t136 + t220;
     const float t222 = t121 + t221;
-    const float t223 = t101 * t101;
-    const float t224 = t117 * t117;
-    const float t225 = t128 * t128;
-    const float t226 = t127 * t127;
+    const float t223 = t117 * t117;
+    const float t224 = t128 * t128;
+    const float t225 = t13 * t13;
+    const float t226 = t15 * t15;
     const float t227 = t225 + t226;
-    const float t228 = t224 + t227;
-    const float t229 = t223 + t228;
-    const float t230 = t104 * t104;
-    const float t231 = t103 * t103;
+    const float t228 = t201 * t227;
+    const float t229 = t224 + t228;
+    const float t230 = t223 + t229;
+    const float t231 = t104 * t104;
     const float t232 = t124 * t124;
-    const float t233 = t123 * t123;
-    const float t234 = t232 + t233;
-    const float t235 = t231 + t234;
-    const float t236 = t230 + t235;
-    const float t237 = t105 * t105;
-    const float t238 = t111 * t111;
-    const float t239 = t238 + t234;
-    const float t240 = t237 + t239;
-    const float t241 = t107 * t107;
-    const float t242 = t108 * t108;
-    const float t243 = t242 + t227;
-    const float t244 = t241 + t243;
-    const float t245 = t240 * t244;
-    const float t246 = t236 * t245;
-    const float t247 = t229 * t246;
-    const float t248 = t247 * 2.2737368e-13f;
-    if (!(t222 > t248)) {
+    const float t233 = t14 * t14;
+    const float t234 = t12 * t12;
+    const float t235 = t233 + t234;
+    const float t236 = t201 * t235;
+    const float t237 = t232 + t236;
+    const float t238 = t231 + t237;
+    const float t239 = t111 * t111;
+    const float t240 = t232 + t239;
+    const float t241 = t16 * t16;
+    const float t242 = t233 + t241;
+    const float t243 = t201 * t242;
+    const float t244 = t240 + t243;
+    const float t245 = t108 * t108;
+    const float t246 = t224 + t245;
+    const float t247 = t17 * t17;
+    const float t248 = t247 + t226;
+    const float t249 = t201 * t248;
+    const float t250 = t246 + t249;
+    const float t251 = t244 * t250;
+    const float t252 = t238 * t251;
+    const float t253 = t230 * t252;
+    const float t254 = t253 * 2.2737368e-13f;
+    if (!(t222 > t254)) {
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
     return RAPKM_2RRR_RR_ACTUATION_RANK;
@@ -5495,7 +5251,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_pseudoinverse_f(const float
     const float t43 = t27 * t42;
     const float t44 = t37 - t43;
     const float t34 = t23 * t33;
-    const float t257 = t55 * t33;
+    const float t263 = t55 * t33;
     const float t53 = t52 * t47;
     const float t57 = t36 * t56;
     const float t58 = t53 - t57;
@@ -5504,158 +5260,158 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_pseudoinverse_f(const float
     const float t46 = t35 - t45;
     const float t48 = t31 * t47;
     const float t49 = t46 - t48;
-    const float t297 = t22 * t257;
-    const float t298 = t52 * t44;
-    const float t299 = t297 - t298;
-    const float t300 = t31 * t56;
-    const float t301 = t299 - t300;
-    const float t258 = t36 * t257;
-    const float t259 = t52 * t34;
-    const float t260 = t258 - t259;
-    const float t278 = t22 * t64;
-    const float t279 = t26 * t61;
-    const float t280 = t278 - t279;
-    const float t283 = t27 * t61;
-    const float t284 = t64 * t31;
-    const float t285 = t283 - t284;
-    const float t281 = t23 * t280;
-    const float t282 = t31 * t281;
-    const float t286 = t26 * t285;
-    const float t287 = t27 * t280;
-    const float t288 = t286 + t287;
-    const float t289 = t36 * t288;
-    const float t290 = t23 * t285;
-    const float t291 = t22 * t290;
-    const float t292 = t289 - t291;
-    const float t293 = t282 - t292;
-    const float t274 = t36 * t55;
-    const float t322 = t52 * t281;
-    const float t323 = t280 * t274;
-    const float t324 = t322 - t323;
-    const float t270 = t26 * t31;
-    const float t271 = t22 * t27;
-    const float t272 = t270 - t271;
-    const float t273 = t23 * t52;
-    const float t275 = t273 - t274;
-    const float t276 = t272 * t275;
-    const float t262 = t27 * t66;
-    const float t264 = t23 * t66;
-    const float t304 = t26 * t66;
-    const float t263 = t36 * t262;
-    const float t265 = t31 * t264;
-    const float t266 = t263 - t265;
-    const float t303 = t22 * t262;
-    const float t305 = t31 * t304;
-    const float t306 = t303 - t305;
-    const float t313 = t55 * t66;
-    const float t314 = t36 * t313;
-    const float t315 = t52 * t264;
-    const float t316 = t314 - t315;
-    const float t328 = t22 * t313;
-    const float t329 = t52 * t304;
+    const float t303 = t22 * t263;
+    const float t304 = t52 * t44;
+    const float t305 = t303 - t304;
+    const float t306 = t31 * t56;
+    const float t307 = t305 - t306;
+    const float t264 = t36 * t263;
+    const float t265 = t52 * t34;
+    const float t266 = t264 - t265;
+    const float t284 = t22 * t64;
+    const float t285 = t26 * t61;
+    const float t286 = t284 - t285;
+    const float t289 = t27 * t61;
+    const float t290 = t64 * t31;
+    const float t291 = t289 - t290;
+    const float t287 = t23 * t286;
+    const float t288 = t31 * t287;
+    const float t292 = t26 * t291;
+    const float t293 = t27 * t286;
+    const float t294 = t292 + t293;
+    const float t295 = t36 * t294;
+    const float t296 = t23 * t291;
+    const float t297 = t22 * t296;
+    const float t298 = t295 - t297;
+    const float t299 = t288 - t298;
+    const float t280 = t36 * t55;
+    const float t328 = t52 * t287;
+    const float t329 = t286 * t280;
     const float t330 = t328 - t329;
+    const float t276 = t26 * t31;
+    const float t277 = t22 * t27;
+    const float t278 = t276 - t277;
+    const float t279 = t23 * t52;
+    const float t281 = t279 - t280;
+    const float t282 = t278 * t281;
+    const float t268 = t27 * t66;
+    const float t270 = t23 * t66;
+    const float t310 = t26 * t66;
+    const float t269 = t36 * t268;
+    const float t271 = t31 * t270;
+    const float t272 = t269 - t271;
+    const float t309 = t22 * t268;
+    const float t311 = t31 * t310;
+    const float t312 = t309 - t311;
+    const float t319 = t55 * t66;
+    const float t320 = t36 * t319;
+    const float t321 = t52 * t270;
+    const float t322 = t320 - t321;
+    const float t334 = t22 * t319;
+    const float t335 = t52 * t310;
+    const float t336 = t334 - t335;
     const float t67 = t38 * t66;
     const float t68 = t14 * t13;
     const float t69 = t15 * t12;
     const float t70 = t68 - t69;
     const float t71 = t67 * t70;
-    const float t251 = -t49;
-    const float t261 = t260 * t58;
-    const float t267 = t266 * t71;
-    const float t268 = t261 - t267;
-    const float t317 = t316 * t58;
-    const float t318 = t266 * t251;
-    const float t319 = t317 + t318;
-    const float t337 = t316 * t71;
-    const float t338 = t260 * t251;
-    const float t339 = t337 + t338;
-    const float t277 = t276 * t58;
-    const float t294 = t293 * t71;
-    const float t295 = t277 - t294;
-    const float t321 = t293 * t251;
-    const float t325 = t324 * t58;
-    const float t326 = t321 + t325;
-    const float t341 = t276 * t251;
-    const float t342 = t71 * t324;
-    const float t343 = t341 + t342;
-    const float t302 = t58 * t301;
-    const float t307 = t306 * t71;
-    const float t308 = t302 - t307;
+    const float t257 = -t49;
+    const float t267 = t266 * t58;
+    const float t273 = t272 * t71;
+    const float t274 = t267 - t273;
+    const float t323 = t322 * t58;
+    const float t324 = t272 * t257;
+    const float t325 = t323 + t324;
+    const float t343 = t322 * t71;
+    const float t344 = t266 * t257;
+    const float t345 = t343 + t344;
+    const float t283 = t282 * t58;
+    const float t300 = t299 * t71;
+    const float t301 = t283 - t300;
+    const float t327 = t299 * t257;
     const float t331 = t330 * t58;
-    const float t332 = t306 * t251;
-    const float t333 = t331 + t332;
-    const float t345 = t330 * t71;
-    const float t346 = t301 * t251;
-    const float t347 = t345 + t346;
+    const float t332 = t327 + t331;
+    const float t347 = t282 * t257;
+    const float t348 = t71 * t330;
+    const float t349 = t347 + t348;
+    const float t308 = t58 * t307;
+    const float t313 = t312 * t71;
+    const float t314 = t308 - t313;
+    const float t337 = t336 * t58;
+    const float t338 = t312 * t257;
+    const float t339 = t337 + t338;
+    const float t351 = t336 * t71;
+    const float t352 = t307 * t257;
+    const float t353 = t351 + t352;
     const float t50 = t49 * t49;
     const float t59 = t58 * t58;
     const float t72 = t71 * t71;
     const float t73 = t59 + t72;
-    const float t310 = t59 + t50;
-    const float t335 = t72 + t50;
+    const float t316 = t59 + t50;
+    const float t341 = t72 + t50;
     const float t74 = t50 + t73;
     if (RAPKM_2RRR_RR_RARELY_F(!(t74 > t100))) {
         return rapkm_2rrr_rr_projected_control_pseudoinverse_f_cause(p, t10, t11, t12, t13, t14, t15, t16, t17, t18, t19, t20, t21);
     }
-    const float t249 = 1.0f / t74;
-    const float t250 = t73 * t249;
-    float rest = t250 - t250;
-    const float t252 = t71 * t249;
-    const float t255 = t58 * t251;
-    const float t256 = t255 * t249;
-    rest *= t256;
-    const float t269 = t249 * t268;
-    rest *= t269;
-    const float t296 = t249 * t295;
-    float term = t296 - t296;
-    const float t309 = t249 * t308;
-    term *= t309;
-    const float t311 = t249 * t310;
-    term *= t311;
+    const float t255 = 1.0f / t74;
+    const float t256 = t73 * t255;
+    float rest = t256 - t256;
+    const float t258 = t71 * t255;
+    const float t261 = t58 * t257;
+    const float t262 = t261 * t255;
+    rest *= t262;
+    const float t275 = t255 * t274;
+    rest *= t275;
+    const float t302 = t255 * t301;
+    float term = t302 - t302;
+    const float t315 = t255 * t314;
+    term *= t315;
+    const float t317 = t255 * t316;
+    term *= t317;
     rest += term;
-    const float t320 = t249 * t319;
-    term = t320 - t320;
-    const float t327 = t249 * t326;
-    term *= t327;
-    const float t334 = t249 * t333;
-    term *= t334;
-    rest += term;
-    const float t336 = t249 * t335;
-    term = t336 - t336;
-    const float t340 = t249 * t339;
+    const float t326 = t255 * t325;
+    term = t326 - t326;
+    const float t333 = t255 * t332;
+    term *= t333;
+    const float t340 = t255 * t339;
     term *= t340;
-    const float t344 = t249 * t343;
-    term *= t344;
     rest += term;
-    const float t348 = t249 * t347;
-    term = t348 - t348;
-    const float t312 = t58 * t252;
-    term *= t312;
-    const float t253 = t251 * t252;
-    const float t254 = -t253;
-    term *= t254;
+    const float t342 = t255 * t341;
+    term = t342 - t342;
+    const float t346 = t255 * t345;
+    term *= t346;
+    const float t350 = t255 * t349;
+    term *= t350;
+    rest += term;
+    const float t354 = t255 * t353;
+    term = t354 - t354;
+    const float t318 = t58 * t258;
+    term *= t318;
+    const float t259 = t257 * t258;
+    const float t260 = -t259;
+    term *= t260;
     rest += term;
     if (RAPKM_2RRR_RR_RARELY_F(isnan(rest) != 0)) {
         return RAPKM_2RRR_RR_NOT_FINITE;
     }
-    M_tilde_pinv[0] = t250;
-    M_tilde_pinv[1] = t254;
-    M_tilde_pinv[2] = t256;
-    M_tilde_pinv[3] = t269;
-    M_tilde_pinv[4] = t296;
-    M_tilde_pinv[5] = t309;
-    M_tilde_pinv[6] = t254;
-    M_tilde_pinv[7] = t311;
-    M_tilde_pinv[8] = t312;
-    M_tilde_pinv[9] = t320;
-    M_tilde_pinv[10] = t327;
-    M_tilde_pinv[11] = t334;
-    M_tilde_pinv[12] = t256;
-    M_tilde_pinv[13] = t312;
-    M_tilde_pinv[14] = t336;
-    M_tilde_pinv[15] = t340;
-    M_tilde_pinv[16] = t344;
-    M_tilde_pinv[17] = t348;
+    M_tilde_pinv[0] = t256;
+    M_tilde_pinv[1] = t260;
+    M_tilde_pinv[2] = t262;
+    M_tilde_pinv[3] = t275;
+    M_tilde_pinv[4] = t302;
+    M_tilde_pinv[5] = t315;
+    M_tilde_pinv[6] = t260;
+    M_tilde_pinv[7] = t317;
+    M_tilde_pinv[8] = t318;
+    M_tilde_pinv[9] = t326;
+    M_tilde_pinv[10] = t333;
+    M_tilde_pinv[11] = t340;
+    M_tilde_pinv[12] = t262;
+    M_tilde_pinv[13] = t318;
+    M_tilde_pinv[14] = t342;
+    M_tilde_pinv[15] = t346;
+    M_tilde_pinv[16] = t350;
+    M_tilde_pinv[17] = t354;
     return RAPKM_2RRR_RR_OK;
 }
 
@@ -5694,82 +5450,89 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement_f(const float q[6], con
     float sine[8];
     float cosine[8];
     rapkm_2rrr_rr_sincos_group_f(6, angle, sine, cosine);
+    const float l_2 = p->l_2;
+    const float t54 = l_2 * l_2;
     const float t18 = cosine[5];
     const float t8 = cosine[0];
-    const float t49 = t18 * t8;
+    const float t48 = t18 * t8;
     const float t17 = sine[5];
     const float t7 = sine[0];
-    const float t50 = t17 * t7;
-    const float t51 = t49 - t50;
-    const float l_2 = p->l_2;
-    const float t52 = l_2 * t51;
-    const float l_1 = p->l_1;
-    const float t48 = l_1 * t18;
-    const float t53 = t48 + t52;
-    const float t54 = t53 * t53;
-    const float t55 = t52 * t52;
-    const float t56 = t54 + t55;
-    const float t68 = t17 * t8;
-    const float t69 = t18 * t7;
-    const float t70 = t68 + t69;
-    const float t71 = l_2 * t70;
-    const float t67 = l_1 * t17;
-    const float t72 = t67 + t71;
-    const float t73 = t72 * t72;
-    const float t74 = t71 * t71;
-    const float t75 = t73 + t74;
+    const float t49 = t17 * t7;
+    const float t50 = t48 - t49;
+    const float t56 = t50 * t50;
+    const float t69 = t17 * t8;
+    const float t70 = t18 * t7;
+    const float t71 = t69 + t70;
+    const float t75 = t71 * t71;
     const float t14 = cosine[3];
-    const float t15 = sine[4];
-    const float t26 = t14 * t15;
-    const float t13 = sine[3];
     const float t16 = cosine[4];
-    const float t27 = t13 * t16;
-    const float t28 = t26 + t27;
-    const float t78 = l_2 * t28;
     const float t22 = t14 * t16;
+    const float t13 = sine[3];
+    const float t15 = sine[4];
     const float t23 = t13 * t15;
     const float t24 = t22 - t23;
-    const float t85 = l_2 * t24;
+    const float t26 = t14 * t15;
+    const float t27 = t13 * t16;
+    const float t28 = t26 + t27;
     const float t12 = cosine[2];
     const float t10 = cosine[1];
-    const float t40 = t12 * t10;
+    const float t41 = t12 * t10;
     const float t11 = sine[2];
     const float t9 = sine[1];
-    const float t41 = t11 * t9;
-    const float t42 = t40 - t41;
-    const float t43 = l_2 * t42;
-    const float t60 = t12 * t9;
-    const float t61 = t11 * t10;
-    const float t62 = t60 + t61;
-    const float t63 = l_2 * t62;
-    const float t44 = t43 * t43;
-    const float t45 = l_1 * t12;
-    const float t46 = t45 + t43;
-    const float t47 = t46 * t46;
-    const float t57 = t47 + t56;
-    const float t58 = t44 + t57;
-    const float t59 = l_1 * t11;
-    const float t64 = t59 + t63;
-    const float t65 = t64 * t64;
-    const float t66 = t63 * t63;
-    const float t76 = t66 + t75;
-    const float t77 = t65 + t76;
-    const float t79 = t78 * t78;
-    const float t80 = l_1 * t13;
-    const float t81 = t80 + t78;
-    const float t82 = t81 * t81;
-    const float t83 = t75 + t82;
-    const float t84 = t79 + t83;
-    const float t86 = t85 * t85;
-    const float t87 = l_1 * t14;
-    const float t88 = t87 + t85;
-    const float t89 = t88 * t88;
-    const float t90 = t56 + t89;
-    const float t91 = t86 + t90;
-    const float t92 = t84 * t91;
-    const float t93 = t77 * t92;
-    const float t94 = t58 * t93;
-    const float t95 = 2.2737368e-13f * t94;
+    const float t42 = t11 * t9;
+    const float t43 = t41 - t42;
+    const float t62 = t12 * t9;
+    const float t63 = t11 * t10;
+    const float t64 = t62 + t63;
+    const float l_1 = p->l_1;
+    const float t47 = l_1 * t18;
+    const float t51 = l_2 * t50;
+    const float t52 = t47 + t51;
+    const float t53 = t52 * t52;
+    const float t68 = l_1 * t17;
+    const float t72 = l_2 * t71;
+    const float t73 = t68 + t72;
+    const float t74 = t73 * t73;
+    const float t40 = l_1 * t12;
+    const float t44 = l_2 * t43;
+    const float t45 = t40 + t44;
+    const float t46 = t45 * t45;
+    const float t55 = t43 * t43;
+    const float t57 = t55 + t56;
+    const float t58 = t54 * t57;
+    const float t59 = t53 + t58;
+    const float t60 = t46 + t59;
+    const float t61 = l_1 * t11;
+    const float t65 = l_2 * t64;
+    const float t66 = t61 + t65;
+    const float t67 = t66 * t66;
+    const float t76 = t64 * t64;
+    const float t77 = t75 + t76;
+    const float t78 = t54 * t77;
+    const float t79 = t74 + t78;
+    const float t80 = t67 + t79;
+    const float t81 = l_1 * t13;
+    const float t82 = l_2 * t28;
+    const float t83 = t81 + t82;
+    const float t84 = t83 * t83;
+    const float t85 = t74 + t84;
+    const float t86 = t28 * t28;
+    const float t87 = t75 + t86;
+    const float t88 = t54 * t87;
+    const float t89 = t85 + t88;
+    const float t90 = l_1 * t14;
+    const float t91 = l_2 * t24;
+    const float t92 = t90 + t91;
+    const float t93 = t92 * t92;
+    const float t94 = t53 + t93;
+    const float t95 = t24 * t24;
+    const float t96 = t56 + t95;
+    const float t97 = t54 * t96;
+    const float t98 = t94 + t97;
+    const float t99 = t89 * t98;
+    const float t100 = t80 * t99;
+    const float t101 = t60 * t100;
+    const float t102 = 2.2737368e-13f * t101;
     const float t19 = l_1 * l_2;
     const float t20 = l_2 * t19;
     const float t21 = l_2 * t20;
@@ -5785,78 +5548,78 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement_f(const float q[6], con
     const float t37 = t9 * t36;
     const float t38 = t21 * t37;
     const float t39 = t38 * t38;
-    if (RAPKM_2RRR_RR_RARELY_F(!(t39 > t95))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(t39 > t102))) {
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
-    const float t106 = t70 * t24;
-    const float t107 = t51 * t28;
-    const float t108 = t106 - t107;
-    const float t109 = t9 * t108;
-    const float t127 = t21 * t109;
-    const float t128 = t20 / t127;
-    const float t132 = l_1 * t20;
-    const float t133 = t132 / t127;
-    const float t134 = t9 * t133;
-    const float t125 = l_2 * t36;
-    const float t124 = l_1 * t34;
-    const float t126 = t124 + t125;
-    const float t129 = t9 * t128;
-    const float t130 = t126 * t129;
-    const float t131 = -t130;
-    float rest = t131 - t131;
-    const float t138 = t14 * t70;
-    const float t139 = t13 * t51;
-    const float t140 = t138 - t139;
-    const float t141 = l_1 * t140;
-    const float t142 = t125 + t141;
-    const float t143 = t129 * t142;
-    const float t144 = -t143;
-    rest *= t144;
-    const float t96 = t12 * t28;
-    const float t97 = t11 * t24;
-    const float t98 = t96 - t97;
-    const float t99 = t10 * t98;
-    const float t100 = t12 * t24;
-    const float t101 = t11 * t28;
-    const float t102 = t100 + t101;
-    const float t103 = t9 * t102;
-    const float t104 = t99 - t103;
-    const float t105 = t7 * t104;
-    const float t113 = t12 * t70;
-    const float t114 = t11 * t51;
+    const float t113 = t71 * t24;
+    const float t114 = t50 * t28;
     const float t115 = t113 - t114;
-    const float t116 = t10 * t115;
-    const float t117 = t12 * t51;
-    const float t118 = t11 * t70;
-    const float t119 = t117 + t118;
-    const float t120 = t9 * t119;
-    const float t121 = t116 - t120;
-    const float t122 = t15 * t121;
-    const float t110 = 1.0f / t109;
-    const float t145 = l_2 * t105;
-    const float t146 = t7 * t98;
-    const float t147 = l_1 * t146;
-    const float t148 = t145 + t147;
-    const float t111 = t105 * t110;
-    const float t112 = -t111;
-    rest *= t112;
-    const float t123 = t110 * t122;
-    float term = t123 - t123;
-    const float t150 = l_2 * t122;
-    const float t151 = t15 * t115;
-    const float t152 = l_1 * t151;
-    const float t153 = t150 + t152;
-    const float t149 = t128 * t148;
-    term *= t149;
-    const float t154 = t128 * t153;
-    const float t155 = -t154;
-    term *= t155;
+    const float t116 = t9 * t115;
+    const float t134 = t21 * t116;
+    const float t135 = t20 / t134;
+    const float t139 = l_1 * t20;
+    const float t140 = t139 / t134;
+    const float t141 = t9 * t140;
+    const float t132 = l_2 * t36;
+    const float t131 = l_1 * t34;
+    const float t133 = t131 + t132;
+    const float t136 = t9 * t135;
+    const float t137 = t133 * t136;
+    const float t138 = -t137;
+    float rest = t138 - t138;
+    const float t145 = t14 * t71;
+    const float t146 = t13 * t50;
+    const float t147 = t145 - t146;
+    const float t148 = l_1 * t147;
+    const float t149 = t132 + t148;
+    const float t150 = t136 * t149;
+    const float t151 = -t150;
+    rest *= t151;
+    const float t103 = t12 * t28;
+    const float t104 = t11 * t24;
+    const float t105 = t103 - t104;
+    const float t106 = t10 * t105;
+    const float t107 = t12 * t24;
+    const float t108 = t11 * t28;
+    const float t109 = t107 + t108;
+    const float t110 = t9 * t109;
+    const float t111 = t106 - t110;
+    const float t112 = t7 * t111;
+    const float t120 = t12 * t71;
+    const float t121 = t11 * t50;
+    const float t122 = t120 - t121;
+    const float t123 = t10 * t122;
+    const float t124 = t12 * t50;
+    const float t125 = t11 * t71;
+    const float t126 = t124 + t125;
+    const float t127 = t9 * t126;
+    const float t128 = t123 - t127;
+    const float t129 = t15 * t128;
+    const float t117 = 1.0f / t116;
+    const float t152 = l_2 * t112;
+    const float t153 = t7 * t105;
+    const float t154 = l_1 * t153;
+    const float t155 = t152 + t154;
+    const float t118 = t112 * t117;
+    const float t119 = -t118;
+    rest *= t119;
+    const float t130 = t117 * t129;
+    float term = t130 - t130;
+    const float t157 = l_2 * t129;
+    const float t158 = t15 * t122;
+    const float t159 = l_1 * t158;
+    const float t160 = t157 + t159;
+    const float t156 = t135 * t155;
+    term *= t156;
+    const float t161 = t135 * t160;
+    const float t162 = -t161;
+    term *= t162;
     rest += term;
-    const float t137 = t7 * t134;
-    term = t137 - t137;
-    const float t135 = t15 * t134;
-    const float t136 = -t135;
-    term *= t136;
+    const float t144 = t7 * t141;
+    term = t144 - t144;
+    const float t142 = t15 * t141;
+    const float t143 = -t142;
+    term *= t143;
     rest += term;
     if (RAPKM_2RRR_RR_RARELY_F(isnan(rest) != 0)) {
         return RAPKM_2RRR_RR_NOT_FINITE;
@@ -5865,14 +5628,14 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement_f(const float q[6], con
     F_B[1] = 0.0f;
     F_B[2] = 0.0f;
     F_B[3] = 1.0f;
-    F_B[4] = t112;
-    F_B[5] = t123;
-    F_B[6] = t131;
-    F_B[7] = t136;
-    F_B[8] = t137;
-    F_B[9] = t144;
-    F_B[10] = t149;
-    F_B[11] = t155;
+    F_B[4] = t119;
+    F_B[5] = t130;
+    F_B[6] = t138;
+    F_B[7] = t143;
+    F_B[8] = t144;
+    F_B[9] = t151;
+    F_B[10] = t156;
+    F_B[11] = t162;
     return RAPKM_2RRR_RR_OK;
 }
 
@@ -5922,23 +5685,23 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix_f(const float q[6], con
     const float t22 = l_2 * t21;
     const float t23 = t22 * t22;
     const float l_1 = p->l_1;
+    const float t24 = l_1 * t7;
+    const float t25 = t24 + t22;
+    const float t26 = t25 * t25;
     const float t11 = sine[2];
-    const float t24 = l_1 * t11;
+    const float t27 = l_1 * t11;
     const float t14 = cosine[3];
-    const float t25 = t11 * t14;
+    const float t28 = t11 * t14;
     const float t12 = cosine[2];
     const float t13 = sine[3];
-    const float t26 = t12 * t13;
-    const float t27 = t25 + t26;
-    const float t28 = l_2 * t27;
-    const float t29 = t24 + t28;
-    const float t30 = t29 * t29;
-    const float t31 = t28 * t28;
-    const float t32 = t30 + t31;
-    const float t33 = l_1 * t7;
-    const float t34 = t33 + t22;
-    const float t35 = t34 * t34;
-    const float t36 = t32 + t35;
+    const float t29 = t12 * t13;
+    const float t30 = t28 + t29;
+    const float t31 = l_2 * t30;
+    const float t32 = t27 + t31;
+    const float t33 = t32 * t32;
+    const float t34 = t31 * t31;
+    const float t35 = t33 + t34;
+    const float t36 = t26 + t35;
     const float t37 = t23 + t36;
     if (RAPKM_2RRR_RR_RARELY_F(!(t37 > 0.0f))) {
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
@@ -5950,7 +5713,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix_f(const float q[6], con
     const float t42 = l_2 * t41;
     const float t43 = t38 + t42;
     const float t44 = sqrtf(t37);
-    const float t45 = fabsf(t29);
+    const float t45 = fabsf(t32);
     const float t46 = t44 + t45;
     const float t47 = t44 * t46;
     const float t48 = 1.0f / t47;
@@ -5960,21 +5723,21 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix_f(const float q[6], con
     const float t52 = t50 - t51;
     const float t53 = l_2 * t52;
     const float t54 = t49 + t53;
-    const float t55 = -t29;
+    const float t55 = -t32;
     const float t56 = copysignf(t44, t55);
-    const float t57 = t56 - t29;
+    const float t57 = t56 - t32;
     const float t58 = t54 * t57;
-    const float t59 = t28 * t53;
+    const float t59 = t31 * t53;
     const float t60 = t58 - t59;
-    const float t61 = t34 * t43;
+    const float t61 = t25 * t43;
     const float t62 = t60 - t61;
     const float t63 = t22 * t42;
     const float t64 = t62 - t63;
     const float t65 = t48 * t64;
-    const float t66 = t34 * t65;
+    const float t66 = t25 * t65;
     const float t67 = t43 + t66;
     const float t68 = t67 * t67;
-    const float t69 = t28 * t65;
+    const float t69 = t31 * t65;
     const float t70 = t53 + t69;
     const float t71 = t70 * t70;
     const float t72 = t68 + t71;
@@ -5983,11 +5746,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix_f(const float q[6], con
     const float t75 = t74 * t74;
     const float t76 = t72 + t75;
     const float t77 = t42 * t42;
-    const float t78 = t54 * t54;
-    const float t79 = t53 * t53;
-    const float t80 = t78 + t79;
-    const float t81 = t43 * t43;
-    const float t82 = t80 + t81;
+    const float t78 = t43 * t43;
+    const float t79 = t54 * t54;
+    const float t80 = t53 * t53;
+    const float t81 = t79 + t80;
+    const float t82 = t78 + t81;
     const float t83 = t77 + t82;
     const float t84 = 8.185452e-12f * t83;
     if (RAPKM_2RRR_RR_RARELY_F(!(t76 > t84))) {
@@ -5998,18 +5761,18 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix_f(const float q[6], con
     const float t87 = t85 + t86;
     const float t88 = t85 * t87;
     const float t89 = 1.0f / t88;
-    const float t90 = t29 * t57;
-    const float t91 = t31 - t90;
+    const float t90 = t32 * t57;
+    const float t91 = t34 - t90;
     const float t92 = t48 * t91;
     const float t93 = t22 * t92;
     const float t94 = t74 * t93;
-    const float t95 = t28 * t92;
-    const float t96 = t95 - t28;
+    const float t95 = t31 * t92;
+    const float t96 = t95 - t31;
     const float t97 = t70 * t96;
     const float t98 = -t67;
     const float t99 = copysignf(t85, t98);
     const float t100 = t99 - t67;
-    const float t101 = t34 * t100;
+    const float t101 = t25 * t100;
     const float t102 = t101 * t92;
     const float t103 = t97 - t102;
     const float t104 = t94 + t103;
@@ -6035,13 +5798,13 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix_f(const float q[6], con
     const float t120 = t119 * t119;
     const float t121 = t117 + t120;
     const float t122 = t108 + t121;
-    const float t123 = t32 + t117;
+    const float t123 = t35 + t117;
     const float t124 = 8.185452e-12f * t123;
     if (RAPKM_2RRR_RR_RARELY_F(!(t122 > t124))) {
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
     const float t125 = t48 * t60;
-    const float t126 = t28 * t125;
+    const float t126 = t31 * t125;
     const float t127 = t53 + t126;
     const float t128 = t22 * t125;
     const float t129 = t74 * t128;
@@ -6088,7 +5851,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix_f(const float q[6], con
     const float t170 = t166 + t169;
     const float t171 = t147 * t147;
     const float t172 = t148 * t148;
-    const float t173 = t172 + t80;
+    const float t173 = t172 + t81;
     const float t174 = t171 + t173;
     const float t175 = 8.185452e-12f * t174;
     if (RAPKM_2RRR_RR_RARELY_F(!(t170 > t175))) {
@@ -6121,10 +5884,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix_f(const float q[6], con
     const float t200 = t196 + t199;
     const float t201 = t89 * t200;
     const float t202 = t100 * t201;
-    const float t203 = t34 * t202;
+    const float t203 = t25 * t202;
     const float t204 = t70 * t201;
     const float t205 = t204 - t195;
-    const float t206 = t28 * t205;
+    const float t206 = t31 * t205;
     const float t207 = t203 - t206;
     const float t208 = t74 * t201;
     const float t209 = t198 - t208;
@@ -6155,10 +5918,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix_f(const float q[6], con
     const float t234 = t226 + t233;
     const float t235 = t22 * t234;
     const float t236 = t100 * t232;
-    const float t237 = t34 * t236;
+    const float t237 = t25 * t236;
     const float t238 = t70 * t232;
     const float t239 = t228 - t238;
-    const float t240 = t28 * t239;
+    const float t240 = t31 * t239;
     const float t241 = t237 + t240;
     const float t242 = t235 - t241;
     const float t243 = t48 * t242;
@@ -6195,20 +5958,20 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix_f(const float q[6], con
     const float t266 = t260 + t265;
     const float t267 = t254 + t266;
     const float t268 = t267 * t246;
-    const float t269 = t28 * t212;
+    const float t269 = t31 * t212;
     const float t270 = t205 + t269;
     const float t271 = t213 * t270;
-    const float t272 = t28 * t243;
+    const float t272 = t31 * t243;
     const float t273 = t239 + t272;
     const float t274 = t273 * t244;
     const float t275 = t271 + t274;
     const float t276 = t265 * t275;
     const float t277 = t268 - t276;
     const float t278 = t246 * t277;
-    const float t279 = t34 * t243;
+    const float t279 = t25 * t243;
     const float t280 = t236 + t279;
     const float t281 = t280 * t244;
-    const float t282 = t34 * t212;
+    const float t282 = t25 * t212;
     const float t283 = t202 - t282;
     const float t284 = t213 * t283;
     const float t285 = t281 - t284;
@@ -6730,23 +6493,23 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t22 = l_2 * t21;
     const float t23 = t22 * t22;
     const float l_1 = p->l_1;
+    const float t24 = l_1 * t7;
+    const float t25 = t24 + t22;
+    const float t26 = t25 * t25;
     const float t11 = sine[2];
-    const float t24 = l_1 * t11;
+    const float t27 = l_1 * t11;
     const float t14 = cosine[3];
-    const float t25 = t11 * t14;
+    const float t28 = t11 * t14;
     const float t12 = cosine[2];
     const float t13 = sine[3];
-    const float t26 = t12 * t13;
-    const float t27 = t25 + t26;
-    const float t28 = l_2 * t27;
-    const float t29 = t24 + t28;
-    const float t30 = t29 * t29;
-    const float t31 = t28 * t28;
-    const float t32 = t30 + t31;
-    const float t33 = l_1 * t7;
-    const float t34 = t33 + t22;
-    const float t35 = t34 * t34;
-    const float t36 = t32 + t35;
+    const float t29 = t12 * t13;
+    const float t30 = t28 + t29;
+    const float t31 = l_2 * t30;
+    const float t32 = t27 + t31;
+    const float t33 = t32 * t32;
+    const float t34 = t31 * t31;
+    const float t35 = t33 + t34;
+    const float t36 = t26 + t35;
     const float t37 = t23 + t36;
     if (RAPKM_2RRR_RR_RARELY_F(!(t37 > 0.0f))) {
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
@@ -6758,7 +6521,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t42 = l_2 * t41;
     const float t43 = t38 + t42;
     const float t44 = sqrtf(t37);
-    const float t45 = fabsf(t29);
+    const float t45 = fabsf(t32);
     const float t46 = t44 + t45;
     const float t47 = t44 * t46;
     const float t48 = 1.0f / t47;
@@ -6768,21 +6531,21 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t52 = t50 - t51;
     const float t53 = l_2 * t52;
     const float t54 = t49 + t53;
-    const float t55 = -t29;
+    const float t55 = -t32;
     const float t56 = copysignf(t44, t55);
-    const float t57 = t56 - t29;
+    const float t57 = t56 - t32;
     const float t58 = t54 * t57;
-    const float t59 = t28 * t53;
+    const float t59 = t31 * t53;
     const float t60 = t58 - t59;
-    const float t61 = t34 * t43;
+    const float t61 = t25 * t43;
     const float t62 = t60 - t61;
     const float t63 = t22 * t42;
     const float t64 = t62 - t63;
     const float t65 = t48 * t64;
-    const float t66 = t34 * t65;
+    const float t66 = t25 * t65;
     const float t67 = t43 + t66;
     const float t68 = t67 * t67;
-    const float t69 = t28 * t65;
+    const float t69 = t31 * t65;
     const float t70 = t53 + t69;
     const float t71 = t70 * t70;
     const float t72 = t68 + t71;
@@ -6791,11 +6554,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t75 = t74 * t74;
     const float t76 = t72 + t75;
     const float t77 = t42 * t42;
-    const float t78 = t54 * t54;
-    const float t79 = t53 * t53;
-    const float t80 = t78 + t79;
-    const float t81 = t43 * t43;
-    const float t82 = t80 + t81;
+    const float t78 = t43 * t43;
+    const float t79 = t54 * t54;
+    const float t80 = t53 * t53;
+    const float t81 = t79 + t80;
+    const float t82 = t78 + t81;
     const float t83 = t77 + t82;
     const float t84 = 8.185452e-12f * t83;
     if (RAPKM_2RRR_RR_RARELY_F(!(t76 > t84))) {
@@ -6806,18 +6569,18 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t87 = t85 + t86;
     const float t88 = t85 * t87;
     const float t89 = 1.0f / t88;
-    const float t90 = t29 * t57;
-    const float t91 = t31 - t90;
+    const float t90 = t32 * t57;
+    const float t91 = t34 - t90;
     const float t92 = t48 * t91;
     const float t93 = t22 * t92;
     const float t94 = t74 * t93;
-    const float t95 = t28 * t92;
-    const float t96 = t95 - t28;
+    const float t95 = t31 * t92;
+    const float t96 = t95 - t31;
     const float t97 = t70 * t96;
     const float t98 = -t67;
     const float t99 = copysignf(t85, t98);
     const float t100 = t99 - t67;
-    const float t101 = t34 * t92;
+    const float t101 = t25 * t92;
     const float t102 = t100 * t101;
     const float t103 = t97 - t102;
     const float t104 = t94 + t103;
@@ -6843,18 +6606,18 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t120 = t119 * t119;
     const float t121 = t117 + t120;
     const float t122 = t108 + t121;
-    const float t123 = t32 + t117;
+    const float t123 = t35 + t117;
     const float t124 = 8.185452e-12f * t123;
     if (RAPKM_2RRR_RR_RARELY_F(!(t122 > t124))) {
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
     const float t125 = t48 * t60;
-    const float t126 = t28 * t125;
+    const float t126 = t31 * t125;
     const float t127 = t53 + t126;
     const float t128 = t22 * t125;
     const float t129 = t74 * t128;
     const float t130 = t70 * t127;
-    const float t131 = t34 * t125;
+    const float t131 = t25 * t125;
     const float t132 = t100 * t131;
     const float t133 = t130 - t132;
     const float t134 = t129 + t133;
@@ -6897,7 +6660,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t171 = t167 + t170;
     const float t172 = t148 * t148;
     const float t173 = t149 * t149;
-    const float t174 = t173 + t80;
+    const float t174 = t173 + t81;
     const float t175 = t172 + t174;
     const float t176 = 8.185452e-12f * t175;
     if (RAPKM_2RRR_RR_RARELY_F(!(t171 > t176))) {
@@ -6930,10 +6693,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t201 = t197 + t200;
     const float t202 = t89 * t201;
     const float t203 = t100 * t202;
-    const float t204 = t34 * t203;
+    const float t204 = t25 * t203;
     const float t205 = t70 * t202;
     const float t206 = t205 - t196;
-    const float t207 = t28 * t206;
+    const float t207 = t31 * t206;
     const float t208 = t204 - t207;
     const float t209 = t74 * t202;
     const float t210 = t199 - t209;
@@ -6964,10 +6727,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t235 = t227 + t234;
     const float t236 = t22 * t235;
     const float t237 = t100 * t233;
-    const float t238 = t34 * t237;
+    const float t238 = t25 * t237;
     const float t239 = t70 * t233;
     const float t240 = t229 - t239;
-    const float t241 = t28 * t240;
+    const float t241 = t31 * t240;
     const float t242 = t238 + t241;
     const float t243 = t236 - t242;
     const float t244 = t48 * t243;
@@ -7007,7 +6770,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t270 = t151 * t160;
     const float t271 = t149 + t270;
     const float t272 = t57 * t92;
-    const float t273 = t29 + t272;
+    const float t273 = t32 + t272;
     const float t274 = t269 * t273;
     const float t275 = t100 * t105;
     const float t276 = t101 + t275;
@@ -7058,27 +6821,27 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t321 = t57 * t269;
     const float t322 = t100 * t317;
     const float t323 = t280 + t322;
-    const float t324 = t34 * t323;
+    const float t324 = t25 * t323;
     const float t325 = t321 + t324;
     const float t326 = t70 * t317;
     const float t327 = t311 - t326;
-    const float t328 = t28 * t327;
+    const float t328 = t31 * t327;
     const float t329 = t325 + t328;
     const float t330 = t320 - t329;
     const float t331 = t48 * t330;
     const float t332 = t57 * t331;
     const float t333 = t269 + t332;
-    const float t334 = t34 * t244;
+    const float t334 = t25 * t244;
     const float t335 = t237 + t334;
     const float t336 = t245 * t335;
-    const float t337 = t34 * t213;
+    const float t337 = t25 * t213;
     const float t338 = t203 - t337;
     const float t339 = t214 * t338;
     const float t340 = t336 - t339;
     const float a_2_dot = qd[1];
-    const float t341 = a_2_dot * t34;
+    const float t341 = a_2_dot * t25;
     const float b_1_dot = qd[3];
-    const float t342 = b_1_dot * t27;
+    const float t342 = b_1_dot * t30;
     const float b_2_dot = qd[4];
     const float t343 = b_2_dot * t21;
     const float t344 = t342 - t343;
@@ -7090,10 +6853,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t349 = t48 * t348;
     const float t350 = t22 * t349;
     const float t351 = b_2_dot - t350;
-    const float t352 = t34 * t349;
+    const float t352 = t25 * t349;
     const float t353 = a_2_dot - t352;
     const float t354 = t100 * t353;
-    const float t355 = t28 * t349;
+    const float t355 = t31 * t349;
     const float t356 = b_1_dot + t355;
     const float t357 = t70 * t356;
     const float t358 = t354 + t357;
@@ -7154,17 +6917,17 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t411 = t407 + t410;
     const float t412 = t89 * t411;
     const float t413 = t100 * t412;
-    const float t414 = t34 * t413;
+    const float t414 = t25 * t413;
     const float t415 = t70 * t412;
     const float t416 = t415 - t406;
-    const float t417 = t28 * t416;
+    const float t417 = t31 * t416;
     const float t418 = t414 - t417;
     const float t419 = t74 * t412;
     const float t420 = t409 - t419;
     const float t421 = t22 * t420;
     const float t422 = t418 + t421;
     const float t423 = t48 * t422;
-    const float t424 = t34 * t423;
+    const float t424 = t25 * t423;
     const float t425 = t413 - t424;
     const float t426 = t38 * t425;
     const float t427 = t22 * t423;
@@ -7175,16 +6938,16 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t432 = t340 * t431;
     const float t433 = t57 * t423;
     const float t434 = t49 * t433;
-    const float t435 = t28 * t423;
+    const float t435 = t31 * t423;
     const float t436 = t416 + t435;
     const float t437 = t436 - t433;
     const float t438 = t53 * t437;
     const float t439 = t434 - t438;
     const float t440 = t247 * t439;
-    const float t441 = t28 * t213;
+    const float t441 = t31 * t213;
     const float t442 = t206 + t441;
     const float t443 = t214 * t442;
-    const float t444 = t28 * t244;
+    const float t444 = t31 * t244;
     const float t445 = t240 + t444;
     const float t446 = t245 * t445;
     const float t447 = t443 + t446;
@@ -7236,20 +6999,20 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t493 = t22 * t492;
     const float t494 = t100 * t490;
     const float t495 = t461 + t494;
-    const float t496 = t34 * t495;
+    const float t496 = t25 * t495;
     const float t497 = t70 * t490;
     const float t498 = t484 - t497;
-    const float t499 = t28 * t498;
+    const float t499 = t31 * t498;
     const float t500 = t496 + t499;
     const float t501 = t493 - t500;
     const float t502 = t48 * t501;
     const float t503 = t57 * t502;
-    const float t504 = t33 * t425;
+    const float t504 = t24 * t425;
     const float t505 = t22 * t429;
     const float t506 = t504 + t505;
     const float t507 = t340 * t506;
-    const float t508 = t24 * t433;
-    const float t509 = t28 * t437;
+    const float t508 = t27 * t433;
+    const float t509 = t31 * t437;
     const float t510 = t508 - t509;
     const float t511 = t247 * t510;
     const float t512 = t447 * t509;
@@ -7287,10 +7050,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t544 = t543 - t539;
     const float t545 = t22 * t544;
     const float t546 = t100 * t542;
-    const float t547 = t34 * t546;
+    const float t547 = t25 * t546;
     const float t548 = t70 * t542;
     const float t549 = t536 - t548;
-    const float t550 = t28 * t549;
+    const float t550 = t31 * t549;
     const float t551 = t547 + t550;
     const float t552 = t545 - t551;
     const float t553 = t48 * t552;
@@ -7344,10 +7107,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t601 = t593 + t600;
     const float t602 = t22 * t601;
     const float t603 = t100 * t599;
-    const float t604 = t34 * t603;
+    const float t604 = t25 * t603;
     const float t605 = t70 * t599;
     const float t606 = t595 - t605;
-    const float t607 = t28 * t606;
+    const float t607 = t31 * t606;
     const float t608 = t604 + t607;
     const float t609 = t602 - t608;
     const float t610 = t48 * t609;
@@ -7407,18 +7170,18 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t664 = t662 - t663;
     const float t665 = t611 * t664;
     const float t666 = t660 + t665;
-    const float t667 = t28 * t331;
+    const float t667 = t31 * t331;
     const float t668 = t327 + t667;
     const float t669 = t459 * t668;
-    const float t670 = t28 * t502;
+    const float t670 = t31 * t502;
     const float t671 = t498 + t670;
     const float t672 = t516 * t671;
     const float t673 = t669 + t672;
-    const float t674 = t28 * t553;
+    const float t674 = t31 * t553;
     const float t675 = t549 + t674;
     const float t676 = t577 * t675;
     const float t677 = t673 + t676;
-    const float t678 = t28 * t610;
+    const float t678 = t31 * t610;
     const float t679 = t606 + t678;
     const float t680 = t618 * t679;
     const float t681 = t677 + t680;
@@ -7492,18 +7255,18 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t749 = t746 + t748;
     const float t750 = t611 * t749;
     const float t751 = t745 + t750;
-    const float t752 = t34 * t331;
+    const float t752 = t25 * t331;
     const float t753 = t323 + t752;
     const float t754 = t459 * t753;
-    const float t755 = t34 * t502;
+    const float t755 = t25 * t502;
     const float t756 = t495 + t755;
     const float t757 = t516 * t756;
     const float t758 = t754 + t757;
-    const float t759 = t34 * t553;
+    const float t759 = t25 * t553;
     const float t760 = t546 + t759;
     const float t761 = t577 * t760;
     const float t762 = t758 + t761;
-    const float t763 = t34 * t610;
+    const float t763 = t25 * t610;
     const float t764 = t603 + t763;
     const float t765 = t618 * t764;
     const float t766 = t762 + t765;
@@ -8611,6 +8374,41 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix_f(const float q[6], const
     float sine[8];
     float cosine[8];
     rapkm_2rrr_rr_sincos_group_f(6, angle, sine, cosine);
+    const float t12 = cosine[2];
+    const float t14 = cosine[3];
+    const float t41 = t12 * t14;
+    const float t11 = sine[2];
+    const float t13 = sine[3];
+    const float t42 = t11 * t13;
+    const float t43 = t41 - t42;
+    const float l_2 = p->l_2;
+    const float t44 = l_2 * t43;
+    const float t8 = cosine[0];
+    const float t10 = cosine[1];
+    const float t29 = t8 * t10;
+    const float t7 = sine[0];
+    const float t9 = sine[1];
+    const float t30 = t7 * t9;
+    const float t31 = t29 - t30;
+    const float t48 = l_2 * t31;
+    const float l_1 = p->l_1;
+    const float t47 = l_1 * t8;
+    const float t49 = t47 + t48;
+    const float t50 = t49 * t49;
+    const float t51 = l_2 * l_2;
+    const float t53 = t31 * t31;
+    const float t59 = t12 * t13;
+    const float t60 = t11 * t14;
+    const float t61 = t59 + t60;
+    const float t62 = l_2 * t61;
+    const float t22 = t7 * t10;
+    const float t23 = t8 * t9;
+    const float t24 = t22 + t23;
+    const float t66 = l_2 * t24;
+    const float t65 = l_1 * t7;
+    const float t67 = t65 + t66;
+    const float t68 = t67 * t67;
+    const float t69 = t24 * t24;
     const float t16 = cosine[4];
     const float t17 = sine[5];
     const float t32 = t16 * t17;
@@ -8618,1290 +8416,1225 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix_f(const float q[6], const
     const float t18 = cosine[5];
     const float t33 = t15 * t18;
     const float t34 = t32 + t33;
-    const float l_2 = p->l_2;
-    const float t72 = l_2 * t34;
-    const float t7 = sine[0];
-    const float t10 = cosine[1];
-    const float t22 = t7 * t10;
-    const float t8 = cosine[0];
-    const float t9 = sine[1];
-    const float t23 = t8 * t9;
-    const float t24 = t22 + t23;
+    const float t76 = l_2 * t34;
     const float t25 = t16 * t18;
     const float t26 = t15 * t17;
     const float t27 = t25 - t26;
-    const float t29 = t8 * t10;
-    const float t30 = t7 * t9;
-    const float t31 = t29 - t30;
+    const float t85 = l_2 * t27;
+    const float t40 = l_1 * t12;
+    const float t45 = t40 + t44;
+    const float t58 = l_1 * t11;
+    const float t63 = t58 + t62;
+    const float t75 = l_1 * t15;
+    const float t77 = t75 + t76;
+    const float t84 = l_1 * t16;
+    const float t86 = t84 + t85;
+    const float t46 = t45 * t45;
+    const float t52 = t43 * t43;
+    const float t54 = t52 + t53;
+    const float t55 = t51 * t54;
+    const float t56 = t50 + t55;
+    const float t57 = t46 + t56;
+    const float t64 = t63 * t63;
+    const float t70 = t61 * t61;
+    const float t71 = t69 + t70;
+    const float t72 = t51 * t71;
+    const float t73 = t68 + t72;
+    const float t74 = t64 + t73;
+    const float t78 = t77 * t77;
+    const float t79 = t68 + t78;
+    const float t80 = t34 * t34;
+    const float t81 = t69 + t80;
+    const float t82 = t51 * t81;
+    const float t83 = t79 + t82;
+    const float t87 = t86 * t86;
+    const float t88 = t50 + t87;
+    const float t89 = t27 * t27;
+    const float t90 = t53 + t89;
+    const float t91 = t51 * t90;
+    const float t92 = t88 + t91;
+    const float t93 = t83 * t92;
+    const float t94 = t74 * t93;
+    const float t95 = t57 * t94;
+    const float t96 = 2.2737368e-13f * t95;
     const float t28 = t24 * t27;
     const float t35 = t31 * t34;
     const float t36 = t28 - t35;
-    const float t79 = l_2 * t27;
-    const float t12 = cosine[2];
-    const float t14 = cosine[3];
-    const float t40 = t12 * t14;
-    const float t11 = sine[2];
-    const float t13 = sine[3];
-    const float t41 = t11 * t13;
-    const float t42 = t40 - t41;
-    const float t43 = l_2 * t42;
-    const float t96 = l_2 * l_2;
-    const float l_1 = p->l_1;
-    const float t74 = l_1 * t15;
-    const float t75 = t74 + t72;
-    const float t81 = l_1 * t16;
-    const float t82 = t81 + t79;
-    const float t57 = t12 * t13;
-    const float t58 = t11 * t14;
-    const float t59 = t57 + t58;
-    const float t170 = t72 * t82;
-    const float t171 = t75 * t79;
-    const float t172 = t170 - t171;
-    const float t167 = t24 * t42;
-    const float t168 = t31 * t59;
-    const float t169 = t167 - t168;
-    const float t173 = t96 * t172;
-    const float t174 = t169 * t173;
-    const float t49 = l_2 * t31;
-    const float t60 = l_2 * t59;
-    const float t65 = l_2 * t24;
-    const float t45 = l_1 * t12;
-    const float t46 = t45 + t43;
-    const float t48 = l_1 * t8;
-    const float t50 = t48 + t49;
-    const float t56 = l_1 * t11;
-    const float t61 = t56 + t60;
-    const float t64 = l_1 * t7;
-    const float t66 = t64 + t65;
-    const float t51 = t50 * t50;
-    const float t52 = t49 * t49;
-    const float t53 = t51 + t52;
-    const float t67 = t66 * t66;
-    const float t68 = t65 * t65;
-    const float t69 = t67 + t68;
-    const float t44 = t43 * t43;
-    const float t47 = t46 * t46;
-    const float t54 = t47 + t53;
-    const float t55 = t44 + t54;
-    const float t62 = t61 * t61;
-    const float t63 = t60 * t60;
-    const float t70 = t63 + t69;
-    const float t71 = t62 + t70;
-    const float t73 = t72 * t72;
-    const float t76 = t75 * t75;
-    const float t77 = t69 + t76;
-    const float t78 = t73 + t77;
-    const float t80 = t79 * t79;
-    const float t83 = t82 * t82;
-    const float t84 = t53 + t83;
-    const float t85 = t80 + t84;
-    const float t86 = t78 * t85;
-    const float t87 = t71 * t86;
-    const float t88 = t55 * t87;
-    const float t89 = 2.2737368e-13f * t88;
+    const float t176 = t76 * t86;
+    const float t177 = t77 * t85;
+    const float t178 = t176 - t177;
+    const float t173 = t24 * t43;
+    const float t174 = t31 * t61;
+    const float t175 = t173 - t174;
+    const float t179 = t51 * t178;
+    const float t180 = t175 * t179;
     const float t19 = l_1 * l_2;
     const float t20 = l_2 * t19;
     const float t21 = l_2 * t20;
     const float t37 = t21 * t36;
     const float t38 = t13 * t37;
     const float t39 = t38 * t38;
-    if (RAPKM_2RRR_RR_RARELY_F(!(t39 > t89))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(t39 > t96))) {
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
-    const float t188 = t49 * t75;
-    const float t189 = t65 * t82;
-    const float t190 = t188 - t189;
-    const float t127 = t60 * t46;
-    const float t177 = t61 * t172;
-    const float t195 = t43 * t177;
-    const float t196 = t172 * t127;
-    const float t197 = t195 - t196;
-    const float t178 = t49 * t177;
-    const float t179 = t65 * t172;
-    const float t180 = t46 * t179;
-    const float t181 = t178 - t180;
-    const float t105 = 1.0f / t38;
-    const float t128 = t43 * t61;
-    const float t129 = t127 - t128;
-    const float t130 = t105 * t129;
-    const float t175 = t105 * t174;
-    const float t182 = t181 * t105;
-    const float t191 = t190 * t130;
-    const float t198 = t105 * t197;
+    const float t194 = t48 * t77;
+    const float t195 = t66 * t86;
+    const float t196 = t194 - t195;
+    const float t133 = t62 * t45;
+    const float t183 = t63 * t178;
+    const float t201 = t44 * t183;
+    const float t202 = t133 * t178;
+    const float t203 = t201 - t202;
+    const float t184 = t48 * t183;
+    const float t185 = t66 * t178;
+    const float t186 = t45 * t185;
+    const float t187 = t184 - t186;
+    const float t111 = 1.0f / t38;
+    const float t134 = t44 * t63;
+    const float t135 = t133 - t134;
+    const float t136 = t111 * t135;
+    const float t181 = t111 * t180;
+    const float t188 = t111 * t187;
+    const float t197 = t136 * t196;
+    const float t204 = t111 * t203;
     const float m_2 = p->m_2;
-    const float t109 = m_2 * t19;
-    const float t110 = 0.5f * t109;
-    const float t111 = t14 * t110;
-    const float t107 = m_2 * t96;
-    const float t108 = 0.25f * t107;
+    const float t115 = m_2 * t19;
+    const float t116 = 0.5f * t115;
+    const float t117 = t14 * t116;
+    const float t113 = m_2 * t51;
+    const float t114 = 0.25f * t113;
     const float J_2 = p->J_2;
-    const float J_elbow = J_2 + t108;
-    const float t112 = J_elbow + t111;
-    const float t136 = l_1 * l_1;
+    const float J_elbow = J_2 + t114;
+    const float t118 = J_elbow + t117;
+    const float t142 = l_1 * l_1;
     const float J_1 = p->J_1;
     const float J_motor = p->J_motor;
-    const float t135 = J_1 + J_motor;
+    const float t141 = J_1 + J_motor;
     const float m_1 = p->m_1;
-    const float t137 = 0.25f * m_1;
-    const float t138 = m_2 + t137;
-    const float t139 = t136 * t138;
-    const float t140 = t135 + t139;
-    const float t141 = t111 + t112;
-    const float t142 = t140 + t141;
-    const float t186 = t18 * t110;
-    const float t187 = J_elbow + t186;
-    const float t213 = t140 + t186;
-    const float t214 = t187 + t213;
+    const float t143 = 0.25f * m_1;
+    const float t144 = m_2 + t143;
+    const float t145 = t142 * t144;
+    const float t146 = t141 + t145;
+    const float t147 = t117 + t118;
+    const float t148 = t146 + t147;
+    const float t192 = t18 * t116;
+    const float t193 = J_elbow + t192;
+    const float t219 = t146 + t192;
+    const float t220 = t193 + t219;
     const float m_payload = p->m_payload;
-    const float t146 = m_payload * t96;
-    const float J_elbow_1 = J_elbow + t146;
-    const float t199 = J_elbow_1 * t198;
-    const float t192 = J_elbow * t191;
-    const float t193 = t187 + t192;
-    const float t176 = t112 * t175;
-    const float t183 = J_elbow * t182;
-    const float t184 = t176 + t183;
-    const float t202 = t112 * t182;
-    const float t203 = t142 * t175;
-    const float t204 = t202 + t203;
-    const float t210 = t182 * t184;
-    const float t211 = t198 * t199;
-    const float t212 = t175 * t204;
-    const float t215 = t187 + t193;
-    const float t216 = t191 * t215;
-    const float t217 = t214 + t216;
-    const float t218 = t212 + t217;
-    const float t219 = t211 + t218;
-    const float t220 = t210 + t219;
-    float rest = t220 - t220;
-    const float t97 = t96 * t36;
-    const float t90 = t66 * t79;
-    const float t91 = t50 * t72;
-    const float t92 = t90 - t91;
-    const float t95 = t65 * t92;
-    const float t98 = t66 * t97;
-    const float t99 = t95 - t98;
-    const float t124 = t65 * t50;
-    const float t125 = t66 * t49;
-    const float t126 = t124 - t125;
-    const float t102 = t50 * t97;
-    const float t93 = t61 * t92;
-    const float t114 = t60 * t92;
-    const float t94 = t49 * t93;
-    const float t100 = t46 * t99;
-    const float t101 = t94 - t100;
-    const float t103 = t61 * t102;
-    const float t104 = t101 - t103;
-    const float t113 = t60 * t102;
-    const float t115 = t49 * t114;
-    const float t116 = t43 * t99;
-    const float t117 = t115 - t116;
-    const float t118 = t113 - t117;
-    const float t155 = t43 * t93;
-    const float t156 = t46 * t114;
-    const float t157 = t155 - t156;
-    const float t131 = t126 * t130;
-    const float t106 = t104 * t105;
-    const float t119 = t105 * t118;
-    const float t158 = t157 * t105;
-    const float t147 = m_payload * t19;
-    const float t148 = t110 + t147;
-    const float t149 = t10 * t148;
-    const float t150 = J_elbow_1 + t149;
-    const float t185 = t106 * t184;
-    const float t194 = t131 * t193;
-    const float t200 = t158 * t199;
-    const float t201 = t150 * t198;
-    const float t205 = t119 * t204;
-    const float t206 = t201 + t205;
-    const float t207 = t200 + t206;
-    const float t208 = t194 + t207;
-    const float t209 = t185 + t208;
-    rest *= t209;
-    const float t151 = m_payload * t136;
-    const float t152 = t151 + t140;
-    const float t153 = t152 + t149;
-    const float t154 = t150 + t153;
-    const float t120 = t112 * t119;
-    const float t121 = J_elbow * t106;
-    const float t122 = t120 + t121;
-    const float t123 = t106 * t122;
-    const float t132 = J_elbow * t131;
-    const float t133 = t131 * t132;
-    const float t134 = t112 * t106;
-    const float t143 = t142 * t119;
-    const float t144 = t134 + t143;
-    const float t145 = t119 * t144;
-    const float t159 = J_elbow_1 * t158;
-    const float t160 = t150 + t159;
-    const float t161 = t150 + t160;
-    const float t162 = t158 * t161;
-    const float t163 = t154 + t162;
-    const float t164 = t145 + t163;
-    const float t165 = t133 + t164;
-    const float t166 = t123 + t165;
-    rest *= t166;
+    const float t152 = m_payload * t51;
+    const float J_elbow_1 = J_elbow + t152;
+    const float t205 = J_elbow_1 * t204;
+    const float t198 = J_elbow * t197;
+    const float t199 = t193 + t198;
+    const float t182 = t118 * t181;
+    const float t189 = J_elbow * t188;
+    const float t190 = t182 + t189;
+    const float t208 = t118 * t188;
+    const float t209 = t148 * t181;
+    const float t210 = t208 + t209;
+    const float t216 = t188 * t190;
+    const float t217 = t204 * t205;
+    const float t218 = t181 * t210;
+    const float t221 = t193 + t199;
+    const float t222 = t197 * t221;
+    const float t223 = t220 + t222;
+    const float t224 = t218 + t223;
+    const float t225 = t217 + t224;
+    const float t226 = t216 + t225;
+    float rest = t226 - t226;
+    const float t103 = t51 * t36;
+    const float t97 = t67 * t85;
+    const float t98 = t49 * t76;
+    const float t99 = t97 - t98;
+    const float t102 = t66 * t99;
+    const float t104 = t67 * t103;
+    const float t105 = t102 - t104;
+    const float t130 = t66 * t49;
+    const float t131 = t67 * t48;
+    const float t132 = t130 - t131;
+    const float t108 = t49 * t103;
+    const float t100 = t63 * t99;
+    const float t120 = t62 * t99;
+    const float t101 = t48 * t100;
+    const float t106 = t45 * t105;
+    const float t107 = t101 - t106;
+    const float t109 = t63 * t108;
+    const float t110 = t107 - t109;
+    const float t119 = t62 * t108;
+    const float t121 = t48 * t120;
+    const float t122 = t44 * t105;
+    const float t123 = t121 - t122;
+    const float t124 = t119 - t123;
+    const float t161 = t44 * t100;
+    const float t162 = t45 * t120;
+    const float t163 = t161 - t162;
+    const float t137 = t132 * t136;
+    const float t112 = t110 * t111;
+    const float t125 = t111 * t124;
+    const float t164 = t111 * t163;
+    const float t153 = m_payload * t19;
+    const float t154 = t116 + t153;
+    const float t155 = t10 * t154;
+    const float t156 = J_elbow_1 + t155;
+    const float t191 = t112 * t190;
+    const float t200 = t137 * t199;
+    const float t206 = t164 * t205;
+    const float t207 = t156 * t204;
+    const float t211 = t125 * t210;
+    const float t212 = t207 + t211;
+    const float t213 = t206 + t212;
+    const float t214 = t200 + t213;
+    const float t215 = t191 + t214;
+    rest *= t215;
+    const float t157 = m_payload * t142;
+    const float t158 = t157 + t146;
+    const float t159 = t158 + t155;
+    const float t160 = t156 + t159;
+    const float t126 = t118 * t125;
+    const float t127 = J_elbow * t112;
+    const float t128 = t126 + t127;
+    const float t129 = t112 * t128;
+    const float t138 = J_elbow * t137;
+    const float t139 = t137 * t138;
+    const float t140 = t118 * t112;
+    const float t149 = t148 * t125;
+    const float t150 = t140 + t149;
+    const float t151 = t125 * t150;
+    const float t165 = J_elbow_1 * t164;
+    const float t166 = t156 + t165;
+    const float t167 = t156 + t166;
+    const float t168 = t164 * t167;
+    const float t169 = t160 + t168;
+    const float t170 = t151 + t169;
+    const float t171 = t139 + t170;
+    const float t172 = t129 + t171;
+    rest *= t172;
     if (RAPKM_2RRR_RR_RARELY_F(isnan(rest) != 0)) {
         return RAPKM_2RRR_RR_NOT_FINITE;
     }
-    G_bar[0] = t166;
-    G_bar[1] = t209;
-    G_bar[2] = t209;
-    G_bar[3] = t220;
+    G_bar[0] = t172;
+    G_bar[1] = t215;
+    G_bar[2] = t215;
+    G_bar[3] = t226;
     return RAPKM_2RRR_RR_OK;
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix_f(const float q[6], const float qd[6], const rapkm_2rrr_rr_params_f *p, float C_bar[4]) {
-    static const rapkm_2rrr_rr_step_f step[969] = {
-        {0, {26, 0}, {7, 0, 0, 0}},
-        {0, {27, 0}, {10, 0, 0, 0}},
-        {0, {28, 0}, {6, 0, 0, 0}},
-        {0, {29, 0}, {9, 0, 0, 0}},
-        {0, {30, 0}, {8, 0, 0, 0}},
-        {0, {31, 0}, {11, 0, 0, 0}},
-        {5, {32, 33}, {7, 0, 0, 0}},
-        {8, {7, 26}, {32, 0, 32, 0}},
-        {8, {27, 28}, {33, 0, 33, 0}},
-        {10, {29, 30}, {1, 0, 7, 26}},
-        {10, {7, 26}, {29, 30, 27, 28}},
-        {1, {27, 0}, {7, 26, 0, 0}},
-        {3, {7, 0}, {2, 27, 0, 0}},
-        {3, {26, 0}, {32, 7, 0, 0}},
-        {3, {27, 0}, {33, 7, 0, 0}},
-        {5, {7, 28}, {10, 0, 0, 0}},
-        {8, {10, 29}, {7, 0, 7, 0}},
-        {8, {30, 31}, {28, 0, 28, 0}},
-        {10, {34, 35}, {1, 0, 10, 29}},
-        {10, {10, 29}, {34, 35, 30, 31}},
-        {1, {30, 0}, {10, 29, 0, 0}},
-        {3, {10, 0}, {2, 30, 0, 0}},
-        {3, {29, 0}, {7, 10, 0, 0}},
-        {3, {30, 0}, {28, 10, 0, 0}},
-        {5, {10, 31}, {6, 0, 0, 0}},
-        {8, {6, 34}, {10, 0, 10, 0}},
-        {8, {35, 36}, {31, 0, 31, 0}},
-        {10, {37, 38}, {1, 0, 6, 34}},
-        {10, {6, 34}, {37, 38, 35, 36}},
-        {1, {35, 0}, {6, 34, 0, 0}},
-        {3, {6, 0}, {2, 35, 0, 0}},
-        {3, {34, 0}, {10, 6, 0, 0}},
-        {3, {35, 0}, {31, 6, 0, 0}},
-        {5, {6, 36}, {9, 0, 0, 0}},
-        {8, {9, 37}, {6, 0, 6, 0}},
-        {8, {38, 39}, {36, 0, 36, 0}},
-        {10, {40, 41}, {1, 0, 9, 37}},
-        {10, {9, 37}, {40, 41, 38, 39}},
-        {1, {38, 0}, {9, 37, 0, 0}},
-        {3, {9, 0}, {2, 38, 0, 0}},
-        {3, {37, 0}, {6, 9, 0, 0}},
-        {3, {38, 0}, {36, 9, 0, 0}},
-        {5, {9, 39}, {8, 0, 0, 0}},
-        {8, {8, 40}, {9, 0, 9, 0}},
-        {8, {41, 42}, {39, 0, 39, 0}},
-        {10, {43, 44}, {1, 0, 8, 40}},
-        {10, {8, 40}, {43, 44, 41, 42}},
-        {1, {41, 0}, {8, 40, 0, 0}},
-        {3, {8, 0}, {2, 41, 0, 0}},
-        {3, {40, 0}, {9, 8, 0, 0}},
-        {3, {41, 0}, {39, 8, 0, 0}},
-        {5, {8, 42}, {11, 0, 0, 0}},
-        {8, {11, 43}, {8, 0, 8, 0}},
-        {8, {44, 45}, {42, 0, 42, 0}},
-        {10, {46, 47}, {1, 0, 11, 43}},
-        {10, {11, 43}, {46, 47, 44, 45}},
-        {1, {44, 0}, {11, 43, 0, 0}},
-        {3, {11, 0}, {2, 44, 0, 0}},
-        {3, {43, 0}, {8, 11, 0, 0}},
-        {3, {44, 0}, {42, 11, 0, 0}},
-        {8, {11, 45}, {10, 34, 36, 38}},
-        {8, {46, 47}, {31, 35, 6, 37}},
-        {6, {48, 49}, {11, 45, 46, 47}},
-        {8, {11, 45}, {19, 0, 48, 49}},
-        {8, {46, 47}, {11, 45, 11, 45}},
-        {8, {48, 49}, {32, 26, 28, 30}},
-        {8, {50, 51}, {33, 27, 7, 29}},
-        {6, {52, 53}, {48, 49, 50, 51}},
-        {8, {48, 49}, {19, 0, 52, 53}},
-        {8, {50, 51}, {18, 0, 32, 26}},
-        {6, {52, 53}, {50, 51, 48, 49}},
-        {8, {50, 51}, {18, 0, 10, 34}},
-        {6, {54, 55}, {50, 51, 11, 45}},
-        {8, {50, 51}, {54, 55, 54, 55}},
-        {6, {56, 57}, {50, 51, 46, 47}},
-        {8, {50, 51}, {48, 49, 48, 49}},
-        {8, {58, 59}, {52, 53, 52, 53}},
-        {6, {60, 61}, {58, 59, 56, 57}},
-        {6, {58, 59}, {50, 51, 60, 61}},
-        {9, {50, 51}, {58, 59, 0, 0}},
-        {4, {58, 0}, {54, 0, 0, 0}},
-        {2, {59, 0}, {50, 58, 0, 0}},
-        {2, {60, 0}, {1, 58, 0, 0}},
-        {2, {58, 0}, {1, 50, 0, 0}},
-        {3, {61, 0}, {58, 51, 0, 0}},
-        {3, {58, 0}, {60, 61, 0, 0}},
-        {0, {60, 0}, {54, 0, 0, 0}},
-        {2, {61, 0}, {1, 54, 0, 0}},
-        {3, {62, 0}, {61, 55, 0, 0}},
-        {6, {61, 63}, {50, 51, 60, 62}},
-        {8, {60, 62}, {50, 51, 61, 63}},
-        {7, {50, 51}, {1, 0, 60, 62}},
-        {10, {60, 61}, {59, 58, 54, 55}},
-        {8, {62, 63}, {31, 35, 36, 38}},
-        {8, {64, 65}, {10, 34, 6, 37}},
-        {10, {66, 67}, {62, 63, 64, 65}},
-        {8, {62, 63}, {19, 0, 66, 67}},
-        {8, {64, 65}, {11, 45, 62, 63}},
-        {8, {66, 67}, {18, 0, 31, 35}},
-        {6, {68, 69}, {66, 67, 62, 63}},
-        {8, {66, 67}, {68, 69, 60, 61}},
-        {10, {70, 71}, {66, 67, 64, 65}},
-        {8, {64, 65}, {33, 27, 28, 30}},
-        {8, {66, 67}, {32, 26, 7, 29}},
-        {10, {72, 73}, {64, 65, 66, 67}},
-        {8, {64, 65}, {19, 0, 72, 73}},
-        {8, {66, 67}, {18, 0, 33, 27}},
-        {6, {72, 73}, {66, 67, 64, 65}},
-        {8, {66, 67}, {52, 53, 72, 73}},
-        {8, {74, 75}, {64, 65, 48, 49}},
-        {10, {76, 77}, {70, 71, 66, 67}},
-        {10, {66, 67}, {76, 77, 74, 75}},
-        {8, {74, 75}, {50, 51, 66, 67}},
-        {8, {66, 67}, {52, 53, 74, 75}},
-        {6, {76, 77}, {72, 73, 66, 67}},
-        {8, {66, 67}, {68, 69, 68, 69}},
-        {8, {78, 79}, {62, 63, 62, 63}},
-        {6, {80, 81}, {66, 67, 78, 79}},
-        {8, {66, 67}, {64, 65, 64, 65}},
-        {8, {78, 79}, {72, 73, 72, 73}},
-        {6, {72, 73}, {78, 79, 80, 81}},
-        {6, {78, 79}, {66, 67, 72, 73}},
-        {8, {66, 67}, {3, 0, 78, 79}},
-        {8, {67, 72}, {11, 45, 74, 75}},
-        {6, {73, 78}, {62, 63, 67, 72}},
-        {8, {67, 72}, {48, 49, 74, 75}},
-        {6, {79, 82}, {64, 65, 67, 72}},
-        {8, {67, 72}, {76, 77, 76, 77}},
-        {8, {83, 84}, {73, 78, 73, 78}},
-        {6, {85, 86}, {67, 72, 83, 84}},
-        {8, {67, 72}, {79, 82, 79, 82}},
-        {6, {83, 84}, {85, 86, 67, 72}},
-        {9, {67, 72}, {83, 84, 0, 0}},
-        {4, {66, 0}, {76, 0, 0, 0}},
-        {2, {83, 0}, {67, 66, 0, 0}},
-        {2, {84, 0}, {1, 66, 0, 0}},
-        {2, {66, 0}, {1, 67, 0, 0}},
-        {3, {85, 0}, {66, 72, 0, 0}},
-        {3, {66, 0}, {84, 85, 0, 0}},
-        {0, {84, 0}, {76, 0, 0, 0}},
-        {2, {85, 0}, {1, 76, 0, 0}},
-        {3, {86, 0}, {85, 77, 0, 0}},
-        {6, {85, 87}, {67, 72, 84, 86}},
-        {8, {84, 86}, {67, 72, 85, 87}},
-        {7, {67, 72}, {1, 0, 84, 86}},
-        {10, {84, 85}, {83, 66, 76, 77}},
-        {8, {76, 77}, {54, 55, 60, 61}},
-        {10, {86, 87}, {46, 47, 76, 77}},
-        {8, {46, 47}, {50, 51, 86, 87}},
-        {8, {76, 77}, {11, 45, 46, 47}},
-        {10, {86, 87}, {76, 77, 11, 45}},
-        {8, {76, 77}, {73, 78, 86, 87}},
-        {8, {88, 89}, {52, 53, 46, 47}},
-        {8, {90, 91}, {48, 49, 46, 47}},
-        {8, {92, 93}, {79, 82, 90, 91}},
-        {8, {94, 95}, {84, 85, 88, 89}},
-        {10, {96, 97}, {76, 77, 94, 95}},
-        {6, {76, 77}, {96, 97, 92, 93}},
-        {8, {92, 93}, {67, 72, 76, 77}},
-        {8, {76, 77}, {50, 51, 70, 71}},
-        {8, {70, 71}, {11, 45, 76, 77}},
-        {6, {94, 95}, {62, 63, 70, 71}},
-        {8, {70, 71}, {73, 78, 94, 95}},
-        {8, {96, 97}, {52, 53, 76, 77}},
-        {8, {98, 99}, {48, 49, 76, 77}},
-        {8, {100, 101}, {79, 82, 98, 99}},
-        {8, {102, 103}, {84, 85, 96, 97}},
-        {10, {104, 105}, {70, 71, 102, 103}},
-        {6, {70, 71}, {104, 105, 100, 101}},
-        {8, {100, 101}, {67, 72, 70, 71}},
-        {8, {70, 71}, {79, 82, 92, 93}},
-        {10, {102, 103}, {70, 71, 90, 91}},
-        {8, {70, 71}, {73, 78, 92, 93}},
-        {10, {90, 91}, {86, 87, 70, 71}},
-        {8, {70, 71}, {9, 40, 42, 44}},
-        {8, {86, 87}, {39, 41, 8, 43}},
-        {6, {104, 105}, {70, 71, 86, 87}},
-        {8, {70, 71}, {19, 0, 104, 105}},
-        {8, {86, 87}, {18, 0, 9, 40}},
-        {6, {104, 105}, {86, 87, 70, 71}},
-        {8, {86, 87}, {104, 105, 104, 105}},
-        {8, {106, 107}, {70, 71, 70, 71}},
-        {6, {108, 109}, {86, 87, 106, 107}},
-        {6, {86, 87}, {56, 57, 108, 109}},
-        {8, {56, 57}, {3, 0, 86, 87}},
-        {8, {57, 86}, {102, 103, 102, 103}},
-        {8, {87, 106}, {90, 91, 90, 91}},
-        {6, {107, 110}, {87, 106, 108, 109}},
-        {6, {87, 106}, {57, 86, 107, 110}},
-        {9, {57, 86}, {87, 106, 0, 0}},
-        {0, {56, 0}, {104, 0, 0, 0}},
-        {2, {87, 0}, {1, 104, 0, 0}},
-        {3, {106, 0}, {87, 105, 0, 0}},
-        {6, {87, 107}, {57, 86, 56, 106}},
-        {8, {56, 106}, {57, 86, 87, 107}},
-        {7, {87, 107}, {1, 0, 56, 106}},
-        {2, {56, 0}, {57, 104, 0, 0}},
-        {2, {106, 0}, {1, 104, 0, 0}},
-        {2, {108, 0}, {1, 57, 0, 0}},
-        {3, {57, 0}, {108, 86, 0, 0}},
-        {3, {86, 0}, {106, 57, 0, 0}},
-        {6, {57, 106}, {104, 105, 56, 86}},
-        {8, {104, 105}, {73, 78, 100, 101}},
-        {10, {108, 109}, {94, 95, 104, 105}},
-        {8, {94, 95}, {79, 82, 100, 101}},
-        {10, {104, 105}, {94, 95, 98, 99}},
-        {8, {94, 95}, {90, 91, 108, 109}},
-        {8, {98, 99}, {102, 103, 104, 105}},
-        {8, {110, 111}, {39, 41, 42, 44}},
-        {8, {112, 113}, {9, 40, 8, 43}},
-        {10, {114, 115}, {110, 111, 112, 113}},
-        {8, {110, 111}, {19, 0, 114, 115}},
-        {8, {112, 113}, {70, 71, 110, 111}},
-        {8, {114, 115}, {18, 0, 39, 41}},
-        {6, {116, 117}, {114, 115, 110, 111}},
-        {8, {114, 115}, {116, 117, 57, 106}},
-        {10, {118, 119}, {94, 95, 114, 115}},
-        {6, {94, 95}, {118, 119, 98, 99}},
-        {10, {98, 99}, {94, 95, 112, 113}},
-        {8, {94, 95}, {87, 107, 98, 99}},
-        {8, {98, 99}, {90, 91, 94, 95}},
-        {10, {112, 113}, {108, 109, 98, 99}},
-        {8, {98, 99}, {102, 103, 94, 95}},
-        {10, {108, 109}, {104, 105, 98, 99}},
-        {8, {98, 99}, {110, 111, 110, 111}},
-        {8, {104, 105}, {116, 117, 116, 117}},
-        {6, {114, 115}, {80, 81, 104, 105}},
-        {6, {80, 81}, {98, 99, 114, 115}},
-        {8, {98, 99}, {3, 0, 80, 81}},
-        {8, {80, 81}, {70, 71, 94, 95}},
-        {6, {99, 104}, {110, 111, 80, 81}},
-        {8, {80, 81}, {112, 113, 112, 113}},
-        {8, {105, 114}, {108, 109, 108, 109}},
-        {6, {115, 118}, {80, 81, 105, 114}},
-        {8, {80, 81}, {99, 104, 99, 104}},
-        {6, {105, 114}, {115, 118, 80, 81}},
-        {9, {80, 81}, {105, 114, 0, 0}},
-        {0, {98, 0}, {112, 0, 0, 0}},
-        {2, {105, 0}, {1, 112, 0, 0}},
-        {3, {114, 0}, {105, 113, 0, 0}},
-        {6, {105, 115}, {80, 81, 98, 114}},
-        {8, {98, 114}, {80, 81, 105, 115}},
-        {7, {105, 115}, {1, 0, 98, 114}},
-        {2, {98, 0}, {80, 112, 0, 0}},
-        {2, {114, 0}, {1, 112, 0, 0}},
-        {2, {118, 0}, {1, 80, 0, 0}},
-        {3, {80, 0}, {118, 81, 0, 0}},
-        {3, {81, 0}, {114, 80, 0, 0}},
-        {6, {80, 114}, {112, 113, 98, 81}},
-        {8, {112, 113}, {70, 71, 87, 107}},
-        {8, {118, 119}, {70, 71, 112, 113}},
-        {10, {120, 121}, {1, 0, 118, 119}},
-        {8, {118, 119}, {99, 104, 120, 121}},
-        {8, {122, 123}, {102, 103, 112, 113}},
-        {8, {124, 125}, {108, 109, 122, 123}},
-        {8, {126, 127}, {90, 91, 80, 114}},
-        {8, {128, 129}, {112, 113, 126, 127}},
-        {6, {112, 113}, {124, 125, 128, 129}},
-        {6, {124, 125}, {118, 119, 112, 113}},
-        {8, {112, 113}, {105, 115, 124, 125}},
-        {8, {118, 119}, {87, 107, 57, 106}},
-        {8, {124, 125}, {70, 71, 118, 119}},
-        {8, {128, 129}, {99, 104, 124, 125}},
-        {8, {130, 131}, {102, 103, 118, 119}},
-        {8, {132, 133}, {108, 109, 130, 131}},
-        {8, {134, 135}, {126, 127, 118, 119}},
-        {6, {118, 119}, {132, 133, 134, 135}},
-        {10, {126, 127}, {128, 129, 118, 119}},
-        {8, {118, 119}, {105, 115, 126, 127}},
-        {8, {126, 127}, {50, 51, 60, 61}},
-        {8, {128, 129}, {11, 45, 126, 127}},
-        {8, {132, 133}, {52, 53, 126, 127}},
-        {8, {134, 135}, {48, 49, 126, 127}},
-        {8, {126, 127}, {73, 78, 128, 129}},
-        {8, {136, 137}, {79, 82, 134, 135}},
-        {8, {138, 139}, {84, 85, 132, 133}},
-        {10, {132, 133}, {126, 127, 138, 139}},
-        {6, {126, 127}, {132, 133, 136, 137}},
-        {8, {132, 133}, {67, 72, 126, 127}},
-        {8, {126, 127}, {79, 82, 132, 133}},
-        {10, {136, 137}, {126, 127, 134, 135}},
-        {8, {126, 127}, {73, 78, 132, 133}},
-        {10, {132, 133}, {128, 129, 126, 127}},
-        {8, {126, 127}, {90, 91, 132, 133}},
-        {8, {128, 129}, {136, 137, 102, 103}},
-        {6, {134, 135}, {126, 127, 128, 129}},
-        {8, {126, 127}, {87, 107, 134, 135}},
-        {8, {128, 129}, {102, 103, 126, 127}},
-        {10, {134, 135}, {136, 137, 128, 129}},
-        {8, {128, 129}, {90, 91, 126, 127}},
-        {10, {136, 137}, {132, 133, 128, 129}},
-        {8, {128, 129}, {70, 71, 126, 127}},
-        {8, {126, 127}, {134, 135, 108, 109}},
-        {8, {132, 133}, {99, 104, 128, 129}},
-        {8, {138, 139}, {80, 114, 136, 137}},
-        {6, {136, 137}, {138, 139, 126, 127}},
-        {6, {126, 127}, {136, 137, 132, 133}},
-        {8, {132, 133}, {105, 115, 126, 127}},
-        {8, {126, 127}, {52, 53, 50, 51}},
-        {8, {136, 137}, {11, 45, 126, 127}},
-        {8, {138, 139}, {48, 49, 126, 127}},
-        {8, {140, 141}, {52, 53, 126, 127}},
-        {10, {126, 127}, {1, 0, 140, 141}},
-        {8, {140, 141}, {73, 78, 136, 137}},
-        {8, {142, 143}, {79, 82, 138, 139}},
-        {8, {144, 145}, {84, 85, 126, 127}},
-        {6, {126, 127}, {144, 145, 140, 141}},
-        {6, {140, 141}, {126, 127, 142, 143}},
-        {8, {126, 127}, {67, 72, 140, 141}},
-        {8, {140, 141}, {73, 78, 126, 127}},
-        {10, {142, 143}, {136, 137, 140, 141}},
-        {8, {140, 141}, {79, 82, 126, 127}},
-        {10, {126, 127}, {140, 141, 138, 139}},
-        {8, {140, 141}, {90, 91, 142, 143}},
-        {8, {144, 145}, {102, 103, 126, 127}},
-        {6, {146, 147}, {140, 141, 144, 145}},
-        {8, {140, 141}, {87, 107, 146, 147}},
-        {8, {144, 145}, {90, 91, 140, 141}},
-        {10, {146, 147}, {142, 143, 144, 145}},
-        {8, {142, 143}, {102, 103, 140, 141}},
-        {10, {144, 145}, {126, 127, 142, 143}},
-        {8, {126, 127}, {70, 71, 140, 141}},
-        {8, {140, 141}, {108, 109, 144, 145}},
-        {8, {142, 143}, {99, 104, 126, 127}},
-        {8, {148, 149}, {80, 114, 146, 147}},
-        {6, {146, 147}, {148, 149, 140, 141}},
-        {6, {140, 141}, {146, 147, 142, 143}},
-        {8, {142, 143}, {105, 115, 140, 141}},
-        {8, {140, 141}, {11, 45, 50, 51}},
-        {8, {146, 147}, {48, 49, 140, 141}},
-        {8, {148, 149}, {73, 78, 146, 147}},
-        {8, {150, 151}, {48, 49, 50, 51}},
-        {8, {152, 153}, {48, 49, 150, 151}},
-        {10, {150, 151}, {1, 0, 152, 153}},
-        {8, {152, 153}, {79, 82, 150, 151}},
-        {8, {154, 155}, {84, 85, 138, 139}},
-        {10, {138, 139}, {148, 149, 154, 155}},
-        {10, {148, 149}, {138, 139, 152, 153}},
-        {8, {138, 139}, {67, 72, 148, 149}},
-        {8, {148, 149}, {79, 82, 138, 139}},
-        {6, {152, 153}, {150, 151, 148, 149}},
-        {8, {148, 149}, {73, 78, 138, 139}},
-        {10, {138, 139}, {146, 147, 148, 149}},
-        {8, {148, 149}, {90, 91, 138, 139}},
-        {8, {150, 151}, {102, 103, 152, 153}},
-        {6, {154, 155}, {148, 149, 150, 151}},
-        {8, {148, 149}, {87, 107, 154, 155}},
-        {8, {150, 151}, {102, 103, 148, 149}},
-        {10, {154, 155}, {152, 153, 150, 151}},
-        {8, {150, 151}, {90, 91, 148, 149}},
-        {10, {152, 153}, {138, 139, 150, 151}},
-        {8, {138, 139}, {70, 71, 148, 149}},
-        {8, {148, 149}, {108, 109, 154, 155}},
-        {8, {150, 151}, {99, 104, 138, 139}},
-        {8, {156, 157}, {80, 114, 152, 153}},
-        {6, {152, 153}, {156, 157, 148, 149}},
-        {6, {148, 149}, {152, 153, 150, 151}},
-        {8, {150, 151}, {105, 115, 148, 149}},
-        {8, {148, 149}, {11, 45, 140, 141}},
-        {10, {140, 141}, {1, 0, 148, 149}},
-        {8, {148, 149}, {73, 78, 140, 141}},
-        {8, {152, 153}, {79, 82, 146, 147}},
-        {8, {156, 157}, {84, 85, 136, 137}},
-        {6, {136, 137}, {156, 157, 148, 149}},
-        {10, {148, 149}, {136, 137, 152, 153}},
-        {8, {136, 137}, {67, 72, 148, 149}},
-        {8, {148, 149}, {79, 82, 136, 137}},
-        {6, {152, 153}, {146, 147, 148, 149}},
-        {8, {146, 147}, {73, 78, 136, 137}},
-        {10, {136, 137}, {140, 141, 146, 147}},
-        {8, {140, 141}, {90, 91, 136, 137}},
-        {8, {146, 147}, {102, 103, 152, 153}},
-        {6, {148, 149}, {140, 141, 146, 147}},
-        {8, {140, 141}, {87, 107, 148, 149}},
-        {8, {146, 147}, {102, 103, 140, 141}},
-        {10, {148, 149}, {152, 153, 146, 147}},
-        {8, {146, 147}, {90, 91, 140, 141}},
-        {10, {152, 153}, {136, 137, 146, 147}},
-        {8, {136, 137}, {70, 71, 140, 141}},
-        {8, {140, 141}, {108, 109, 148, 149}},
-        {8, {146, 147}, {99, 104, 136, 137}},
-        {8, {156, 157}, {80, 114, 152, 153}},
-        {6, {152, 153}, {156, 157, 140, 141}},
-        {6, {140, 141}, {152, 153, 146, 147}},
-        {8, {146, 147}, {105, 115, 140, 141}},
-        {8, {140, 141}, {108, 109, 132, 133}},
-        {10, {152, 153}, {134, 135, 140, 141}},
-        {8, {134, 135}, {99, 104, 132, 133}},
-        {10, {132, 133}, {134, 135, 128, 129}},
-        {8, {128, 129}, {99, 104, 142, 143}},
-        {10, {134, 135}, {128, 129, 126, 127}},
-        {8, {126, 127}, {108, 109, 142, 143}},
-        {10, {128, 129}, {144, 145, 126, 127}},
-        {8, {126, 127}, {108, 109, 112, 113}},
-        {10, {140, 141}, {126, 127, 122, 123}},
-        {8, {122, 123}, {99, 104, 112, 113}},
-        {10, {112, 113}, {120, 121, 122, 123}},
-        {8, {120, 121}, {99, 104, 118, 119}},
-        {10, {122, 123}, {120, 121, 124, 125}},
-        {8, {120, 121}, {108, 109, 118, 119}},
-        {6, {118, 119}, {130, 131, 120, 121}},
-        {8, {120, 121}, {108, 109, 150, 151}},
-        {10, {124, 125}, {154, 155, 120, 121}},
-        {8, {120, 121}, {99, 104, 150, 151}},
-        {10, {126, 127}, {120, 121, 138, 139}},
-        {8, {120, 121}, {108, 109, 146, 147}},
-        {10, {130, 131}, {148, 149, 120, 121}},
-        {8, {120, 121}, {99, 104, 146, 147}},
-        {10, {138, 139}, {120, 121, 136, 137}},
-        {8, {120, 121}, {152, 153, 134, 135}},
-        {8, {136, 137}, {132, 133, 128, 129}},
-        {10, {142, 143}, {120, 121, 136, 137}},
-        {8, {120, 121}, {134, 135, 140, 141}},
-        {8, {136, 137}, {128, 129, 112, 113}},
-        {10, {144, 145}, {120, 121, 136, 137}},
-        {8, {120, 121}, {128, 129, 122, 123}},
-        {8, {136, 137}, {134, 135, 118, 119}},
-        {6, {146, 147}, {120, 121, 136, 137}},
-        {8, {120, 121}, {134, 135, 124, 125}},
-        {8, {136, 137}, {128, 129, 126, 127}},
-        {10, {148, 149}, {120, 121, 136, 137}},
-        {8, {120, 121}, {134, 135, 130, 131}},
-        {8, {134, 135}, {128, 129, 138, 139}},
-        {10, {128, 129}, {120, 121, 134, 135}},
-        {8, {120, 121}, {152, 153, 122, 123}},
-        {8, {122, 123}, {132, 133, 118, 119}},
-        {6, {118, 119}, {120, 121, 122, 123}},
-        {8, {120, 121}, {152, 153, 112, 113}},
-        {8, {112, 113}, {132, 133, 140, 141}},
-        {10, {122, 123}, {120, 121, 112, 113}},
-        {8, {112, 113}, {152, 153, 138, 139}},
-        {8, {120, 121}, {132, 133, 130, 131}},
-        {10, {130, 131}, {112, 113, 120, 121}},
-        {8, {112, 113}, {152, 153, 126, 127}},
-        {8, {120, 121}, {132, 133, 124, 125}},
-        {10, {124, 125}, {112, 113, 120, 121}},
-        {8, {112, 113}, {57, 106, 94, 95}},
-        {6, {94, 95}, {116, 117, 112, 113}},
-        {8, {112, 113}, {60, 61, 46, 47}},
-        {6, {46, 47}, {54, 55, 112, 113}},
-        {8, {54, 55}, {84, 85, 92, 93}},
-        {6, {92, 93}, {88, 89, 54, 55}},
-        {8, {54, 55}, {84, 85, 100, 101}},
-        {6, {88, 89}, {96, 97, 54, 55}},
-        {8, {54, 55}, {60, 61, 74, 75}},
-        {10, {74, 75}, {68, 69, 54, 55}},
-        {8, {54, 55}, {60, 61, 76, 77}},
-        {10, {76, 77}, {68, 69, 54, 55}},
-        {8, {54, 55}, {142, 143, 142, 143}},
-        {7, {55, 68}, {1, 0, 59, 58}},
-        {8, {54, 58}, {105, 115, 80, 114}},
-        {8, {59, 69}, {55, 68, 74, 75}},
-        {7, {74, 75}, {59, 69, 83, 66}},
-        {7, {59, 69}, {1, 0, 83, 66}},
-        {8, {66, 83}, {55, 68, 46, 47}},
-        {8, {46, 47}, {92, 93, 74, 75}},
-        {6, {96, 97}, {66, 83, 46, 47}},
-        {7, {46, 47}, {96, 97, 56, 86}},
-        {8, {66, 83}, {92, 93, 59, 69}},
-        {7, {92, 93}, {66, 83, 56, 86}},
-        {7, {66, 83}, {1, 0, 56, 86}},
-        {8, {56, 86}, {94, 95, 46, 47}},
-        {8, {96, 97}, {74, 75, 88, 89}},
-        {8, {100, 101}, {55, 68, 76, 77}},
-        {10, {76, 77}, {96, 97, 100, 101}},
-        {10, {96, 97}, {56, 86, 76, 77}},
-        {7, {56, 76}, {96, 97, 98, 81}},
-        {8, {77, 86}, {94, 95, 92, 93}},
-        {8, {96, 97}, {88, 89, 59, 69}},
-        {10, {88, 89}, {77, 86, 96, 97}},
-        {7, {77, 86}, {88, 89, 98, 81}},
-        {8, {88, 89}, {94, 95, 66, 83}},
-        {7, {94, 95}, {88, 89, 98, 81}},
-        {7, {88, 89}, {1, 0, 98, 81}},
-        {8, {81, 96}, {56, 76, 54, 58}},
-        {8, {97, 98}, {54, 58, 77, 86}},
-        {8, {100, 101}, {54, 58, 94, 95}},
-        {8, {105, 112}, {54, 58, 88, 89}},
-        {8, {54, 58}, {80, 114, 81, 96}},
-        {10, {113, 115}, {54, 58, 56, 76}},
-        {8, {54, 56}, {80, 114, 97, 98}},
-        {10, {58, 76}, {54, 56, 77, 86}},
-        {8, {54, 56}, {80, 114, 100, 101}},
-        {10, {77, 86}, {94, 95, 54, 56}},
-        {8, {54, 56}, {80, 114, 105, 112}},
-        {10, {80, 94}, {54, 56, 88, 89}},
-        {8, {54, 56}, {108, 109, 81, 96}},
-        {8, {88, 89}, {99, 104, 81, 96}},
-        {8, {81, 95}, {108, 109, 97, 98}},
-        {8, {96, 114}, {99, 104, 97, 98}},
-        {8, {97, 98}, {108, 109, 100, 101}},
-        {8, {116, 117}, {99, 104, 100, 101}},
-        {8, {100, 101}, {108, 109, 105, 112}},
-        {8, {108, 109}, {99, 104, 105, 112}},
-        {8, {99, 104}, {57, 106, 46, 47}},
-        {8, {105, 112}, {90, 91, 113, 115}},
-        {6, {120, 121}, {99, 104, 105, 112}},
-        {8, {99, 104}, {102, 103, 54, 56}},
-        {6, {105, 112}, {120, 121, 99, 104}},
-        {8, {99, 104}, {70, 71, 88, 89}},
-        {10, {120, 121}, {105, 112, 99, 104}},
-        {8, {99, 104}, {87, 107, 120, 121}},
-        {8, {105, 112}, {102, 103, 99, 104}},
-        {10, {120, 121}, {54, 56, 105, 112}},
-        {8, {54, 56}, {90, 91, 99, 104}},
-        {10, {105, 112}, {113, 115, 54, 56}},
-        {8, {54, 56}, {73, 78, 105, 112}},
-        {8, {113, 115}, {84, 85, 74, 75}},
-        {10, {126, 127}, {54, 56, 113, 115}},
-        {8, {54, 56}, {79, 82, 120, 121}},
-        {10, {113, 115}, {126, 127, 54, 56}},
-        {8, {54, 56}, {67, 72, 113, 115}},
-        {8, {113, 115}, {79, 82, 54, 56}},
-        {6, {126, 127}, {120, 121, 113, 115}},
-        {8, {113, 115}, {84, 85, 54, 56}},
-        {6, {120, 121}, {74, 75, 113, 115}},
-        {8, {74, 75}, {73, 78, 54, 56}},
-        {10, {54, 56}, {105, 112, 74, 75}},
-        {8, {74, 75}, {57, 106, 92, 93}},
-        {8, {105, 112}, {90, 91, 58, 76}},
-        {6, {113, 115}, {74, 75, 105, 112}},
-        {8, {74, 75}, {102, 103, 81, 95}},
-        {6, {105, 112}, {113, 115, 74, 75}},
-        {8, {74, 75}, {70, 71, 96, 114}},
-        {10, {113, 115}, {105, 112, 74, 75}},
-        {8, {74, 75}, {87, 107, 113, 115}},
-        {8, {105, 112}, {102, 103, 74, 75}},
-        {10, {113, 115}, {81, 95, 105, 112}},
-        {8, {81, 95}, {90, 91, 74, 75}},
-        {10, {105, 112}, {58, 76, 81, 95}},
-        {8, {58, 76}, {73, 78, 105, 112}},
-        {8, {81, 95}, {84, 85, 59, 69}},
-        {10, {132, 133}, {58, 76, 81, 95}},
-        {8, {58, 76}, {79, 82, 113, 115}},
-        {10, {81, 95}, {132, 133, 58, 76}},
-        {8, {58, 76}, {67, 72, 81, 95}},
-        {8, {81, 95}, {79, 82, 58, 76}},
-        {6, {132, 133}, {113, 115, 81, 95}},
-        {8, {81, 95}, {84, 85, 58, 76}},
-        {6, {113, 115}, {59, 69, 81, 95}},
-        {8, {59, 69}, {73, 78, 58, 76}},
-        {10, {58, 76}, {105, 112, 59, 69}},
-        {8, {59, 69}, {90, 91, 77, 86}},
-        {8, {81, 95}, {57, 106, 66, 83}},
-        {10, {105, 112}, {59, 69, 81, 95}},
-        {8, {59, 69}, {102, 103, 97, 98}},
-        {10, {81, 95}, {105, 112, 59, 69}},
-        {8, {59, 69}, {70, 71, 116, 117}},
-        {6, {105, 112}, {81, 95, 59, 69}},
-        {8, {59, 69}, {87, 107, 105, 112}},
-        {8, {81, 95}, {102, 103, 59, 69}},
-        {6, {105, 112}, {97, 98, 81, 95}},
-        {8, {81, 95}, {90, 91, 80, 94}},
-        {8, {97, 98}, {102, 103, 100, 101}},
-        {6, {134, 135}, {81, 95, 97, 98}},
-        {8, {81, 95}, {70, 71, 108, 109}},
-        {10, {97, 98}, {134, 135, 81, 95}},
-        {8, {81, 95}, {87, 107, 97, 98}},
-        {8, {87, 97}, {102, 103, 81, 95}},
-        {10, {98, 102}, {100, 101, 87, 97}},
-        {8, {87, 97}, {90, 91, 59, 69}},
-        {10, {100, 101}, {77, 86, 87, 97}},
-        {8, {77, 86}, {90, 91, 81, 95}},
-        {10, {87, 90}, {80, 94, 77, 86}},
-        {8, {77, 80}, {73, 78, 100, 101}},
-        {8, {86, 91}, {79, 82, 105, 112}},
-        {6, {94, 97}, {77, 80, 86, 91}},
-        {8, {77, 80}, {67, 72, 94, 97}},
-        {8, {86, 91}, {79, 82, 77, 80}},
-        {10, {94, 97}, {86, 91, 105, 112}},
-        {8, {86, 91}, {73, 78, 87, 90}},
-        {8, {103, 105}, {79, 82, 98, 102}},
-        {10, {107, 112}, {86, 91, 103, 105}},
-        {8, {86, 91}, {67, 72, 107, 112}},
-        {8, {67, 72}, {79, 82, 86, 91}},
-        {6, {79, 82}, {98, 102, 67, 72}},
-        {8, {67, 72}, {73, 78, 77, 80}},
-        {10, {98, 102}, {100, 101, 67, 72}},
-        {8, {67, 72}, {73, 78, 86, 91}},
-        {10, {73, 78}, {87, 90, 67, 72}},
-        {8, {67, 72}, {84, 85, 77, 80}},
-        {8, {77, 80}, {84, 85, 86, 91}},
-        {8, {84, 85}, {48, 49, 126, 127}},
-        {8, {86, 87}, {60, 61, 55, 68}},
-        {8, {90, 91}, {52, 53, 120, 121}},
-        {6, {100, 101}, {86, 87, 90, 91}},
-        {8, {86, 87}, {11, 45, 54, 56}},
-        {6, {90, 91}, {100, 101, 86, 87}},
-        {10, {86, 87}, {84, 85, 90, 91}},
-        {8, {84, 85}, {50, 51, 86, 87}},
-        {8, {86, 87}, {52, 53, 84, 85}},
-        {6, {90, 91}, {120, 121, 86, 87}},
-        {8, {86, 87}, {48, 49, 132, 133}},
-        {8, {100, 101}, {52, 53, 113, 115}},
-        {8, {103, 105}, {11, 45, 58, 76}},
-        {6, {107, 112}, {100, 101, 103, 105}},
-        {10, {100, 101}, {86, 87, 107, 112}},
-        {8, {86, 87}, {50, 51, 100, 101}},
-        {8, {100, 101}, {52, 53, 86, 87}},
-        {6, {103, 105}, {113, 115, 100, 101}},
-        {8, {100, 101}, {48, 49, 94, 97}},
-        {8, {107, 112}, {52, 53, 67, 72}},
-        {8, {113, 115}, {11, 45, 98, 102}},
-        {6, {120, 121}, {107, 112, 113, 115}},
-        {10, {107, 112}, {100, 101, 120, 121}},
-        {8, {100, 101}, {50, 51, 107, 112}},
-        {8, {107, 112}, {52, 53, 100, 101}},
-        {6, {113, 115}, {67, 72, 107, 112}},
-        {8, {67, 72}, {48, 49, 79, 82}},
-        {8, {107, 112}, {52, 53, 77, 80}},
-        {8, {120, 121}, {11, 45, 73, 78}},
-        {6, {134, 135}, {107, 112, 120, 121}},
-        {10, {107, 112}, {67, 72, 134, 135}},
-        {8, {67, 72}, {50, 51, 107, 112}},
-        {8, {50, 51}, {52, 53, 67, 72}},
-        {6, {52, 53}, {77, 80, 50, 51}},
-        {6, {50, 51}, {12, 0, 15, 0}},
-        {8, {77, 80}, {50, 51, 62, 63}},
-        {8, {62, 63}, {50, 51, 11, 45}},
-        {8, {50, 51}, {11, 45, 84, 85}},
-        {6, {107, 112}, {54, 56, 50, 51}},
-        {8, {50, 51}, {11, 45, 86, 87}},
-        {6, {54, 56}, {58, 76, 50, 51}},
-        {8, {50, 51}, {11, 45, 100, 101}},
-        {6, {58, 76}, {98, 102, 50, 51}},
-        {8, {50, 51}, {11, 45, 67, 72}},
-        {6, {11, 45}, {73, 78, 50, 51}},
-        {8, {50, 51}, {60, 61, 84, 85}},
-        {6, {73, 78}, {55, 68, 50, 51}},
-        {8, {50, 51}, {48, 49, 84, 85}},
-        {10, {55, 68}, {126, 127, 50, 51}},
-        {6, {50, 51}, {13, 0, 16, 0}},
-        {8, {84, 85}, {50, 51, 64, 65}},
-        {8, {64, 65}, {50, 51, 48, 49}},
-        {8, {50, 51}, {48, 49, 86, 87}},
-        {10, {98, 102}, {132, 133, 50, 51}},
-        {8, {50, 51}, {48, 49, 100, 101}},
-        {10, {120, 121}, {94, 97, 50, 51}},
-        {8, {50, 51}, {48, 49, 67, 72}},
-        {10, {48, 49}, {79, 82, 50, 51}},
-        {8, {50, 51}, {60, 61, 86, 87}},
-        {8, {79, 82}, {60, 61, 100, 101}},
-        {8, {86, 87}, {60, 61, 67, 72}},
-        {8, {60, 61}, {57, 106, 59, 69}},
-        {6, {67, 72}, {66, 83, 60, 61}},
-        {8, {60, 61}, {70, 71, 59, 69}},
-        {10, {59, 66}, {116, 117, 60, 61}},
-        {8, {60, 61}, {57, 106, 99, 104}},
-        {10, {69, 83}, {46, 47, 60, 61}},
-        {8, {46, 47}, {70, 71, 99, 104}},
-        {6, {60, 61}, {88, 89, 46, 47}},
-        {8, {46, 47}, {57, 106, 74, 75}},
-        {10, {88, 89}, {92, 93, 46, 47}},
-        {8, {46, 47}, {70, 71, 74, 75}},
-        {6, {74, 75}, {96, 114, 46, 47}},
-        {6, {46, 47}, {14, 0, 17, 0}},
-        {8, {92, 93}, {46, 47, 110, 111}},
-        {8, {94, 96}, {46, 47, 70, 71}},
-        {8, {46, 47}, {70, 71, 81, 95}},
-        {6, {70, 71}, {108, 109, 46, 47}},
-        {8, {46, 47}, {57, 106, 81, 95}},
-        {7, {57, 81}, {1, 0, 142, 143}},
-        {8, {95, 97}, {57, 81, 144, 145}},
-        {8, {99, 100}, {57, 81, 146, 147}},
-        {8, {101, 104}, {57, 81, 148, 149}},
-        {8, {106, 108}, {57, 81, 128, 129}},
-        {8, {109, 110}, {57, 81, 118, 119}},
-        {8, {111, 114}, {57, 81, 122, 123}},
-        {8, {116, 117}, {57, 81, 130, 131}},
-        {8, {118, 119}, {57, 81, 124, 125}},
-        {8, {57, 81}, {12, 0, 18, 0}},
-        {8, {122, 123}, {31, 35, 57, 81}},
-        {6, {31, 35}, {122, 123, 77, 80}},
-        {8, {122, 123}, {77, 80, 106, 108}},
-        {6, {124, 125}, {31, 35, 122, 123}},
-        {8, {31, 35}, {10, 34, 57, 81}},
-        {6, {10, 34}, {31, 35, 62, 63}},
-        {8, {31, 35}, {106, 108, 62, 63}},
-        {6, {57, 81}, {10, 34, 31, 35}},
-        {8, {10, 31}, {14, 0, 18, 0}},
-        {8, {34, 35}, {39, 41, 10, 31}},
-        {6, {39, 41}, {34, 35, 92, 93}},
-        {8, {34, 35}, {9, 40, 10, 31}},
-        {6, {9, 10}, {34, 35, 94, 96}},
-        {8, {31, 34}, {101, 104, 84, 85}},
-        {10, {35, 40}, {31, 34, 124, 125}},
-        {8, {31, 34}, {95, 97, 92, 93}},
-        {10, {122, 123}, {31, 34, 124, 125}},
-        {8, {31, 34}, {99, 100, 39, 41}},
-        {10, {124, 125}, {122, 123, 31, 34}},
-        {8, {31, 34}, {101, 104, 64, 65}},
-        {10, {122, 123}, {31, 34, 57, 81}},
-        {8, {31, 34}, {95, 97, 94, 96}},
-        {10, {126, 127}, {31, 34, 57, 81}},
-        {8, {31, 34}, {99, 100, 9, 10}},
-        {10, {57, 81}, {126, 127, 31, 34}},
-        {8, {31, 34}, {35, 40, 73, 78}},
-        {8, {126, 127}, {122, 123, 50, 51}},
-        {6, {128, 129}, {31, 34, 126, 127}},
-        {8, {31, 34}, {124, 125, 79, 82}},
-        {6, {126, 127}, {128, 129, 31, 34}},
-        {8, {31, 34}, {57, 81, 86, 87}},
-        {6, {128, 129}, {126, 127, 31, 34}},
-        {8, {31, 34}, {35, 40, 90, 91}},
-        {8, {126, 127}, {122, 123, 103, 105}},
-        {6, {130, 131}, {31, 34, 126, 127}},
-        {8, {31, 34}, {124, 125, 113, 115}},
-        {6, {126, 127}, {130, 131, 31, 34}},
-        {8, {31, 34}, {57, 81, 52, 53}},
-        {6, {130, 131}, {126, 127, 31, 34}},
-        {8, {31, 34}, {99, 100, 128, 129}},
-        {8, {126, 127}, {109, 110, 130, 131}},
-        {10, {132, 133}, {31, 34, 126, 127}},
-        {8, {31, 34}, {35, 40, 69, 83}},
-        {8, {126, 127}, {122, 123, 88, 89}},
-        {6, {134, 135}, {31, 34, 126, 127}},
-        {8, {31, 34}, {124, 125, 67, 72}},
-        {10, {126, 127}, {134, 135, 31, 34}},
-        {8, {31, 34}, {57, 81, 46, 47}},
-        {10, {134, 135}, {126, 127, 31, 34}},
-        {10, {31, 34}, {132, 133, 134, 135}},
-        {8, {126, 127}, {124, 125, 59, 66}},
-        {8, {132, 133}, {35, 40, 60, 61}},
-        {8, {134, 135}, {122, 123, 74, 75}},
-        {6, {136, 137}, {132, 133, 134, 135}},
-        {10, {132, 133}, {126, 127, 136, 137}},
-        {8, {126, 127}, {57, 81, 70, 71}},
-        {10, {134, 135}, {132, 133, 126, 127}},
-        {8, {126, 127}, {95, 97, 128, 129}},
-        {8, {132, 133}, {130, 131, 111, 114}},
-        {6, {136, 137}, {126, 127, 132, 133}},
-        {6, {126, 127}, {134, 135, 136, 137}},
-        {8, {132, 133}, {35, 40, 107, 112}},
-        {8, {134, 135}, {122, 123, 54, 56}},
-        {6, {136, 137}, {132, 133, 134, 135}},
-        {8, {132, 133}, {124, 125, 58, 76}},
-        {6, {134, 135}, {136, 137, 132, 133}},
-        {8, {132, 133}, {57, 81, 11, 45}},
-        {6, {136, 137}, {134, 135, 132, 133}},
-        {8, {132, 133}, {106, 108, 128, 129}},
-        {8, {134, 135}, {130, 131, 116, 117}},
-        {6, {138, 139}, {132, 133, 134, 135}},
-        {6, {132, 133}, {136, 137, 138, 139}},
-        {8, {134, 135}, {35, 40, 55, 68}},
-        {8, {35, 40}, {122, 123, 98, 102}},
-        {6, {122, 123}, {134, 135, 35, 40}},
-        {8, {35, 40}, {124, 125, 120, 121}},
-        {6, {124, 125}, {122, 123, 35, 40}},
-        {8, {35, 40}, {57, 81, 48, 49}},
-        {6, {57, 81}, {124, 125, 35, 40}},
-        {8, {35, 40}, {101, 104, 128, 129}},
-        {8, {122, 123}, {130, 131, 118, 119}},
-        {6, {124, 125}, {35, 40, 122, 123}},
-        {6, {35, 40}, {57, 81, 124, 125}},
-        {8, {57, 81}, {77, 80, 116, 117}},
-        {8, {77, 80}, {13, 0, 18, 0}},
-        {8, {122, 123}, {33, 27, 77, 80}},
-        {6, {27, 33}, {122, 123, 84, 85}},
-        {10, {122, 123}, {27, 33, 57, 81}},
-        {8, {27, 33}, {84, 85, 118, 119}},
-        {6, {84, 85}, {122, 123, 27, 33}},
-        {8, {27, 33}, {39, 41, 109, 110}},
-        {10, {39, 41}, {27, 33, 57, 81}},
-        {8, {27, 33}, {92, 93, 111, 114}},
-        {6, {57, 81}, {39, 41, 27, 33}},
-        {8, {27, 33}, {62, 63, 116, 117}},
-        {8, {39, 41}, {32, 26, 77, 80}},
-        {6, {26, 32}, {39, 41, 64, 65}},
-        {10, {39, 41}, {26, 32, 27, 33}},
-        {8, {26, 32}, {64, 65, 118, 119}},
-        {6, {62, 63}, {39, 41, 26, 32}},
-        {8, {26, 32}, {9, 10, 109, 110}},
-        {10, {9, 10}, {26, 32, 27, 33}},
-        {8, {26, 27}, {94, 96, 111, 114}},
-        {6, {32, 33}, {9, 10, 26, 27}},
-        {8, {9, 10}, {73, 78, 84, 85}},
-        {8, {26, 27}, {50, 51, 62, 63}},
-        {6, {39, 41}, {9, 10, 26, 27}},
-        {8, {9, 10}, {79, 82, 57, 81}},
-        {6, {26, 27}, {39, 41, 9, 10}},
-        {8, {9, 10}, {86, 87, 32, 33}},
-        {6, {39, 41}, {26, 27, 9, 10}},
-        {8, {9, 10}, {90, 91, 84, 85}},
-        {8, {26, 27}, {103, 105, 62, 63}},
-        {6, {50, 51}, {9, 10, 26, 27}},
-        {8, {9, 10}, {113, 115, 57, 81}},
-        {6, {26, 27}, {50, 51, 9, 10}},
-        {8, {9, 10}, {52, 53, 32, 33}},
-        {6, {50, 51}, {26, 27, 9, 10}},
-        {8, {9, 10}, {99, 100, 39, 41}},
-        {8, {26, 27}, {109, 110, 50, 51}},
-        {10, {52, 53}, {9, 10, 26, 27}},
-        {8, {9, 10}, {69, 83, 84, 85}},
-        {8, {26, 27}, {88, 89, 62, 63}},
-        {6, {64, 65}, {9, 10, 26, 27}},
-        {8, {9, 10}, {67, 72, 57, 81}},
-        {10, {26, 27}, {64, 65, 9, 10}},
-        {8, {9, 10}, {46, 47, 32, 33}},
-        {10, {46, 47}, {26, 27, 9, 10}},
-        {10, {9, 10}, {52, 53, 46, 47}},
-        {8, {26, 27}, {59, 66, 57, 81}},
-        {8, {46, 47}, {60, 61, 84, 85}},
-        {8, {52, 53}, {74, 75, 62, 63}},
-        {6, {59, 60}, {46, 47, 52, 53}},
-        {10, {46, 47}, {26, 27, 59, 60}},
-        {8, {26, 27}, {70, 71, 32, 33}},
-        {10, {52, 53}, {46, 47, 26, 27}},
-        {8, {26, 27}, {95, 97, 39, 41}},
-        {8, {46, 47}, {111, 114, 50, 51}},
-        {6, {59, 60}, {26, 27, 46, 47}},
-        {6, {26, 27}, {52, 53, 59, 60}},
-        {8, {46, 47}, {55, 68, 84, 85}},
-        {8, {52, 53}, {98, 102, 62, 63}},
-        {6, {55, 59}, {46, 47, 52, 53}},
-        {8, {46, 47}, {120, 121, 57, 81}},
-        {6, {52, 53}, {55, 59, 46, 47}},
-        {8, {46, 47}, {48, 49, 32, 33}},
-        {6, {48, 49}, {52, 53, 46, 47}},
-        {8, {46, 47}, {101, 104, 39, 41}},
-        {8, {52, 53}, {118, 119, 50, 51}},
-        {6, {55, 59}, {46, 47, 52, 53}},
-        {6, {46, 47}, {48, 49, 55, 59}},
-        {8, {48, 49}, {107, 112, 84, 85}},
-        {8, {52, 53}, {54, 56, 62, 63}},
-        {6, {54, 55}, {48, 49, 52, 53}},
-        {8, {48, 49}, {58, 76, 57, 81}},
-        {6, {52, 53}, {54, 55, 48, 49}},
-        {8, {48, 49}, {11, 45, 32, 33}},
-        {6, {11, 32}, {52, 53, 48, 49}},
-        {8, {33, 45}, {106, 108, 39, 41}},
-        {8, {39, 41}, {116, 117, 50, 51}},
-        {6, {48, 49}, {33, 45, 39, 41}},
-        {6, {33, 39}, {11, 32, 48, 49}},
-        {8, {11, 32}, {18, 0, 19, 0}},
-        {8, {41, 45}, {21, 0, 11, 32}},
-        {8, {48, 49}, {8, 43, 41, 45}},
-        {8, {8, 43}, {14, 0, 48, 49}},
-        {8, {14, 50}, {17, 0, 48, 49}},
-        {3, {17, 0}, {2, 14, 0, 0}},
-        {3, {14, 0}, {2, 50, 0, 0}},
-        {8, {48, 49}, {19, 0, 19, 0}},
-        {3, {19, 0}, {2, 41, 0, 0}},
-        {3, {50, 0}, {2, 45, 0, 0}},
-        {8, {51, 52}, {42, 44, 19, 50}},
-        {8, {42, 44}, {21, 0, 48, 49}},
-        {3, {53, 0}, {4, 42, 0, 0}},
-        {3, {42, 0}, {4, 44, 0, 0}},
-        {6, {44, 54}, {23, 0, 53, 42}},
-        {6, {23, 42}, {44, 54, 51, 52}},
-        {6, {53, 55}, {22, 0, 24, 0}},
-        {8, {22, 24}, {18, 0, 18, 0}},
-        {3, {18, 0}, {4, 20, 0, 0}},
-        {6, {20, 56}, {21, 0, 18, 0}},
-        {8, {18, 21}, {22, 24, 20, 56}},
-        {6, {20, 22}, {53, 55, 18, 21}},
-        {6, {18, 21}, {20, 22, 51, 52}},
-        {6, {20, 22}, {23, 42, 18, 21}},
-        {6, {18, 21}, {8, 43, 17, 14}},
-        {6, {24, 51}, {17, 14, 18, 21}},
-        {3, {18, 0}, {2, 24, 0, 0}},
-        {3, {21, 0}, {2, 51, 0, 0}},
-        {8, {24, 51}, {17, 14, 99, 100}},
-        {8, {52, 53}, {18, 21, 95, 97}},
-        {10, {55, 56}, {24, 51, 52, 53}},
-        {8, {24, 51}, {20, 22, 31, 34}},
-        {8, {52, 53}, {23, 42, 126, 127}},
-        {10, {57, 58}, {24, 51, 52, 53}},
-        {6, {24, 51}, {55, 56, 57, 58}},
-        {8, {52, 53}, {20, 22, 9, 10}},
-        {8, {20, 22}, {23, 42, 26, 27}},
-        {10, {55, 56}, {52, 53, 20, 22}},
-        {8, {20, 22}, {17, 14, 109, 110}},
-        {8, {14, 17}, {18, 21, 111, 114}},
-        {6, {18, 21}, {20, 22, 14, 17}},
-        {10, {14, 17}, {55, 56, 18, 21}},
-        {3, {18, 0}, {2, 8, 0, 0}},
-        {3, {8, 0}, {2, 43, 0, 0}},
-        {8, {20, 21}, {23, 42, 31, 34}},
-        {8, {22, 31}, {44, 54, 126, 127}},
-        {10, {34, 43}, {20, 21, 22, 31}},
-        {8, {20, 21}, {18, 8, 99, 100}},
-        {10, {22, 31}, {34, 43, 20, 21}},
-        {8, {20, 21}, {18, 8, 109, 110}},
-        {8, {8, 18}, {23, 42, 9, 10}},
-        {8, {9, 10}, {44, 54, 26, 27}},
-        {10, {23, 26}, {8, 18, 9, 10}},
-        {6, {8, 9}, {20, 21, 23, 26}},
-        {8, {10, 18}, {25, 0, 11, 32}},
-        {6, {11, 20}, {19, 50, 10, 18}},
-        {8, {10, 18}, {6, 37, 11, 20}},
-        {8, {6, 21}, {15, 0, 10, 18}},
-        {8, {15, 23}, {12, 0, 10, 18}},
-        {8, {10, 12}, {25, 0, 48, 49}},
-        {6, {18, 25}, {44, 54, 10, 12}},
-        {8, {10, 12}, {36, 38, 11, 20}},
-        {6, {11, 20}, {18, 25, 10, 12}},
-        {8, {10, 12}, {18, 25, 132, 133}},
-        {10, {26, 27}, {15, 23, 10, 12}},
-        {3, {10, 0}, {5, 15, 0, 0}},
-        {3, {12, 0}, {5, 23, 0, 0}},
-        {6, {15, 23}, {6, 21, 10, 12}},
-        {6, {10, 12}, {6, 21, 15, 23}},
-        {3, {15, 0}, {2, 10, 0, 0}},
-        {3, {10, 0}, {2, 12, 0, 0}},
-        {8, {12, 23}, {44, 54, 35, 40}},
-        {8, {32, 34}, {95, 97, 22, 31}},
-        {10, {36, 37}, {15, 10, 26, 27}},
-        {8, {38, 42}, {106, 108, 36, 37}},
-        {10, {36, 37}, {32, 34, 38, 42}},
-        {10, {32, 34}, {36, 37, 6, 21}},
-        {8, {6, 21}, {11, 20, 132, 133}},
-        {10, {36, 37}, {32, 34, 6, 21}},
-        {8, {6, 21}, {99, 100, 24, 51}},
-        {10, {32, 34}, {36, 37, 6, 21}},
-        {8, {6, 21}, {101, 104, 12, 23}},
-        {10, {36, 37}, {32, 34, 6, 21}},
-        {8, {6, 21}, {7, 29, 41, 45}},
-        {8, {7, 29}, {18, 25, 33, 39}},
-        {8, {18, 25}, {13, 0, 6, 21}},
-        {3, {13, 0}, {2, 18, 0, 0}},
-        {3, {32, 0}, {2, 25, 0, 0}},
-        {8, {34, 38}, {44, 54, 46, 47}},
-        {10, {41, 42}, {13, 32, 34, 38}},
-        {8, {13, 32}, {95, 97, 8, 9}},
-        {8, {34, 38}, {101, 104, 41, 42}},
-        {8, {43, 45}, {106, 108, 7, 29}},
-        {8, {48, 49}, {15, 10, 116, 117}},
-        {8, {10, 15}, {11, 20, 33, 39}},
-        {6, {11, 20}, {48, 49, 10, 15}},
-        {8, {10, 15}, {99, 100, 14, 17}},
-        {6, {33, 39}, {11, 20, 10, 15}},
-        {6, {10, 11}, {43, 45, 33, 39}},
-        {10, {15, 20}, {34, 38, 10, 11}},
-        {6, {10, 11}, {13, 32, 15, 20}},
-        {8, {13, 15}, {28, 30, 19, 50}},
-        {6, {19, 20}, {44, 54, 13, 15}},
-        {8, {13, 15}, {16, 0, 6, 21}},
-        {3, {6, 0}, {2, 13, 0, 0}},
-        {3, {13, 0}, {2, 15, 0, 0}},
-        {6, {15, 16}, {18, 25, 6, 13}},
-        {6, {18, 21}, {6, 13, 15, 16}},
-        {3, {15, 0}, {2, 18, 0, 0}},
-        {3, {16, 0}, {2, 21, 0, 0}},
-        {8, {18, 21}, {111, 114, 22, 31}},
-        {8, {22, 25}, {116, 117, 26, 27}},
-        {8, {26, 27}, {109, 110, 24, 51}},
-        {8, {24, 28}, {15, 16, 101, 104}},
-        {8, {30, 31}, {19, 20, 35, 40}},
-        {6, {32, 33}, {24, 28, 30, 31}},
-        {10, {24, 28}, {26, 27, 32, 33}},
-        {6, {26, 27}, {22, 25, 24, 28}},
-        {8, {22, 24}, {118, 119, 12, 23}},
-        {10, {12, 23}, {26, 27, 22, 24}},
-        {6, {22, 24}, {18, 21, 12, 23}},
-        {8, {12, 18}, {111, 114, 8, 9}},
-        {8, {8, 9}, {109, 110, 14, 17}},
-        {10, {14, 17}, {8, 9, 6, 13}},
-        {10, {6, 8}, {15, 16, 41, 42}},
-        {8, {9, 13}, {118, 119, 6, 8}},
-        {10, {6, 8}, {14, 17, 9, 13}},
-        {8, {9, 13}, {19, 20, 46, 47}},
-        {10, {14, 15}, {6, 8, 9, 13}},
-        {8, {6, 8}, {116, 117, 7, 29}},
-        {10, {7, 9}, {14, 15, 6, 8}},
-        {6, {6, 8}, {12, 18, 7, 9}},
-        {1, {7, 0}, {36, 37, 0, 0}},
-        {1, {9, 0}, {10, 11, 0, 0}},
-        {1, {10, 0}, {22, 24, 0, 0}},
-        {1, {11, 0}, {6, 8, 0, 0}},
-    };
-    float v[158];
-    v[0] = 0.0f;
-    v[1] = 1.0f;
-    v[2] = 0.5f;
-    v[3] = 4.652891e-25f;
-    v[4] = 0.25f;
-    v[5] = 2.0f;
-    v[6] = q[0];
-    v[7] = q[1];
-    v[8] = q[2];
-    v[9] = q[3];
-    v[10] = q[4];
-    v[11] = q[5];
-    v[12] = qd[0];
-    v[13] = qd[1];
-    v[14] = qd[2];
-    v[15] = qd[3];
-    v[16] = qd[4];
-    v[17] = qd[5];
-    v[18] = p->l_1;
-    v[19] = p->l_2;
-    v[20] = p->m_1;
-    v[21] = p->m_2;
-    v[22] = p->J_1;
-    v[23] = p->J_2;
-    v[24] = p->J_motor;
-    v[25] = p->m_payload;
-    rapkm_2rrr_rr_steps_f(step, 0, 6, v);
-    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= v[26]))) {
+    const float b_1 = q[3];
+    const float t1 = fabsf(b_1);
+    const float a_3 = q[2];
+    const float t2 = fabsf(a_3);
+    const float b_3 = q[5];
+    const float t3 = fabsf(b_3);
+    const float a_1 = q[0];
+    const float t4 = fabsf(a_1);
+    const float a_2 = q[1];
+    const float t5 = fabsf(a_2);
+    const float b_2 = q[4];
+    const float t6 = fabsf(b_2);
+    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= t1))) {
         return RAPKM_2RRR_RR_ANGLE_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= v[27]))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= t2))) {
         return RAPKM_2RRR_RR_ANGLE_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= v[28]))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= t3))) {
         return RAPKM_2RRR_RR_ANGLE_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= v[29]))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= t4))) {
         return RAPKM_2RRR_RR_ANGLE_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= v[30]))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= t5))) {
         return RAPKM_2RRR_RR_ANGLE_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= v[31]))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= t6))) {
         return RAPKM_2RRR_RR_ANGLE_RANGE;
     }
-    rapkm_2rrr_rr_steps_f(step, 6, 60, v);
-    rapkm_2rrr_rr_steps_f(step, 60, 79, v);
-    if (RAPKM_2RRR_RR_RARELY_F(!(v[58] > 0.0f))) {
+    const float angle[8] = {b_1, a_3, b_3, a_1, a_2, b_2, b_2, b_2};
+    float sine[8];
+    float cosine[8];
+    rapkm_2rrr_rr_sincos_group_f(6, angle, sine, cosine);
+    const float l_2 = p->l_2;
+    const float t34 = l_2 * l_2;
+    const float t16 = cosine[4];
+    const float t18 = cosine[5];
+    const float t39 = t16 * t18;
+    const float t15 = sine[4];
+    const float t17 = sine[5];
+    const float t40 = t15 * t17;
+    const float t41 = t39 - t40;
+    const float t55 = l_2 * t41;
+    const float t46 = t16 * t17;
+    const float t47 = t15 * t18;
+    const float t48 = t46 + t47;
+    const float t59 = l_2 * t48;
+    const float t10 = cosine[1];
+    const float t11 = sine[2];
+    const float t19 = t10 * t11;
+    const float t9 = sine[1];
+    const float t12 = cosine[2];
+    const float t20 = t9 * t12;
+    const float t21 = t19 + t20;
+    const float t23 = t10 * t12;
+    const float t24 = t9 * t11;
+    const float t25 = t23 - t24;
+    const float t13 = sine[3];
+    const float t8 = cosine[0];
+    const float t36 = t13 * t8;
+    const float t14 = cosine[3];
+    const float t7 = sine[0];
+    const float t37 = t14 * t7;
+    const float t38 = t36 + t37;
+    const float t43 = t14 * t8;
+    const float t44 = t13 * t7;
+    const float t45 = t43 - t44;
+    const float t64 = t38 * t25;
+    const float t65 = t45 * t21;
+    const float t66 = t64 - t65;
+    const float t67 = t34 * t66;
+    const float l_1 = p->l_1;
+    const float t54 = l_1 * t16;
+    const float t56 = t54 + t55;
+    const float t58 = l_1 * t15;
+    const float t60 = t58 + t59;
+    const float t57 = t48 * t56;
+    const float t61 = t41 * t60;
+    const float t62 = t57 - t61;
+    const float t63 = l_2 * t62;
+    const float t68 = t63 * t67;
+    const float t718 = t67 * t68;
+    const float t26 = l_2 * t25;
+    const float t30 = l_2 * t21;
+    const float t35 = l_2 * t34;
+    const float t42 = t38 * t41;
+    const float t49 = t45 * t48;
+    const float t50 = t42 - t49;
+    const float t73 = t34 * t50;
+    const float t86 = l_2 * t50;
+    const float t22 = l_1 * t10;
+    const float t27 = t22 + t26;
+    const float t29 = l_1 * t9;
+    const float t31 = t29 + t30;
+    const float t28 = t21 * t27;
+    const float t32 = t25 * t31;
+    const float t33 = t28 - t32;
+    const float t51 = t35 * t50;
+    const float t52 = t33 * t51;
+    const float t71 = l_2 * t45;
+    const float t77 = l_2 * t38;
+    const float t83 = t45 * t30;
+    const float t109 = t45 * t60;
+    const float t110 = t38 * t56;
+    const float t111 = t109 - t110;
+    const float t112 = l_2 * t111;
+    const float t168 = t21 * t112;
+    const float t70 = l_1 * t14;
+    const float t72 = t70 + t71;
+    const float t76 = l_1 * t13;
+    const float t78 = t76 + t77;
+    const float t123 = t78 * t56;
+    const float t124 = t72 * t60;
+    const float t125 = t123 - t124;
+    const float t141 = t77 * t125;
+    const float t142 = t78 * t112;
+    const float t143 = t141 + t142;
+    const float t79 = t78 * t41;
+    const float t80 = t72 * t48;
+    const float t81 = t79 - t80;
+    const float t82 = l_2 * t81;
+    const float t85 = t38 * t82;
+    const float t87 = t78 * t86;
+    const float t88 = t85 - t87;
+    const float t89 = l_2 * t88;
+    const float t165 = t25 * t143;
+    const float t166 = t125 * t83;
+    const float t167 = t165 - t166;
+    const float t169 = t72 * t168;
+    const float t170 = t167 - t169;
+    const float t171 = l_2 * t170;
+    const float t74 = t30 * t73;
+    const float t75 = t72 * t74;
+    const float t84 = t82 * t83;
+    const float t90 = t25 * t89;
+    const float t91 = t84 - t90;
+    const float t92 = l_2 * t91;
+    const float t93 = t75 - t92;
+    const float t94 = -t93;
+    const float t96 = l_2 * t63;
+    const float t116 = t38 * t72;
+    const float t117 = t45 * t78;
+    const float t118 = t116 - t117;
+    const float t134 = -t118;
+    const float t135 = t96 * t134;
+    const float t309 = l_2 * t60;
+    const float t325 = t34 * t48;
+    const float t362 = t118 * t325;
+    const float t646 = t134 * t309;
+    const float t730 = t135 * t646;
+    const float t647 = t646 * t171;
+    const float t648 = t362 * t94;
+    const float t649 = t647 + t648;
+    const float t137 = t71 * t125;
+    const float t138 = t72 * t112;
+    const float t139 = t137 + t138;
+    const float t140 = t31 * t139;
+    const float t144 = t27 * t143;
+    const float t145 = t140 - t144;
+    const float t154 = t45 * t82;
+    const float t155 = t72 * t86;
+    const float t156 = t154 - t155;
+    const float t157 = l_2 * t31;
+    const float t158 = t156 * t157;
+    const float t159 = t27 * t89;
+    const float t160 = t158 - t159;
+    const float t97 = -t33;
+    const float t103 = t72 * t21;
+    const float t104 = t78 * t25;
+    const float t105 = t103 - t104;
+    const float t106 = -t105;
+    const float t113 = l_2 * t112;
+    const float t114 = t97 * t113;
+    const float t119 = l_2 * t118;
+    const float t120 = l_2 * t119;
+    const float t121 = t97 * t120;
+    const float t147 = t72 * t31;
+    const float t148 = t78 * t27;
+    const float t149 = t147 - t148;
+    const float t284 = -t149;
+    const float t310 = t97 * t309;
+    const float t312 = l_2 * t78;
+    const float t313 = t33 * t312;
+    const float t315 = t60 * t149;
+    const float t320 = t106 * t309;
+    const float t326 = t105 * t325;
+    const float t329 = t325 * t52;
+    const float t399 = t59 * t284;
+    const float t567 = t119 * t121;
+    const float t129 = t45 * t31;
+    const float t130 = t38 * t27;
+    const float t131 = t129 - t130;
+    const float t642 = t131 * t309;
+    const float t100 = l_2 * t82;
+    const float t101 = t97 * t100;
+    const float t126 = l_2 * t125;
+    const float t127 = t33 * t126;
+    const float t640 = t131 * t329;
+    const float t641 = t101 * t399;
+    const float t643 = t114 * t642;
+    const float t644 = t31 * t567;
+    const float t645 = t127 * t315;
+    const float t650 = t645 + t649;
+    const float t651 = t644 + t650;
+    const float t652 = t643 + t651;
+    const float t653 = t641 + t652;
+    const float t654 = t640 + t653;
+    const float t311 = t114 * t310;
+    const float t314 = t121 * t313;
+    const float t316 = t145 * t315;
+    const float t317 = t59 * t149;
+    const float t318 = t160 * t317;
+    const float t319 = t316 + t318;
+    const float t321 = t320 * t171;
+    const float t322 = t319 + t321;
+    const float t323 = t314 + t322;
+    const float t324 = t311 + t323;
+    const float t327 = t326 * t94;
+    const float t328 = t324 + t327;
+    const float t330 = t97 * t329;
+    const float t331 = t328 + t330;
+    const float t98 = t96 * t97;
+    const float t107 = t96 * t106;
+    const float t132 = t96 * t131;
+    const float t150 = t63 * t149;
+    const float t454 = t31 * t160;
+    const float t391 = t34 * t38;
+    const float t392 = t97 * t391;
+    const float t723 = t52 * t392;
+    const float t724 = t60 * t718;
+    const float t725 = t98 * t310;
+    const float t726 = t101 * t313;
+    const float t727 = t107 * t320;
+    const float t728 = t132 * t642;
+    const float t729 = t150 * t315;
+    const float t731 = t729 + t730;
+    const float t732 = t30 * t94;
+    const float t733 = t454 + t732;
+    const float t734 = t119 * t733;
+    const float t735 = t731 + t734;
+    const float t736 = t728 + t735;
+    const float t737 = t727 + t736;
+    const float t738 = t726 + t737;
+    const float t739 = t725 + t738;
+    const float t740 = t724 + t739;
+    const float t741 = t723 + t740;
+    const float t388 = t33 * t325;
+    const float t396 = -t131;
+    const float t397 = t396 * t325;
+    const float t412 = t35 * t66;
+    const float t413 = t68 * t412;
+    const float t363 = t135 * t362;
+    const float t389 = t98 * t388;
+    const float t390 = t107 * t326;
+    const float t393 = t114 * t392;
+    const float t394 = t97 * t312;
+    const float t395 = t127 * t394;
+    const float t398 = t132 * t397;
+    const float t400 = t150 * t399;
+    const float t401 = t31 * t145;
+    const float t402 = t30 * t171;
+    const float t403 = t401 - t402;
+    const float t404 = t119 * t403;
+    const float t405 = t400 + t404;
+    const float t406 = t363 + t405;
+    const float t407 = t398 + t406;
+    const float t408 = t395 + t407;
+    const float t409 = t393 + t408;
+    const float t410 = t390 + t409;
+    const float t411 = t389 + t410;
+    const float t414 = t48 * t413;
+    const float t415 = t411 - t414;
+    const float t490 = t145 * t309;
+    const float t468 = l_2 * t66;
+    const float t469 = l_2 * t468;
+    const float t486 = t101 * t388;
+    const float t487 = t121 * t392;
+    const float t488 = t127 * t310;
+    const float t489 = t397 * t160;
+    const float t491 = t396 * t490;
+    const float t492 = t489 + t491;
+    const float t493 = t488 + t492;
+    const float t494 = t60 * t171;
+    const float t495 = t59 * t94;
+    const float t496 = t494 - t495;
+    const float t497 = t469 * t496;
+    const float t498 = t493 - t497;
+    const float t499 = t487 + t498;
+    const float t500 = t486 + t499;
+    const float t278 = l_2 * t56;
+    const float t290 = t105 * t278;
+    const float t275 = t34 * t41;
+    const float t295 = t106 * t275;
+    const float t430 = t55 * t149;
+    const float t276 = t275 * t52;
+    const float t285 = t56 * t284;
+    const float t373 = l_2 * t134;
+    const float t428 = t134 * t275;
+    const float t588 = t121 * t373;
+    const float t608 = t118 * t278;
+    const float t626 = t396 * t278;
+    const float t625 = t101 * t430;
+    const float t627 = t114 * t626;
+    const float t628 = t127 * t285;
+    const float t629 = t608 * t171;
+    const float t630 = t628 + t629;
+    const float t631 = t27 * t588;
+    const float t632 = t630 + t631;
+    const float t633 = t627 + t632;
+    const float t634 = t625 + t633;
+    const float t635 = t428 * t94;
+    const float t636 = t634 + t635;
+    const float t637 = t396 * t276;
+    const float t638 = t636 + t637;
+    const float t279 = t33 * t278;
+    const float t281 = l_2 * t72;
+    const float t282 = t97 * t281;
+    const float t277 = t33 * t276;
+    const float t280 = t114 * t279;
+    const float t283 = t121 * t282;
+    const float t286 = t145 * t285;
+    const float t287 = t55 * t284;
+    const float t288 = t287 * t160;
+    const float t289 = t286 + t288;
+    const float t291 = t171 * t290;
+    const float t292 = t289 + t291;
+    const float t293 = t283 + t292;
+    const float t294 = t280 + t293;
+    const float t296 = t94 * t295;
+    const float t297 = t294 + t296;
+    const float t298 = t277 + t297;
+    const float t503 = t27 * t160;
+    const float t421 = t34 * t45;
+    const float t422 = t33 * t421;
+    const float t702 = t52 * t422;
+    const float t703 = t98 * t279;
+    const float t704 = t101 * t282;
+    const float t705 = t107 * t290;
+    const float t706 = t132 * t626;
+    const float t707 = t150 * t285;
+    const float t708 = t135 * t608;
+    const float t709 = t707 + t708;
+    const float t710 = t26 * t94;
+    const float t711 = t503 + t710;
+    const float t712 = t373 * t711;
+    const float t713 = t709 + t712;
+    const float t714 = t706 + t713;
+    const float t715 = t705 + t714;
+    const float t716 = t704 + t715;
+    const float t717 = t703 + t716;
+    const float t719 = t56 * t718;
+    const float t720 = t717 - t719;
+    const float t721 = t702 + t720;
+    const float t418 = t97 * t275;
+    const float t426 = t131 * t275;
+    const float t417 = t41 * t413;
+    const float t419 = t98 * t418;
+    const float t420 = t107 * t295;
+    const float t423 = t114 * t422;
+    const float t424 = t33 * t281;
+    const float t425 = t127 * t424;
+    const float t427 = t132 * t426;
+    const float t429 = t135 * t428;
+    const float t431 = t150 * t430;
+    const float t432 = t27 * t145;
+    const float t433 = t26 * t171;
+    const float t434 = t432 - t433;
+    const float t435 = t373 * t434;
+    const float t436 = t431 + t435;
+    const float t437 = t429 + t436;
+    const float t438 = t427 + t437;
+    const float t439 = t425 + t438;
+    const float t440 = t423 + t439;
+    const float t441 = t420 + t440;
+    const float t442 = t419 + t441;
+    const float t443 = t417 + t442;
+    const float t470 = t55 * t94;
+    const float t471 = t56 * t171;
+    const float t472 = t470 - t471;
+    const float t473 = t469 * t472;
+    const float t474 = t131 * t278;
+    const float t475 = t145 * t474;
+    const float t476 = t473 - t475;
+    const float t477 = t160 * t426;
+    const float t478 = t476 - t477;
+    const float t479 = t127 * t279;
+    const float t480 = t478 - t479;
+    const float t481 = t121 * t422;
+    const float t482 = t480 - t481;
+    const float t483 = t101 * t418;
+    const float t484 = t482 - t483;
+    const float t183 = t72 * t72;
+    const float t185 = t45 * t45;
+    const float t191 = t78 * t78;
+    const float t192 = t38 * t38;
+    const float t182 = t27 * t27;
+    const float t184 = t25 * t25;
+    const float t186 = t184 + t185;
+    const float t187 = t34 * t186;
+    const float t188 = t183 + t187;
+    const float t189 = t182 + t188;
+    const float t190 = t31 * t31;
+    const float t193 = t21 * t21;
+    const float t194 = t192 + t193;
+    const float t195 = t34 * t194;
+    const float t196 = t191 + t195;
+    const float t197 = t190 + t196;
+    const float t198 = t60 * t60;
+    const float t199 = t191 + t198;
+    const float t200 = t48 * t48;
+    const float t201 = t192 + t200;
+    const float t202 = t34 * t201;
+    const float t203 = t199 + t202;
+    const float t204 = t56 * t56;
+    const float t205 = t183 + t204;
+    const float t206 = t41 * t41;
+    const float t207 = t185 + t206;
+    const float t208 = t34 * t207;
+    const float t209 = t205 + t208;
+    const float t210 = t203 * t209;
+    const float t211 = t197 * t210;
+    const float t212 = t189 * t211;
+    const float t213 = 2.2737368e-13f * t212;
+    const float t581 = t134 * t278;
+    const float t577 = t55 * t52;
+    const float t578 = t56 * t114;
+    const float t579 = t577 + t578;
+    const float t580 = t469 * t579;
+    const float t582 = t145 * t581;
+    const float t583 = t580 - t582;
+    const float t584 = t428 * t160;
+    const float t585 = t583 - t584;
+    const float t586 = t127 * t290;
+    const float t587 = t585 - t586;
+    const float t589 = t26 * t588;
+    const float t590 = t587 + t589;
+    const float t591 = t101 * t295;
+    const float t592 = t590 - t591;
+    const float t572 = t362 * t160;
+    const float t573 = t118 * t490;
+    const float t574 = t572 + t573;
+    const float t594 = t59 * t52;
+    const float t595 = t60 * t114;
+    const float t596 = t594 + t595;
+    const float t597 = t469 * t596;
+    const float t598 = t127 * t320;
+    const float t599 = t101 * t326;
+    const float t600 = t574 + t599;
+    const float t601 = t598 + t600;
+    const float t602 = t30 * t567;
+    const float t603 = t601 - t602;
+    const float t604 = t597 + t603;
+    const float t384 = t118 * t275;
+    const float t558 = t73 * t52;
+    const float t559 = t125 * t127;
+    const float t560 = t112 * t114;
+    const float t561 = t559 - t560;
+    const float t562 = t82 * t101;
+    const float t563 = t561 - t562;
+    const float t564 = t63 * t98;
+    const float t565 = t563 - t564;
+    const float t566 = t558 + t565;
+    const float t610 = t566 + t588;
+    const float t607 = t384 * t160;
+    const float t609 = t145 * t608;
+    const float t611 = t26 * t610;
+    const float t612 = t609 + t611;
+    const float t613 = t72 * t150;
+    const float t614 = t71 * t132;
+    const float t615 = t613 + t614;
+    const float t616 = t63 * t615;
+    const float t617 = t612 - t616;
+    const float t618 = t607 + t617;
+    const float t657 = t27 * t610;
+    const float t658 = t581 * t171;
+    const float t659 = t657 - t658;
+    const float t660 = t72 * t107;
+    const float t661 = t71 * t68;
+    const float t662 = t660 + t661;
+    const float t663 = t63 * t662;
+    const float t664 = t659 - t663;
+    const float t665 = t384 * t94;
+    const float t666 = t664 - t665;
+    const float t248 = t66 * t96;
+    const float t751 = t125 * t107;
+    const float t745 = t125 * t150;
+    const float t746 = t112 * t132;
+    const float t747 = t745 - t746;
+    const float t761 = t119 * t160;
+    const float t762 = t747 - t761;
+    const float t763 = t31 * t762;
+    const float t764 = t763 - t730;
+    const float t765 = t119 * t94;
+    const float t766 = t751 + t765;
+    const float t767 = t112 * t68;
+    const float t768 = t766 - t767;
+    const float t769 = t30 * t768;
+    const float t770 = t764 - t769;
+    const float t744 = t373 * t160;
+    const float t748 = t744 + t747;
+    const float t749 = t27 * t748;
+    const float t750 = t113 * t248;
+    const float t752 = t750 - t751;
+    const float t753 = t373 * t94;
+    const float t754 = t752 + t753;
+    const float t755 = t26 * t754;
+    const float t756 = t135 * t581;
+    const float t757 = t755 - t756;
+    const float t758 = t749 + t757;
+    const float t357 = t82 * t107;
+    const float t366 = t82 * t150;
+    const float t367 = t132 * t73;
+    const float t368 = t366 + t367;
+    const float t356 = t73 * t68;
+    const float t358 = t119 * t171;
+    const float t359 = t357 + t358;
+    const float t360 = t356 + t359;
+    const float t361 = t30 * t360;
+    const float t364 = t361 - t363;
+    const float t365 = t145 * t119;
+    const float t369 = t365 + t368;
+    const float t370 = t31 * t369;
+    const float t371 = t364 - t370;
+    const float t374 = t145 * t373;
+    const float t375 = t374 - t368;
+    const float t376 = t27 * t375;
+    const float t377 = t373 * t171;
+    const float t378 = l_2 * t73;
+    const float t379 = t248 * t378;
+    const float t380 = t377 - t379;
+    const float t381 = t380 - t357;
+    const float t382 = t26 * t381;
+    const float t383 = t376 - t382;
+    const float t385 = t135 * t384;
+    const float t386 = t383 - t385;
+    const float t53 = t52 * t52;
+    const float t69 = t68 * t68;
+    const float t95 = t94 * t94;
+    const float t99 = t98 * t98;
+    const float t102 = t101 * t101;
+    const float t108 = t107 * t107;
+    const float t115 = t114 * t114;
+    const float t122 = t121 * t121;
+    const float t128 = t127 * t127;
+    const float t133 = t132 * t132;
+    const float t136 = t135 * t135;
+    const float t146 = t145 * t145;
+    const float t151 = t150 * t150;
+    const float t152 = t146 + t151;
+    const float t153 = t136 + t152;
+    const float t161 = t160 * t160;
+    const float t162 = t153 + t161;
+    const float t163 = t133 + t162;
+    const float t164 = t128 + t163;
+    const float t172 = t171 * t171;
+    const float t173 = t164 + t172;
+    const float t174 = t122 + t173;
+    const float t175 = t115 + t174;
+    const float t176 = t108 + t175;
+    const float t177 = t102 + t176;
+    const float t178 = t99 + t177;
+    const float t179 = t95 + t178;
+    const float t180 = t69 + t179;
+    const float t181 = t53 + t180;
+    const float t250 = t125 * t171;
+    const float t251 = t82 * t94;
+    const float t252 = t250 - t251;
+    const float t255 = t63 * t132;
+    const float t256 = t125 * t145;
+    const float t257 = t82 * t160;
+    const float t258 = t256 + t257;
+    const float t259 = t255 + t258;
+    const float t262 = t63 * t135;
+    const float t249 = t96 * t248;
+    const float t253 = t249 + t252;
+    const float t254 = t26 * t253;
+    const float t260 = t27 * t259;
+    const float t261 = t254 - t260;
+    const float t263 = t72 * t262;
+    const float t264 = t261 - t263;
+    const float t568 = t566 - t567;
+    const float t346 = t31 * t259;
+    const float t347 = t78 * t262;
+    const float t348 = t346 + t347;
+    const float t349 = t63 * t68;
+    const float t350 = t252 + t349;
+    const float t351 = t30 * t350;
+    const float t352 = t348 - t351;
+    const float t554 = t78 * t150;
+    const float t555 = t77 * t132;
+    const float t556 = t554 + t555;
+    const float t557 = t63 * t556;
+    const float t569 = -t568;
+    const float t570 = t30 * t569;
+    const float t571 = t557 + t570;
+    const float t575 = t571 - t574;
+    const float t669 = t31 * t568;
+    const float t670 = t669 - t649;
+    const float t671 = t78 * t107;
+    const float t672 = t77 * t68;
+    const float t673 = t671 + t672;
+    const float t674 = t63 * t673;
+    const float t675 = t670 - t674;
+    const float t458 = t63 * t107;
+    const float t459 = t73 * t94;
+    const float t460 = t458 + t459;
+    const float t450 = t112 * t145;
+    const float t451 = t63 * t150;
+    const float t452 = t450 + t451;
+    const float t453 = t31 * t452;
+    const float t455 = t86 * t454;
+    const float t456 = t38 * t262;
+    const float t457 = t168 * t171;
+    const float t461 = t21 * t460;
+    const float t462 = t457 + t461;
+    const float t463 = t456 + t462;
+    const float t464 = t455 + t463;
+    const float t465 = l_2 * t464;
+    const float t466 = t453 - t465;
+    const float t504 = t86 * t503;
+    const float t505 = t45 * t262;
+    const float t506 = t112 * t171;
+    const float t507 = t460 + t506;
+    const float t508 = t25 * t507;
+    const float t509 = t505 + t508;
+    const float t510 = t504 + t509;
+    const float t511 = l_2 * t510;
+    const float t512 = t27 * t452;
+    const float t513 = t511 - t512;
+    const float t214 = l_1 * l_2;
+    const float t215 = l_2 * t86;
+    const float t216 = t214 * t215;
+    const float t217 = t11 * t216;
+    if (RAPKM_2RRR_RR_RARELY_F(!(t181 > t213))) {
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
-    rapkm_2rrr_rr_steps_f(step, 79, 132, v);
-    if (RAPKM_2RRR_RR_RARELY_F(!(v[83] > v[66]))) {
+    const float t218 = t217 * t217;
+    if (RAPKM_2RRR_RR_RARELY_F(!(t218 > t213))) {
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
-    rapkm_2rrr_rr_steps_f(step, 132, 189, v);
-    if (RAPKM_2RRR_RR_RARELY_F(!(v[87] > v[56]))) {
-        return RAPKM_2RRR_RR_CONSTRAINT_RANK;
-    }
-    rapkm_2rrr_rr_steps_f(step, 189, 236, v);
-    if (RAPKM_2RRR_RR_RARELY_F(!(v[105] > v[98]))) {
-        return RAPKM_2RRR_RR_CONSTRAINT_RANK;
-    }
-    rapkm_2rrr_rr_steps_f(step, 236, 449, v);
-    if (RAPKM_2RRR_RR_RARELY_F(!(v[54] > 1.2924697e-26f))) {
-        return RAPKM_2RRR_RR_CONSTRAINT_RANK;
-    }
-    rapkm_2rrr_rr_steps_f(step, 449, 969, v);
-    float rest = v[7] - v[7];
-    rest *= v[9];
-    rest *= v[10];
-    rest += v[11] - v[11];
+    const float a_1_dot = qd[0];
+    const float b_1_dot = qd[3];
+    const float t237 = a_1_dot + b_1_dot;
+    const float t238 = t237 * t45;
+    const float t301 = t237 * t38;
+    const float a_3_dot = qd[2];
+    const float b_3_dot = qd[5];
+    const float t229 = a_3_dot + b_3_dot;
+    const float t230 = t229 * t25;
+    const float t335 = t229 * t21;
+    const float t268 = t33 * t120;
+    const float t774 = t33 * t113;
+    const float t228 = 1.0f / t217;
+    const float t231 = l_2 * t230;
+    const float t233 = a_3_dot * l_1;
+    const float t239 = l_2 * t238;
+    const float t234 = t10 * t233;
+    const float t235 = t234 + t231;
+    const float t232 = t160 * t231;
+    const float t236 = t93 * t235;
+    const float t240 = t101 * t239;
+    const float t241 = t236 - t240;
+    const float t242 = t232 + t241;
+    const float t244 = a_1_dot * l_1;
+    const float t245 = t14 * t244;
+    const float t246 = t245 + t239;
+    const float t243 = t228 * t242;
+    const float t247 = t243 - t246;
+    const float a_2_dot = qd[1];
+    const float b_2_dot = qd[4];
+    const float t267 = a_2_dot + b_2_dot;
+    const float t269 = t267 * t268;
+    const float t270 = t41 * t269;
+    const float t271 = t101 * t238;
+    const float t272 = t270 - t271;
+    const float t266 = l_2 * t228;
+    const float t273 = t266 * t272;
+    const float t274 = t273 - t246;
+    const float t300 = t48 * t269;
+    const float t302 = t101 * t301;
+    const float t303 = t300 - t302;
+    const float t306 = l_2 * t301;
+    const float t305 = t13 * t244;
+    const float t307 = t305 + t306;
+    const float t304 = t266 * t303;
+    const float t308 = t304 - t307;
+    const float t336 = l_2 * t335;
+    const float t338 = t9 * t233;
+    const float t339 = t338 + t336;
+    const float t337 = t160 * t336;
+    const float t340 = t93 * t339;
+    const float t341 = t101 * t306;
+    const float t342 = t340 - t341;
+    const float t343 = t337 + t342;
+    const float t344 = t228 * t343;
+    const float t345 = t344 - t307;
+    const float t227 = 1.0f / t181;
+    const float t372 = t345 * t371;
+    const float t387 = t247 * t386;
+    const float t416 = t308 * t415;
+    const float t444 = t274 * t443;
+    const float t445 = t416 - t444;
+    const float t446 = t387 + t445;
+    const float t447 = t372 + t446;
+    const float t448 = t227 * t447;
+    const float t467 = t345 * t466;
+    const float t485 = t274 * t484;
+    const float t501 = t308 * t500;
+    const float t502 = t485 + t501;
+    const float t514 = t247 * t513;
+    const float t515 = t502 - t514;
+    const float t516 = t467 + t515;
+    const float t517 = t227 * t516;
+    const float t265 = t247 * t264;
+    const float t299 = t274 * t298;
+    const float t332 = t308 * t331;
+    const float t333 = t299 - t332;
+    const float t334 = t265 + t333;
+    const float t353 = t345 * t352;
+    const float t354 = t334 - t353;
+    const float t355 = t227 * t354;
+    const float t449 = t98 * t448;
+    const float t518 = t101 * t517;
+    const float t519 = t449 + t518;
+    const float t520 = t228 * t519;
+    const float t521 = t355 + t520;
+    const float t550 = t68 * t448;
+    const float t551 = t93 * t517;
+    const float t552 = t550 + t551;
+    const float t553 = t228 * t552;
+    const float t576 = t345 * t575;
+    const float t593 = t274 * t592;
+    const float t605 = t308 * t604;
+    const float t606 = t593 + t605;
+    const float t619 = t247 * t618;
+    const float t620 = t606 - t619;
+    const float t621 = t576 + t620;
+    const float t622 = t227 * t621;
+    const float t623 = t553 - t622;
+    const float t639 = t274 * t638;
+    const float t655 = t308 * t654;
+    const float t656 = t639 - t655;
+    const float t667 = t247 * t666;
+    const float t668 = t656 - t667;
+    const float t676 = t345 * t675;
+    const float t677 = t668 - t676;
+    const float t678 = t227 * t677;
+    const float t679 = t132 * t448;
+    const float t680 = t160 * t517;
+    const float t681 = t679 + t680;
+    const float t682 = t228 * t681;
+    const float t683 = t678 + t682;
+    const float t722 = t274 * t721;
+    const float t742 = t308 * t741;
+    const float t743 = t722 - t742;
+    const float t759 = t247 * t758;
+    const float t760 = t743 - t759;
+    const float t771 = t345 * t770;
+    const float t772 = t760 - t771;
+    const float t773 = t227 * t772;
+    const float t775 = t774 * t448;
+    const float t776 = t268 * t517;
+    const float t777 = t775 + t776;
+    const float t778 = t228 * t777;
+    const float t779 = t773 + t778;
+    const float t804 = t774 * t228;
+    const float t805 = 1.0f + t804;
+    const float t806 = t267 * t805;
+    const float t802 = a_2_dot * l_1;
+    const float t803 = t16 * t802;
+    const float t809 = t98 * t228;
+    const float t807 = t55 * t806;
+    const float t808 = t803 + t807;
+    const float t810 = t239 * t809;
+    const float t811 = t808 - t810;
+    const float t813 = t15 * t802;
+    const float t814 = t59 * t806;
+    const float t815 = t813 + t814;
+    const float t816 = t306 * t809;
+    const float t817 = t815 - t816;
+    const float t795 = t132 * t230;
+    const float t796 = t235 * t248;
+    const float t797 = t98 * t238;
+    const float t798 = t796 - t797;
+    const float t799 = t795 + t798;
+    const float t821 = t132 * t335;
+    const float t822 = t248 * t339;
+    const float t823 = t98 * t301;
+    const float t824 = t822 - t823;
+    const float t825 = t821 + t824;
+    const float t800 = t266 * t799;
+    const float t826 = t266 * t825;
+    const float t830 = t371 * t826;
+    const float t831 = t386 * t800;
+    const float t832 = t415 * t817;
+    const float t833 = t443 * t811;
+    const float t834 = t832 - t833;
+    const float t835 = t831 + t834;
+    const float t836 = t830 + t835;
+    const float t837 = t227 * t836;
+    const float t839 = t466 * t826;
+    const float t840 = t484 * t811;
+    const float t841 = t500 * t817;
+    const float t842 = t840 + t841;
+    const float t843 = t513 * t800;
+    const float t844 = t842 - t843;
+    const float t845 = t839 + t844;
+    const float t846 = t227 * t845;
+    const float t801 = t264 * t800;
+    const float t812 = t298 * t811;
+    const float t818 = t331 * t817;
+    const float t819 = t812 - t818;
+    const float t820 = t801 + t819;
+    const float t827 = t352 * t826;
+    const float t828 = t820 - t827;
+    const float t829 = t227 * t828;
+    const float t838 = t98 * t837;
+    const float t847 = t101 * t846;
+    const float t848 = t838 + t847;
+    const float t849 = t228 * t848;
+    const float t850 = t829 + t849;
+    const float t853 = t68 * t837;
+    const float t854 = t93 * t846;
+    const float t855 = t853 + t854;
+    const float t856 = t228 * t855;
+    const float t857 = t575 * t826;
+    const float t858 = t592 * t811;
+    const float t859 = t604 * t817;
+    const float t860 = t858 + t859;
+    const float t861 = t618 * t800;
+    const float t862 = t860 - t861;
+    const float t863 = t857 + t862;
+    const float t864 = t227 * t863;
+    const float t865 = t856 - t864;
+    const float t867 = t638 * t811;
+    const float t868 = t654 * t817;
+    const float t869 = t867 - t868;
+    const float t870 = t666 * t800;
+    const float t871 = t869 - t870;
+    const float t872 = t675 * t826;
+    const float t873 = t871 - t872;
+    const float t874 = t227 * t873;
+    const float t875 = t132 * t837;
+    const float t876 = t160 * t846;
+    const float t877 = t875 + t876;
+    const float t878 = t228 * t877;
+    const float t879 = t874 + t878;
+    const float t895 = t721 * t811;
+    const float t896 = t741 * t817;
+    const float t897 = t895 - t896;
+    const float t898 = t758 * t800;
+    const float t899 = t897 - t898;
+    const float t900 = t770 * t826;
+    const float t901 = t899 - t900;
+    const float t902 = t227 * t901;
+    const float t903 = t774 * t837;
+    const float t904 = t268 * t846;
+    const float t905 = t903 + t904;
+    const float t906 = t228 * t905;
+    const float t907 = t902 + t906;
+    const float m_2 = p->m_2;
+    const float t536 = l_1 * m_2;
+    const float t537 = l_2 * t536;
+    const float t686 = t537 * t11;
+    const float t687 = 0.5f * b_3_dot;
+    const float t688 = t686 * t687;
+    const float t690 = m_2 * t214;
+    const float t691 = 0.5f * t690;
+    const float t692 = t11 * t691;
+    const float t693 = t687 + t687;
+    const float t694 = a_3_dot + t693;
+    const float t695 = t692 * t694;
+    const float t689 = t688 * t93;
+    const float t696 = t695 * t160;
+    const float t697 = t689 + t696;
+    const float t882 = t688 * t68;
+    const float t883 = t695 * t132;
+    const float t884 = t882 + t883;
+    const float t783 = a_3_dot * t686;
+    const float t784 = 0.5f * t783;
+    const float t785 = t784 * t228;
+    const float t222 = 0.5f * m_2;
+    const float coupling = 0.5f * t537;
+    const float t219 = m_2 * t34;
+    const float t220 = 0.25f * t219;
+    const float J_2 = p->J_2;
+    const float J_elbow = J_2 + t220;
+    const float t538 = coupling * t12;
+    const float t539 = J_elbow + t538;
+    const float J_1 = p->J_1;
+    const float J_motor = p->J_motor;
+    const float t540 = J_1 + J_motor;
+    const float m_1 = p->m_1;
+    const float t541 = l_1 * m_1;
+    const float t542 = 0.25f * t541;
+    const float t543 = t536 + t542;
+    const float t544 = t12 * t222;
+    const float t545 = l_2 * t544;
+    const float t546 = t543 + t545;
+    const float t547 = l_1 * t546;
+    const float t548 = t540 + t547;
+    const float t549 = t539 + t548;
+    const float t624 = t549 * t623;
+    const float t684 = t539 * t683;
+    const float t685 = t624 + t684;
+    const float t698 = t228 * t697;
+    const float t699 = t685 - t698;
+    const float t786 = t93 * t785;
+    const float t787 = t539 * t623;
+    const float t788 = J_elbow * t683;
+    const float t789 = t787 + t788;
+    const float t790 = t786 + t789;
+    const float t866 = t549 * t865;
+    const float t880 = t539 * t879;
+    const float t881 = t866 + t880;
+    const float t885 = t228 * t884;
+    const float t886 = t881 - t885;
+    const float t912 = t68 * t785;
+    const float t913 = t539 * t865;
+    const float t914 = J_elbow * t879;
+    const float t915 = t913 + t914;
+    const float t916 = t912 + t915;
+    const float m_payload = p->m_payload;
+    const float t223 = m_payload + t222;
+    const float t224 = t214 * t223;
+    const float t221 = m_payload * t34;
+    const float J_elbow_1 = J_elbow + t221;
+    const float t523 = t7 * t224;
+    const float t225 = t8 * t224;
+    const float t226 = J_elbow_1 + t225;
+    const float t531 = a_1_dot * t523;
+    const float t532 = J_elbow_1 * t521;
+    const float t533 = t531 + t532;
+    const float t524 = b_1_dot * t523;
+    const float t526 = 2.0f * a_1_dot;
+    const float t527 = b_1_dot + b_1_dot;
+    const float t528 = t526 + t527;
+    const float t529 = t523 * t528;
+    const float t530 = 0.5f * t529;
+    const float t780 = J_elbow * t779;
+    const float t522 = t226 * t521;
+    const float t525 = t522 - t524;
+    const float t534 = t530 - t533;
+    const float t535 = t101 * t534;
+    const float t700 = t93 * t699;
+    const float t701 = t535 - t700;
+    const float t781 = t268 * t780;
+    const float t782 = t701 - t781;
+    const float t791 = t160 * t790;
+    const float t792 = t782 - t791;
+    const float t793 = t228 * t792;
+    const float t794 = t525 - t793;
+    float rest = t794 - t794;
+    const float t852 = t530 * t98;
+    const float t889 = J_elbow_1 * t850;
+    const float t892 = t537 * t17;
+    const float t893 = a_2_dot * t892;
+    const float t894 = 0.5f * t893;
+    const float t908 = J_elbow * t907;
+    const float t909 = t894 + t908;
+    const float t851 = t226 * t850;
+    const float t887 = t93 * t886;
+    const float t888 = t852 - t887;
+    const float t890 = t101 * t889;
+    const float t891 = t888 - t890;
+    const float t910 = t268 * t909;
+    const float t911 = t891 - t910;
+    const float t917 = t160 * t916;
+    const float t918 = t911 - t917;
+    const float t919 = t228 * t918;
+    const float t920 = t851 - t919;
+    rest *= t920;
+    const float t921 = coupling * t18;
+    const float t922 = J_elbow + t921;
+    const float t925 = 0.5f * b_2_dot;
+    const float t941 = t892 * t925;
+    const float t924 = t17 * t691;
+    const float t926 = t925 + t925;
+    const float t927 = a_2_dot + t926;
+    const float t928 = t924 * t927;
+    const float t940 = t922 * t907;
+    const float t942 = t940 - t941;
+    const float t943 = t928 - t909;
+    const float t944 = t774 * t943;
+    const float t945 = t68 * t886;
+    const float t946 = t944 - t945;
+    const float t947 = t98 * t889;
+    const float t948 = t946 - t947;
+    const float t949 = t132 * t916;
+    const float t950 = t948 - t949;
+    const float t951 = t228 * t950;
+    const float t952 = t942 - t951;
+    rest *= t952;
+    const float t929 = t928 * t268;
+    const float t923 = t922 * t779;
+    const float t930 = t68 * t699;
+    const float t931 = t929 - t930;
+    const float t932 = t98 * t533;
+    const float t933 = t931 - t932;
+    const float t934 = t774 * t780;
+    const float t935 = t933 - t934;
+    const float t936 = t132 * t790;
+    const float t937 = t935 - t936;
+    const float t938 = t228 * t937;
+    const float t939 = t923 - t938;
+    rest += t939 - t939;
     if (RAPKM_2RRR_RR_RARELY_F(isnan(rest) != 0)) {
         return RAPKM_2RRR_RR_NOT_FINITE;
     }
-    C_bar[0] = v[7];
-    C_bar[1] = v[9];
-    C_bar[2] = v[10];
-    C_bar[3] = v[11];
+    C_bar[0] = t794;
+    C_bar[1] = t920;
+    C_bar[2] = t939;
+    C_bar[3] = t952;
     return RAPKM_2RRR_RR_OK;
 }
 
@@ -9957,18 +9690,20 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix_f(const float q[6], co
     float sine[8];
     float cosine[8];
     rapkm_2rrr_rr_sincos_group_f(6, angle, sine, cosine);
-    const float l_1 = p->l_1;
     const float l_2 = p->l_2;
-    const float t19 = l_1 * l_2;
-    const float t20 = l_2 * t19;
-    const float t21 = l_2 * t20;
-    const float t9 = sine[1];
-    const float t12 = cosine[2];
-    const float t22 = t9 * t12;
+    const float t51 = l_2 * l_2;
     const float t10 = cosine[1];
+    const float t12 = cosine[2];
+    const float t29 = t10 * t12;
+    const float t9 = sine[1];
     const float t11 = sine[2];
+    const float t30 = t9 * t11;
+    const float t31 = t29 - t30;
+    const float t53 = t31 * t31;
+    const float t22 = t9 * t12;
     const float t23 = t10 * t11;
     const float t24 = t22 + t23;
+    const float t69 = t24 * t24;
     const float t14 = cosine[3];
     const float t16 = cosine[4];
     const float t25 = t14 * t16;
@@ -9976,98 +9711,103 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix_f(const float q[6], co
     const float t15 = sine[4];
     const float t26 = t13 * t15;
     const float t27 = t25 - t26;
-    const float t28 = t24 * t27;
-    const float t29 = t10 * t12;
-    const float t30 = t9 * t11;
-    const float t31 = t29 - t30;
     const float t32 = t14 * t15;
     const float t33 = t13 * t16;
     const float t34 = t32 + t33;
-    const float t35 = t31 * t34;
-    const float t36 = t28 - t35;
-    const float t7 = sine[0];
-    const float t37 = t7 * t36;
-    const float t38 = t21 * t37;
-    const float t39 = t38 * t38;
     const float t18 = cosine[5];
     const float t8 = cosine[0];
-    const float t40 = t18 * t8;
+    const float t41 = t18 * t8;
     const float t17 = sine[5];
-    const float t41 = t17 * t7;
-    const float t42 = t40 - t41;
-    const float t43 = l_2 * t42;
-    const float t44 = t43 * t43;
-    const float t45 = l_1 * t18;
-    const float t46 = t45 + t43;
-    const float t47 = t46 * t46;
-    const float t48 = l_1 * t10;
-    const float t49 = l_2 * t31;
-    const float t50 = t48 + t49;
-    const float t51 = t50 * t50;
-    const float t52 = t49 * t49;
-    const float t53 = t51 + t52;
-    const float t54 = t47 + t53;
-    const float t55 = t44 + t54;
-    const float t56 = l_1 * t17;
-    const float t57 = t18 * t7;
-    const float t58 = t17 * t8;
-    const float t59 = t57 + t58;
-    const float t60 = l_2 * t59;
-    const float t61 = t56 + t60;
-    const float t62 = t61 * t61;
-    const float t63 = t60 * t60;
-    const float t64 = l_1 * t9;
-    const float t65 = l_2 * t24;
-    const float t66 = t64 + t65;
-    const float t67 = t66 * t66;
-    const float t68 = t65 * t65;
-    const float t69 = t67 + t68;
-    const float t70 = t63 + t69;
-    const float t71 = t62 + t70;
-    const float t72 = l_2 * t34;
-    const float t73 = t72 * t72;
-    const float t74 = l_1 * t13;
-    const float t75 = t74 + t72;
-    const float t76 = t75 * t75;
-    const float t77 = t69 + t76;
-    const float t78 = t73 + t77;
-    const float t79 = l_2 * t27;
-    const float t80 = t79 * t79;
-    const float t81 = l_1 * t14;
-    const float t82 = t81 + t79;
-    const float t83 = t82 * t82;
-    const float t84 = t53 + t83;
-    const float t85 = t80 + t84;
-    const float t86 = t78 * t85;
-    const float t87 = t71 * t86;
-    const float t88 = t55 * t87;
-    const float t89 = 2.2737368e-13f * t88;
-    if (RAPKM_2RRR_RR_RARELY_F(!(t39 > t89))) {
+    const float t7 = sine[0];
+    const float t42 = t17 * t7;
+    const float t43 = t41 - t42;
+    const float t59 = t18 * t7;
+    const float t60 = t17 * t8;
+    const float t61 = t59 + t60;
+    const float l_1 = p->l_1;
+    const float t47 = l_1 * t10;
+    const float t48 = l_2 * t31;
+    const float t49 = t47 + t48;
+    const float t50 = t49 * t49;
+    const float t65 = l_1 * t9;
+    const float t66 = l_2 * t24;
+    const float t67 = t65 + t66;
+    const float t68 = t67 * t67;
+    const float t40 = l_1 * t18;
+    const float t44 = l_2 * t43;
+    const float t45 = t40 + t44;
+    const float t46 = t45 * t45;
+    const float t52 = t43 * t43;
+    const float t54 = t52 + t53;
+    const float t55 = t51 * t54;
+    const float t56 = t50 + t55;
+    const float t57 = t46 + t56;
+    const float t58 = l_1 * t17;
+    const float t62 = l_2 * t61;
+    const float t63 = t58 + t62;
+    const float t64 = t63 * t63;
+    const float t70 = t61 * t61;
+    const float t71 = t69 + t70;
+    const float t72 = t51 * t71;
+    const float t73 = t68 + t72;
+    const float t74 = t64 + t73;
+    const float t75 = l_1 * t13;
+    const float t76 = l_2 * t34;
+    const float t77 = t75 + t76;
+    const float t78 = t77 * t77;
+    const float t79 = t68 + t78;
+    const float t80 = t34 * t34;
+    const float t81 = t69 + t80;
+    const float t82 = t51 * t81;
+    const float t83 = t79 + t82;
+    const float t84 = l_1 * t14;
+    const float t85 = l_2 * t27;
+    const float t86 = t84 + t85;
+    const float t87 = t86 * t86;
+    const float t88 = t50 + t87;
+    const float t89 = t27 * t27;
+    const float t90 = t53 + t89;
+    const float t91 = t51 * t90;
+    const float t92 = t88 + t91;
+    const float t93 = t83 * t92;
+    const float t94 = t74 * t93;
+    const float t95 = t57 * t94;
+    const float t96 = 2.2737368e-13f * t95;
+    const float t28 = t24 * t27;
+    const float t35 = t31 * t34;
+    const float t36 = t28 - t35;
+    const float t37 = t7 * t36;
+    const float t98 = t43 * t34;
+    const float t99 = t61 * t27;
+    const float t100 = t98 - t99;
+    const float t101 = t11 * t100;
+    const float t104 = t24 * t43;
+    const float t105 = t31 * t61;
+    const float t106 = t104 - t105;
+    const float t107 = t15 * t106;
+    const float t19 = l_1 * l_2;
+    const float t20 = l_2 * t19;
+    const float t21 = l_2 * t20;
+    const float t38 = t21 * t37;
+    const float t39 = t38 * t38;
+    if (RAPKM_2RRR_RR_RARELY_F(!(t39 > t96))) {
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
-    const float t90 = 1.0f / t37;
-    const float t91 = t42 * t34;
-    const float t92 = t59 * t27;
-    const float t93 = t91 - t92;
-    const float t94 = t11 * t93;
-    const float t95 = t90 * t94;
-    const float t96 = -t95;
-    float rest = t96 - t96;
-    const float t97 = t24 * t42;
-    const float t98 = t31 * t59;
-    const float t99 = t97 - t98;
-    const float t100 = t15 * t99;
-    const float t101 = t90 * t100;
-    rest *= t101;
+    const float t97 = 1.0f / t37;
+    const float t108 = t97 * t107;
+    float rest = t108 - t108;
+    const float t102 = t97 * t101;
+    const float t103 = -t102;
+    rest *= t103;
     if (RAPKM_2RRR_RR_RARELY_F(isnan(rest) != 0)) {
         return RAPKM_2RRR_RR_NOT_FINITE;
     }
     M_bar[0] = 1.0f;
     M_bar[1] = 0.0f;
-    M_bar[2] = t96;
+    M_bar[2] = t103;
     M_bar[3] = 0.0f;
     M_bar[4] = 1.0f;
-    M_bar[5] = t101;
+    M_bar[5] = t108;
     return RAPKM_2RRR_RR_OK;
 }
 
@@ -11870,23 +11610,23 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     const float t22 = l_2 * t21;
     const float t23 = t22 * t22;
     const float l_1 = p->l_1;
+    const float t24 = l_1 * t13;
+    const float t25 = t24 + t22;
+    const float t26 = t25 * t25;
     const float t9 = sine[1];
-    const float t24 = l_1 * t9;
+    const float t27 = l_1 * t9;
     const float t8 = cosine[0];
-    const float t25 = t9 * t8;
+    const float t28 = t9 * t8;
     const float t10 = cosine[1];
     const float t7 = sine[0];
-    const float t26 = t10 * t7;
-    const float t27 = t25 + t26;
-    const float t28 = l_2 * t27;
-    const float t29 = t24 + t28;
-    const float t30 = t29 * t29;
-    const float t31 = t28 * t28;
-    const float t32 = t30 + t31;
-    const float t33 = l_1 * t13;
-    const float t34 = t33 + t22;
-    const float t35 = t34 * t34;
-    const float t36 = t32 + t35;
+    const float t29 = t10 * t7;
+    const float t30 = t28 + t29;
+    const float t31 = l_2 * t30;
+    const float t32 = t27 + t31;
+    const float t33 = t32 * t32;
+    const float t34 = t31 * t31;
+    const float t35 = t33 + t34;
+    const float t36 = t26 + t35;
     const float t37 = t23 + t36;
     if (RAPKM_2RRR_RR_RARELY_F(!(t37 > 0.0f))) {
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
@@ -11898,7 +11638,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     const float t42 = l_2 * t41;
     const float t43 = t38 + t42;
     const float t44 = sqrtf(t37);
-    const float t45 = fabsf(t29);
+    const float t45 = fabsf(t32);
     const float t46 = t44 + t45;
     const float t47 = t44 * t46;
     const float t48 = 1.0f / t47;
@@ -11908,21 +11648,21 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     const float t52 = t50 - t51;
     const float t53 = l_2 * t52;
     const float t54 = t49 + t53;
-    const float t55 = -t29;
+    const float t55 = -t32;
     const float t56 = copysignf(t44, t55);
-    const float t57 = t56 - t29;
+    const float t57 = t56 - t32;
     const float t58 = t54 * t57;
-    const float t59 = t28 * t53;
+    const float t59 = t31 * t53;
     const float t60 = t58 - t59;
-    const float t61 = t34 * t43;
+    const float t61 = t25 * t43;
     const float t62 = t60 - t61;
     const float t63 = t22 * t42;
     const float t64 = t62 - t63;
     const float t65 = t48 * t64;
-    const float t66 = t34 * t65;
+    const float t66 = t25 * t65;
     const float t67 = t43 + t66;
     const float t68 = t67 * t67;
-    const float t69 = t28 * t65;
+    const float t69 = t31 * t65;
     const float t70 = t53 + t69;
     const float t71 = t70 * t70;
     const float t72 = t68 + t71;
@@ -11931,11 +11671,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     const float t75 = t74 * t74;
     const float t76 = t72 + t75;
     const float t77 = t42 * t42;
-    const float t78 = t54 * t54;
-    const float t79 = t53 * t53;
-    const float t80 = t78 + t79;
-    const float t81 = t43 * t43;
-    const float t82 = t80 + t81;
+    const float t78 = t43 * t43;
+    const float t79 = t54 * t54;
+    const float t80 = t53 * t53;
+    const float t81 = t79 + t80;
+    const float t82 = t78 + t81;
     const float t83 = t77 + t82;
     const float t84 = 8.185452e-12f * t83;
     if (RAPKM_2RRR_RR_RARELY_F(!(t76 > t84))) {
@@ -11946,18 +11686,18 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     const float t87 = t85 + t86;
     const float t88 = t85 * t87;
     const float t89 = 1.0f / t88;
-    const float t90 = t29 * t57;
-    const float t91 = t31 - t90;
+    const float t90 = t32 * t57;
+    const float t91 = t34 - t90;
     const float t92 = t48 * t91;
     const float t93 = t22 * t92;
     const float t94 = t74 * t93;
-    const float t95 = t28 * t92;
-    const float t96 = t95 - t28;
+    const float t95 = t31 * t92;
+    const float t96 = t95 - t31;
     const float t97 = t70 * t96;
     const float t98 = -t67;
     const float t99 = copysignf(t85, t98);
     const float t100 = t99 - t67;
-    const float t101 = t34 * t100;
+    const float t101 = t25 * t100;
     const float t102 = t101 * t92;
     const float t103 = t97 - t102;
     const float t104 = t94 + t103;
@@ -11983,13 +11723,13 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     const float t120 = t119 * t119;
     const float t121 = t117 + t120;
     const float t122 = t108 + t121;
-    const float t123 = t32 + t117;
+    const float t123 = t35 + t117;
     const float t124 = 8.185452e-12f * t123;
     if (RAPKM_2RRR_RR_RARELY_F(!(t122 > t124))) {
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
     const float t125 = t48 * t60;
-    const float t126 = t28 * t125;
+    const float t126 = t31 * t125;
     const float t127 = t53 + t126;
     const float t128 = t22 * t125;
     const float t129 = t74 * t128;
@@ -12035,7 +11775,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     const float t169 = t165 + t168;
     const float t170 = t142 * t142;
     const float t171 = t143 * t143;
-    const float t172 = t171 + t80;
+    const float t172 = t171 + t81;
     const float t173 = t170 + t172;
     const float t174 = 8.185452e-12f * t173;
     if (RAPKM_2RRR_RR_RARELY_F(!(t169 > t174))) {
@@ -12135,11 +11875,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     if (RAPKM_2RRR_RR_RARELY_F(!(t237 > t242))) {
         return RAPKM_2RRR_RR_MASS_RANK;
     }
-    const float t243 = t28 * t234;
-    const float t244 = t243 - t24;
+    const float t243 = t31 * t234;
+    const float t244 = t243 - t27;
     const float t245 = 1.0f / J_elbow_1;
-    const float t246 = t28 * t245;
-    const float t247 = t28 * t246;
+    const float t246 = t31 * t245;
+    const float t247 = t31 * t246;
     const float t248 = 1.0f / t236;
     const float t249 = t248 * t244;
     const float t250 = t244 * t249;
@@ -12149,7 +11889,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     const float t254 = t22 * t253;
     const float t255 = t254 + t251;
     const float t256 = t225 * t22;
-    const float t257 = t33 - t256;
+    const float t257 = t24 - t256;
     const float t258 = 1.0f / t227;
     const float t259 = t258 * t257;
     const float t260 = t257 * t259;
@@ -12176,7 +11916,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     const float t281 = t42 + t280;
     const float t282 = t252 * t281;
     const float t283 = t281 * t282;
-    const float t284 = t28 * t277;
+    const float t284 = t31 * t277;
     const float t285 = t53 + t284;
     const float t286 = t245 * t285;
     const float t287 = t285 * t286;
@@ -12192,8 +11932,8 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     const float t297 = 1.0f / t296;
     const float t298 = t22 * t263;
     const float t299 = t282 * t298;
-    const float t300 = t28 * t263;
-    const float t301 = t300 - t28;
+    const float t300 = t31 * t263;
+    const float t301 = t300 - t31;
     const float t302 = t286 * t301;
     const float t303 = t299 + t302;
     const float t304 = t257 * t263;
@@ -12238,7 +11978,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     const float t343 = t262 * t342;
     const float t344 = t22 * t343;
     const float t345 = t282 * t344;
-    const float t346 = t28 * t343;
+    const float t346 = t31 * t343;
     const float t347 = t53 + t346;
     const float t348 = t286 * t347;
     const float t349 = t345 + t348;
@@ -12370,7 +12110,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     const float t466 = t465 * t262;
     const float t467 = t244 * t466;
     const float t468 = t447 - t467;
-    const float t469 = t28 * t466;
+    const float t469 = t31 * t466;
     const float t470 = t445 + t469;
     const float t471 = t286 * t470;
     const float t472 = t22 * t466;
@@ -12450,7 +12190,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     const float t543 = a_1_dot * l_1;
     const float t544 = a_1_dot * t543;
     const float t545 = t9 * t544;
-    const float t546 = t438 * t28;
+    const float t546 = t438 * t31;
     const float t547 = t438 * t546;
     const float t548 = t545 + t547;
     const float t549 = t542 - t548;
@@ -12521,12 +12261,12 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     const float t614 = t277 * t613;
     const float t615 = t607 - t614;
     const float t616 = t615 + t605;
-    const float t617 = t24 * t616;
+    const float t617 = t27 * t616;
     const float t618 = t613 + t586;
     const float t619 = t49 * t618;
     const float t620 = t443 - t619;
     const float t621 = t617 + t620;
-    const float t622 = t28 * t616;
+    const float t622 = t31 * t616;
     const float t623 = t53 * t618;
     const float t624 = t445 - t623;
     const float t625 = t622 + t624;
@@ -12547,7 +12287,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     const float t640 = t638 - t639;
     const float t641 = t632 - t640;
     const float t642 = t253 * t641;
-    const float t643 = t28 * t595;
+    const float t643 = t31 * t595;
     const float t644 = t387 * t586;
     const float t645 = t525 - t644;
     const float t646 = t319 * t589;
@@ -12558,7 +12298,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     const float t651 = t625 - t650;
     const float t652 = t246 * t651;
     const float t653 = t642 - t652;
-    const float t654 = t33 * t615;
+    const float t654 = t24 * t615;
     const float t655 = t38 * t613;
     const float t656 = t654 - t655;
     const float t657 = t460 - t656;
@@ -12580,7 +12320,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     const float t673 = t262 * t672;
     const float t674 = t244 * t673;
     const float t675 = t628 - t674;
-    const float t676 = t28 * t673;
+    const float t676 = t31 * t673;
     const float t677 = t651 + t676;
     const float t678 = t286 * t677;
     const float t679 = t22 * t673;
@@ -12662,14 +12402,14 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     const float t755 = t225 * t754;
     const float t756 = t753 - t755;
     const float t757 = t22 * t756;
-    const float t758 = t33 * t754;
+    const float t758 = t24 * t754;
     const float t759 = t566 + t758;
     const float t760 = t248 * t597;
-    const float t761 = t24 * t760;
+    const float t761 = t27 * t760;
     const float t762 = t245 * t650;
     const float t763 = t234 * t760;
     const float t764 = t762 - t763;
-    const float t765 = t28 * t764;
+    const float t765 = t31 * t764;
     const float t766 = t761 + t765;
     const float t767 = t759 - t766;
     const float t768 = t757 + t767;
@@ -12742,7 +12482,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     const float t833 = t719 + t832;
     const float t834 = t330 * t833;
     rest *= t834;
-    const float t835 = t28 * t814;
+    const float t835 = t31 * t814;
     const float t836 = t387 * t804;
     const float t837 = t740 - t836;
     const float t838 = t319 * t807;
@@ -12839,23 +12579,23 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
     const float t22 = l_2 * t21;
     const float t23 = t22 * t22;
     const float l_1 = p->l_1;
+    const float t24 = l_1 * t7;
+    const float t25 = t24 + t22;
+    const float t26 = t25 * t25;
     const float t11 = sine[2];
-    const float t24 = l_1 * t11;
+    const float t27 = l_1 * t11;
     const float t14 = cosine[3];
-    const float t25 = t11 * t14;
+    const float t28 = t11 * t14;
     const float t12 = cosine[2];
     const float t13 = sine[3];
-    const float t26 = t12 * t13;
-    const float t27 = t25 + t26;
-    const float t28 = l_2 * t27;
-    const float t29 = t24 + t28;
-    const float t30 = t29 * t29;
-    const float t31 = t28 * t28;
-    const float t32 = t30 + t31;
-    const float t33 = l_1 * t7;
-    const float t34 = t33 + t22;
-    const float t35 = t34 * t34;
-    const float t36 = t32 + t35;
+    const float t29 = t12 * t13;
+    const float t30 = t28 + t29;
+    const float t31 = l_2 * t30;
+    const float t32 = t27 + t31;
+    const float t33 = t32 * t32;
+    const float t34 = t31 * t31;
+    const float t35 = t33 + t34;
+    const float t36 = t26 + t35;
     const float t37 = t23 + t36;
     if (RAPKM_2RRR_RR_RARELY_F(!(t37 > 0.0f))) {
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
@@ -12867,7 +12607,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
     const float t42 = l_2 * t41;
     const float t43 = t38 + t42;
     const float t44 = sqrtf(t37);
-    const float t45 = fabsf(t29);
+    const float t45 = fabsf(t32);
     const float t46 = t44 + t45;
     const float t47 = t44 * t46;
     const float t48 = 1.0f / t47;
@@ -12877,21 +12617,21 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
     const float t52 = t50 - t51;
     const float t53 = l_2 * t52;
     const float t54 = t49 + t53;
-    const float t55 = -t29;
+    const float t55 = -t32;
     const float t56 = copysignf(t44, t55);
-    const float t57 = t56 - t29;
+    const float t57 = t56 - t32;
     const float t58 = t54 * t57;
-    const float t59 = t28 * t53;
+    const float t59 = t31 * t53;
     const float t60 = t58 - t59;
-    const float t61 = t34 * t43;
+    const float t61 = t25 * t43;
     const float t62 = t60 - t61;
     const float t63 = t22 * t42;
     const float t64 = t62 - t63;
     const float t65 = t48 * t64;
-    const float t66 = t34 * t65;
+    const float t66 = t25 * t65;
     const float t67 = t43 + t66;
     const float t68 = t67 * t67;
-    const float t69 = t28 * t65;
+    const float t69 = t31 * t65;
     const float t70 = t53 + t69;
     const float t71 = t70 * t70;
     const float t72 = t68 + t71;
@@ -12900,11 +12640,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
     const float t75 = t74 * t74;
     const float t76 = t72 + t75;
     const float t77 = t42 * t42;
-    const float t78 = t54 * t54;
-    const float t79 = t53 * t53;
-    const float t80 = t78 + t79;
-    const float t81 = t43 * t43;
-    const float t82 = t80 + t81;
+    const float t78 = t43 * t43;
+    const float t79 = t54 * t54;
+    const float t80 = t53 * t53;
+    const float t81 = t79 + t80;
+    const float t82 = t78 + t81;
     const float t83 = t77 + t82;
     const float t84 = 8.185452e-12f * t83;
     if (RAPKM_2RRR_RR_RARELY_F(!(t76 > t84))) {
@@ -12915,18 +12655,18 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
     const float t87 = t85 + t86;
     const float t88 = t85 * t87;
     const float t89 = 1.0f / t88;
-    const float t90 = t29 * t57;
-    const float t91 = t31 - t90;
+    const float t90 = t32 * t57;
+    const float t91 = t34 - t90;
     const float t92 = t48 * t91;
     const float t93 = t22 * t92;
     const float t94 = t74 * t93;
-    const float t95 = t28 * t92;
-    const float t96 = t95 - t28;
+    const float t95 = t31 * t92;
+    const float t96 = t95 - t31;
     const float t97 = t70 * t96;
     const float t98 = -t67;
     const float t99 = copysignf(t85, t98);
     const float t100 = t99 - t67;
-    const float t101 = t34 * t100;
+    const float t101 = t25 * t100;
     const float t102 = t101 * t92;
     const float t103 = t97 - t102;
     const float t104 = t94 + t103;
@@ -12952,13 +12692,13 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
     const float t120 = t119 * t119;
     const float t121 = t117 + t120;
     const float t122 = t108 + t121;
-    const float t123 = t32 + t117;
+    const float t123 = t35 + t117;
     const float t124 = 8.185452e-12f * t123;
     if (RAPKM_2RRR_RR_RARELY_F(!(t122 > t124))) {
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
     const float t125 = t48 * t60;
-    const float t126 = t28 * t125;
+    const float t126 = t31 * t125;
     const float t127 = t53 + t126;
     const float t128 = t22 * t125;
     const float t129 = t74 * t128;
@@ -13004,7 +12744,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
     const float t169 = t165 + t168;
     const float t170 = t142 * t142;
     const float t171 = t143 * t143;
-    const float t172 = t171 + t80;
+    const float t172 = t171 + t81;
     const float t173 = t170 + t172;
     const float t174 = 8.185452e-12f * t173;
     if (RAPKM_2RRR_RR_RARELY_F(!(t169 > t174))) {
@@ -13104,11 +12844,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
     if (RAPKM_2RRR_RR_RARELY_F(!(t237 > t242))) {
         return RAPKM_2RRR_RR_MASS_RANK;
     }
-    const float t243 = t28 * t234;
-    const float t244 = t243 - t24;
+    const float t243 = t31 * t234;
+    const float t244 = t243 - t27;
     const float t245 = 1.0f / J_elbow_1;
-    const float t246 = t28 * t245;
-    const float t247 = t28 * t246;
+    const float t246 = t31 * t245;
+    const float t247 = t31 * t246;
     const float t248 = 1.0f / t236;
     const float t249 = t248 * t244;
     const float t250 = t244 * t249;
@@ -13118,7 +12858,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
     const float t254 = t22 * t253;
     const float t255 = t254 + t251;
     const float t256 = t225 * t22;
-    const float t257 = t33 - t256;
+    const float t257 = t24 - t256;
     const float t258 = 1.0f / t227;
     const float t259 = t258 * t257;
     const float t260 = t257 * t259;
@@ -13145,7 +12885,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
     const float t281 = t42 + t280;
     const float t282 = t252 * t281;
     const float t283 = t281 * t282;
-    const float t284 = t28 * t277;
+    const float t284 = t31 * t277;
     const float t285 = t53 + t284;
     const float t286 = t245 * t285;
     const float t287 = t285 * t286;
@@ -13161,8 +12901,8 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
     const float t297 = 1.0f / t296;
     const float t298 = t22 * t263;
     const float t299 = t282 * t298;
-    const float t300 = t28 * t263;
-    const float t301 = t300 - t28;
+    const float t300 = t31 * t263;
+    const float t301 = t300 - t31;
     const float t302 = t286 * t301;
     const float t303 = t299 + t302;
     const float t304 = t257 * t263;
@@ -13207,7 +12947,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
     const float t343 = t262 * t342;
     const float t344 = t22 * t343;
     const float t345 = t282 * t344;
-    const float t346 = t28 * t343;
+    const float t346 = t31 * t343;
     const float t347 = t53 + t346;
     const float t348 = t286 * t347;
     const float t349 = t345 + t348;
@@ -13355,7 +13095,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
     const float t482 = t465 * t262;
     const float t483 = t22 * t482;
     const float t484 = t453 - t483;
-    const float t485 = t28 * t482;
+    const float t485 = t31 * t482;
     const float t486 = t445 + t485;
     const float t487 = t286 * t486;
     const float t488 = t282 * t484;
@@ -13432,7 +13172,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
     const float t556 = a_3_dot * t555;
     const float t557 = t15 * t556;
     const float t558 = t11 * t472;
-    const float t559 = t438 * t28;
+    const float t559 = t438 * t31;
     const float t560 = t438 * t559;
     const float t561 = t558 + t560;
     const float t562 = t557 - t561;
@@ -13496,12 +13236,12 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
     const float t620 = t608 - t619;
     const float t621 = t253 * t620;
     const float t622 = t604 + t594;
-    const float t623 = t28 * t622;
+    const float t623 = t31 * t622;
     const float t624 = t602 + t588;
     const float t625 = t53 * t624;
     const float t626 = t445 - t625;
     const float t627 = t623 + t626;
-    const float t628 = t28 * t617;
+    const float t628 = t31 * t617;
     const float t629 = t387 * t588;
     const float t630 = t538 - t629;
     const float t631 = t319 * t613;
@@ -13512,7 +13252,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
     const float t636 = t627 - t635;
     const float t637 = t246 * t636;
     const float t638 = t621 - t637;
-    const float t639 = t33 * t604;
+    const float t639 = t24 * t604;
     const float t640 = t38 * t602;
     const float t641 = t639 - t640;
     const float t642 = t460 - t641;
@@ -13529,7 +13269,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
     const float t653 = t644 - t652;
     const float t654 = t259 * t653;
     const float t655 = t638 + t654;
-    const float t656 = t24 * t622;
+    const float t656 = t27 * t622;
     const float t657 = t49 * t624;
     const float t658 = t443 - t657;
     const float t659 = t656 + t658;
@@ -13551,14 +13291,14 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
     const float t675 = t225 * t674;
     const float t676 = t673 - t675;
     const float t677 = t22 * t676;
-    const float t678 = t33 * t674;
+    const float t678 = t24 * t674;
     const float t679 = t478 + t678;
     const float t680 = t248 * t669;
-    const float t681 = t24 * t680;
+    const float t681 = t27 * t680;
     const float t682 = t245 * t635;
     const float t683 = t234 * t680;
     const float t684 = t682 - t683;
-    const float t685 = t28 * t684;
+    const float t685 = t31 * t684;
     const float t686 = t681 + t685;
     const float t687 = t679 - t686;
     const float t688 = t677 + t687;
@@ -13578,7 +13318,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
     const float t702 = t262 * t672;
     const float t703 = t22 * t702;
     const float t704 = t620 - t703;
-    const float t705 = t28 * t702;
+    const float t705 = t31 * t702;
     const float t706 = t636 + t705;
     const float t707 = t286 * t706;
     const float t708 = t282 * t704;

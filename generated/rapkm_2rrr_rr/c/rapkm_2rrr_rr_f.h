@@ -29,21 +29,21 @@
  * constraint_pseudoinverse            134    202     14      4      6      0
  * nullspace_projector                 105    168      4      4      6      0
  * nullspace_projector_dot             375    533     14      4      6      0
- * weighted_pseudoinverse              333    532      1      0      6      0
+ * weighted_pseudoinverse              291    530      1      0      6      0
  * weighted_nullspace_projector        207    320     17      4      6      0
  * control_matrix                        0      0      0      0      0      0
- * projected_control_matrix             99    173      1      0      6      0
+ * projected_control_matrix            101    177      1      0      6      0
  * projected_control_pseudoinverse      55    124      1      0      6      0
- * orthogonal_complement                37     92      3      0      6      0
+ * orthogonal_complement                39     97      3      0      6      0
  * projected_mass_matrix               265    389      4      4      6      0
  * projected_coriolis_matrix           706    971     14      4      6      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
- * minimal_mass_matrix                  73    130      1      0      6      0
- * minimal_coriolis_matrix           11774   4816     34      4      6      0
+ * minimal_mass_matrix                  75    134      1      0      6      0
+ * minimal_coriolis_matrix             333    595      2      0      6      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
- * minimal_control_matrix               25     56      1      0      6      0
+ * minimal_control_matrix               27     61      1      0      6      0
  * admissible_velocity                  92    132      4      4      6      0
  * admissible_acceleration             181    248      8      4      6      0
  * projected_configuration             217    234     16      8     12      0
@@ -162,7 +162,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_applied_force_f(const float q[6], c
 /* Ḡ: mass matrix in the independent velocities, (9); 2 x 2, row-major */
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float G_bar[4]);
 
-/* C̄: Coriolis matrix in the independent velocities, (9); works with twice the digits; 2 x 2, row-major */
+/* C̄: Coriolis matrix in the independent velocities, (9); 2 x 2, row-major */
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix_f(const float q[6], const float qd[6], const rapkm_2rrr_rr_params_f *p, float C_bar[4]);
 
 /* Q̄: potential forces on the independent velocities, (9); length 2 */

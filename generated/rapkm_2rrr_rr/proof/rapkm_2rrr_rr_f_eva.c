@@ -399,7 +399,7 @@ void eva_nullspace_projector_dot(void) {
 
 void eva_weighted_pseudoinverse(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t380. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t385. */
 void eva_weighted_pseudoinverse(void) {
     float q[6];
     rapkm_2rrr_rr_params_f p;
@@ -558,7 +558,7 @@ void eva_projected_control_pseudoinverse(void) {
 
 void eva_orthogonal_complement(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t127, t109. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t134, t116. */
 void eva_orthogonal_complement(void) {
     float q[6];
     rapkm_2rrr_rr_params_f p;
@@ -762,7 +762,7 @@ void eva_minimal_mass_matrix(void) {
 
 void eva_minimal_coriolis_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t141, t200, t56, t97, t150, t202, t253. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t217, t181. */
 void eva_minimal_coriolis_matrix(void) {
     float q[6];
     float qd[6];

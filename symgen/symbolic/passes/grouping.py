@@ -44,7 +44,7 @@ PARAMETER_FACTORS = Pass(
 ALL_FACTORS = Pass(
     "all factors",
     "x + f a + f b becomes x + f (a + b) for any f, also where the products are needed elsewhere",
-    lambda graph, _, outputs: with_common_factors(graph, outputs, lambda _: True),
+    lambda graph, _, outputs: with_common_factors(graph, outputs, shared=True),
 )
 SHARED_SUMS = Pass(
     "shared sums",
@@ -67,8 +67,9 @@ PASSES = (
     *(COMMON_FACTORS, SHARED_SUMS, SHARED_PRODUCTS),
     QUOTIENTS,
 )
-# What comes out of sums first decides what is found later: outputs of no more scalars begin with one of these, too.
-BEGINNINGS = (PARAMETER_FACTORS, ALL_FACTORS)
+# What comes out of sums first decides what is found later, and what cancels exactly.  Outputs of no more scalars begin
+# with each of these, and with none; longer ones with the first.
+BEGINNINGS = (ALL_FACTORS, PARAMETER_FACTORS)
 SHORT = 400
 
 
@@ -84,10 +85,10 @@ def grouped(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> li
     """The outputs after the passes, each taken where it saves operations."""
     improved = _Improvement(graph, factoring)
     start = _weighed(without_twins(graph, outputs))
-    starts = [start]
-    if len(reached(outputs)) <= SHORT:
-        starts += [improved(start, (one,)) for one in BEGINNINGS]
-    best = min((improved(one, PASSES) for one in dict.fromkeys(starts)), key=lambda one: one.weight)
+    short = len(reached(outputs)) <= SHORT
+    begun = [improved(start, (one,)) for one in (BEGINNINGS if short else BEGINNINGS[:1])]
+    starts = dict.fromkeys((*begun, start) if short else begun)
+    best = min((improved(one, PASSES) for one in starts), key=lambda one: one.weight)
     same_values("regrouping", outputs, best.outputs)
     return list(best.outputs)
 

@@ -30,16 +30,17 @@ class _Group:
 
 
 def with_common_factors(
-    graph: Graph, outputs: Sequence[Scalar], apart: Callable[[Scalar], bool] | None = None
+    graph: Graph, outputs: Sequence[Scalar], apart: Callable[[Scalar], bool] | None = None, shared: bool = False
 ) -> list[Scalar]:
     """The outputs with common factors taken out of sums, from products and inner sums that nothing else needs.
 
     `apart` tells which terms of sums, such as parameters, are to be found though others need the products or the
-    sums that hold them; numbers are factors too then.
+    sums that hold them; numbers are factors too then.  `shared` products are taken apart, whatever they hold; sums
+    that others need never are, as each would be written out at every place.
     """
     order = topological(outputs)
     uses = uses_of(order, outputs)
-    whole = {node for node in order if uses[node] > 1 and (apart is None or not apart(node))}
+    whole = {node for node in order if uses[node] > 1 and not shared and (apart is None or not apart(node))}
     sums = [a for node in order if node.op in SUMS for a in node.args if a.op in SUMS]
     inside = {a for a in sums if uses[a] == 1 or (apart is not None and any(map(apart, a.args)))}
     image: dict[Scalar, Scalar] = {}
