@@ -154,8 +154,11 @@ class Fallback:
         if all(fault.scalar == "float32" for fault in faults):
             passing.append(_Candidate(0.0, ("float64",), draft.taken(quantity), kernels))
         found = self._next(draft, quantity, expected)
+        # one type may have been left out before
+        others = tuple(one for one in draft.left_out if one.quantity != quantity)
         if found is None and quantity in self._too_wide:
-            return draft.without(quantity, tuple(kernels), too_wide(self._too_wide[quantity]))
+            why = too_wide(self._too_wide[quantity])
+            return replace(draft.without(quantity, tuple(kernels), why), left_out=others)
         draft = draft.rejecting(tuple(Rejection(quantity, way, why) for way, why in tried[known:]))
         if found is not None:
             draft = draft.along(found.way, found.kernels)
@@ -166,7 +169,6 @@ class Fallback:
         given_up = () if self._alternatives is None else self._alternatives.too_long.get(quantity, ())
         every = (*tried, *((name, TOO_LONG) for name in given_up))
         left_out = LeftOut(quantity, without, every, self._remedy(quantity, without))
-        others = (one for one in draft.left_out if one.quantity != quantity)
         return replace(draft.without(quantity, without, REJECTED), left_out=(*others, left_out))
 
     def _next(self, draft: Draft, quantity: str, expected: Expected) -> _Candidate | None:

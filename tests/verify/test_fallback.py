@@ -26,6 +26,7 @@ from symgen.pipeline import generate
 from symgen.quantities import alternatives, everything
 from symgen.quantities.alternatives import Alternative
 from symgen.symbolic.scalar import Graph, Scalar
+from symgen.verify.certificate import LeftOut
 from symgen.verify.reference.reference import State
 from symgen.verify.searched import JUDGED
 from symgen.verify.settling import Settling
@@ -451,6 +452,20 @@ def test_twice_the_digits_of_what_is_long_are_for_those_who_ask(
     assert ("multipliers" in derived(result)["kernels"]) is asked
     told = [one for one in result.notices if "`all` leaves it out, as it loses digits" in one.message]
     assert bool(told) is not asked
+
+
+def test_what_all_leaves_out_is_no_longer_left_out_of_one_type(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    spoil_choice(monkeypatch, losing_digits)
+    spoil_named(monkeypatch, losing_digits)
+    monkeypatch.setattr(everything, "WIDE_MAIN_OPERATIONS", 20)
+    replaced = fallback.Fallback._replaced
+
+    def after_a_round(self: Any, draft: Any, quantity: str, *others: Any) -> Any:
+        before = LeftOut(quantity, ("float32",), (), "")
+        return replaced(self, replace(draft, left_out=(before,)), quantity, *others)
+
+    monkeypatch.setattr(fallback.Fallback, "_replaced", after_a_round)
+    assert made(yoke, replace(FAST, outputs=("all",))).left_out == ()
 
 
 def test_a_form_that_was_asked_for_is_not_replaced(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
