@@ -36,8 +36,6 @@ from symgen.verify.tolerance import FACTOR
 TOO_LONG = "not tried: it takes many times as long to derive"
 # Of the error that is allowed; what way a quantity takes is decided at a few dozen states.
 MARGIN = FACTOR / 2
-# What a long way may need at its worst states before its numbers are grouped: that takes off some roundings.
-UNGROUPED = 2 * FACTOR
 # What keeping a margin may cost, in operations.
 MARGIN_WORTH = Fraction(1, 2)
 # Ways that are tried once more with twice the digits, and what the longest one counts.
@@ -185,14 +183,11 @@ class Fallback:
                 return one
             if "float64" in one.scalars:
                 passing.append(one)
-        while passing:
-            best = min(passing, key=lambda one: (-len(one.scalars), one.largest))
-            passing.remove(best)
-            if best.way.grouped:
-                return best
-            if "float64" in (best := self._with_groups(draft, best, expected)).scalars:
-                passing.append(best)
-        return None
+        if not passing:
+            return None
+        best = min(passing, key=lambda one: (-len(one.scalars), one.largest))
+        passing.remove(best)
+        return best
 
     def _with_margin(self, draft: Draft, quantity: str, largest: float, expected: Expected) -> Draft:
         """The draft with a quantity that passes narrowly along a way with half of its error, where that is not long."""
@@ -226,17 +221,10 @@ class Fallback:
             if (digest := _digest(kernels)) not in self._seen[quantity]:
                 self._seen[quantity].add(digest)
                 one = self._measured(draft, way, kernels, expected)
-                yield self._with_groups(draft, one, expected) if one.scalars == tuple(kernels) else one
-
-    def _with_groups(self, draft: Draft, one: _Candidate, expected: Expected) -> _Candidate:
-        """What becomes of a long way once its numbers are grouped, which takes as long as all the rest of it.
-
-        It is of use then: the way as it is was nowhere far beyond what is allowed, not at its own worst states either.
-        """
-        if one.way.grouped:
-            return one
-        way = grouped(one.way)
-        return self._measured(draft, way, draft.kernels_along(way, tuple(one.kernels)), expected)
+                if not way.grouped and "float64" in one.scalars:
+                    way = grouped(way)
+                    one = self._measured(draft, way, draft.kernels_along(way, tuple(kernels)), expected)
+                yield one
 
     def _with_more_digits(self, draft: Draft, quantity: str, expected: Expected) -> Iterator[_Candidate]:
         """What loses digits in float32 alone with twice as many there, then the shortest ways with more in both."""
@@ -278,7 +266,7 @@ class Fallback:
             passed[scalar] = kernel
         judged = {scalar: kernel for scalar, kernel in passed.items() if scalar in expected.scalars}
         errors = self._at_worst(draft, judged, _plain(way, kernels)) if judged else {}
-        for fault in _faults(way.choice.quantity, errors, FACTOR if way.grouped else UNGROUPED):
+        for fault in _faults(way.choice.quantity, errors):
             self._note(way, fault, inaccurate=True)
             passed.pop(fault.scalar)
         scalars = tuple(passed) if "float64" in passed else ()
@@ -313,12 +301,12 @@ def _digest(kernels: Kernels) -> int:
     return hash(tuple(kernels.items()))
 
 
-def _faults(quantity: str, errors: Mapping[Scalar, float], most: float = FACTOR) -> tuple[Fault, ...]:
-    """What is wrong at the states that were searched for, where errors are beyond `most`."""
+def _faults(quantity: str, errors: Mapping[Scalar, float]) -> tuple[Fault, ...]:
+    """What is wrong at the states that were searched for."""
     what = f"{INACCURATE} {{:.3g}} times d + eps |y*| at a state searched for, {FACTOR:g} is allowed"
-    return tuple(Fault(what.format(error), quantity, scalar) for scalar, error in errors.items() if error > most)
+    return tuple(Fault(what.format(error), quantity, scalar) for scalar, error in errors.items() if error > FACTOR)
 
 
 def _plain(way: Alternative, kernels: Kernels) -> Kernel | None:
-    """The kernel of plain numbers among those of a way: where it is worst is looked for."""
-    return None if "float64" in way.choice.wide else kernels["float64"]
+    """The kernel of plain numbers among those of a way that may be taken: where it is worst is looked for."""
+    return kernels["float64"] if way.grouped and "float64" not in way.choice.wide else None
