@@ -14,7 +14,7 @@ from symgen.verify.reference.reference import Reference
 
 def result(median: float) -> dict[str, Any]:
     errors = {"median": median, "percentile_99": 2 * median, "largest": 3 * median}
-    row = {"language": "C", "chosen": True, "form": "range, portable", "errors": errors, "beyond": 1}
+    row = {"language": "C", "chosen": True, "form": "elimination, portable", "errors": errors, "beyond": 1}
     rows = [{**row, "scalar": scalar} for scalar in ("float64", "float32")]
     compared = {"quantity": "inverse_dynamics", "states": 1000, "measured": rows}
     return {"model": "rapkm_2rrr_rr", "comparisons": [compared]}

@@ -24,7 +24,7 @@ MANY = (
     Many("symgen", "compile()", "Python", "float64", 40.0, 50.0),
     Many("symgen", "NumPy, whole arrays", "Python", "float64", 300.0, 200.0),
     Many("symgen", "NumPy, blocks of 4096", "Python", "float64", 160.0, 200.0),
-    Many("symgen", "range, portable, in a loop", "C", "float64", 80.0, 70.0),
+    Many("symgen", "elimination, portable, in a loop", "C", "float64", 80.0, 70.0),
     Many("SymPy", "part, in a loop", "C", "float64", 98.0, 90.0),
     Many("CasADi", "lean, in a loop", "C", "float64", 200.0, 190.0),
 )
