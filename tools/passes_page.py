@@ -9,6 +9,7 @@ from pathlib import Path
 
 from symgen.diagnostics import ModelError
 from symgen.laboratory.bench.passes import counted, page
+from symgen.laboratory.zoo.campaign import write
 from symgen.laboratory.zoo.families import draw
 from symgen.model.load import load_model
 from symgen.model.model import Model
@@ -30,12 +31,8 @@ def main(paths: list[str]) -> None:
 def _drawn(folder: Path) -> Iterator[Model]:
     """Those of a campaign of the zoo that are no mistakes."""
     for place in range(DRAWS):
-        description = draw(SEED, place)
         path = folder / str(place) / "zoo.yaml"
-        path.parent.mkdir()
-        path.write_text(description.text, encoding="utf-8")
-        for name, text in description.files.items():
-            (path.parent / name).write_text(text, encoding="utf-8")
+        write(draw(SEED, place), path)
         try:
             yield load_model(path)
         except ModelError:

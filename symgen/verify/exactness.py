@@ -91,11 +91,6 @@ class ExactStates:
         return self._values[quantity, index]
 
 
-def difference(kernel: Kernel, expected: Expected, worst: int = 0) -> str:
-    """What `ExactStates` tell of one kernel alone."""
-    return ExactStates(expected).difference(kernel, worst)
-
-
 def exact_state(reference: Reference, state: State, varied: ParameterValues) -> State | None:
     """The state, on V where quantities are defined there alone; None where V is not reached from it.
 

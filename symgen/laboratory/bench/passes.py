@@ -8,12 +8,11 @@ from dataclasses import dataclass
 from statistics import fmean
 from unittest.mock import patch
 
+from symgen.laboratory.bench.skipping import counted_cost, table_line
 from symgen.methods.quantity import scalars
 from symgen.model.model import Model
 from symgen.quantities.select import derive_quantities
-from symgen.symbolic.angles import share_angles
 from symgen.symbolic.passes import grouping
-from symgen.symbolic.traverse import cost
 
 INVERSE = "inverse_dynamics"
 # Of fewer operations one more is a large part.
@@ -52,8 +51,7 @@ def _left_out(gone: grouping.Pass) -> Iterator[None]:
 
 def _costs(model: Model, outputs: Sequence[str]) -> dict[str, int]:
     made = derive_quantities(model, outputs)
-    shared = {one.name: share_angles(made.mechanics.graph, scalars(one)) for one in made.quantities if one.outputs}
-    return {name: cost(values).weight for name, values in shared.items()}
+    return {one.name: counted_cost(scalars(one)) for one in made.quantities if one.outputs}
 
 
 def page(shipped: Sequence[Counted], drawn: Sequence[Counted]) -> str:
@@ -67,12 +65,12 @@ def page(shipped: Sequence[Counted], drawn: Sequence[Counted]) -> str:
         "of drawn systems": _quantities(drawn),
     }
     head = ["pass", *classes, "most for one quantity"]
-    lines = [_line(head), _line(["---"] * len(head))]
+    lines = [table_line(head), table_line(["---"] * len(head))]
     for one in passes():
         worth = {name: _ratios(members, one.name) for name, members in classes.items()}
         most = max(_quantities(shipped), key=lambda member: _ratio(member[0], member[1], one.name))
         where = f"{_percent(_ratio(most[0], most[1], one.name))} ({most[1].replace('_', ' ')} of {most[0].model.name})"
-        lines.append(_line([one.name, *(_percent(fmean(ratios)) for ratios in worth.values()), where]))
+        lines.append(table_line([one.name, *(_percent(fmean(ratios)) for ratios in worth.values()), where]))
     sentences = "\n".join(f"- **{one.name}**: {one.does}." for one in passes())
     counts = f"{len(shipped)} shipped models, {len(drawn)} drawn ones"
     return _PAGE.replace("SENTENCES", sentences).replace("TABLE", "\n".join(lines)).replace("COUNTS", counts)
@@ -83,7 +81,7 @@ def _rolls(model: Model) -> bool:
 
 
 def _quantities(members: Sequence[Counted]) -> list[tuple[Counted, str]]:
-    return [(one, name) for one in members for name, weight in one.whole.items() if weight > SHORT]
+    return [(one, name) for one in members for name, count in one.whole.items() if count > SHORT]
 
 
 def _ratios(members: Sequence[tuple[Counted, str]], gone: str) -> list[float]:
@@ -96,10 +94,6 @@ def _ratio(one: Counted, name: str, gone: str) -> float:
 
 def _percent(ratio: float) -> str:
     return f"{100 * (ratio - 1):+.1f} %"
-
-
-def _line(cells: Sequence[object]) -> str:
-    return "| " + " | ".join(map(str, cells)) + " |"
 
 
 _PAGE = """\

@@ -144,10 +144,10 @@ def skipped(model: Model) -> Skipped:
     (chosen,) = derive_quantities(model, ("inverse_dynamics",)).quantities
     if generic.minors > MOST_CHOICES:
         none = (Kept(what, None, 0, too_long=True) for what in BY_MINORS)
-        return Skipped(model.name, _weight(chosen.outputs), None, (*none, _of_axes(model, generic)))
+        return Skipped(model.name, counted_cost(chosen.outputs), None, (*none, _of_axes(model, generic)))
     outputs = _minor(plain, generic)
     kept = (*_of_minors(plain, generic, outputs), *_of_matrices(model, generic), _of_axes(model, generic))
-    return Skipped(model.name, _weight(chosen.outputs), _weight(outputs), kept)
+    return Skipped(model.name, counted_cost(chosen.outputs), counted_cost(outputs), kept)
 
 
 def _of_minors(plain: System, generic: Genericity, outputs: Vector) -> Iterator[Kept]:
@@ -155,10 +155,10 @@ def _of_minors(plain: System, generic: Genericity, outputs: Vector) -> Iterator[
     model, b = plain.model, plain.constraint_jacobian
     free = [bool(b) and all(row[j].is_zero for row in b) for j in range(model.n)]
     everywhere, nowhere = [True] * model.n, [False] * model.n
-    minor = _weight(outputs)
+    minor = counted_cost(outputs)
 
     def weight(mechanics: System) -> int:
-        return _weight(_minor(mechanics, generic))
+        return counted_cost(_minor(mechanics, generic))
 
     touched = weight(_Kept(model, lambda x: x.is_zero, free, False)) if any(free) else None
     yield Kept("coordinates no constraint touches", touched, minor)
@@ -169,9 +169,9 @@ def _of_minors(plain: System, generic: Genericity, outputs: Vector) -> Iterator[
     vanishing = any(x.is_zero for x in plain.potential_force)
     forces = weight(_Kept(model, lambda _: False, nowhere, True)) if vanishing else None
     yield Kept("forces that vanish", forces, minor)
-    yield Kept("τ without G and C", _weight(_by_matrices(System(model), generic)), minor)
+    yield Kept("τ without G and C", counted_cost(_by_matrices(System(model), generic)), minor)
     square = generic.m == generic.delta == generic.alpha and generic.rank == generic.r
-    yield Kept("m = δ", _weight(_summed(model, generic)) if square else None, minor)
+    yield Kept("m = δ", counted_cost(_summed(model, generic)) if square else None, minor)
     yield Kept("groups of parameters", _each_time(plain, outputs), minor)
     unshared = cost(outputs).weight
     yield Kept("sines by addition", unshared if unshared != minor else None, minor)
@@ -179,7 +179,7 @@ def _of_minors(plain: System, generic: Genericity, outputs: Vector) -> Iterator[
 
 def _of_matrices(model: Model, generic: Genericity) -> Iterator[Kept]:
     """What the matrices G and C skip, where u is formed from them."""
-    plain, full = (_weight(_by_matrices(system, generic)) for system in (System(model), _FullMatrices(model)))
+    plain, full = (counted_cost(_by_matrices(system, generic)) for system in (System(model), _FullMatrices(model)))
     yield Kept("zeros of G and C", full if full != plain else None, plain)
 
 
@@ -191,7 +191,7 @@ def _of_axes(model: Model, generic: Genericity) -> Kept:
         change = absolute_angles(mechanics.graph, mechanics.q, mechanics.constraint_jacobian)
         seen = mechanics if change.is_identity else System(model, mechanics, change)
         form = elimination_form(seen, generic, steps)
-        return None if form is None else _weight(form.outputs)
+        return None if form is None else counted_cost(form.outputs)
 
     plain, world = weight(Elimination), weight(_WorldAxes)
     return Kept("body-fixed axes", None if plain is None or world == plain else world, plain or 0)
@@ -227,10 +227,11 @@ def _each_time(mechanics: System, outputs: Vector) -> int | None:
     uses = [a for node in nodes if not fixed(node) for a in node.args if fixed(a) and a.op not in ("const", "symbol")]
     shared = cost(uses).weight
     again = sum(cost([group]).weight for group in uses)
-    return None if not uses else _weight(outputs) + again - shared
+    return None if not uses else counted_cost(outputs) + again - shared
 
 
-def _weight(outputs: Sequence[Scalar]) -> int:
+def counted_cost(outputs: Sequence[Scalar]) -> int:
+    """That of scalars of one graph, sines of sums from those of their parts."""
     return cost(share_angles(outputs[0].graph, outputs)).weight
 
 
@@ -238,14 +239,15 @@ def page(rows: Sequence[Skipped]) -> str:
     """The page docs/skipping.md."""
     names = [kept.what for kept in rows[0].kept]
     head = ["model", "u as generated", "minor form", *names]
-    lines = [_line(head), _line(["---"] * len(head))]
+    lines = [table_line(head), table_line(["---"] * len(head))]
     for row in rows:
         minor = "too long" if row.minor is None else row.minor
-        lines.append(_line([row.model, row.generated, minor, *row.kept]))
+        lines.append(table_line([row.model, row.generated, minor, *row.kept]))
     return _PAGE.replace("TABLE", "\n".join(lines))
 
 
-def _line(cells: Sequence[object]) -> str:
+def table_line(cells: Sequence[object]) -> str:
+    """A row of a table in Markdown."""
     return "| " + " | ".join(str(cell) for cell in cells) + " |"
 
 

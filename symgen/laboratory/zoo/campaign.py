@@ -35,12 +35,17 @@ class Campaign:
     shrinking: int = 0
 
 
-def judge(description: Description, model: Path) -> tuple[Verdict, float, float]:
-    """Writes the model file, runs the command beside it and looks at the numbers; verdict, CPU seconds, megabytes."""
+def write(description: Description, model: Path) -> None:
+    """Writes a model file, and those that stand beside it."""
     model.parent.mkdir(parents=True, exist_ok=True)
     model.write_text(description.text, encoding="utf-8")
     for name, text in description.files.items():
         (model.parent / name).write_text(text, encoding="utf-8")
+
+
+def judge(description: Description, model: Path) -> tuple[Verdict, float, float]:
+    """Writes the model file, runs the command beside it and looks at the numbers; verdict, CPU seconds, megabytes."""
+    write(description, model)
     folder = model.with_suffix("")
     run = run_command(model, folder)
     verdict = judged(description, verdict_of(run))
