@@ -257,10 +257,10 @@ def _failing_forms(draft: Draft) -> tuple[tuple[str, str], ...]:
     """Where what is generated is not valid if a form was asked for, and which forms are left to be asked for and where
     they fail."""
     derivations = draft.derivations
-    form, inverse = derivations.form, derivations.inverse
+    form, methods = derivations.form, derivations.methods
     told = list(_forms(derivations, ()))
-    if form is not None and inverse is not None and form.verdict.admitted:
-        others = inverse.failing() or form.failed
+    if form is not None and methods is not None and form.verdict.admitted:
+        others = methods.failing() or form.failed
         told += ((f"form {name} of u", f"{why}; it is made if asked for (--form {name})") for name, why in others)
     # articulated inertias are taken only where G is definite, and then no form fails
     moving = [choice.quantity for choice in derivations.choices if choice.form not in ("", BY_FRAMES)]

@@ -89,7 +89,7 @@ class Fallback:
         if self._alternatives is None:
             let_go_and_keep()
             derivations = draft.derivations
-            self._alternatives = Alternatives(draft.model, derivations.generic, derivations.inverse)
+            self._alternatives = Alternatives(draft.model, derivations.generic, derivations.methods)
             self._search = WorstStateSearch(expected)
             self._exactly = ExactStates(expected)
         made = draft

@@ -97,7 +97,7 @@ def _with_record(draft: Draft, record: _Record, asked: Container[str]) -> Draft:
     replaced = [name for name in dict.fromkeys(one.quantity for one in record.rejected) if name in present]
     if not replaced:
         return draft
-    others = Alternatives(draft.model, draft.derivations.generic, draft.derivations.inverse)
+    others = Alternatives(draft.model, draft.derivations.generic, draft.derivations.methods)
     for quantity in replaced:
         taken = record.taken.get(quantity)
         if taken is not None and quantity not in asked:

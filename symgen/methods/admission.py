@@ -1,17 +1,23 @@
-"""Whether a form may be chosen by itself: a proof for each of its denominators and pivots, or else a search."""
+"""Where a method is valid: a theorem, or a proof for each of its denominators and pivots, or else a search."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
-from symgen.methods.form import Method
 from symgen.methods.system import MethodInput
 from symgen.records import dataclass
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.transplant import transplanted
 from symgen.validity.formula import formula
 from symgen.validity.proof import Proof
+from symgen.validity.resolution import stands_out
 from symgen.validity.search import STARTS, ZeroSearch
+
+if TYPE_CHECKING:
+    from symgen.methods.method import Candidate
+    from symgen.methods.workspace import Workspace
 
 DECIMALS = 6  # of a state in a message
 LOST = "a denominator is a small difference of large terms, which single precision takes for zero at regular states"
@@ -68,11 +74,53 @@ def proof_for(system: MethodInput, measures: Sequence[Scalar]) -> Proof:
     return Proof(system.definite, [p.name for p in system.mechanics.model.parameters], measures)
 
 
-def verdict(system: MethodInput, form: Method, measures: Sequence[Scalar], first_only: bool = False) -> Verdict:
-    """The verdict on a form of `system`; with `first_only` one singular denominator is enough."""
+def ranks(workspace: Workspace, candidate: Candidate) -> list[Scalar]:
+    """Denominators that vanish only where a rank drops, by theorem: minors of B and of the inputs."""
+    del candidate
+    return workspace.minor_measures
+
+
+def unknown(system: MethodInput) -> int:
+    """The least cost of a method of which nothing is known before it is built."""
+    del system
+    return 0
+
+
+@dataclass(frozen=True, slots=True)
+class OfInputs:
+    """A method of u: each denominator is proved harmless, by `measures` that are so by theorem, or searched for zeros.
+
+    `least` is a bound of what it counts.
+    """
+
+    solved: Callable[[Workspace], Candidate | str]
+    measures: Callable[[Workspace, Candidate], list[Scalar]] = ranks
+    least: Callable[[MethodInput], int] = unknown
+
+    def build(self, workspace: Workspace, quantity: str) -> Candidate | str:
+        """u, or why this system does not have it by this method."""
+        del quantity
+        return self.solved(workspace)
+
+    def validity(self, workspace: Workspace, candidate: Candidate, first_only: bool) -> Verdict:
+        """Whether it is valid at every regular state, in single precision too."""
+        found = verdict(candidate, self.measures(workspace, candidate), first_only)
+        guards = candidate.derived.guards
+        if found.admitted and guards and not stands_out(guards, workspace.generic.n, workspace.points):
+            return replace(found, lost=True)
+        return found
+
+    def least_cost(self, system: MethodInput) -> int:
+        """What it cannot count less than."""
+        return self.least(system)
+
+
+def verdict(candidate: Candidate, measures: Sequence[Scalar], first_only: bool = False) -> Verdict:
+    """The verdict on the divisors of a candidate; with `first_only` one singular denominator is enough."""
+    system = candidate.system
     proof = proof_for(system, measures)
-    left = sorted(proof.unproved(form.divisors), key=lambda divisor: divisor.size)
-    proved = len(form.divisors) - len(left)
+    left = sorted(proof.unproved(candidate.divisors), key=lambda divisor: divisor.size)
+    proved = len(candidate.divisors) - len(left)
     singular: list[Singular] = []
     searched = 0
     if left:

@@ -1,64 +1,44 @@
-"""The inverse dynamics u along the cheapest admitted form, or along the form that is asked for.
+"""The methods of one model, and the one that a quantity takes: of those that are valid the one that counts least.
 
-Forms are counted on graphs of their own; the chosen one is brought to the graph of the other quantities.  A form that
-is not cheaper than one already admitted is not examined.  Chosen by themselves are elimination, minor, nullspace and
-householder; the others work on whole matrices and are there to be asked for.
+Each is counted on a graph of its own; the chosen one is brought to the graph of the other quantities.  One that is not
+cheaper than one already known to be valid is not examined.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 
 from symgen.linear_algebra.guards import Guard
-from symgen.mechanics.absolute_angles import absolute_angles
-from symgen.mechanics.genericity import Genericity, configurations, genericity
+from symgen.mechanics.genericity import Genericity, genericity
 from symgen.mechanics.system import System
-from symgen.methods.admission import FAILS, Verdict, proof_for, verdict
-from symgen.methods.derivation import Derivation
-from symgen.methods.form import FORM_NAMES, Method, form
-from symgen.methods.inverse_dynamics.by_space import form_along, householder_derivation, minor_derivation
-from symgen.methods.inverse_dynamics.estimates import least_costs
-from symgen.methods.inverse_dynamics.forces_eliminated import elimination_form
-from symgen.methods.inverse_dynamics.nullspace import nullspace_form
-from symgen.methods.inverse_dynamics.printed import printed_form
-from symgen.methods.inverse_dynamics.weighted import kkt_form, weighted_form
-from symgen.methods.quantity import Quantity
+from symgen.methods.admission import FAILS, Verdict
+from symgen.methods.method import INPUTS, Candidate, solved_for_u
+from symgen.methods.quantity import Quantity, is_fixed
 from symgen.methods.system import MethodInput
+from symgen.methods.table import Use, method, methods
+from symgen.methods.workspace import Workspace
 from symgen.model.model import Model
 from symgen.records import dataclass
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.transplant import transplanted
-from symgen.symbolic.traverse import cost
-from symgen.validity.resolution import stands_out
 
-AUTOMATIC = ("elimination", "minor", "nullspace", "householder")
 # Longer outputs are not multiplied out; multiplied out, terms that vanish have cancelled exactly, which is worth a few
 # operations more where minors were summed.
 FACTORING_LIMIT = 450
 CANCELLATION_WORTH = Fraction(1, 4)
 FACTORING_GAIN = Fraction(1, 3)
-# Parameters are regrouped where that takes a twentieth off: they are computed at each call.
-LUMPING_GAIN = Fraction(1, 20)
-RESOLVED_AT = 2
-# Forms that are not taken and count more than this are not derived only to say where they fail.
+# Methods that are not taken and count more than this are not derived only to say where they fail.
 LONGEST_EXAMINED = 600
-
-
-@dataclass(frozen=True, slots=True)
-class Offer:
-    """A form with the system it was derived on; `way` tells whether it was multiplied out."""
-
-    way: str
-    system: MethodInput
-    form: Method
+AUTO = "auto"
+FACTORED = "minor factored"
 
 
 @dataclass(frozen=True, slots=True)
 class MethodChoice:
-    """The form u takes, why it is valid or where it is not, and what is known of the others (name, cost, remark)."""
+    """The method taken, why it is valid or where it is not, and what is known of the others (name, cost, remark)."""
 
     way: str
     verdict: Verdict
@@ -66,247 +46,164 @@ class MethodChoice:
 
     @property
     def failed(self) -> tuple[tuple[str, str], ...]:
-        """Cheaper forms that were examined and are singular at regular states, and where."""
+        """Cheaper methods that were examined and are singular at regular states, and where."""
         return tuple((name, remark) for name, _, remark in self.others if remark.startswith(FAILS))
 
     @property
     def costs(self) -> tuple[tuple[str, int], ...]:
-        """Counted cost of every form that was derived."""
+        """Counted cost of every method that was derived."""
         return tuple((name, weight) for name, weight, _ in self.others)
 
 
-class InverseDynamics:
-    """The forms of u of one model, each built when it is first needed."""
+class Methods:
+    """The methods of one model, each built when it is first needed."""
 
     def __init__(self, model: Model, generic: Genericity) -> None:
-        self._model = model
-        self._generic = generic
-        self._offers: dict[str, Offer | str] = {}
-        self._verdicts: dict[str, Verdict] = {}
+        self.workspace = Workspace(model, generic)
+        self._candidates: dict[tuple[str, str], Candidate | str] = {}
+        self._verdicts: dict[tuple[str, str], Verdict] = {}
 
-    @cached_property
-    def minor(self) -> Derivation | str:
-        """The derivation along minors, which also tells where ranks drop."""
-        return minor_derivation(MethodInput.fresh(self._model, self._generic, self._lumped))
+    def candidate(self, quantity: str, name: str) -> Candidate | str:
+        """A quantity by the method of a name, or why this system does not have it."""
+        key = quantity, name
+        if key not in self._candidates:
+            made = method(quantity, name).build(self.workspace, quantity)
+            self._candidates[key] = made if isinstance(made, str) else replace(made, name=name)
+        return self._candidates[key]
 
-    @cached_property
-    def _lumped(self) -> bool:
-        """Whether the motion equations of the bodies are shorter with their parameters regrouped."""
-        if not self._model.mechanism.has_mass:
-            return False
-        apart, together = (cost(System(self._model, lumped=lumped).balance).weight for lumped in (False, True))
-        return together <= apart * (1 - LUMPING_GAIN)
+    def verdict(self, candidate: Candidate, first_only: bool = False) -> Verdict:
+        """Whether a candidate may be chosen by itself."""
+        name = "minor" if candidate.name == FACTORED else candidate.name
+        return method(candidate.derived.name, name).validity(self.workspace, candidate, first_only)
 
-    def offer(self, name: str) -> Offer | str:
-        """A form by name, or why this system does not have it."""
-        if name not in self._offers:
-            derivation = self.minor if name == "minor" else None
-            if isinstance(derivation, Derivation):
-                system = MethodInput(derivation.mechanics, self._generic)
-            else:
-                system = MethodInput.fresh(self._model, self._generic, self._lumped)
-            if name == "elimination":
-                system = self._in_body_axes(system)
-            made = _BUILDERS[name](self, system)
-            self._offers[name] = made if isinstance(made, str) else Offer(name, system, made)
-        return self._offers[name]
-
-    def _in_body_axes(self, system: MethodInput) -> MethodInput:
-        """The system with the twists of free bodies for rates, where its equations count less that way."""
-        if not self._model.mechanism.has_mass:
-            return system
-        from symgen.mechanics.free_bodies import free_bodies  # models given by energies start without it
-
-        if not free_bodies(system.mechanics):
-            return system
-        from symgen.mechanics.body_axes import BodyAxes
-
-        turned = MethodInput(BodyAxes(self._model, self._lumped), self._generic)
-        return turned if cost(turned.given).weight < cost(system.given).weight else system
-
-    def verdict(self, offer: Offer, first_only: bool = False) -> Verdict:
-        """Whether the form may be chosen by itself."""
-        found = verdict(offer.system, offer.form, self._measures(offer), first_only)
-        if found.admitted and offer.form.guards and not stands_out(offer.form.guards, self._generic.n, self._points):
-            return replace(found, lost=True)
-        return found
-
-    def choose(self, name: str = "auto") -> tuple[Offer, MethodChoice] | str:
-        """The form asked for, or the cheapest admitted one; why there is none by that name."""
-        if name != "auto":
-            offer = self.offer(name)
-            if isinstance(offer, str):
-                return offer
-            found = self.verdict(offer)
-            return offer, MethodChoice(offer.way, found, ((offer.way, offer.form.weight, found.explanation),))
-        return self._cheapest()
+    def choose(self, quantity: str, name: str = AUTO) -> tuple[Candidate, MethodChoice] | str:
+        """The method asked for, or the cheapest valid one; why there is none by that name."""
+        if name == AUTO:
+            return self._cheapest(quantity)
+        found = self.candidate(quantity, name)
+        if isinstance(found, str):
+            return found
+        verdict = self.verdict(found)
+        return found, MethodChoice(name, verdict, ((name, found.weight, verdict.explanation),))
 
     def failing(self) -> tuple[tuple[str, str], ...]:
-        """The forms among those that are chosen by themselves that fail at regular states, and where each does.
+        """The methods of u among those that are chosen by themselves that fail at regular states, and where each does.
 
         None of them is derived to be told of where all are long.
         """
-        if min(self._least_costs.values()) > LONGEST_EXAMINED:
+        rows = methods(INPUTS, Use.CHOSEN)
+        bounds = [bound for row in rows if (bound := row.load().least_cost(self._counted))]
+        if min(bounds, default=0) > LONGEST_EXAMINED:
             return ()
-        offers = [offer for name in AUTOMATIC if isinstance(offer := self.offer(name), Offer)]
-        verdicts = [(offer.way, self.verdict(offer)) for offer in offers if not self._is_admitted(offer)]
-        return tuple((way, found.explanation) for way, found in verdicts if not found.admitted)
+        made = [one for row in rows if isinstance(one := self.candidate(INPUTS, row.name), Candidate)]
+        verdicts = [(one.name, self.verdict(one)) for one in made if not self._is_admitted(one)]
+        return tuple((name, found.explanation) for name, found in verdicts if not found.admitted)
 
-    def _is_admitted(self, offer: Offer) -> bool:
-        """Whether the form was found valid already."""
-        return offer.way in self._verdicts and self._verdicts[offer.way].admitted
+    def _is_admitted(self, candidate: Candidate) -> bool:
+        """Whether it was found valid already."""
+        key = candidate.derived.name, candidate.name
+        return key in self._verdicts and self._verdicts[key].admitted
 
-    def _cheapest(self) -> tuple[Offer, MethodChoice] | str:
-        offers = self._built()
-        weights = {name: offer.form.weight for name, offer in offers.items()}
-        remarks: dict[str, str] = {}
-        verdicts: dict[str, Verdict] = {}
-        chosen: str | None = None
-        for name in sorted(offers, key=lambda name: (weights[name], AUTOMATIC.index(name))):
-            if chosen is not None:
-                remarks[name] = "not examined, because it is not cheaper"
-                continue
-            found = verdicts[name] = self._first_verdict(offers[name])
-            remarks[name] = found.explanation
-            if found.admitted:
-                chosen = name
-        if chosen is None:
-            # in double precision a form whose denominators are lost in float32 may do
-            lost = (name for name in verdicts if verdicts[name].lost)
-            chosen = next(lost, None)
-        if chosen is None:
-            if not offers:
-                return "this system has none of the forms that are chosen by themselves"
-            # a status where it is singular is told, and better than no u at all
-            chosen = min(verdicts, key=lambda name: weights[name])
-        best = offers[chosen]
-        shorter = self._factored(best) if "minor" in offers else None
+    def _cheapest(self, quantity: str) -> tuple[Candidate, MethodChoice] | str:
+        made = self._built(quantity)
+        if not made:
+            return "this system has none of the forms that are chosen by themselves"
+        weights = {name: one.weight for name, one in made.items()}
+        best, verdicts = cheapest(made.values(), self._first_verdict, weights)
+        remarks = dict.fromkeys(made, "not examined, because it is not cheaper")
+        remarks |= {name: found.explanation for name, found in verdicts.items()}
+        shorter = self._factored(best) if "minor" in made else None
         if shorter is not None:
-            weights[shorter.way] = weight = shorter.form.weight
-            found = verdicts[shorter.way] = self.verdict(shorter, first_only=True)
-            remarks[shorter.way] = found.explanation
-            worth = CANCELLATION_WORTH if chosen == "minor" else 0
-            if found.admitted and weight < weights[chosen] * (1 + worth):
+            weights[FACTORED] = weight = shorter.weight
+            found = verdicts[FACTORED] = self.verdict(shorter, first_only=True)
+            remarks[FACTORED] = found.explanation
+            worth = CANCELLATION_WORTH if best.name == "minor" else 0
+            if found.admitted and weight < weights[best.name] * (1 + worth):
                 best = shorter
         others = tuple((name, weights[name], remarks[name]) for name in sorted(weights, key=lambda n: (weights[n], n)))
-        return best, MethodChoice(best.way, verdicts[best.way], others)
+        return best, MethodChoice(best.name, verdicts[best.name], others)
 
-    def _built(self) -> dict[str, Offer]:
-        """The forms that may be the cheapest: those that cannot fall below an admitted elimination are not derived."""
-        offers: dict[str, Offer] = {}
+    def _built(self, quantity: str) -> dict[str, Candidate]:
+        """The methods that may be the cheapest: those that cannot fall below a valid first one are not derived.
+
+        The last is derived only where it may fall below all others.
+        """
+        made: dict[str, Candidate] = {}
         limit: int | None = None
-        for name in AUTOMATIC[:-1]:
-            if limit is not None and self._least_costs[name] > limit:
+        first, *between, last = methods(quantity, Use.CHOSEN)
+        for row in (first, *between):
+            if limit is not None and row.load().least_cost(self._counted) > limit:
                 continue
-            offer = self.offer(name)
-            if isinstance(offer, str):
+            one = self.candidate(quantity, row.name)
+            if isinstance(one, str):
                 continue
-            offers[name] = offer
-            if name == "elimination" and self._first_verdict(offer).admitted:
-                limit = max(offer.form.weight, _factoring_limit(offer))
-        last = AUTOMATIC[-1]
-        if not offers or self._least_costs[last] < min(offer.form.weight for offer in offers.values()):
-            householder = self.offer(last)
-            if isinstance(householder, Offer):
-                offers[last] = householder
-        return offers
+            made[row.name] = one
+            if row is first and self._first_verdict(one).admitted:
+                limit = max(one.weight, _factoring_limit(one))
+        if not made or last.load().least_cost(self._counted) < min(one.weight for one in made.values()):
+            one = self.candidate(quantity, last.name)
+            if isinstance(one, Candidate):
+                made[last.name] = one
+        return made
 
-    def _first_verdict(self, offer: Offer) -> Verdict:
-        """The verdict on a form by name, decided once."""
-        if offer.way not in self._verdicts:
-            self._verdicts[offer.way] = self.verdict(offer, first_only=True)
-        return self._verdicts[offer.way]
+    def _first_verdict(self, candidate: Candidate) -> Verdict:
+        """The verdict on a method by name, decided once."""
+        key = candidate.derived.name, candidate.name
+        if key not in self._verdicts:
+            self._verdicts[key] = self.verdict(candidate, first_only=True)
+        return self._verdicts[key]
 
-    def _factored(self, best: Offer) -> Offer | None:
+    def _factored(self, best: Candidate) -> Candidate | None:
         """The minor form multiplied out and factored, where it is short enough to compete.
 
         Minors of rows that depend on each other become small together: multiplied out, their squares would cancel.
-        The other forms have nothing to cancel that their steps have left.
+        The other methods have nothing to cancel that their steps have left.
         """
-        minor = self.offer("minor")
-        limit = _factoring_limit(best)
-        if self._generic.rank < self._generic.r or isinstance(minor, str) or not 0 < minor.form.weight <= limit:
+        generic, minor = self.workspace.generic, self.candidate(INPUTS, "minor")
+        if generic.rank < generic.r or isinstance(minor, str) or not 0 < minor.weight <= _factoring_limit(best):
             return None
-        kept = frozenset[Scalar]() if isinstance(self.minor, str) else self.minor.whole_for_inputs
-        system = minor.system
-        outputs = system.mechanics.factoring.shorten(minor.form.outputs, kept)
-        made = form(minor.form.name, minor.form.quantity, outputs, minor.form.guards, system.given)
-        return Offer("minor factored", system, made)
+        along = self.workspace.minor
+        kept = frozenset[Scalar]() if isinstance(along, str) else along.whole_for_inputs
+        outputs = minor.system.mechanics.factoring.shorten(minor.derived.outputs, kept)
+        return replace(solved_for_u(minor.system, outputs, minor.derived.guards), name=FACTORED)
 
     @cached_property
-    def _points(self) -> list[dict[str, float]]:
-        """Configurations on V at which denominators are looked at."""
-        return configurations(System(self._model), RESOLVED_AT)
-
-    @cached_property
-    def _least_costs(self) -> dict[str, int]:
-        offer = next((offer for offer in self._offers.values() if isinstance(offer, Offer)), None)
-        mechanics = System(self._model) if offer is None else offer.system.mechanics
-        return least_costs(mechanics, self._generic)
-
-    @property
-    def minor_measures(self) -> list[Scalar]:
-        """Determinants that vanish only where a rank drops."""
-        return [] if isinstance(self.minor, str) else _denominators(self.minor)
-
-    def _measures(self, offer: Offer) -> list[Scalar]:
-        """Denominators that vanish only where a rank drops, by theorem: minors, pivots of reflections, or else the
-        rest that the elimination's invertible steps leave."""
-        found = self.minor_measures
-        if offer.form.name == "householder":
-            derivation = householder_derivation(offer.system)
-            return [*found, *([] if isinstance(derivation, str) else _denominators(derivation))]
-        if not found and offer.form.name == "elimination":
-            return [guard.denominator for guard in offer.form.guards]
-        return found
+    def _counted(self) -> MethodInput:
+        """The system whose expressions bounds of costs are counted on: one that is at hand."""
+        at_hand = (one.system for one in self._candidates.values() if isinstance(one, Candidate))
+        return next(at_hand, None) or MethodInput.fresh(self.workspace.model, self.workspace.generic)
 
 
-def _factoring_limit(best: Offer) -> int:
+def cheapest(
+    candidates: Iterable[Candidate],
+    validity: Callable[[Candidate], Verdict],
+    weights: Mapping[str, Fraction | int],
+) -> tuple[Candidate, dict[str, Verdict]]:
+    """The valid candidate of least weight, and the verdicts on it and on those before it; the first of equals.
+
+    In double precision one whose denominators are lost in single precision may do; a status where it is singular is
+    told, and better than nothing at all.
+    """
+    order = sorted(candidates, key=lambda one: weights[one.name])
+    verdicts: dict[str, Verdict] = {}
+    for one in order:
+        verdicts[one.name] = validity(one)
+        if verdicts[one.name].admitted:
+            return one, verdicts
+    return next((one for one in order if verdicts[one.name].lost), order[0]), verdicts
+
+
+def _factoring_limit(best: Candidate) -> int:
     """The cost up to which the minor form is multiplied out to compete with the best."""
-    return min(FACTORING_LIMIT, int(best.form.weight * (1 + FACTORING_GAIN)))
+    return min(FACTORING_LIMIT, int(best.weight * (1 + FACTORING_GAIN)))
 
 
-def _denominators(derivation: Derivation) -> list[Scalar]:
-    return [guard.denominator for guard in (*derivation.actuation_guards, *derivation.space.guards)]
-
-
-def _nullspace(forms: InverseDynamics, system: MethodInput) -> Method | str:
-    return nullspace_form(system, proof_for(system, forms.minor_measures).shown)
-
-
-def _elimination(_: InverseDynamics, system: MethodInput) -> Method | str:
-    if system.driven is not None:
-        return system.driven
-    made = elimination_form(_in_absolute_angles(system.mechanics), system.generic)
-    return "its steps leave more than a few rows, or M does not select rows" if made is None else made
-
-
-def _in_absolute_angles(mechanics: System) -> System:
-    """The system in absolute angles, where it has relative ones and its rates are those of the coordinates."""
-    if not mechanics.twist_determinant.is_one:
-        return mechanics
-    change = absolute_angles(mechanics.graph, mechanics.q, mechanics.constraint_jacobian)
-    return mechanics if change.is_identity else System(mechanics.model, mechanics, change, mechanics.lumped)
-
-
-_BUILDERS: dict[str, Callable[[InverseDynamics, MethodInput], Method | str]] = {
-    "minor": lambda forms, system: form_along(system, "minor", forms.minor),
-    "nullspace": _nullspace,
-    "elimination": _elimination,
-    "householder": lambda _, system: form_along(system, "householder", householder_derivation(system)),
-    "printed": lambda _, system: printed_form(system),
-    "weighted": lambda _, system: weighted_form(system),
-    "kkt": lambda _, system: kkt_form(system),
-}
-assert tuple(_BUILDERS) == FORM_NAMES
-
-
-def derived_on(graph: Graph, offer: Offer) -> Quantity:
-    """The form as a quantity on the graph of the other quantities."""
-    outputs, guards = offer.form.outputs, offer.form.guards
-    if all(output.constant is not None for output in outputs):
-        guards = ()  # a status is decided on what the result depends on: here on nothing
-    return moved(graph, Quantity(offer.form.quantity, (len(outputs),), outputs, guards))
+def derived_on(graph: Graph, candidate: Candidate) -> Quantity:
+    """The quantity on the graph of the other quantities."""
+    derived = candidate.derived
+    if is_fixed(derived.outputs):
+        derived = replace(derived, guards=())  # a status is decided on what the result depends on: here on nothing
+    return moved(graph, derived)
 
 
 def moved(graph: Graph, derived: Quantity) -> Quantity:
@@ -335,11 +232,14 @@ class Moved:
         return replace(guard, denominator=denominator, scale=scale, first=self.guards(guard.first))
 
 
-def forms_of(model: Model) -> dict[str, tuple[System, Quantity]]:
-    """Every form of u this system has, by name: the mechanics it was derived on, and the quantity on their graph."""
-    forms = InverseDynamics(model, genericity(System(model)))
-    offers = {name: offer for name in FORM_NAMES if isinstance(offer := forms.offer(name), Offer)}
-    return {
-        name: (offer.system.mechanics, derived_on(offer.system.mechanics.graph, offer))
-        for name, offer in offers.items()
-    }
+def every_method(model: Model, quantities: Iterable[str]) -> dict[str, tuple[System, tuple[Quantity, ...]]]:
+    """Every method that a system has: what it was derived on, and the quantities there."""
+    made = Methods(model, genericity(System(model)))
+    found: dict[str, tuple[System, tuple[Quantity, ...]]] = {}
+    for quantity in quantities:
+        for row in methods(quantity):
+            one = made.candidate(quantity, row.name)
+            if isinstance(one, Candidate):
+                mechanics, before = found.get(row.name, (one.system.mechanics, ()))
+                found[row.name] = mechanics, (*before, derived_on(mechanics.graph, one))
+    return found

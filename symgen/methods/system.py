@@ -13,7 +13,9 @@ from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.never_zero import Definite
 from symgen.mechanics.system import System
 from symgen.model.model import Model
+from symgen.symbolic.angles import share_angles
 from symgen.symbolic.matrix import Vector, flatten
+from symgen.symbolic.traverse import cost
 
 
 @dataclass(frozen=True)
@@ -38,6 +40,11 @@ class MethodInput:
         """The model's own expressions, whose denominators no form is to blame for."""
         mechanics = self.mechanics
         return (*mechanics.balance, *flatten(mechanics.constraint_jacobian), *flatten(mechanics.control_matrix))
+
+    @cached_property
+    def least_cost(self) -> int:
+        """What the model's own expressions count, which every method evaluates."""
+        return cost(share_angles(self.mechanics.graph, self.given)).weight
 
     @property
     def driven(self) -> str | None:

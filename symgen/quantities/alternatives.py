@@ -14,12 +14,14 @@ from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.mechanics.system import System
 from symgen.methods.compared import MOTIONS, quantities_by
 from symgen.methods.forward_dynamics.motions import BY_BODIES, BY_FRAMES
+from symgen.methods.method import Candidate
 from symgen.methods.quantity import Quantity, scalars
-from symgen.methods.selection import AUTOMATIC, InverseDynamics, MethodChoice, Offer, derived_on, moved
+from symgen.methods.selection import MethodChoice, Methods, derived_on, moved
+from symgen.methods.spaces import SPACES
 from symgen.model.model import Model
 from symgen.quantities.catalogue import BY_NAME, derive
 from symgen.quantities.row_units import in_ordinary_units
-from symgen.quantities.select import Choice, block_way, complete, ways, with_groups
+from symgen.quantities.select import Choice, complete, with_groups
 from symgen.records import dataclass
 from symgen.runtime.effort import TooLongError, at_most, worth_trying
 from symgen.symbolic.matrix import flatten
@@ -27,7 +29,7 @@ from symgen.symbolic.passes.forgetting import START
 from symgen.symbolic.traverse import cost, reached
 
 # Those of a tier come before any of the next.  The second ones square the condition of B, or are long.
-INPUTS = (AUTOMATIC, ("printed", "weighted", "kkt"))
+INPUTS = (("elimination", "minor", "nullspace", "householder"), ("printed", "weighted", "kkt"))
 MOTION = (("minor", "schur_qr", "nullspace", BY_FRAMES, BY_BODIES), ("schur_ldl", "shifted", "kkt"))
 OTHERS = (("minors", "householder", "blocks"), ())
 WEIGHTED = (("minors", "householder", "blocks", "schur_qr", BY_FRAMES), ())
@@ -57,12 +59,12 @@ class Alternative:
 
 
 class Alternatives:
-    """The ways to the quantities of one model; `inverse` holds the forms of u that were looked at already."""
+    """The ways to the quantities of one model; `methods` holds those of u that were looked at already."""
 
-    def __init__(self, model: Model, generic: Genericity, inverse: InverseDynamics | None) -> None:
+    def __init__(self, model: Model, generic: Genericity, methods: Methods | None) -> None:
         self._model = in_ordinary_units(model)
         self._generic = generic
-        self._inverse = inverse
+        self._methods = methods
         self._motions: dict[str, tuple[System, tuple[Quantity, ...]]] = {}
         self.too_long: dict[str, list[str]] = defaultdict(list)
 
@@ -106,17 +108,17 @@ class Alternatives:
 
     def _of_inputs(self, name: str) -> Alternative | None:
         """A form of u that is nowhere singular."""
-        if self._inverse is None:
-            self._inverse = InverseDynamics(self._model, self._generic)
-        offer = self._inverse.offer(name)
-        if not isinstance(offer, Offer):
+        if self._methods is None:
+            self._methods = Methods(self._model, self._generic)
+        candidate = self._methods.candidate("inverse_dynamics", name)
+        if not isinstance(candidate, Candidate):
             return None
-        found = self._inverse.verdict(offer, first_only=True)
+        found = self._methods.verdict(candidate, first_only=True)
         if found.singular:
             return None
-        choice = MethodChoice(name, found, ((name, offer.form.weight, found.explanation),))
+        choice = MethodChoice(name, found, ((name, candidate.weight, found.explanation),))
         mechanics = System(self._model)
-        return self._alone(derived_on(mechanics.graph, offer), name, choice.costs, mechanics, choice)
+        return self._alone(derived_on(mechanics.graph, candidate), name, choice.costs, mechanics, choice)
 
     def _of_motion(self, quantity: str, name: str) -> Alternative | None:
         """A form of q_ddot or lambda that is valid wherever the motion is determined."""
@@ -135,8 +137,8 @@ class Alternatives:
     def _along(self, quantity: str, name: str) -> Alternative | None:
         """A quantity along a way to the null space."""
         mechanics = System(self._model)
-        along = {**ways(mechanics, self._generic), "blocks": block_way(mechanics, self._generic)}.get(name)
-        if along is None:
+        along = SPACES[name](mechanics, self._generic)
+        if isinstance(along, str):
             return None
         derived = derive(BY_NAME[quantity], along)
         return self._alone(derived, name, ((name, cost(scalars(derived)).weight),), mechanics)

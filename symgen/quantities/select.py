@@ -9,9 +9,6 @@ from functools import partial
 from types import MappingProxyType
 
 from symgen.ir.kernel import Scalar
-from symgen.linear_algebra.block_space import BlockSpace
-from symgen.linear_algebra.blocks import components
-from symgen.linear_algebra.null_spaces import MINOR_LIMIT, MinorSpace
 from symgen.mechanics.genericity import Genericity, genericity
 from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.mechanics.system import System
@@ -21,13 +18,15 @@ from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA
 from symgen.methods.forward_dynamics.motions import BY_FRAMES, cost_factor
 from symgen.methods.quantity import Quantity, is_fixed, resting_on, scalars
 from symgen.methods.selection import (
+    AUTO,
     CANCELLATION_WORTH,
     FACTORING_LIMIT,
-    InverseDynamics,
     MethodChoice,
+    Methods,
     derived_on,
     moved,
 )
+from symgen.methods.spaces import derivations as derivations_of
 from symgen.model.model import Model
 from symgen.quantities.catalogue import BY_NAME, CATALOGUE, PARTITION, POINTS, by_blocks, derive, missing
 from symgen.quantities.everything import Everything, too_long
@@ -86,7 +85,7 @@ class Selection:
     absent: tuple[tuple[str, str], ...]
     form: MethodChoice | None = None  # of the inverse dynamics, where they are among the quantities
     named: tuple[tuple[str, MethodChoice], ...] = ()  # of other quantities, where a form was asked for by name
-    inverse: InverseDynamics | None = None  # the forms of u that were looked at
+    methods: Methods | None = None  # those of u that were looked at
     rejected: tuple[Rejection, ...] = ()  # by verification
     left_out: tuple[tuple[str, tuple[str, ...]], ...] = ()  # quantities with the scalar types in which no way passes
 
@@ -96,26 +95,6 @@ class NoSuchFormError(Exception):
 
     def __init__(self, quantity: str, form: str, reason: str) -> None:
         super().__init__(f"no form {form!r} of {quantity}: {reason}")
-
-
-def ways(mechanics: System, generic: Genericity) -> dict[str, Derivation]:
-    """The derivations that are valid at every regular configuration, by name."""
-    rows, n = mechanics.constraint_jacobian, mechanics.n
-    found: dict[str, Derivation] = {}
-    if generic.minors <= MINOR_LIMIT:
-        space = MinorSpace(mechanics.graph, rows, n, generic.rank)
-        found["minors"] = Derivation(mechanics, generic, space)
-    if rows:
-        found["householder"] = Derivation(mechanics, generic, reflected_rows(mechanics, generic))
-    return found
-
-
-def block_way(mechanics: System, generic: Genericity) -> Derivation | None:
-    """The derivation along blocks of B that share no coordinate; None where there is one block or rows depend."""
-    rows = mechanics.constraint_jacobian
-    if generic.rank < len(rows) or len(list(components(rows))) < 2:
-        return None
-    return Derivation(mechanics, generic, BlockSpace(mechanics.graph, rows, mechanics.n))
 
 
 def absolute_way(model: Model, generic: Genericity) -> Derivation | None:
@@ -175,7 +154,8 @@ def derive_quantities(
         mechanics = System(model)
         generic = genericity(mechanics)
     present, absent = requested(model, generic, outputs)
-    derivations, blocks = ways(mechanics, generic), block_way(mechanics, generic)
+    derivations = derivations_of(mechanics, generic)
+    blocks = derivations.pop("blocks", None)
     moving = [name for name in MOTIONS if name in present and name not in forms]
     with working("articulated inertias"):
         by_frames = articulated_motion(model, generic) if moving else {}
@@ -186,17 +166,17 @@ def derive_quantities(
     quantities: list[Quantity] = []
     choices: list[Choice] = []
     chosen_form: MethodChoice | None = None
-    inverse: InverseDynamics | None = None
+    methods: Methods | None = None
     named: list[tuple[str, MethodChoice]] = []
     everything = Everything(outputs, forms)
     for name in each("ways to", present, str):
         if name == "inverse_dynamics":
-            inverse = InverseDynamics(model, generic)
-            found = inverse.choose(forms.get(name, "auto"))
+            methods = Methods(model, generic)
+            found = methods.choose(name, forms.get(name, AUTO))
             if isinstance(found, str):
-                raise NoSuchFormError(name, forms.get(name, "auto"), found)
-            offer, chosen_form = found
-            quantities.append(derived_on(mechanics.graph, offer))
+                raise NoSuchFormError(name, forms.get(name, AUTO), found)
+            candidate, chosen_form = found
+            quantities.append(derived_on(mechanics.graph, candidate))
             choices.append(Choice(name, chosen_form.way, chosen_form.costs))
             continue
         if name in forms:
@@ -253,7 +233,7 @@ def derive_quantities(
     grouped = tuple(finished(mechanics, generic, derived) for derived in named_so)
     if forms.get("inverse_dynamics", "auto") == "auto":
         grouped = tuple(_with_alike_bodies(model, derived) for derived in grouped)
-    return Selection(mechanics, generic, grouped, tuple(choices), tuple(absent), chosen_form, tuple(named), inverse)
+    return Selection(mechanics, generic, grouped, tuple(choices), tuple(absent), chosen_form, tuple(named), methods)
 
 
 def finished(mechanics: System, generic: Genericity, derived: Quantity) -> Quantity:

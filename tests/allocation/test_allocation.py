@@ -17,7 +17,7 @@ from symgen.backends.python.module import emit_python
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.exterior import ActuationForms
 from symgen.methods.allocation import orientation_of
-from symgen.quantities.select import ways
+from symgen.methods.spaces import derivations
 from symgen.symbolic.evaluate import Evaluator
 from symgen.verify.reference.allocation import internal_force
 from symgen.verify.reference.evaluation import Evaluation
@@ -156,7 +156,7 @@ def test_internal_force_moves_nothing_and_has_norm_one(text: str) -> None:
 def test_direction_has_the_documented_sign_along_every_null_space(text: str) -> None:
     made = system(text, LIMITS[text])
     mechanics, generic = made.derivations.mechanics, made.derivations.generic
-    spaces = {name: derivation.space for name, derivation in ways(mechanics, generic).items()}
+    spaces = {name: derivation.space for name, derivation in derivations(mechanics, generic).items()}
     assert len(spaces) == 1 + bool(made.model.r)
     for space in spaces.values():
         forms, _ = space.actuation(mechanics.inputs, generic.alpha)
@@ -182,7 +182,7 @@ def point(made: System, state: State) -> dict[str, float]:
 @pytest.mark.parametrize("text", LIMITS, ids=lambda text: text.split()[1])
 def test_every_way_gives_the_same_inputs(text: str) -> None:
     made = system(text, LIMITS[text])
-    for derivation in ways(made.derivations.mechanics, made.derivations.generic).values():
+    for derivation in derivations(made.derivations.mechanics, made.derivations.generic).values():
         evaluate = Evaluator(derivation.inverse_dynamics)
         for state, e in evaluations(made):
             wanted = [float(x) for x in QUANTITIES["inverse_dynamics"](e).entries()]
@@ -364,7 +364,7 @@ def parts(state: State) -> tuple[tuple[Any, ...], ...]:
 def test_forms_count_a_subset_by_the_weights_outside_it() -> None:
     made = system(models.PLATE, "weights: {p: 1, q_1: 1, s: 1, t_1: 1}")
     mechanics, generic = made.derivations.mechanics, made.derivations.generic
-    forms, _ = ways(mechanics, generic)["minors"].space.actuation(mechanics.inputs, generic.alpha)
+    forms, _ = derivations(mechanics, generic)["minors"].space.actuation(mechanics.inputs, generic.alpha)
     w = [mechanics.graph.symbol(f"weight {k}") for k in range(4)]
     weighted = ActuationForms(forms.rows, forms.inputs, forms.degree, w)
     assert [weighted.importance(subset) for subset in weighted.subsets] == [w[3], w[2], w[1], w[0]]

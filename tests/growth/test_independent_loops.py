@@ -12,7 +12,8 @@ from counted import calls
 
 from symgen.mechanics.genericity import genericity
 from symgen.mechanics.system import System
-from symgen.methods.selection import InverseDynamics, Offer
+from symgen.methods.method import INPUTS, Candidate
+from symgen.methods.selection import Methods
 from symgen.model.load import load_text
 from symgen.model.model import Model
 from symgen.validity.search import ZeroSearch, symbols
@@ -54,15 +55,15 @@ def sliders(count: int) -> Model:
 
 def test_each_loop_has_a_test_of_its_own() -> None:
     model = sliders(3)
-    offer = InverseDynamics(model, genericity(System(model))).offer("nullspace")
-    assert isinstance(offer, Offer)
-    held = [symbols([guard.denominator]) for guard in offer.form.guards]
+    made = Methods(model, genericity(System(model))).candidate(INPUTS, "nullspace")
+    assert isinstance(made, Candidate)
+    held = [symbols([guard.denominator]) for guard in made.derived.guards]
     assert len(held) == 3
     moving = [{name for name in names if name[0] in "asx"} for names in held]
     assert all(moving)
     assert all(not one & other for one, other in pairwise(moving))
     # and so have the inputs
-    for k, output in enumerate(offer.form.outputs):
+    for k, output in enumerate(made.derived.outputs):
         assert {name[-1] for name in moving[k]} == {str(k)}
         assert not any(name in symbols([output]) for other in moving[:k] + moving[k + 1 :] for name in other)
 

@@ -7,9 +7,10 @@ from laws_harness import System
 
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.blocks import components
+from symgen.methods.derivation import Derivation
 from symgen.methods.quantity import scalars
+from symgen.methods.spaces import along_blocks, along_minors
 from symgen.quantities.catalogue import BY_NAME, by_blocks, derive
-from symgen.quantities.select import block_way, ways
 from symgen.symbolic.traverse import cost
 from symgen.verify.states import sample_states
 from symgen.verify.tolerance import FACTOR, expectations
@@ -65,11 +66,9 @@ def test_blocks_are_chosen_and_cost_less(skates: System) -> None:
 def test_along_blocks_alone() -> None:
     """A graph of its own, so that equal functions of another way do not stand in for these."""
     alone, together = (System(TWO_SKATES, ()).derivations for _ in range(2))
-    blocks = block_way(alone.mechanics, alone.generic)
-    assert blocks is not None
-    minors = ways(together.mechanics, together.generic)["minors"]
+    ways = [along(one.mechanics, one.generic) for along, one in ((along_blocks, alone), (along_minors, together))]
     entry = BY_NAME["constraint_pseudoinverse"]
-    first, second = (cost(scalars(derive(entry, way))).weight for way in (blocks, minors))
+    first, second = (cost(scalars(derive(entry, way))).weight for way in ways if isinstance(way, Derivation))
     assert 5 * first < 3 * second
 
 
@@ -83,4 +82,4 @@ def test_a_drop_of_rank_in_one_block_is_named(skates: System) -> None:
 
 def test_one_block_has_no_such_way() -> None:
     made = System(TWO_SKATES.replace("two: sin(b)*u_dot", "two: x_dot + p_dot + k_dot + sin(b)*u_dot"), ())
-    assert block_way(made.derivations.mechanics, made.derivations.generic) is None
+    assert along_blocks(made.derivations.mechanics, made.derivations.generic) == "B has one block"

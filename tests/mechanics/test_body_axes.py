@@ -16,9 +16,10 @@ from symgen.mechanics.body_axes import BodyAxes
 from symgen.mechanics.free_bodies import free_bodies
 from symgen.mechanics.genericity import genericity
 from symgen.mechanics.system import System
-from symgen.methods.form import Method
 from symgen.methods.inverse_dynamics.forces_eliminated import elimination_form
-from symgen.methods.selection import InverseDynamics, Offer
+from symgen.methods.method import INPUTS, Candidate
+from symgen.methods.quantity import Quantity
+from symgen.methods.selection import Methods
 from symgen.model.load import load_text
 from symgen.model.model import Model
 from symgen.symbolic.evaluate import FUNCTIONS, Evaluator
@@ -89,14 +90,14 @@ def described(*changes: tuple[str, str]) -> Model:
 
 
 @cache
-def both(name: str) -> tuple[Method, Method]:
+def both(name: str) -> tuple[Quantity, Quantity]:
     """u by rates of coordinates and by twists."""
     model = described(*SAME[name])
     generic = genericity(System(model))
     first, second = (elimination_form(mechanics, generic) for mechanics in (System(model), BodyAxes(model)))
     assert first is not None
     assert second is not None
-    return first, second
+    return first.derived, second.derived
 
 
 def state(model: Model, seed: int, **given: float) -> dict[str, float]:
@@ -121,15 +122,15 @@ def test_u_is_the_same_and_shorter(name: str) -> None:
 
 def test_the_cheapest_form_is_that_in_body_axes() -> None:
     model = described()
-    forms = InverseDynamics(model, genericity(System(model)))
-    offer = forms.offer("elimination")
-    assert isinstance(offer, Offer)
-    assert isinstance(offer.system.mechanics, BodyAxes)
-    verdict = forms.verdict(offer)
+    methods = Methods(model, genericity(System(model)))
+    made = methods.candidate(INPUTS, "elimination")
+    assert isinstance(made, Candidate)
+    assert isinstance(made.system.mechanics, BodyAxes)
+    verdict = methods.verdict(made)
     assert verdict.admitted
     # a search for zeros would take seconds
     assert not verdict.searched
-    count = cost(offer.form.outputs)
+    count = cost(made.derived.outputs)
     assert count.additive + count.multiplications <= 600
 
 

@@ -44,8 +44,8 @@ def test_the_lengths_are_tested(platform: Model) -> None:
     mechanics = System(platform)
     form = elimination_form(mechanics, genericity(mechanics))
     assert form is not None
-    assert cost(form.outputs).weight < 2600  # by reflections 8976
-    (guard,) = form.guards
+    assert cost(form.derived.outputs).weight < 2600  # by reflections 8976
+    (guard,) = form.derived.guards
     assert guard.status == Status.ACTUATION_RANK
     evaluate = Evaluator([guard.denominator, guard.scale or guard.denominator])
     point = parameter_values(mechanics) | {c.name: 0.1 for c in platform.coordinates}
@@ -65,7 +65,7 @@ def test_the_rank_of_b_is_told_apart(platform: Model, kind: type[System]) -> Non
     mechanics, plain = kind(platform), System(platform)
     form = elimination_form(mechanics, genericity(plain))
     assert form is not None
-    (guard,) = form.guards
+    (guard,) = form.derived.guards
     (cause,) = guard.first
     assert cause.status == Status.CONSTRAINT_RANK
     whole = HouseholderSpace(plain.graph, plain.constraint_jacobian, plain.n).volume

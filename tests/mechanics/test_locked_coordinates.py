@@ -8,8 +8,8 @@ import pytest
 from symgen.linear_algebra.pivoted import reflected
 from symgen.mechanics.genericity import configurations, genericity
 from symgen.mechanics.system import System
+from symgen.methods.spaces import derivations
 from symgen.model.load import load_text
-from symgen.quantities.select import ways
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.matrix import flatten
 from symgen.symbolic.scalar import Graph
@@ -40,7 +40,7 @@ def test_projections_hold_locked_coordinates(dependent: bool) -> None:
     mechanics = System(load_text(text, "truss.yaml"))
     generic = genericity(mechanics)
     assert (generic.rank, generic.locked) == (3, (1, 3))
-    along = ways(mechanics, generic)["householder"]
+    along = derivations(mechanics, generic)["householder"]
     projector = along.space.projector
     assert all(projector[i][j].is_zero for i in (1, 3) for j in range(5))
     assert all(x.is_zero for x in along.space.project(mechanics.applied_force_at(along.admissible)))

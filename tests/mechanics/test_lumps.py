@@ -13,7 +13,8 @@ from shipped import ROOT, model
 from symgen.mechanics.genericity import genericity
 from symgen.mechanics.system import System
 from symgen.methods.inverse_dynamics.elimination import Elimination
-from symgen.methods.selection import InverseDynamics, Offer
+from symgen.methods.method import INPUTS, Candidate
+from symgen.methods.selection import Methods
 from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.symbolic.angles import angles_of, share_angles
@@ -57,9 +58,9 @@ def test_frames_that_share_parameters_are_shorter_lumped() -> None:
 @pytest.mark.parametrize(("name", "most"), [("arm7", 716), ("delta", 150), ("rapkm_bodies", 155), ("chain8", 355)])
 def test_products_and_sums_of_u(name: str, most: int) -> None:
     one = described(name)
-    offer = InverseDynamics(one, genericity(System(one))).offer("elimination")
-    assert isinstance(offer, Offer)
-    found = cost(share_angles(offer.form.outputs[0].graph, offer.form.outputs))
+    made = Methods(one, genericity(System(one))).candidate(INPUTS, "elimination")
+    assert isinstance(made, Candidate)
+    found = cost(share_angles(made.system.mechanics.graph, made.derived.outputs))
     assert found.additive + found.multiplications <= most
 
 

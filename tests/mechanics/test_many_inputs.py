@@ -13,7 +13,8 @@ from symgen.linear_algebra.reflected_inputs import ReflectedInputs
 from symgen.mechanics.genericity import Genericity, genericity
 from symgen.mechanics.system import System
 from symgen.methods.derivation import Derivation
-from symgen.methods.selection import InverseDynamics, Offer
+from symgen.methods.method import INPUTS, Candidate
+from symgen.methods.selection import Methods
 from symgen.model.load import load_text
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.scalar import Graph, Scalar
@@ -68,10 +69,10 @@ def test_a_form_is_found_where_components_of_inputs_vanish_in_turn() -> None:
     parts += ["  push: {acts_on: {x: cos(q_0), y: sin(q_0)}}", "  again: {acts_on: {x: -cos(q_0), y: -sin(q_0)}}"]
     parts += ["  same: {acts_on: {q_0: 1, q_1: 0.5 + cos(q_0)/4}}"]
     model = load_text("\n".join(parts) + "\n", "turning_push.yaml")
-    inverse = InverseDynamics(model, genericity(System(model)))
-    offer = inverse.offer("minor")
-    assert isinstance(offer, Offer)
-    assert inverse.verdict(offer).singular == ()
+    methods = Methods(model, genericity(System(model)))
+    made = methods.candidate(INPUTS, "minor")
+    assert isinstance(made, Candidate)
+    assert methods.verdict(made).singular == ()
 
 
 def test_the_number_of_products_decides() -> None:

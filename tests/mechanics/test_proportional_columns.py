@@ -13,9 +13,9 @@ from symgen.linear_algebra.proportional_columns import FamilySpace, families
 from symgen.mechanics.genericity import configurations, genericity
 from symgen.mechanics.system import System
 from symgen.methods.allocation import orientation_of
+from symgen.methods.spaces import derivations
 from symgen.model.load import load_text
 from symgen.quantities.catalogue import BY_NAME, derive
-from symgen.quantities.select import ways
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.matrix import Matrix, flatten
 from symgen.symbolic.scalar import Graph
@@ -106,7 +106,7 @@ def test_the_null_space_is_constant_where_families_are_as_many_as_the_rank() -> 
     mechanics = System(load_text(LIFT, "lift.yaml"))
     generic = genericity(mechanics)
     assert (generic.rank, generic.locked) == (3, (0, 1, 5))
-    along = ways(mechanics, generic)["householder"]
+    along = derivations(mechanics, generic)["householder"]
     half, gear = Fraction(1, 2), Fraction(4, 13)
     expected = {(1, 1): half, (1, 3): -half, (3, 1): -half, (3, 3): half, (2, 2): 1}
     expected |= {(0, 0): 9 * gear / 4, (0, 4): 3 * gear / 2, (4, 0): 3 * gear / 2, (4, 4): gear}

@@ -17,7 +17,8 @@ import pytest
 from symgen.mechanics.genericity import configurations, genericity
 from symgen.mechanics.system import System
 from symgen.methods.admission import LOST
-from symgen.methods.selection import InverseDynamics, Offer
+from symgen.methods.method import INPUTS, Candidate
+from symgen.methods.selection import Methods
 from symgen.model.configurations.mechanics import default_values
 from symgen.model.load import load_model
 from symgen.validity.resolution import stands_out
@@ -94,14 +95,14 @@ def test_forms_that_float32_would_refuse_everywhere_are_told_apart() -> None:
     Minors stand beside the lengths of rows, which exceed them by little.
     """
     mechanics = System(bicycle().model)
-    forms, points = InverseDynamics(mechanics.model, genericity(mechanics)), configurations(mechanics, 2)
-    offers = {name: forms.offer(name) for name in ("elimination", "minor", "nullspace")}
+    methods, points = Methods(mechanics.model, genericity(mechanics)), configurations(mechanics, 2)
+    made = {name: methods.candidate(INPUTS, name) for name in ("elimination", "minor", "nullspace")}
     standing = {
-        name: stands_out(offer.form.guards, mechanics.n, points)
-        for name, offer in offers.items()
-        if isinstance(offer, Offer)
+        name: stands_out(one.derived.guards, mechanics.n, points)
+        for name, one in made.items()
+        if isinstance(one, Candidate)
     }
     assert standing == {"elimination": True, "minor": True, "nullspace": False}
-    nullspace = offers["nullspace"]
-    assert isinstance(nullspace, Offer)
-    assert forms.verdict(nullspace).explanation == LOST
+    nullspace = made["nullspace"]
+    assert isinstance(nullspace, Candidate)
+    assert methods.verdict(nullspace).explanation == LOST

@@ -17,11 +17,11 @@ from symgen.mechanics.genericity import Genericity, genericity
 from symgen.mechanics.never_zero import Definite
 from symgen.mechanics.system import System
 from symgen.methods.admission import verdict
-from symgen.methods.form import Method
-from symgen.methods.inverse_dynamics.by_space import minor_derivation
 from symgen.methods.inverse_dynamics.printed import printed_form
-from symgen.methods.selection import InverseDynamics, Offer
+from symgen.methods.method import INPUTS, Candidate
+from symgen.methods.selection import Methods
 from symgen.methods.system import MethodInput
+from symgen.methods.workspace import Workspace
 from symgen.runtime.effort import done
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.scalar import Graph, Scalar
@@ -43,9 +43,7 @@ def fresh(name: str) -> MethodInput:
 
 
 def measures(name: str) -> list[Scalar]:
-    derivation = minor_derivation(fresh(name))
-    assert not isinstance(derivation, str)
-    return [guard.denominator for guard in (*derivation.actuation_guards, *derivation.space.guards)]
+    return Workspace(model(name), generic(name)).minor_measures
 
 
 @pytest.mark.parametrize("drives", [(0, 1), (0, 2), (1, 2)])
@@ -53,11 +51,11 @@ def test_a_fixed_partition_of_the_rapkm_is_rejected(drives: tuple[int, int]) -> 
     """Sampled states would not tell: it looks perfect on half of all batches of 64."""
     system = fresh("rapkm_2rrr_rr")
     made = printed_form(system, drives)
-    assert isinstance(made, Method)
+    assert isinstance(made, Candidate)
     # N_B is divided by B B^T only, the first pivots
     of_inputs = tuple(divisor for divisor in made.divisors if divisor.size > 10_000)
     assert len(of_inputs) >= 2
-    found = verdict(system, replace(made, divisors=of_inputs), measures("rapkm_2rrr_rr"), first_only=True)
+    found = verdict(replace(made, divisors=of_inputs), measures("rapkm_2rrr_rr"), first_only=True)
     assert not found.admitted
     # at the state found (28)'s determinant has vanished while the ranks of B and M~ are beyond doubt
     third = ({0, 1, 2} - set(drives)).pop()
@@ -70,22 +68,21 @@ def test_a_fixed_partition_of_the_rapkm_is_rejected(drives: tuple[int, int]) -> 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if model(name).inputs])
 def test_the_form_chosen_is_admitted_and_the_cheapest_of_those(name: str) -> None:
-    found = InverseDynamics(model(name), generic(name)).choose()
+    found = Methods(model(name), generic(name)).choose(INPUTS)
     assert not isinstance(found, str)
-    offer, choice = found
+    chosen, choice = found
     assert choice.verdict.admitted
     assert choice.verdict.searched == 0  # proofs are enough for the shipped models
-    assert isinstance(offer, Offer)
-    # the forms on whole matrices count more, so that leaving them out of the choice costs nothing
-    forms = InverseDynamics(model(name), generic(name))
+    # the methods on whole matrices count more, so that leaving them out of the choice costs nothing
+    methods = Methods(model(name), generic(name))
     for other in ("printed", "weighted", "kkt"):
-        slow = forms.offer(other)
-        assert isinstance(slow, Offer)
-        assert slow.form.weight >= offer.form.weight
+        slow = methods.candidate(INPUTS, other)
+        assert isinstance(slow, Candidate)
+        assert slow.weight >= chosen.weight
 
 
 def test_a_null_space_basis_of_the_rapkm_is_offered_with_its_singular_set() -> None:
-    found = InverseDynamics(model("rapkm_2rrr_rr"), generic("rapkm_2rrr_rr")).choose("nullspace")
+    found = Methods(model("rapkm_2rrr_rr"), generic("rapkm_2rrr_rr")).choose(INPUTS, "nullspace")
     assert not isinstance(found, str)
     _, choice = found
     assert not choice.verdict.admitted
@@ -94,22 +91,22 @@ def test_a_null_space_basis_of_the_rapkm_is_offered_with_its_singular_set() -> N
 
 
 def test_a_form_that_does_not_apply_says_why() -> None:
-    reason = InverseDynamics(model("double_pendulum"), generic("double_pendulum")).choose("householder")
+    reason = Methods(model("double_pendulum"), generic("double_pendulum")).choose(INPUTS, "householder")
     assert reason == "there are no constraints"
 
 
 def test_a_cheaper_form_with_a_pole_is_not_chosen() -> None:
     """A form that divides by cos(theta) besides is what sampling lets through; its cost would make it win."""
-    forms = InverseDynamics(model("front_car"), generic("front_car"))
-    offer = forms.offer("nullspace")
-    assert isinstance(offer, Offer)
-    graph = offer.system.mechanics.graph
+    methods = Methods(model("front_car"), generic("front_car"))
+    made = methods.candidate(INPUTS, "nullspace")
+    assert isinstance(made, Candidate)
+    graph = made.system.mechanics.graph
     pole = graph.trig("cos", graph.symbol("theta"))
-    spoiled = replace(offer, form=replace(offer.form, divisors=(*offer.form.divisors, pole)))
-    found = forms.verdict(spoiled)
+    spoiled = replace(made, divisors=(*made.divisors, pole))
+    found = methods.verdict(spoiled)
     assert not found.admitted
     assert found.singular[0].where_zero == "cos(theta)"
-    assert forms.verdict(offer).admitted
+    assert methods.verdict(made).admitted
 
 
 def test_rules_of_proof() -> None:
@@ -189,14 +186,14 @@ def test_ways_that_come_no_closer_are_given_up(monkeypatch: pytest.MonkeyPatch) 
 SCRIPT = """
 from pathlib import Path
 from symgen.mechanics.genericity import genericity
-from symgen.methods.selection import InverseDynamics
+from symgen.methods.selection import Methods
 from symgen.mechanics.system import System
 from symgen.model.load import load_model
 for name in ("front_car", "rapkm_2rrr_rr", "slider_crank"):
     model = load_model(Path("models") / (name + ".yaml"))
-    forms = InverseDynamics(model, genericity(System(model)))
-    print(forms.choose()[1])
-    print(forms.choose("nullspace")[1])
+    methods = Methods(model, genericity(System(model)))
+    print(methods.choose("inverse_dynamics")[1])
+    print(methods.choose("inverse_dynamics", "nullspace")[1])
 """
 
 

@@ -9,7 +9,7 @@ from shipped import NAMES, model
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Program, Scalar, Status
 from symgen.lowering.schedule import schedule
-from symgen.methods.selection import forms_of
+from symgen.methods.selection import every_method
 from symgen.model.load import load_text
 from symgen.model.model import Model
 from symgen.verify.reference.reference import Reference
@@ -25,8 +25,8 @@ DRIVEN = [name for name in NAMES if model(name).inputs]
 
 def programs_of(given: Model) -> dict[str, dict[Scalar, Program]]:
     return {
-        form: schedule(mechanics, [quantity], ("float64", "float32"))
-        for form, (mechanics, quantity) in forms_of(given).items()
+        form: schedule(mechanics, found, ("float64", "float32"))
+        for form, (mechanics, found) in every_method(given, ("inverse_dynamics",)).items()
     }
 
 

@@ -191,7 +191,7 @@ def _of_axes(model: Model, generic: Genericity) -> Kept:
         change = absolute_angles(mechanics.graph, mechanics.q, mechanics.constraint_jacobian)
         seen = mechanics if change.is_identity else System(model, mechanics, change)
         form = elimination_form(seen, generic, steps)
-        return None if form is None else counted_cost(form.outputs)
+        return None if form is None else counted_cost(form.derived.outputs)
 
     plain, world = weight(Elimination), weight(_WorldAxes)
     return Kept("body-fixed axes", None if plain is None or world == plain else world, plain or 0)

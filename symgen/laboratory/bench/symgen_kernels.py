@@ -25,7 +25,7 @@ from symgen.lowering.schedule import schedule
 from symgen.mechanics.system import System
 from symgen.methods.compared import motions_of
 from symgen.methods.quantity import Quantity
-from symgen.methods.selection import forms_of
+from symgen.methods.selection import every_method
 from symgen.model.model import Model
 from symgen.quantities.select import ABSOLUTE
 from symgen.verify.python_module import PythonModule
@@ -64,10 +64,8 @@ def _never_valid(program: Program) -> bool:
 
 def _forms(model: Model, quantity: str) -> Iterator[tuple[str, tuple[System, Quantity]]]:
     """Every form by name, each on a graph of its own."""
-    if quantity == "inverse_dynamics":
-        yield from forms_of(model).items()
-        return
-    for form, (mechanics, derived) in motions_of(model).items():
+    found = every_method(model, (quantity,)) if quantity == "inverse_dynamics" else motions_of(model)
+    for form, (mechanics, derived) in found.items():
         for one in derived:
             if one.name == quantity:
                 yield form, (mechanics, one)

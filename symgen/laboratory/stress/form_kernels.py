@@ -9,17 +9,18 @@ from symgen.generation.runnable import SCALARS, Runner
 from symgen.ir.kernel import Scalar, Status
 from symgen.lowering.schedule import schedule
 from symgen.methods.compared import motions_of
-from symgen.methods.form import FORM_NAMES
 from symgen.methods.forward_dynamics.motions import BY_FRAMES, MOTION_NAMES
 from symgen.methods.quantity import scalars
-from symgen.methods.selection import forms_of
+from symgen.methods.selection import every_method
+from symgen.methods.table import METHODS
 from symgen.model.model import Model
 from symgen.symbolic.traverse import cost
 from symgen.verify.reference.reference import State
 
 # Sums of minors of large systems grow past what a compiler takes in minutes.
 MOST_OPERATIONS = 20_000
-LABELS: dict[str, str] = {name: f"form {name}" for name in dict.fromkeys((*FORM_NAMES, *MOTION_NAMES, BY_FRAMES))}
+NAMES = (*(row.name for row in METHODS), *MOTION_NAMES, BY_FRAMES)
+LABELS: dict[str, str] = {name: f"form {name}" for name in NAMES}
 
 
 class FormKernels:
@@ -28,7 +29,7 @@ class FormKernels:
     def __init__(self, model: Model, folder: Path, quantities: Sequence[str]) -> None:
         derived = [(name, mechanics, found) for name, (mechanics, found) in motions_of(model).items()]
         if "inverse_dynamics" in quantities:
-            derived += [(name, mechanics, (found,)) for name, (mechanics, found) in forms_of(model).items()]
+            derived += [(name, *found) for name, found in every_method(model, ("inverse_dynamics",)).items()]
         self._runners: list[tuple[str, Runner]] = []
         self.left_out: tuple[str, ...] = ()
         for count, (name, mechanics, found) in enumerate(derived):

@@ -1,4 +1,4 @@
-"""Counted costs that forms of u cannot fall below, known before they are built.
+"""Counted costs that methods of u cannot fall below, known before they are built.
 
 A form whose bound exceeds the cost of one that is admitted need not be derived.  Every form evaluates the model's own
 expressions (balance, B, M).  Only what is certain is added: rows of B in which every entry differs from zero count, so
@@ -11,37 +11,41 @@ from math import comb
 
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
-from symgen.symbolic.angles import share_angles
-from symgen.symbolic.matrix import Matrix, flatten
-from symgen.symbolic.traverse import cost
+from symgen.methods.system import MethodInput
+from symgen.symbolic.matrix import Matrix
 
 # A root and a division for each reflection are the least that the Householder form adds to its data.
 REFLECTION = 12
 
 
-def least_costs(mechanics: System, generic: Genericity) -> dict[str, int]:
-    """Bounds of `minor`, `nullspace` and `householder`, in the units of `Form.weight`."""
-    rows, rank = mechanics.constraint_jacobian, generic.rank
-    data = [*mechanics.balance, *flatten(rows), *flatten(mechanics.control_matrix)]
-    # u.z, z.z and u - z (u.z)/(z.z) where the inputs have an internal force
-    spared = 4 * generic.m if generic.m > generic.alpha else 0
-    base = cost(share_angles(mechanics.graph, data)).weight
-    dense = sum(all(not row[j].is_zero for row in rows) for j in range(mechanics.n)) if rows else 0
-    return {
-        "minor": base + spared + _of_minors(dense, rank),
-        "nullspace": base + spared + _of_basis(dense, rank),
-        "householder": base + REFLECTION * len(rows) + _of_reflections(rows, mechanics),
-    }
-
-
-def _of_minors(dense: int, rank: int) -> int:
+def least_of_minors(system: MethodInput) -> int:
     """One operation at least for each minor of two rows or more, and its square in their sum."""
-    return 2 * comb(dense, rank) if rank > 1 else 0
+    rank = system.generic.rank
+    return system.least_cost + _spared(system.generic) + (2 * comb(_dense(system.mechanics), rank) if rank > 1 else 0)
 
 
-def _of_basis(dense: int, rank: int) -> int:
+def least_of_basis(system: MethodInput) -> int:
     """A vector with rank + 1 components for each free rate, minors of the rows, and its product with the balance."""
-    return max(dense - rank, 0) * (2 * rank + (2 * rank + 1 if rank > 1 else 1))
+    rank, dense = system.generic.rank, _dense(system.mechanics)
+    each = 2 * rank + (2 * rank + 1 if rank > 1 else 1)
+    return system.least_cost + _spared(system.generic) + max(dense - rank, 0) * each
+
+
+def least_of_reflections(system: MethodInput) -> int:
+    """A root and a division for each reflection, and what they do to M and the balance."""
+    rows = system.mechanics.constraint_jacobian
+    return system.least_cost + REFLECTION * len(rows) + _of_reflections(rows, system.mechanics)
+
+
+def _spared(generic: Genericity) -> int:
+    """u.z, z.z and u - z (u.z)/(z.z) where the inputs have an internal force."""
+    return 4 * generic.m if generic.m > generic.alpha else 0
+
+
+def _dense(mechanics: System) -> int:
+    """Coordinates that every row of B holds."""
+    rows = mechanics.constraint_jacobian
+    return sum(all(not row[j].is_zero for row in rows) for j in range(mechanics.n)) if rows else 0
 
 
 def _of_reflections(rows: Matrix, mechanics: System) -> int:

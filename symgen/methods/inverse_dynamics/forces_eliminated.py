@@ -18,12 +18,15 @@ from symgen.linear_algebra.exterior import ActuationForms, RowForms, cross_produ
 from symgen.linear_algebra.guards import Guard, beside_lengths, magnitude
 from symgen.linear_algebra.null_spaces import LONGEST_PRODUCT, HouseholderSpace
 from symgen.linear_algebra.square import by_rows
-from symgen.mechanics.absolute_angles import AbsoluteAngles
+from symgen.mechanics.absolute_angles import AbsoluteAngles, absolute_angles
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.never_zero import Definite
 from symgen.mechanics.system import System
-from symgen.methods.form import Method, form
+from symgen.methods.admission import OfInputs, ranks
 from symgen.methods.inverse_dynamics.elimination import Elimination
+from symgen.methods.method import Candidate, Method, solved_for_u
+from symgen.methods.system import MethodInput
+from symgen.methods.workspace import Workspace
 from symgen.symbolic.content import divided, usual_number
 from symgen.symbolic.matrix import Matrix, Vector, dot, transpose
 from symgen.symbolic.scalar import Graph, Scalar
@@ -36,7 +39,7 @@ MOST_MINORS = 3
 
 def elimination_form(
     mechanics: System, generic: Genericity, steps: Callable[[System], Elimination] = Elimination
-) -> Method | None:
+) -> Candidate | None:
     """u by elimination, or None where it does not apply; `mechanics` may be in absolute angles.
 
     Needs full actuation and independent constraints.  `steps` makes the elimination.
@@ -58,7 +61,8 @@ def elimination_form(
     back = _symbols_back(mechanics, mechanics.change) | _positive_sizes(mechanics)
     outputs = tuple(substitute(graph, u, back))
     moved = [_moved(graph, guard, back) for guard in open_guards]
-    return form("elimination", "inverse_dynamics", outputs, moved, substitute(graph, mechanics.balance, back))
+    own = substitute(graph, mechanics.balance, back)
+    return solved_for_u(MethodInput(mechanics, generic), outputs, moved, own)
 
 
 class _Core:
@@ -108,9 +112,7 @@ class _Core:
         if self._size == len(self._names) == MOST_MINORS:
             return self._bordered()
         graph = self._graph
-        forms = ActuationForms(
-            RowForms(graph, (), self._size, 0), transpose(self._core, len(self._names)), self._size
-        )
+        forms = ActuationForms(RowForms(graph, (), self._size, 0), transpose(self._core, len(self._names)), self._size)
         denominator = forms.denominator()
         guard, measure = self._guarded(denominator, 1 if forms.single else 2)
         if self._size == 1 and not forms.single:
@@ -202,9 +204,7 @@ class _Core:
         lengths = [graph.sum(x * x for x in magnitude(graph, column)) for column in whole]
         return Guard(Status.CONSTRAINT_RANK, denominator, 2, scale=graph.product(lengths))
 
-    def _without_direction(
-        self, u: Vector, z: Vector, measure: Scalar | None
-    ) -> tuple[Vector, tuple[Guard, ...]]:
+    def _without_direction(self, u: Vector, z: Vector, measure: Scalar | None) -> tuple[Vector, tuple[Guard, ...]]:
         """u - z (z . u) / (z . z); |z|^2 is measured by its terms, which are small where the core's minors are.
 
         Without a `measure` z is what a null vector of length 1 does: at most what all unknowns together do.
@@ -270,3 +270,43 @@ def _moved(graph: Graph, guard: Guard, back: dict[Scalar, Scalar]) -> Guard:
     denominator, scale = substitute(graph, [guard.denominator, guard.scale], back)
     first = tuple(_moved(graph, cause, back) for cause in guard.first)
     return replace(guard, denominator=denominator, first=first, scale=scale)
+
+
+def _elimination(workspace: Workspace) -> Candidate | str:
+    system = _in_body_axes(workspace, workspace.fresh())
+    if system.driven is not None:
+        return system.driven
+    made = elimination_form(_in_absolute_angles(system.mechanics), system.generic)
+    if made is None:
+        return "its steps leave more than a few rows, or M does not select rows"
+    return replace(made, system=system)
+
+
+def _in_body_axes(workspace: Workspace, system: MethodInput) -> MethodInput:
+    """The system with the twists of free bodies for rates, where its equations count less that way."""
+    if not workspace.model.mechanism.has_mass:
+        return system
+    from symgen.mechanics.free_bodies import free_bodies  # models given by energies start without it
+
+    if not free_bodies(system.mechanics):
+        return system
+    from symgen.mechanics.body_axes import BodyAxes
+
+    turned = MethodInput(BodyAxes(workspace.model, workspace.lumped), workspace.generic)
+    return turned if cost(turned.given).weight < cost(system.given).weight else system
+
+
+def _in_absolute_angles(mechanics: System) -> System:
+    """The system in absolute angles, where it has relative ones and its rates are those of the coordinates."""
+    if not mechanics.twist_determinant.is_one:
+        return mechanics
+    change = absolute_angles(mechanics.graph, mechanics.q, mechanics.constraint_jacobian)
+    return mechanics if change.is_identity else System(mechanics.model, mechanics, change, mechanics.lumped)
+
+
+def _rest(workspace: Workspace, candidate: Candidate) -> list[Scalar]:
+    """Minors, or else what the elimination's invertible steps leave."""
+    return ranks(workspace, candidate) or [guard.denominator for guard in candidate.derived.guards]
+
+
+ELIMINATION: Method = OfInputs(_elimination, _rest)

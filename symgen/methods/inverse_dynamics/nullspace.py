@@ -17,9 +17,12 @@ from symgen.linear_algebra.blocks import components
 from symgen.linear_algebra.exterior import ActuationForms, RowForms, cross_product, small_family
 from symgen.linear_algebra.guards import Guard
 from symgen.linear_algebra.null_spaces import MinorSpace
-from symgen.methods.form import Method, form
+from symgen.methods.admission import OfInputs, proof_for
+from symgen.methods.inverse_dynamics.estimates import least_of_basis
 from symgen.methods.inverse_dynamics.rates import Rates, reduced_rates
+from symgen.methods.method import Candidate, Method, solved_for_u
 from symgen.methods.system import MethodInput
+from symgen.methods.workspace import Workspace
 from symgen.records import dataclass
 from symgen.symbolic.matrix import Matrix, Vector, identity, matmul, transpose
 from symgen.symbolic.scalar import Graph, Scalar
@@ -47,7 +50,7 @@ class _Kernel:
     pivots: Vector
 
 
-def nullspace_form(system: MethodInput, allowed: Callable[[Scalar], bool]) -> Method | str:
+def nullspace_form(system: MethodInput, allowed: Callable[[Scalar], bool]) -> Candidate | str:
     """The form along the first choice of rates whose determinant is `allowed`, or along the first of all."""
     reason = system.driven or system.regular
     if reason is not None:
@@ -73,7 +76,7 @@ def nullspace_form(system: MethodInput, allowed: Callable[[Scalar], bool]) -> Me
         guards.append(Guard(Status.ACTUATION_RANK, forms.denominator(), power, regular, directions=degree))
         for k, value in zip(acting, forms.solve(tuple(force[i] for i in directions)), strict=True):
             u[k] = value
-    made = form("nullspace", "inverse_dynamics", tuple(u), tuple(guards), system.given)
+    made = solved_for_u(system, u, guards)
     pivots = tuple(pivot for pivot in basis.pivots if pivot not in made.divisors and pivot.constant is None)
     return replace(made, divisors=(*made.divisors, *pivots))
 
@@ -159,3 +162,11 @@ def _solved(graph: Graph, core: Matrix, chosen: tuple[int, ...]) -> _Kernel | No
         values = dict(zip(places, part, strict=True))
         vectors.append(tuple(values.get(j, graph.zero) for j in range(width)))
     return _Kernel(tuple(vectors), (determinant,))
+
+
+def _nullspace(workspace: Workspace) -> Candidate | str:
+    system = workspace.fresh()
+    return nullspace_form(system, proof_for(system, workspace.minor_measures).shown)
+
+
+NULLSPACE: Method = OfInputs(_nullspace, least=least_of_basis)

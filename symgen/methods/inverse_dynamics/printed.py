@@ -17,7 +17,8 @@ from symgen.ir.kernel import Status
 from symgen.linear_algebra.constrained_inverse import Cholesky, diagonal_sizes
 from symgen.linear_algebra.exterior import square, unit, wedge_all
 from symgen.linear_algebra.guards import Guard
-from symgen.methods.form import Method, form
+from symgen.methods.admission import OfInputs
+from symgen.methods.method import Candidate, Method, solved_for_u
 from symgen.methods.system import MethodInput
 from symgen.symbolic.matrix import Matrix, Vector, dot, identity, matvec
 from symgen.symbolic.scalar import Graph, Scalar
@@ -26,7 +27,7 @@ Projection: TypeAlias = Callable[[Vector], Vector]
 MOST_PARTITIONS = 20
 
 
-def printed_form(system: MethodInput, fixed: Sequence[int] | None = None) -> Method | str:
+def printed_form(system: MethodInput, fixed: Sequence[int] | None = None) -> Candidate | str:
     """u by (27) and (28); `fixed` names the inputs of M~_1 and takes the switching away."""
     reason = system.driven or system.regular
     if reason is not None:
@@ -53,7 +54,7 @@ def printed_form(system: MethodInput, fixed: Sequence[int] | None = None) -> Met
     scale = graph.sum(graph.product(squares[k] for k in J) for J in choices)
     rank = (Guard(Status.ACTUATION_RANK, largest, 2, guards, scale, delta),) if m > delta else ()
     kept = (*guards, *rank, *own)
-    return form("printed", "inverse_dynamics", u, kept, system.given)
+    return solved_for_u(system, u, kept)
 
 
 def _projection(graph: Graph, b: Matrix) -> tuple[Projection, tuple[Guard, ...]]:
@@ -116,3 +117,6 @@ def _inverse(
     )
     top = Cholesky(graph, a, diagonal_sizes(graph, a)).solve(part)
     return (*top, *(dot(graph, column, top) for column in r)), guards
+
+
+PRINTED: Method = OfInputs(lambda workspace: printed_form(workspace.fresh()))

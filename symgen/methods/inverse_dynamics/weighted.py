@@ -11,13 +11,14 @@ from symgen.ir.kernel import Status
 from symgen.linear_algebra.constrained_inverse import Cholesky, diagonal_sizes
 from symgen.linear_algebra.exterior import ActuationForms, RowForms
 from symgen.linear_algebra.guards import Guard
-from symgen.methods.form import Method, form
+from symgen.methods.admission import OfInputs
+from symgen.methods.method import Candidate, Method, solved_for_u
 from symgen.methods.system import MethodInput
 from symgen.symbolic.matrix import Matrix, Vector, dot, matvec, subtract_vectors
 from symgen.symbolic.scalar import Graph
 
 
-def weighted_form(system: MethodInput) -> Method | str:
+def weighted_form(system: MethodInput) -> Candidate | str:
     """u = (N_{B,G}^T M)^+ N_{B,G}^T tau with N_{B,G}^T x = x - B^T (B G^-1 B^T)^-1 B G^-1 x (17)-(19).
 
     It needs G positive definite, independent rows and full actuation.
@@ -41,10 +42,10 @@ def weighted_form(system: MethodInput) -> Method | str:
     denominator = forms.denominator()
     square = denominator * denominator if forms.single else denominator
     rank = Guard(Status.ACTUATION_RANK, square, 2, scale=scale, directions=generic.alpha)
-    return form("weighted", "inverse_dynamics", u, (*whole.guards, *schur.guards, rank), system.given)
+    return solved_for_u(system, u, (*whole.guards, *schur.guards, rank))
 
 
-def kkt_form(system: MethodInput) -> Method | str:
+def kkt_form(system: MethodInput) -> Candidate | str:
     """min |u|^2 with M u - B^T lambda = tau: [S, B^T; B, 0] (mu, -lambda) = (tau, 0) and u = M^T mu.
 
     S is M M^T + B^T B in place of M M^T, which changes nothing because B mu = 0.  S is positive definite exactly where
@@ -69,7 +70,7 @@ def kkt_form(system: MethodInput) -> Method | str:
     else:
         guards = _as(Status.ACTUATION_RANK, whole.guards)
     u = tuple(dot(graph, column, mu) for column in mechanics.inputs)
-    return form("kkt", "inverse_dynamics", u, guards, system.given)
+    return solved_for_u(system, u, guards)
 
 
 class _Schur:
@@ -96,3 +97,7 @@ class _Schur:
 
 def _as(status: Status, guards: tuple[Guard, ...]) -> tuple[Guard, ...]:
     return tuple(replace(guard, status=status) for guard in guards)
+
+
+WEIGHTED: Method = OfInputs(lambda workspace: weighted_form(workspace.fresh()))
+KKT: Method = OfInputs(lambda workspace: kkt_form(workspace.fresh()))

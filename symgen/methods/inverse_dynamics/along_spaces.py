@@ -1,0 +1,44 @@
+"""u along a null space: the minor form (Cauchy-Binet over the inputs, theory section 3.1) and the Householder form.
+
+Minor: sum_J Delta_J^2 u_J / sum_J Delta_J^2 over the input subsets.  Householder: B^T = Q R, applied to M and tau, then
+determinants of the last rows of Q^T M.
+"""
+
+from __future__ import annotations
+
+from symgen.methods.admission import OfInputs, ranks
+from symgen.methods.derivation import Derivation
+from symgen.methods.inverse_dynamics.estimates import least_of_minors, least_of_reflections
+from symgen.methods.method import Candidate, Method, solved_for_u
+from symgen.methods.spaces import along_reflections
+from symgen.methods.system import MethodInput
+from symgen.methods.workspace import Workspace, denominators
+from symgen.symbolic.scalar import Scalar
+
+
+def _minor(workspace: Workspace) -> Candidate | str:
+    derivation = workspace.minor
+    if isinstance(derivation, str):
+        return derivation
+    return _along(MethodInput(derivation.mechanics, workspace.generic), derivation)
+
+
+def _householder(workspace: Workspace) -> Candidate | str:
+    system = workspace.fresh()
+    derivation = along_reflections(system.mechanics, system.generic)
+    return derivation if isinstance(derivation, str) else _along(system, derivation)
+
+
+def _along(system: MethodInput, derivation: Derivation) -> Candidate:
+    return solved_for_u(system, derivation.inverse_dynamics, derivation.inverse_dynamics_guards)
+
+
+def _pivots(workspace: Workspace, candidate: Candidate) -> list[Scalar]:
+    """The pivots of reflections, beside the minors."""
+    derivation = along_reflections(candidate.system.mechanics, workspace.generic)
+    own = [] if isinstance(derivation, str) else denominators(derivation)
+    return [*ranks(workspace, candidate), *own]
+
+
+MINOR: Method = OfInputs(_minor, least=least_of_minors)
+HOUSEHOLDER: Method = OfInputs(_householder, _pivots, least_of_reflections)

@@ -1,0 +1,60 @@
+"""What the methods of one model share: where they begin, and which denominators vanish only where a rank drops."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import cached_property
+
+from symgen.mechanics.genericity import Genericity, configurations
+from symgen.mechanics.system import System
+from symgen.methods.derivation import Derivation
+from symgen.methods.spaces import along_minors
+from symgen.methods.system import MethodInput
+from symgen.model.model import Model
+from symgen.symbolic.scalar import Scalar
+from symgen.symbolic.traverse import cost
+
+# Parameters are regrouped where that takes a twentieth off: they are computed at each call.
+LUMPING_GAIN = Fraction(1, 20)
+RESOLVED_AT = 2
+
+
+class Workspace:
+    """One model about to be derived by several methods, each on a graph of its own."""
+
+    def __init__(self, model: Model, generic: Genericity) -> None:
+        self.model = model
+        self.generic = generic
+
+    def fresh(self) -> MethodInput:
+        """The system on a new graph."""
+        return MethodInput.fresh(self.model, self.generic, self.lumped)
+
+    @cached_property
+    def lumped(self) -> bool:
+        """Whether the motion equations of the bodies are shorter with their parameters regrouped."""
+        if not self.model.mechanism.has_mass:
+            return False
+        apart, together = (cost(System(self.model, lumped=lumped).balance).weight for lumped in (False, True))
+        return together <= apart * (1 - LUMPING_GAIN)
+
+    @cached_property
+    def minor(self) -> Derivation | str:
+        """The derivation along minors, which also tells where ranks drop."""
+        system = self.fresh()
+        return along_minors(system.mechanics, system.generic)
+
+    @cached_property
+    def points(self) -> list[dict[str, float]]:
+        """Configurations on V at which denominators are looked at."""
+        return configurations(System(self.model), RESOLVED_AT)
+
+    @property
+    def minor_measures(self) -> list[Scalar]:
+        """Determinants that vanish only where a rank drops."""
+        return [] if isinstance(self.minor, str) else denominators(self.minor)
+
+
+def denominators(derivation: Derivation) -> list[Scalar]:
+    """What u along a derivation divides by, which vanishes by theorem only where a rank drops."""
+    return [guard.denominator for guard in (*derivation.actuation_guards, *derivation.space.guards)]
