@@ -11,7 +11,7 @@ from typing import Any
 
 from symgen.ir.kernel import Scalar
 from symgen.runtime.activity import working
-from symgen.verify.reference.quantities import NEED_GRADIENTS
+from symgen.verify.reference.quantities import RATES
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference.tape import precision
 from symgen.verify.regular import (
@@ -51,7 +51,8 @@ def affordable_states(reference: Reference, quantities: Sequence[str], wanted: i
         subsets = max(comb(len(part.rows), constraints) for part, (constraints, _) in of_parts)
     else:
         subsets = comb(system.r, ranks.constraints)
-    operations = system.operations(gradients=not NEED_GRADIENTS.isdisjoint(quantities)) + solved * subsets
+    rates = (matrix for quantity in quantities for matrix in RATES.get(quantity, ()))
+    operations = system.operations(rates) + solved * subsets
     seconds_per_state = 30 * 1.3e-7 * operations
     return max(FEWEST_STATES, min(wanted, int(LONGEST_SECONDS / seconds_per_state)))
 

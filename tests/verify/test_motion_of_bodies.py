@@ -1,18 +1,22 @@
-"""C v and B_dot v from places along a line agree with Christoffel's matrix and the gradient of B to 60 digits."""
+"""What a velocity adds, from places along a line: forces, and the rates of matrices against their differences."""
 
 from __future__ import annotations
 
 import random
+from collections.abc import Callable, Sequence
+from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import pytest
 import shipped
 
 from symgen.model.load import load_model
+from symgen.verify.reference.evaluation import Evaluation
 from symgen.verify.reference.linear import norm
 from symgen.verify.reference.reference import Reference, State
 from symgen.verify.reference.system import default_parameters
-from symgen.verify.reference.tape import precision
+from symgen.verify.reference.tape import ball, precision
 
 ELEMENTS = Path(__file__).resolve().parents[1] / "mechanisms"
 
@@ -37,9 +41,46 @@ def test_both_ways_agree(name: str) -> None:
         assert norm(bias - at.constraints_dot(at.rate) * at.rate) <= 1e-60
 
 
+STEP = Fraction(1, 2**200)
+CHANGED = ["delta", "rolling_disc", "rear_car", "floating_body", "elements", "rapkm_2rrr_rr"]
 
 
-def test_an_energy_written_with_velocities_of_points_takes_the_gradients(tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", CHANGED)
+def test_rates_of_matrices_are_their_differences(name: str) -> None:
+    """C by (3) from central differences of G, B_dot and M_dot from those of B and M: to 100 digits."""
+    path = ELEMENTS / f"{name}.yaml"
+    model = load_model(path) if path.exists() else shipped.model(name)
+    reference = Reference(model)
+    source = random.Random(name)
+
+    def draw(count: int) -> tuple[Fraction, ...]:
+        return tuple(Fraction(source.uniform(-1, 1)) for _ in range(count))
+
+    with precision(1000):
+        parameters = tuple(float(x) for x in default_parameters(model))
+        q, rate = draw(model.n), draw(model.n)
+
+        def at(place: Sequence[Fraction]) -> Evaluation:
+            return reference.evaluation(State(tuple(place), rate, rate, (0,) * model.m, parameters))
+
+        def difference(along: Sequence[Fraction], matrix: Callable[[Evaluation], Any]) -> Any:
+            ahead, behind = ([x + side * STEP * a for x, a in zip(q, along, strict=True)] for side in (1, -1))
+            return (matrix(at(ahead)) - matrix(at(behind))) / ball(2 * STEP)
+
+        here, n = at(q), model.n
+        gradient = [difference([Fraction(i == k) for i in range(n)], lambda e: e.at.mass) for k in range(n)]
+        for i in range(n):
+            for j in range(n):
+                c = sum(
+                    (gradient[k][i, j] + gradient[j][i, k] - gradient[i][j, k]) * ball(rate[k]) / 2 for k in range(n)
+                )
+                assert abs(float(here.coriolis(here.rate)[i, j] - c)) <= 1e-100
+        assert norm(here.mass_dot(here.rate) - difference(rate, lambda e: e.at.mass)) <= 1e-100
+        assert norm(here.constraints_dot(here.rate) - difference(rate, lambda e: e.at.constraints)) <= 1e-100
+        assert norm(here.control_dot(here.rate) - difference(rate, lambda e: e.at.control)) <= 1e-100
+
+
+def test_an_energy_written_with_velocities_of_points_takes_the_matrices(tmp_path: Path) -> None:
     path = tmp_path / "pendulum.yaml"
     path.write_text(
         """model: pendulum

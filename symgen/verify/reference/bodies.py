@@ -48,6 +48,30 @@ class BodyJacobian:
             found.append((part.coordinates, (0,), rows.transpose() * _weighted(moved, own)))
         return placed(self.n, 1, found)
 
+    def coriolis(self, rates: Sequence[Any], velocity: Any, weights: Sequence[Any]) -> Any:
+        """C (3) (n x n) of all bodies along a velocity, by the rates of their Jacobians.
+
+        Centres have gradients that are symmetric, J'W J_dot is all there is of them.  Columns a_i of turning rates in
+        body axes have d_j a_i - d_i a_j = a_i x a_j (of R'dR, for every attitude R), which adds half of
+        a_i . (I [w] + [w] I - [I w]) a_j at the turning rate w.
+        """
+        found = []
+        for part, rows, change in zip(self.parts, self.pieces, rates, strict=True):
+            own = [x for k in part.bodies for x in weights[WEIGHTS * k : WEIGHTS * (k + 1)]]
+            moved = rows * piece(velocity, part.coordinates, (0,))
+            force = _weighted(change, own) + _turned(rows, moved.entries(), own)
+            found.append((part.coordinates, part.coordinates, rows.transpose() * force))
+        return placed(self.n, self.n, found)
+
+    def mass_dot(self, rates: Sequence[Any], weights: Sequence[Any]) -> Any:
+        """d/dt G (n x n) of all bodies, by the rates of their Jacobians."""
+        found = []
+        for part, rows, change in zip(self.parts, self.pieces, rates, strict=True):
+            own = [x for k in part.bodies for x in weights[WEIGHTS * k : WEIGHTS * (k + 1)]]
+            half = rows.transpose() * _weighted(change, own)
+            found.append((part.coordinates, part.coordinates, half + half.transpose()))
+        return placed(self.n, self.n, found)
+
     def force(self, wrenches: Sequence[Any]) -> Any:
         """What forces on the centres and torques in body axes load the coordinates with (n x 1)."""
         found = []
@@ -57,19 +81,26 @@ class BodyJacobian:
         return placed(self.n, 1, found)
 
 
-class BodyReplay:
-    """Registers of the Jacobian and the weights of every body, from frames to first order in the coordinates."""
+class BodyRows:
+    """Registers of the Jacobians of bodies, from places of first order in the coordinates; or what these do `along` t.
 
-    def __init__(self, mechanism: Mechanism, frames: Frames, plain: Translation, n: int) -> None:
-        self._zero = plain.algebra.tape.zero
-        self._n = n
+    Of rates along a line the coefficients of `along` = (t,) count.
+    """
+
+    def __init__(
+        self, mechanism: Mechanism, frames: Frames, n: int, zero: Register, along: tuple[int, ...] = ()
+    ) -> None:
+        self._zero = zero
         self._rows: list[list[dict[int, Register]]] = []
-        self.weights: list[Register] = []
         for body in mechanism.bodies:
-            centre = [{j: place[(j,), ()] for j in range(n) if ((j,), ()) in place} for place in frames.center(body)]
-            turning = [{j: rate[(), (j,)] for j in range(n) if ((), (j,)) in rate} for rate in frames.turning(body)]
+            centre = [
+                {j: place[(j, *along), ()] for j in range(n) if ((j, *along), ()) in place}
+                for place in frames.center(body)
+            ]
+            turning = [
+                {j: rate[along, (j,)] for j in range(n) if (along, (j,)) in rate} for rate in frames.turning(body)
+            ]
             self._rows.append([*centre, *turning])
-            self.weights += constants(plain, [body.mass, *(entry for row in body.inertia.rows for entry in row)])
 
     def moved(self) -> list[set[int]]:
         """The coordinates that move each body."""
@@ -82,14 +113,23 @@ class BodyReplay:
             row.get(j, zero) for part in parts for k in part.bodies for row in self._rows[k] for j in part.coordinates
         ]
 
-    def at(self, parts: Sequence[Part], values: Sequence[Any]) -> BodyJacobian:
-        """The Jacobian from the values of what is needed."""
+    def split(self, parts: Sequence[Part], values: Sequence[Any]) -> tuple[Any, ...]:
+        """A matrix for each part from the values of what is needed."""
         pieces, start = [], 0
         for part in parts:
             rows, columns = BLOCK * len(part.bodies), len(part.coordinates)
             pieces.append(arb_mat(rows, columns, values[start : start + rows * columns]))
             start += rows * columns
-        return BodyJacobian(parts, pieces, self._n)
+        return tuple(pieces)
+
+
+def weights_of(mechanism: Mechanism, plain: Translation) -> list[Register]:
+    """The mass and the entries of the inertia of every body."""
+    return [
+        x
+        for body in mechanism.bodies
+        for x in constants(plain, [body.mass, *(entry for row in body.inertia.rows for entry in row)])
+    ]
 
 
 def constants(plain: Translation, expressions: Sequence[Expression]) -> list[Register]:
@@ -110,3 +150,24 @@ def _weighted(rows: Any, weights: Sequence[Any]) -> Any:
         turned = arb_mat(3, 3, inertia) * arb_mat(3, columns, [x for row in block[3:] for x in row])
         found += turned.entries()
     return arb_mat(rows.nrows(), columns, found)
+
+
+def _turned(rows: Any, velocities: Sequence[Any], weights: Sequence[Any]) -> Any:
+    """Half of (I [w] + [w] I - [I w]) times the turning rates of each column, w among the velocities; no force."""
+    columns, table = rows.ncols(), rows.tolist()
+    found: list[Any] = []
+    for k in range(rows.nrows() // BLOCK):
+        inertia = arb_mat(3, 3, list(weights[WEIGHTS * k + 1 : WEIGHTS * (k + 1)]))
+        rate = velocities[BLOCK * k + 3 : BLOCK * (k + 1)]
+        spin = _crossing(rate)
+        momentum = _crossing((inertia * arb_mat(3, 1, list(rate))).entries())
+        turning = arb_mat(3, columns, [x for row in table[BLOCK * k + 3 : BLOCK * (k + 1)] for x in row])
+        found += [0] * (3 * columns)
+        found += ((inertia * spin + spin * inertia - momentum) * turning / 2).entries()
+    return arb_mat(rows.nrows(), columns, found)
+
+
+def _crossing(vector: Sequence[Any]) -> Any:
+    """The matrix of a cross product."""
+    x, y, z = vector
+    return arb_mat(3, 3, [0, -z, y, z, 0, -x, -y, x, 0])

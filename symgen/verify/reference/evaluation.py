@@ -11,8 +11,6 @@ from dataclasses import dataclass, field
 from functools import cached_property, wraps
 from typing import Any, TypeAlias
 
-from flint import arb_mat
-
 from symgen.verify.reference.blocks import pseudoinverse_of_parts, right_pseudoinverse_of_parts
 from symgen.verify.reference.linear import (
     column,
@@ -65,13 +63,19 @@ class Evaluation:
         """Places of the points and their velocities per rate."""
         return self.system.points(self.q, self.parameters, self.literals)
 
-    @cached_property
-    def gradients(self) -> tuple[Any, ...]:
-        """dG/dq, dB/dq and dM/dq."""
-        return self.system.gradients.at(self.q, self.parameters, self.literals)
+    def _at(self, velocity: Any) -> list[Any]:
+        """The inputs of replays along a velocity."""
+        return [*self.q, *velocity.entries(), *self.parameters, *self.literals]
 
-    def _along(self, what: str, velocity: Any) -> tuple[Any, ...]:
-        return self.system.gradients.along(what, self.gradients, velocity)
+    @_once_a_velocity
+    def body_rates(self, velocity: Any) -> tuple[Any, ...]:
+        """The rates of the Jacobians of the bodies of each part along a velocity."""
+        return self.system.rates.bodies(self._at(velocity))
+
+    @_once_a_velocity
+    def written_mass_dot(self, velocity: Any) -> Any:
+        """d/dt G of the energy that is written out, along a velocity."""
+        return self.system.rates.written_mass(self._at(velocity))
 
     @_once_a_velocity
     def motion(self, velocity: Any) -> tuple[Any, Any]:
@@ -121,20 +125,28 @@ class Evaluation:
     @_once_a_velocity
     def coriolis(self, velocity: Any) -> Any:
         """Christoffel C (3) along a velocity."""
-        return arb_mat(self.system.n, self.system.n, self._along("coriolis", velocity))
+        turning = self.system.rates.written_turning(self._at(velocity))
+        written = (self.written_mass_dot(velocity) + turning - turning.transpose()) / 2
+        at = self.at
+        if not at.weights.nrows():
+            return written
+        return written + at.jacobian.coriolis(self.body_rates(velocity), velocity, at.weights.entries())
 
     def mass_dot(self, velocity: Any) -> Any:
         """d/dt G along a velocity."""
-        return arb_mat(self.system.n, self.system.n, self._along("mass", velocity))
+        at, written = self.at, self.written_mass_dot(velocity)
+        if not at.weights.nrows():
+            return written
+        return written + at.jacobian.mass_dot(self.body_rates(velocity), at.weights.entries())
 
     @_once_a_velocity
     def constraints_dot(self, velocity: Any) -> Any:
         """d/dt B along a velocity."""
-        return arb_mat(self.system.r, self.system.n, self._along("constraints", velocity))
+        return self.system.rates.constraints(self._at(velocity))
 
     def control_dot(self, velocity: Any) -> Any:
         """d/dt M along a velocity."""
-        return arb_mat(self.system.n, self.system.m, self._along("control", velocity))
+        return self.system.rates.control(self._at(velocity))
 
     @_once_a_velocity
     def projector_dot(self, velocity: Any) -> Any:

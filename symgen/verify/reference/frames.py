@@ -26,7 +26,7 @@ class Frames:
 
     def __init__(self, mechanism: Mechanism, algebra: Taylor, polynomial: Callable[[Expression], Polynomial]) -> None:
         self._algebra, self._polynomial = algebra, polynomial
-        self._moving = Taylor(algebra.tape, algebra.coordinates - 1, 1)
+        self._moving = algebra.of_rates
         self._mechanism = mechanism
         self._frames = {frame.name: frame for frame in mechanism.frames}
         self._points = {point.name: point for point in mechanism.points}
@@ -116,12 +116,19 @@ class Frames:
         return _sum(algebra, terms)
 
     def rate(self, place: Polynomial) -> Polynomial:
-        """The time derivative: every coordinate of a monomial replaced by its rate, one after the other."""
+        """The time derivative: every coordinate of a monomial replaced by its rate, one after the other.
+
+        The time along a line is none of the coordinates that move.
+        """
         tape = self._algebra.tape
         found: Polynomial = {}
         for (coordinates, _), register in place.items():
             for index, moving in enumerate(coordinates):
+                if moving == self._algebra.along:
+                    continue
                 rest = coordinates[:index] + coordinates[index + 1 :]
+                if not self._moving.keeps(rest, (moving,)):
+                    continue
                 monomial = (rest, (moving,))
                 known = found.get(monomial)
                 found[monomial] = register if known is None else tape.binary("add", known, register)

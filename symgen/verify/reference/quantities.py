@@ -122,14 +122,14 @@ QUANTITIES: dict[str, Definition] = {
     "point_jacobian": lambda e: e.points[1],
 }
 
-# The others do with what a velocity adds to forces and accelerations.
-NEED_GRADIENTS = {
-    "coriolis_matrix",
-    "constraint_jacobian_dot",
-    "nullspace_projector_dot",
-    "projected_coriolis_matrix",
-    "minimal_coriolis_matrix",
-    "actuator_bias",
+# The matrices whose rates these take; the others do with what a velocity adds to forces and accelerations.
+RATES = {
+    "coriolis_matrix": ("mass",),
+    "constraint_jacobian_dot": ("constraints",),
+    "nullspace_projector_dot": ("constraints",),
+    "projected_coriolis_matrix": ("mass", "constraints"),
+    "minimal_coriolis_matrix": ("mass", "constraints"),
+    "actuator_bias": ("mass", "constraints", "control"),
 }
 
 NEEDS_CONSTRAINTS = {

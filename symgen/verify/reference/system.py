@@ -9,7 +9,7 @@ length.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -20,9 +20,9 @@ from flint import arb_mat
 from symgen.model.expressions.expression import Expression
 from symgen.model.mechanism import component
 from symgen.model.model import Model
-from symgen.verify.reference.bodies import BodyJacobian, BodyReplay
+from symgen.verify.reference.bodies import BodyJacobian, BodyRows, weights_of
 from symgen.verify.reference.frames import Frames
-from symgen.verify.reference.gradients import Gradients
+from symgen.verify.reference.matrix_rates import MatrixRates
 from symgen.verify.reference.motion import DriftAlongRate
 from symgen.verify.reference.parts import parts, touched
 from symgen.verify.reference.tape import Register, Replay, Tape, ball, replay_of
@@ -101,7 +101,7 @@ class System:
         self._shared: dict[tuple[int, int], Translation] = {}
         places = self._translation(1, 0)
         self._frames = Frames(model.mechanism, places.algebra, places.polynomial)
-        self._bodies = BodyReplay(model.mechanism, self._frames, self._translation(0, 0), n)
+        self._bodies = BodyRows(model.mechanism, self._frames, n, self._tape.zero)
         energy = self._quadratic_energy()
         potential = self._potential_energy(1)
         rows = [self._constraint_row(index) for index in range(r)]
@@ -112,7 +112,7 @@ class System:
             [residual for _, residual in rows[: self.r_geometric]],
             self._control(),
             [potential.get(((k,), ()), zero) for k in range(n)],
-            self._bodies.weights,
+            weights_of(model.mechanism, self._translation(0, 0)),
         ]
         self._shapes = ((n, n), (r, n), (self.r_geometric, 1), (n, m), (n, 1), (len(blocks[5]), 1))
         self._set_parts(blocks)
@@ -131,7 +131,7 @@ class System:
             matrices.append(arb_mat(rows, columns, values[start:end]))
             start = end
         mass, constraints, residual, control, gradient, weights = matrices
-        bodies = self._bodies.at(self.heavy, values[start:])
+        bodies = BodyJacobian(self.heavy, self._bodies.split(self.heavy, values[start:]), self.n)
         return Configuration(mass, constraints, residual, control, gradient, bodies, weights)
 
     def _set_parts(self, blocks: Sequence[Sequence[Register]]) -> None:
@@ -165,13 +165,13 @@ class System:
         return arb_mat(self.r, self.n, values[:size]), arb_mat(self.n, self.m, values[size:])
 
     @cached_property
-    def gradients(self) -> Gradients:
-        """The derivatives of G, B and M, for the quantities that contain a rate of a matrix."""
-        return Gradients(self.model, self.literals)
+    def rates(self) -> MatrixRates:
+        """The rates of G, B and M, for the quantities that contain one."""
+        return MatrixRates(self.model, self.literals, self.heavy)
 
     @cached_property
     def motion(self) -> DriftAlongRate | None:
-        """What a velocity adds; None where that takes the gradients: T is written with velocities of points."""
+        """What a velocity adds; None where that takes the matrices: T is written with velocities of points."""
         if uses_components(self.model, self.model.kinetic_energy):
             return None
         return DriftAlongRate(self.model, self.literals, self._tape)
@@ -213,10 +213,10 @@ class System:
         k = len(self.model.mechanism.points)
         return arb_mat(k, 3, values[: 3 * k]), arb_mat(3 * k, self.n, values[3 * k :])
 
-    def operations(self, gradients: bool) -> int:
-        """Number of recorded operations, for estimates of cost; with those of the gradients where they are needed."""
-        needed = gradients or self.motion is None
-        return len(self._tape.records) + (self.gradients.operations if needed else 0)
+    def operations(self, rates: Iterable[str]) -> int:
+        """Number of recorded operations, for estimates of cost, with those of the `rates` of matrices."""
+        needed = {*rates, *(("mass", "constraints") if self.motion is None else ())}
+        return len(self._tape.records) + sum(map(self.rates.operations, sorted(needed)))
 
     @cached_property
     def _energies(self) -> Replay:

@@ -22,11 +22,29 @@ CONSTANT: Monomial = ((), ())
 
 @dataclass(frozen=True)
 class Taylor:
-    """Arithmetic of polynomials of degree up to `coordinates` in the coordinates and `rates` in the rates."""
+    """Arithmetic of polynomials of degree up to `coordinates` in the coordinates and `rates` in the rates.
+
+    One of the coordinates may be the time along a line: to first order, the others to one degree less each.
+    """
 
     tape: Tape
     coordinates: int
     rates: int
+    along: int | None = None
+
+    @property
+    def of_rates(self) -> Taylor:
+        """The arithmetic of the rates of places in this one: one degree less, linear in the rates."""
+        return Taylor(self.tape, self.coordinates - 1, 1, self.along)
+
+    def keeps(self, coordinates: tuple[int, ...], rates: tuple[int, ...]) -> bool:
+        """Whether a monomial is not too high."""
+        if len(coordinates) > self.coordinates or len(rates) > self.rates:
+            return False
+        if self.along is None:
+            return True
+        times = coordinates.count(self.along)
+        return times <= 1 and len(coordinates) - times < self.coordinates
 
     def add(self, left: Polynomial, right: Polynomial) -> Polynomial:
         """Sum."""
@@ -55,7 +73,7 @@ class Taylor:
         total: Polynomial = {}
         for (left_q, left_v), a in left.items():
             for (right_q, right_v), b in right.items():
-                if len(left_q) + len(right_q) > self.coordinates or len(left_v) + len(right_v) > self.rates:
+                if not self.keeps(left_q + right_q, left_v + right_v):
                     continue
                 monomial = (tuple(sorted(left_q + right_q)), tuple(sorted(left_v + right_v)))
                 product = self.tape.binary("mul", a, b)
