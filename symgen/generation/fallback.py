@@ -183,11 +183,15 @@ class Fallback:
                 return one
             if "float64" in one.scalars:
                 passing.append(one)
-        if not passing:
-            return None
-        best = min(passing, key=lambda one: (-len(one.scalars), one.largest))
-        passing.remove(best)
-        return best
+        while passing:
+            best = min(passing, key=lambda one: (-len(one.scalars), one.largest))
+            passing.remove(best)
+            one = self._grouped(draft, best, expected)
+            if one.scalars == best.scalars:
+                return one
+            if one.scalars:
+                passing.append(one)
+        return None
 
     def _with_margin(self, draft: Draft, quantity: str, largest: float, expected: Expected) -> Draft:
         """The draft with a quantity that passes narrowly along a way with half of its error, where that is not long."""
@@ -221,10 +225,15 @@ class Fallback:
             if (digest := _digest(kernels)) not in self._seen[quantity]:
                 self._seen[quantity].add(digest)
                 one = self._measured(draft, way, kernels, expected)
-                if not way.grouped and "float64" in one.scalars:
-                    way = grouped(way)
-                    one = self._measured(draft, way, draft.kernels_along(way, tuple(kernels)), expected)
-                yield one
+                # long ways are grouped where that may be what is taken: it takes longer than measuring
+                yield self._grouped(draft, one, expected) if one.largest <= MARGIN else one
+
+    def _grouped(self, draft: Draft, one: _Candidate, expected: Expected) -> _Candidate:
+        """A way that passes, with its numbers grouped and measured anew."""
+        if one.way.grouped or "float64" not in one.scalars:
+            return one
+        way = grouped(one.way)
+        return self._measured(draft, way, draft.kernels_along(way, tuple(one.kernels)), expected)
 
     def _with_more_digits(self, draft: Draft, quantity: str, expected: Expected) -> Iterator[_Candidate]:
         """What loses digits in float32 alone with twice as many there, then the shortest ways with more in both."""
