@@ -6,9 +6,9 @@ A name that clashes gets an ending, so the mapping is deterministic, injective a
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Iterable
 
-from symgen.reserved import HIDING, is_reserved
+from symgen.registered import hiding
 
 # Endings by which the files of one model, and groups of functions, differ: `rob_f.h` is the float32 of `rob`.
 _KINDS = r"(?:_(?:batch|prepared|sc))?(?:_f)?"
@@ -21,17 +21,19 @@ _STEM = re.compile(rf"(.*?)({_KINDS})")
 _RENAMED = "_model"
 
 
-def c_identifiers(names: Iterable[str], taken: Collection[str] = frozenset()) -> dict[str, str]:
-    """Maps each name to a C identifier that is neither reserved, nor in `taken`, nor given to another of the names."""
+def identifiers(
+    names: Iterable[str], is_taken: Callable[[str], bool], taken: Collection[str] = frozenset()
+) -> dict[str, str]:
+    """Maps each name to an identifier that is neither taken in a language, nor here, nor given to another name."""
     wanted = tuple(dict.fromkeys(names))
     forbidden = frozenset(taken)
-    result = {name: name for name in wanted if not (name in forbidden or is_reserved(name))}
+    result = {name: name for name in wanted if not (name in forbidden or is_taken(name))}
     used = set(wanted)
     for name in wanted:
         if name in result:
             continue
         candidate = name + "_"
-        while candidate in forbidden or candidate in used or is_reserved(candidate):
+        while candidate in forbidden or candidate in used or is_taken(candidate):
             candidate += "_"
         used.add(candidate)
         result[name] = candidate
@@ -48,7 +50,7 @@ def c_name(model_name: str) -> str:
     plain = model_name.lower()
     while plain.endswith(_RENAMED):
         plain = plain.removesuffix(_RENAMED)
-    clashes = plain in HIDING or _CLASHING.fullmatch(model_name) is not None
+    clashes = plain in hiding() or _CLASHING.fullmatch(model_name) is not None
     return model_name + _RENAMED if clashes else model_name
 
 

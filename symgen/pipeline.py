@@ -19,7 +19,7 @@ from symgen.backends.operations import count_operations
 from symgen.diagnostics import ModelError, Notice
 from symgen.generation.dense_motion import dense_motions
 from symgen.generation.draft import Draft, draft_of
-from symgen.generation.files import files_of, is_c, sources_of
+from symgen.generation.files import backend_of, files_of, sources_of, verified
 from symgen.generation.refusals import beyond_range, no_states
 from symgen.generation.results import FORMS, LargestError, Options, Result, Summary, WrongUseError
 from symgen.ir.kernel import Kernel, Program, Scalar
@@ -77,7 +77,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
                 draft = _derive(model, outputs, options)
                 if len(draft.derivations.mechanics.graph) > LARGE_GRAPH:
                     let_go_and_keep()
-                if options.verify and {"c", "python"} & {*options.parts} and _is_long(draft.programs):
+                if options.verify and verified(options) and _is_long(draft.programs):
                     from symgen.generation.trial import Trial
 
                     with _literals_in_range(path):
@@ -234,7 +234,7 @@ def _verified(
         return None, None
     from symgen.verify.run import generated_sources, verify_expecting
 
-    run = {path: text for path, text in sources.items() if "c" in options.parts or not is_c(path)}
+    run = {path: text for path, text in sources.items() if backend_of(path) in verified(options)}
     c_sources, python_source = generated_sources(draft.model, run)
     if not c_sources and python_source is None:
         return None, None

@@ -53,7 +53,7 @@ def _init(made: type) -> Callable[..., None]:
     parameters, lines = [], []
     for field in fields(made):
         name = value = field.name
-        space[f"put_{name}"] = made.__dict__[name].__set__
+        space[f"put_{name}"] = getattr(made, name).__set__
         parameters.append(name)
         if field.default is not MISSING:
             space[f"usual_{name}"] = field.default

@@ -13,7 +13,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 PAGE, PICTURE = ROOT / "docs/architecture.md", ROOT / "docs/architecture.svg"
 # Single modules that stand for themselves.
-LEFT_OUT = {"", "__main__", "records", "diagnostics", "naming", "reserved"}
+LEFT_OUT = {"", "__main__", "records", "diagnostics", "naming", "registered"}
 WIDTH, HEIGHT, ROW, GAP, MARGIN = 128, 40, 84, 20, 24
 
 
@@ -136,12 +136,28 @@ nothing with the derivation but the parsed model; the zoo knows the command line
 
 ![Packages, and what they import](architecture.svg)
 
-*Lines that follow from others are left out; `diagnostics`, `records`, `naming` and `reserved` stand below all.*
+*Lines that follow from others are left out; `diagnostics`, `records`, `naming` and `registered` stand below all.*
 
 | package | what it is for | imports, beside what these import |
 |---|---|---|
 """
 BOTTOM = """
+## How to add a backend
+
+A backend prints finished kernels in one language, as `--only` names it. It is one folder `symgen/backends/<name>`, with
+its templates in `templates/<name>`, and its name in `symgen/registered.py`. The folder has three modules:
+
+- `reserved`: `WORDS`, which are the keywords of the language, refused as names in model files; what else is taken
+  there, so that identifiers get an ending; names of files that would hide something. This is data and imports nothing.
+- `statements`: how the language spells an operation, a choice, a sine and cosine, a check. The walk over the statements
+  is that of `symgen/backends/statements.py`.
+- `backend`: `BACKEND`, which are the functions that make files of a program (its *variants*, such as kernels for many
+  states), for which scalar types, and the backend whose files verification runs for it.
+
+Names of values come from `symgen/backends/locals.py`, numbers from `literals.py`, what is said of a model and of its
+kernels from `about.py` and `quantities.py` there. `tests/backends/test_registered.py` holds every registered backend
+against this.
+
 How to add a quantity, a joint, a method or a pass is in [CONTRIBUTING.md](../CONTRIBUTING.md); what is computed in
 [theory.md](theory.md).
 """

@@ -56,18 +56,6 @@ def decimal_text(scalar: Scalar, value: Fraction) -> str:
     return repr(float(next(text for text in texts if _reads_back(text, rounded))))
 
 
-def c_literal(scalar: Scalar, value: Fraction) -> str:
-    """A C constant of the scalar type; negative ones in parentheses."""
-    text = decimal_text(scalar, value) + ("f" if scalar == "float32" else "")
-    return f"({text})" if text.startswith("-") else text
-
-
-def numpy_literal(value: Fraction) -> str:
-    """A Python float; negative ones in parentheses."""
-    text = decimal_text("float64", value)
-    return f"({text})" if text.startswith("-") else text
-
-
 def _reads_back(text: str, rounded: float) -> bool:
     try:
         return round_to_float32(Fraction(Decimal(text))) == rounded

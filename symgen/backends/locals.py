@@ -1,23 +1,16 @@
-"""Names inside kernels: which locals exist, which are used, and what they are called in C and Python."""
+"""Names inside kernels: which locals exist, which are used, and what they are called in a language."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
-from symgen.backends.c.lanes import lane_names
-from symgen.backends.c.steps import local_names as step_locals
 from symgen.backends.quantities import output_argument
 from symgen.ir.kernel import Argument, Block, Check, Kernel, Local, Operand, Program, Statement
 from symgen.model.model import Model
-from symgen.naming import c_identifiers
+from symgen.naming import identifiers
 from symgen.records import dataclass
 
 ARGUMENT_NAMES = ("q", "qd", "qdd", "u", "p")
-# Names that the templates and statement printers use inside a kernel.
-KERNEL_NAMES = frozenset(
-    {*ARGUMENT_NAMES, "rest", "term", "np", "status", "batch", "entries", "angle", "sine", "cosine"}
-)
-
 
 @dataclass(frozen=True, slots=True)
 class Names:
@@ -33,19 +26,28 @@ class Names:
         return tuple((name, new) for name, new in self.members.items() if name != new)
 
 
-def names_of(model: Model, program: Program, own_names: Iterable[str] = ()) -> Names:
-    """Names for all kernels of the program; `own_names` are the generated file's own global names."""
+def names_of(
+    model: Model,
+    program: Program,
+    is_taken: Callable[[str], bool],
+    own_names: Iterable[str] = (),
+    inside: Iterable[str] = (),
+) -> Names:
+    """Names for all kernels of the program in a language where some are taken.
+
+    `own_names` are the generated file's own global names, `inside` those that it uses inside of functions.
+    """
     own = frozenset(own_names)
     users = user_names(model)
-    members = c_identifiers((parameter.name for parameter in model.parameters), own)
+    members = identifiers((parameter.name for parameter in model.parameters), is_taken, own)
     outputs: dict[str, str] = {}
     for kernel in program.kernels:
         wanted = output_argument(kernel.name)
         clash = wanted in users or wanted in {argument.name for argument in array_arguments(kernel)}
         outputs[kernel.name] = f"{wanted}_out" if clash else wanted
-    taken = own | KERNEL_NAMES | lane_names(program) | step_locals(program) | set(outputs.values())
+    taken = own.union(ARGUMENT_NAMES, inside, outputs.values())
     names = [*users, *(name for kernel in program.kernels for name in kernel_locals(kernel))]
-    return Names(c_identifiers(names, taken), members, outputs)
+    return Names(identifiers(names, is_taken, taken), members, outputs)
 
 
 def user_names(model: Model) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NoReturn
 
-from symgen.generation.results import AUTO, DEFAULT_STATES, FORMS, PARTS, TRIG, Part
+from symgen.generation.results import ALL_PARTS, AUTO, DEFAULT_STATES, FORMS, TRIG
 from symgen.model.expressions.names import did_you_mean, nearest
 
 FEWEST_STATES = 8
@@ -115,12 +115,12 @@ def names(text: str) -> tuple[str, ...]:
     return found
 
 
-def parts(text: str) -> tuple[Part, ...]:
+def parts(text: str) -> tuple[str, ...]:
     """`c,python`, in the order in which they are made."""
     given = names(text)
-    if unknown := [name for name in given if name not in PARTS]:
-        raise argparse.ArgumentTypeError(f"{unknown[0]!r} is none of {', '.join(PARTS)}")
-    return tuple(part for part in PARTS if part in given)
+    if unknown := [name for name in given if name not in ALL_PARTS]:
+        raise argparse.ArgumentTypeError(f"{unknown[0]!r} is none of {', '.join(ALL_PARTS)}")
+    return tuple(part for part in ALL_PARTS if part in given)
 
 
 def number_of_states(text: str) -> int:

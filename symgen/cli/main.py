@@ -16,10 +16,11 @@ from symgen.cli.arguments import add_form, add_generation, add_models, add_out, 
 from symgen.cli.measuring import bench, simulate, stress, target
 from symgen.cli.outcome import DONE, MODEL_WRONG, WRONG_USE, check_present, guarded
 from symgen.cli.signals import EndedError, signals_end_the_run
-from symgen.generation.results import PARTS, Options, Result, WrongUseError
+from symgen.generation.results import ALL_PARTS, PARTS, Options, Result, WrongUseError
 from symgen.ir.kernel import Scalar
 from symgen.model.expressions.names import did_you_mean
 from symgen.output.write import begin_writing, changed_folders, compare, recover_folders, write_files
+from symgen.registered import USUAL
 from symgen.runtime.processes import ToolError
 from symgen.terminal import SPELLED, Progress, notice_line, summary_table, terminal_width
 
@@ -127,7 +128,8 @@ def _generate(arguments: list[str]) -> int:
     parser.add_argument(
         "--scalar", choices=tuple(_SCALARS), default="both", help="scalar types of the C (default: both)"
     )
-    parser.add_argument("--only", metavar="PARTS", type=parts, default=PARTS, help="of c,python,report,package,proof")
+    known = f"of {','.join(ALL_PARTS)} (default: {','.join(PARTS)})"
+    parser.add_argument("--only", metavar="PARTS", type=parts, default=PARTS, help=known)
     parser.add_argument("--no-verify", dest="verify", action="store_false", help="write without verification")
     parser.add_argument(
         "--recorded",
@@ -288,7 +290,7 @@ def _write_certificate(result: Result, out: Path, quiet: bool) -> int:
     """The certificate speaks of what symgen makes now; other files on disk are a failure, not a certificate."""
     folder = out / result.model.name
     certificate = {path: content for path, content in result.files.items() if path == "certificate.json"}
-    sources = {path: content for path, content in result.files.items() if path.startswith(("c/", "python/"))}
+    sources = {path: content for path, content in result.files.items() if path.partition("/")[0] in USUAL}
     differences = compare(folder, sources)
     if differences:
         print("the files on disk are not the ones verified (run symgen again):", file=sys.stderr)

@@ -4,58 +4,53 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from symgen.backends.c.batch import emit_c_batch
-from symgen.backends.c.given_sines import emit_c_sc
-from symgen.backends.c.plain import emit_c
-from symgen.backends.c.prepared import emit_c_prepared
+from symgen.backends.backend import backend
 from symgen.generation.derivation_file import derivation_json
 from symgen.generation.draft import Draft
 from symgen.generation.results import Options
-from symgen.ir.kernel import Program
+from symgen.registered import BACKENDS
 from symgen.runtime.activity import each, working
 
 
+def verified(options: Options) -> tuple[str, ...]:
+    """The backends whose files are run: those that are asked for, or what stands for them."""
+    run = {backend(name).verified_as for name in options.parts if name in BACKENDS}
+    return tuple(name for name in BACKENDS if name in run)
+
+
 def sources_of(draft: Draft, options: Options) -> dict[str, str]:
-    """What is run: C, for a package alone, too, and Python."""
+    """What the backends make: those that are asked for, those that are run, and C for a package of it."""
+    needed = {*options.parts, *verified(options), *(("c",) if "package" in options.parts else ())}
     sources: dict[str, str] = {}
-    if {"c", "package"} & {*options.parts}:
-        for program in _programs(draft, options):
-            for emit in each(f"C in {program.scalar}", (emit_c, emit_c_batch, emit_c_prepared, emit_c_sc)):
+    for name in (name for name in BACKENDS if name in needed):
+        made = backend(name)
+        for program in made.programs(draft.programs, options.scalars):
+            kind = f" in {program.scalar}" if made.of_each_scalar else ""
+            for emit in each(f"{made.language}{kind}", made.variants):
                 sources |= emit(draft.model, program)
-    if "python" in options.parts:
-        from symgen.backends.python.module import emit_python
-
-        with working("Python"):
-            sources |= emit_python(draft.model, draft.program)
     return sources
-
-
-def _programs(draft: Draft, options: Options) -> list[Program]:
-    """Those of the scalar types that C is made of."""
-    return [program for scalar in options.scalars if (program := draft.programs[scalar]).kernels]
 
 
 def files_of(draft: Draft, options: Options, sources: Mapping[str, str]) -> dict[str, str | bytes]:
     """The sources as far as they are asked for, and what is made beside them once nothing replaces them any more."""
     files: dict[str, str | bytes] = {}
-    programs, c_files = _programs(draft, options), {path: text for path, text in sources.items() if is_c(path)}
-    if "c" in options.parts:
-        files |= c_files
+    programs = backend("c").programs(draft.programs, options.scalars)
+    files |= {path: text for path, text in sources.items() if backend_of(path) in options.parts}
     if "package" in options.parts:
         from symgen.package.files import emit_package
 
         with working("packages"):
+            c_files = {path: text for path, text in sources.items() if backend_of(path) == "c"}
             files |= emit_package(draft.model, programs, c_files)
     if "proof" in options.parts:
         from symgen.proof.files import emit_proofs
 
         with working("drivers for proofs"):
             files |= emit_proofs(draft.model, programs)
-    files |= {path: text for path, text in sources.items() if not is_c(path)}
     files["derivation.json"] = derivation_json(draft.model, draft.derivations, draft.structure, draft.program)
     return files
 
 
-def is_c(path: str) -> bool:
-    """Whether a file of a model is C that is run."""
-    return path.startswith("c/")
+def backend_of(path: str) -> str:
+    """The backend that made a source of a model."""
+    return path.partition("/")[0]

@@ -11,13 +11,16 @@ from symgen.diagnostics import Notice
 from symgen.ir.kernel import Scalar
 from symgen.model.model import Model
 from symgen.records import dataclass
+from symgen.registered import BACKENDS, USUAL
 
 if TYPE_CHECKING:
     from symgen.ir.kernel import Program
     from symgen.verify.certificate import LeftOut
 
-Part: TypeAlias = Literal["c", "python", "report", "package", "proof"]
-PARTS: tuple[Part, ...] = ("c", "python", "report", "package", "proof")
+_BESIDE = ("report", "package", "proof")
+# What can be made, and what is made as a rule.
+ALL_PARTS = (*BACKENDS, *_BESIDE)
+PARTS = (*USUAL, *_BESIDE)
 DEFAULT_STATES = 64
 AUTO = "auto"
 _MOTIONS = ("minor", "schur_qr", "schur_ldl", "nullspace", "shifted", "kkt", "articulated", "articulated_refined")
@@ -47,7 +50,7 @@ class Options:
 
     outputs: tuple[str, ...] | None = None
     scalars: tuple[Scalar, ...] = ("float64", "float32")
-    parts: tuple[Part, ...] = PARTS
+    parts: tuple[str, ...] = PARTS
     verify: bool = True
     trig: Trig = "portable"
     states: int = DEFAULT_STATES

@@ -15,6 +15,7 @@ from symgen.backends.literals import decimal_text
 from symgen.diagnostics import ModelError
 from symgen.generation.draft import Draft
 from symgen.generation.fallback import Fallback
+from symgen.generation.files import verified
 from symgen.generation.refusals import no_states
 from symgen.generation.results import Options
 from symgen.ir.kernel import Literal, Program, Scalar
@@ -34,10 +35,11 @@ class Trial:
     """
 
     def __init__(self, path: Path, draft: Draft, options: Options, progress: Callable[[str], None]) -> None:
-        compiler = find_compiler() if "c" in options.parts else None
+        run = verified(options)
+        compiler = find_compiler() if "c" in run else None
         self._blank = blank_certificate(draft.model, compiler, {}, None)
         chosen = {scalar: None for scalar in options.scalars if compiler is not None}
-        self._scalars = tuple(chosen | ({"float64": None} if "python" in options.parts else {}))
+        self._scalars = tuple(chosen | ({"float64": None} if "python" in run else {}))
         self._progress = progress
         self.fallback = Fallback(options, progress)
         _check_literals(draft.programs)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from symgen.backends.about import STATUS_MEANING
-from symgen.backends.c.plain import c_names, status_name
+from symgen.backends.c.names import c_names, status_name
 from symgen.backends.defaults import default_values
 from symgen.backends.literals import decimal_text
 from symgen.backends.locals import array_arguments

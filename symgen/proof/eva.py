@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import prod
 
-from symgen.backends.c.plain import c_members, status_name
+from symgen.backends.c.names import c_members, status_name
 from symgen.backends.literals import decimal_text
 from symgen.backends.locals import array_arguments
 from symgen.backends.render import render

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from symgen.backends.c.plain import c_members
+from symgen.backends.c.names import c_members
 from symgen.backends.literals import decimal_text
 from symgen.backends.locals import array_arguments
 from symgen.backends.quantities import BATCHED

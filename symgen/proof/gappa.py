@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from symgen.backends.c.plain import c_names
+from symgen.backends.c.names import c_names
 from symgen.backends.literals import decimal_text, round_to
 from symgen.backends.locals import array_arguments
 from symgen.backends.render import render

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from symgen.generation.results import Options, Part, Result, WrongUseError
+from symgen.generation.results import Options, Result, WrongUseError
 from symgen.generation.runnable import Runner
 from symgen.mechanics.genericity import configurations, parameter_values
 from symgen.mechanics.system import System
@@ -95,7 +95,7 @@ def _verified(path: Path, progress: Progress) -> Result | None:
 
     Without a C compiler the Python is verified, whose bits are those of the interpreter that runs then.
     """
-    part: Part = "c" if find_compiler() is not None else "python"
+    part = "c" if find_compiler() is not None else "python"
     result = generate(path, Options(outputs=QUANTITIES, scalars=("float64",), parts=(part,)), progress)
     kernels = {kernel.name for kernel in result.programs["float64"].kernels}
     found: list[str] = []

@@ -9,7 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from symgen.backends.literals import LiteralRangeError, c_literal, decimal_text, numpy_literal, round_to_float32
+from symgen.backends.c.statements import c_literal
+from symgen.backends.literals import LiteralRangeError, decimal_text, round_to_float32
+from symgen.backends.python.statements import numpy_literal
 from symgen.ir.kernel import Scalar
 
 FRACTIONS = st.fractions(min_value=-(10**12), max_value=10**12, max_denominator=10**12)

@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from symgen.naming import c_identifiers, c_name, macro_name
-from symgen.reserved import PYTHON_KEYWORDS, is_reserved
+from symgen.backends.c.reserved import is_taken
+from symgen.backends.python.reserved import KEYWORDS
+from symgen.naming import c_name, identifiers, macro_name
 
 
 def words(text: str) -> list[str]:
@@ -21,15 +22,15 @@ TRICKY = st.sampled_from(["I", "I_", "I__", "F", "y1", "y1_", "double", "L", "B1
 
 @given(st.lists(TRICKY), st.frozensets(TRICKY))
 def test_injective_and_never_reserved(names: list[str], taken: frozenset[str]) -> None:
-    mapping = c_identifiers(names, taken)
+    mapping = identifiers(names, is_taken, taken)
     assert list(mapping) == list(dict.fromkeys(names))
     assert len(set(mapping.values())) == len(mapping)
     assert not set(mapping.values()) & taken
-    assert not any(map(is_reserved, mapping.values()))
+    assert not any(map(is_taken, mapping.values()))
 
 
 def test_a_free_name_stays_and_a_clash_moves_around_it() -> None:
-    assert c_identifiers(["I", "I_", "L"]) == {"I": "I__", "I_": "I_", "L": "L"}
+    assert identifiers(["I", "I_", "L"], is_taken) == {"I": "I__", "I_": "I_", "L": "L"}
 
 
 @pytest.mark.parametrize(
@@ -41,7 +42,7 @@ def test_a_free_name_stays_and_a_clash_moves_around_it() -> None:
     ),
 )
 def test_known_clashes(name: str) -> None:
-    assert c_identifiers([name])[name] == f"{name}_"
+    assert identifiers([name], is_taken)[name] == f"{name}_"
 
 
 @pytest.mark.parametrize(
@@ -52,11 +53,11 @@ def test_known_clashes(name: str) -> None:
     ),
 )
 def test_ordinary_names_stay(name: str) -> None:
-    assert c_identifiers([name])[name] == name
+    assert identifiers([name], is_taken)[name] == name
 
 
 def test_python_keywords_are_complete() -> None:
-    assert set(keyword.kwlist) == PYTHON_KEYWORDS
+    assert set(keyword.kwlist) == set(KEYWORDS)
 
 
 @pytest.mark.parametrize(

@@ -14,10 +14,10 @@ import handmade
 import pytest
 import shipped
 
+from symgen.backends.c.finite import rests
 from symgen.backends.c.given_sines import emit_c_sc
 from symgen.backends.c.plain import emit_c
 from symgen.backends.c.prepared import emit_c_prepared
-from symgen.backends.finite import rests
 from symgen.ir.kernel import Program, Scalar
 from symgen.ir.library_trig import with_library_trig
 

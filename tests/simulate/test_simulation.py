@@ -7,15 +7,16 @@ import json
 import math
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from linkages import row_of_four_bars
 from shipped import ROOT
 
+from symgen.backends.c import backend
 from symgen.backends.c.plain import emit_c
 from symgen.cli.main import main
-from symgen.generation import files
 from symgen.ir.kernel import Program
 from symgen.model.model import Model
 from symgen.simulate.animation import animation
@@ -103,7 +104,7 @@ def test_kernels_that_verification_rejects_are_not_integrated(
     def wrong(model: Model, program: Program) -> dict[str, str]:
         return {path: text.replace(" - ", " + ") for path, text in emit_c(model, program).items()}
 
-    monkeypatch.setattr(files, "emit_c", wrong)
+    monkeypatch.setattr(backend, "BACKEND", replace(backend.BACKEND, variants=(wrong, *backend.BACKEND.variants[1:])))
     assert run(str(MODELS / "skate.yaml"), "--duration", "0.1", "--out", str(out)) == 1
     told = capsys.readouterr().err
     assert "skate.yaml: not simulated: verification rejects what would be integrated" in told

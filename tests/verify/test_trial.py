@@ -12,9 +12,10 @@ from typing import Any
 import pytest
 
 from symgen import pipeline
+from symgen.backends.c import backend
 from symgen.backends.c.plain import emit_c
 from symgen.diagnostics import ModelError
-from symgen.generation import files, trial
+from symgen.generation import trial
 from symgen.generation.results import Options, Result
 from symgen.ir.kernel import Program
 from symgen.mechanics.system import System
@@ -68,7 +69,7 @@ def written(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         made.append(program.scalar)
         return emit_c(model, program)
 
-    monkeypatch.setattr(files, "emit_c", noted)
+    monkeypatch.setattr(backend, "BACKEND", replace(backend.BACKEND, variants=(noted, *backend.BACKEND.variants[1:])))
     return made
 
 

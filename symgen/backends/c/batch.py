@@ -7,17 +7,19 @@ finite. The few states whose flag says no go through the kernel for one state, w
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 
+from symgen.backends.c.file import file_view, files
+from symgen.backends.c.finite import rests
+from symgen.backends.c.functions import FunctionView
+from symgen.backends.c.names import c_members, function_name, guard, names_in_file, status_name, struct_name
 from symgen.backends.c.pairs import pair_body
-from symgen.backends.c.plain import c_members, status_name
+from symgen.backends.c.statements import CStatements, c_literal
 from symgen.backends.comments import c_comment_lines
-from symgen.backends.finite import rests
-from symgen.backends.locals import Names, all_statements, array_arguments, names_of
+from symgen.backends.locals import Names, all_statements, array_arguments
 from symgen.backends.quantities import BATCHED, meaning
-from symgen.backends.render import render
 from symgen.backends.scalars import C_TYPE, SUFFIX
-from symgen.backends.statements import CStatements
-from symgen.ir.kernel import Check, Kernel, Local, Operand, Program, Statement, Status
+from symgen.ir.kernel import Argument, Check, Kernel, Load, Local, Operand, Program, Status
 from symgen.ir.split import names_in, names_of_blocks, split, without_first
 from symgen.ir.wide_functions import works_with_pairs
 from symgen.model.model import Model
@@ -30,31 +32,27 @@ _OWN_NAMES = frozenset({"count", "stride", "status", "start", "length", "k", "i"
 _OWN_NAMES |= {"flag", "flags", "bits", "code", "refused", "rest", "y"}
 
 
-@dataclass(frozen=True, slots=True)
-class ArgumentView:
-    """An array argument: name, length, and the components that the kernel reads."""
+_ENDING = "_batch"
+_ABOUT = """Kernels of {plain}.h for many states: compile {plain_batch}.c and {plain}.c.
 
-    name: str
-    length: int
-
-
-@dataclass(frozen=True, slots=True)
-class RowView:
-    """A component that the loop reads: `argument[index]` of every state."""
-
-    argument: str
-    index: int
+Component i of state k is at [i*stride + k] of each array, stride >= count. A state that has no valid result gets
+NaN; the functions return the number of such states and write the status of each state unless `status` is NULL.
+A result may take the place of an input (same address, same stride); else results and inputs must not overlap.
+Valid results have the bits of the kernels for one state."""
 
 
 @dataclass(frozen=True, slots=True)
 class BatchView:
-    """One function: comment, prototype without semicolon, and what its template fills in."""
+    """One function: comment, prototype without semicolon, and what its template fills in.
+
+    `rows` are the components that the loop reads: `argument[index]` of every state.
+    """
 
     comment: tuple[str, ...]
     prototype: str
     single: str
-    arguments: tuple[ArgumentView, ...]
-    rows: tuple[RowView, ...]
+    arguments: tuple[Argument, ...]
+    rows: tuple[Load, ...]
     output: str
     size: int
     fixed: tuple[str, ...]
@@ -64,12 +62,9 @@ class BatchView:
 
 @dataclass(frozen=True, slots=True)
 class BatchFileView:
-    """Everything the templates of the batch files print."""
+    """Everything the template of the source prints."""
 
     stem: str
-    guard: str
-    plain_stem: str
-    model: str
     scalar: str
     lane: str
     zero: str
@@ -89,62 +84,55 @@ def emit_c_batch(model: Model, program: Program) -> dict[str, str]:
     kernels = tuple(kernel for kernel in program.kernels if kernel.name in BATCHED)
     if not kernels:
         return {}
-    suffix = SUFFIX[program.scalar]
-    plain = model.c_name
-    stem = f"{plain}_batch{suffix}"
-    pair, ratio = f"{model.c_name}_sincos{suffix}", f"{model.c_name}_ratio{suffix}"
+    plain = model.c_name + SUFFIX[program.scalar]
+    stem = f"{model.c_name}{_ENDING}{SUFFIX[program.scalar]}"
+    pair, ratio, params = (struct_name(model, program, kind) for kind in ("sincos", "ratio", "params"))
     inline = f"{macro_name(stem)}_INLINE"
-    own = {f"{model.c_name}_{kernel.name}{tail}{suffix}" for kernel in program.kernels for tail in ("", "_batch")}
-    own |= {pair, ratio, inline, f"{macro_name(stem)}_H", f"{model.c_name}_params{suffix}", *_OWN_NAMES}
+    own = {function_name(model, program, kernel, tail) for kernel in program.kernels for tail in ("", _ENDING)}
+    own |= {pair, ratio, inline, guard(stem), params, *_OWN_NAMES}
     own |= {status_name(model, status) for status in Status}
     own |= {f"{argument.name}_one" for kernel in kernels for argument in kernel.arguments}
     # the members of the parameter struct are those of the other header
     few = replace(program, kernels=kernels)
-    names = replace(names_of(model, few, own), members=c_members(model, program))
+    names = replace(names_in_file(model, few, own), members=c_members(model, program))
     in_lanes = [kernel for kernel in kernels if not works_with_pairs(kernel)]
     operations = {statement.operation for kernel in in_lanes for statement in all_statements(kernel)}
     own_pair = program.sincos if "sincos" in operations else None
     angle, body = ("", ()) if own_pair is None else pair_body(program.scalar, own_pair, pair)
+    functions = tuple(_function(model, program, kernel, names, (pair, ratio)) for kernel in kernels)
     view = BatchFileView(
         stem=stem,
-        guard=f"{macro_name(stem)}_H",
-        plain_stem=f"{plain}{suffix}",
-        model=model.c_name,
         scalar=C_TYPE[program.scalar],
         lane="int64_t" if program.scalar == "float64" else "int32_t",
-        zero="0.0" if program.scalar == "float64" else "0.0f",
-        one="1.0" if program.scalar == "float64" else "1.0f",
+        zero=c_literal(program.scalar, Fraction(0)),
+        one=c_literal(program.scalar, Fraction(1)),
         ok=status_name(model, Status.OK),
         block=BLOCK,
-        functions=tuple(_function(model, program, kernel, names, (pair, ratio), suffix) for kernel in kernels),
+        functions=functions,
         inline=inline,
         pair=pair,
         angle=angle,
         pair_body=body,
         ratio=ratio if "ratio_or_zero" in operations else "",
     )
-    return {
-        f"c/{stem}.h": render("c/batch.h.jinja", view),
-        f"c/{stem}.c": render("c/batch.c.jinja", view),
-    }
+    about = tuple(_ABOUT.format(plain=plain, plain_batch=stem).splitlines())
+    shown = tuple(FunctionView(one.comment, one.prototype, ()) for one in functions)
+    header = file_view(model, few, _ENDING, about, shown)
+    return files(replace(header, includes=(*header.includes, "<stddef.h>")), view, "c/batch.c.jinja")
 
 
-def _function(
-    model: Model, program: Program, kernel: Kernel, names: Names, private: tuple[str, str], suffix: str
-) -> BatchView:
+def _function(model: Model, program: Program, kernel: Kernel, names: Names, private: tuple[str, str]) -> BatchView:
     scalar, output = C_TYPE[program.scalar], names.outputs[kernel.name]
-    single = f"{model.c_name}_{kernel.name}{suffix}"
-    arguments = tuple(ArgumentView(a.name, a.length) for a in array_arguments(kernel))
+    arguments = array_arguments(kernel)
     given = ["size_t count", "size_t stride", *(f"const {scalar} *{a.name}" for a in arguments)]
-    given += [f"const {model.c_name}_params{suffix} *p", f"{scalar} *{output}", "unsigned char *status"]
-    name = f"{model.c_name}_{kernel.name}_batch{suffix}"
+    given += [f"const {struct_name(model, program, 'params')} *p", f"{scalar} *{output}", "unsigned char *status"]
     by_pairs = works_with_pairs(kernel)
     flat = Kernel(kernel.name, (), (), (), (), ()) if by_pairs else without_first(kernel)
     parts = split(flat)
     pair, ratio = private
     own_pair = None if program.sincos is None else pair
-    printer = _Lanes(CStatements(program.scalar, names.locals, _used(flat), own_pair), ratio)
-    rows = [load for load in flat.loads if load.argument != "p"]
+    printer = _Lanes(program.scalar, names.locals, _used(flat), own_pair, ratio=ratio)
+    rows = tuple(load for load in flat.loads if load.argument != "p")
     fixed = [
         f"const {scalar} {names.locals[load.local]} = p->{names.members[load.member]};"
         for load in flat.loads
@@ -154,13 +142,13 @@ def _function(
     body = [f"const {scalar} {names.locals[load.local]} = from[{k}][k];" for k, load in enumerate(rows)]
     body += [line for block in parts.blocks for statement in block.statements for line in printer.statement(statement)]
     body += printer.flag([check for block in parts.blocks for check in block.checks], flat.outputs)
-    body += [f"result[{k}][k] = {printer.plain.operand(operand)};" for k, operand in enumerate(flat.outputs)]
+    body += [f"result[{k}][k] = {printer.operand(operand)};" for k, operand in enumerate(flat.outputs)]
     return BatchView(
         comment=c_comment_lines(f"{meaning(kernel)}; {output} has {len(kernel.outputs)} rows"),
-        prototype=f"size_t {name}({', '.join(given)})",
-        single=single,
+        prototype=f"size_t {function_name(model, program, kernel, _ENDING)}({', '.join(given)})",
+        single=function_name(model, program, kernel),
         arguments=arguments,
-        rows=tuple(RowView(load.argument, load.index) for load in rows),
+        rows=rows,
         output=output,
         size=len(kernel.outputs),
         fixed=tuple(fixed),
@@ -174,30 +162,23 @@ def _used(kernel: Kernel) -> frozenset[str]:
 
 
 @dataclass(frozen=True, slots=True)
-class _Lanes:
+class _Lanes(CStatements):
     """Prints statements without branches, and checks as terms of one flag."""
 
-    plain: CStatements
-    ratio: str
+    ratio: str = ""
 
-    def statement(self, statement: Statement) -> tuple[str, ...]:
-        """One statement as lines; a division that may be left out is a function without branches."""
-        if statement.operation != "ratio_or_zero":
-            return self.plain.statement(statement)
-        operands = ", ".join(map(self.plain.operand, statement.operands))
-        name = self.plain.names[statement.targets[0]]
-        return (f"const {C_TYPE[self.plain.scalar]} {name} = {self.ratio}({operands});",)
+    def ratio_or_zero(self, above: str, below: str) -> str:
+        """A function without branches."""
+        return f"{self.ratio}({above}, {below})"
 
     def flag(self, checks: list[Check], outputs: tuple[Operand, ...]) -> list[str]:
         """The lines that make `flag[k]`: 0 where every check passes and every result is finite."""
-        plain = self.plain
-        zero, one = ("0.0", "1.0") if plain.scalar == "float64" else ("0.0f", "1.0f")
-        results = [plain.names[o.name] for o in dict.fromkeys(outputs) if isinstance(o, Local)]
-        rest = " + ".join(rests(results)) or zero
-        lines = [f"{C_TYPE[plain.scalar]} rest = {rest};"]
+        zero, one = (self.literal(Fraction(number)) for number in (0, 1))
+        results = [self.names[o.name] for o in dict.fromkeys(outputs) if isinstance(o, Local)]
+        lines = [f"{C_TYPE[self.scalar]} rest = {' + '.join(rests(results)) or zero};"]
         for check in checks:
             relation = ">=" if check.inclusive else ">"
             # a sum leaves nothing to skip, so the loop stays free of branches
-            passes = f"{plain.operand(check.value)} {relation} {plain.operand(check.limit)}"
+            passes = f"{self.operand(check.value)} {relation} {self.operand(check.limit)}"
             lines.append(f"rest += {passes} ? {zero} : {one};")
         return [*lines, "flag[k] = rest;"]

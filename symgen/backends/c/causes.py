@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from symgen.backends.c.statements import CStatements
 from symgen.backends.locals import Names, array_arguments, check_operands
 from symgen.backends.scalars import C_TYPE
-from symgen.backends.statements import CStatements
 from symgen.ir.kernel import Check, Kernel, Load, Local, Operand
 from symgen.ir.split import names_of_blocks
 from symgen.records import dataclass

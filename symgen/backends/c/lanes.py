@@ -10,8 +10,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from symgen.backends.c.pairs import LANES
+from symgen.backends.c.statements import CStatements
 from symgen.backends.scalars import C_TYPE, SUFFIX
-from symgen.backends.statements import CStatements
 from symgen.ir.kernel import Block, Kernel, Local, Operand, Program, Scalar, Statement
 from symgen.ir.split import names_in, names_of_blocks
 from symgen.naming import macro_name

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from symgen.backends.c.statements import c_body
 from symgen.backends.scalars import C_TYPE
-from symgen.backends.statements import c_body
 from symgen.ir.kernel import Block, Function, Kernel, Program, Scalar, Statement
 from symgen.ir.wide_functions import works_with_pairs
 from symgen.naming import macro_name

@@ -10,9 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from heapq import heappop, heappush
 
-from symgen.backends.literals import c_literal
+from symgen.backends.c.statements import CStatements, c_body, c_literal
 from symgen.backends.scalars import C_TYPE
-from symgen.backends.statements import CStatements, c_body
 from symgen.ir.kernel import Kernel, Literal, Operand, OperationName, Program, Scalar
 from symgen.ir.split import names_in, names_of_check
 from symgen.ir.wide_functions import is_wide_operation, wide_function, works_with_pairs

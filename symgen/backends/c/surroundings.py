@@ -1,4 +1,4 @@
-"""What stands in a C file before its kernels: macros for what is rare, and both halves of the library's pair."""
+"""What stands in a C file before its kernels: the header they need, macros for what is rare, the library's pair."""
 
 from __future__ import annotations
 
@@ -7,8 +7,11 @@ from symgen.backends.c.steps import step_names
 from symgen.backends.locals import all_statements, used_locals
 from symgen.backends.scalars import C_TYPE, SUFFIX
 from symgen.ir.kernel import Kernel, Local, Program
+from symgen.ir.wide_functions import with_bodies
 from symgen.naming import macro_name
 from symgen.records import dataclass
+
+_WITHOUT_LIBRARY = frozenset({"add", "sub", "mul", "div", "neg", "ratio_or_zero", "min", "max"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,6 +23,16 @@ class LibraryPair:
     sine: str
     cosine: str
     library: str
+
+
+def uses_library(program: Program) -> bool:
+    """Whether a file with these kernels needs math.h: for a function, or to test whether results are finite."""
+    if any(isinstance(output, Local) for kernel in program.kernels for output in kernel.outputs):
+        return True
+    own = () if program.sincos is None else program.sincos.statements
+    free = _WITHOUT_LIBRARY if program.sincos is None else _WITHOUT_LIBRARY | {"sincos"}
+    statements = [*own, *(statement for kernel in program.kernels for statement in all_statements(kernel))]
+    return any(statement.operation not in free for statement in with_bodies(statements))
 
 
 def rare_macro(name: str, program: Program) -> str:

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from symgen.backends.about import STATUS_MEANING, count_lines, symbol_lines, unit_text
+from symgen.backends.c.reserved import is_taken as is_taken_in_c
 from symgen.backends.comments import docstring_lines, indent_of, one_line
 from symgen.backends.defaults import default_values
 from symgen.backends.literals import decimal_text
 from symgen.backends.locals import Names, all_statements, array_arguments, names_of, used_locals
+from symgen.backends.python.reserved import WORDS
+from symgen.backends.python.statements import NumpyStatements, numpy_body
 from symgen.backends.quantities import BATCHED, meaning
 from symgen.backends.render import render
-from symgen.backends.statements import NumpyStatements, numpy_body
 from symgen.ir.kernel import Function, Kernel, OperationName, Program, Status
 from symgen.ir.wide_functions import wide_function, wide_operations, with_bodies
 from symgen.model.model import Model
 from symgen.records import dataclass
 
 _SINCOS = "_sincos"
+# Names inside of functions.
+_INSIDE = ("np", "status", "batch", "entries")
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,25 +77,31 @@ class PythonView:
 
 def emit_python(model: Model, program: Program) -> dict[str, str]:
     """`python/<model>.py` from the float64 program; it needs NumPy only."""
-    names = names_of(model, program, {kernel.name for kernel in program.kernels} | {"Parameters", "compile"})
+    own = {kernel.name for kernel in program.kernels} | {"Parameters", "compile"}
+    names = names_of(model, program, _is_taken, own, _INSIDE)
     statements = [statement for kernel in program.kernels for statement in all_statements(kernel)]
     operations = {statement.operation for statement in with_bodies(statements)}
-    own = program.sincos if "sincos" in operations else None
-    parameter, body = ("", ()) if own is None else _sincos(own)
+    pair = program.sincos if "sincos" in operations else None
+    parameter, body = ("", ()) if pair is None else _sincos(pair)
     view = PythonView(
         model=model.c_name,
         stem=model.c_name,
         about=_about(model, program),
         statuses=tuple((status.name, int(status), STATUS_MEANING[status]) for status in Status),
         fields=_fields(model, names),
-        functions=tuple(_kernel(kernel, names, None if own is None else _SINCOS) for kernel in program.kernels),
+        functions=tuple(_kernel(kernel, names, None if pair is None else _SINCOS) for kernel in program.kernels),
         sincos_parameter=parameter,
         sincos_body=body,
-        needs_ratio="ratio_or_zero" in operations or (own is not None and _has_ratio(own)),
+        needs_ratio="ratio_or_zero" in operations or (pair is not None and _has_ratio(pair)),
         wide=tuple(map(_wide, wide_operations(statements))),
         c_files=_c_files(model, program),
     )
     return {f"python/{view.stem}.py": render("python/module.py.jinja", view)}
+
+
+def _is_taken(name: str) -> bool:
+    """In C too, which the module compiles: a value has one name in both."""
+    return WORDS.is_taken(name) or is_taken_in_c(name)
 
 
 def _about(model: Model, program: Program) -> tuple[str, ...]:

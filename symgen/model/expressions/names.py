@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from symgen.diagnostics import Mistake
 from symgen.model.expressions.expression import FUNCTION_ARITY
+from symgen.registered import keywords
 
 if TYPE_CHECKING:  # the command line corrects misspelt options too, and needs no YAML for that
     from symgen.model.file.source import ScalarNode
@@ -20,19 +21,8 @@ NAME_PATTERN = "[A-Za-z][A-Za-z0-9_]*"
 QUOTING = "inside { } and [ ] quote an expression or text that has a comma, colon, bracket or #, or use block style"
 _NAME = re.compile(NAME_PATTERN, re.ASCII)
 
-_C = """auto break case char const continue default do double else enum extern float for goto if inline int long
-register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while"""
-_CPP = """alignas alignof and and_eq asm bitand bitor bool catch char8_t char16_t char32_t class co_await co_return
-co_yield compl concept const_cast consteval constexpr constinit decltype delete dynamic_cast explicit export false
-friend mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public reinterpret_cast
-requires static_assert static_cast template this thread_local throw true try typeid typename using virtual wchar_t xor
-xor_eq"""
-_PYTHON = """False None True and as assert async await break class continue def del elif else except finally for from
-global if import in is lambda nonlocal not or pass raise return try while with yield"""
 RESERVED: dict[str, str] = {
-    **dict.fromkeys(_PYTHON.split(), "a keyword of Python"),
-    **dict.fromkeys(_CPP.split(), "a keyword of C++"),
-    **dict.fromkeys(_C.split(), "a keyword of C"),
+    **keywords(),
     **dict.fromkeys(FUNCTION_ARITY, "a function of the language"),
     "pi": "the number pi",
     "t": "the time",

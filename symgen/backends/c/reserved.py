@@ -1,4 +1,4 @@
-"""Names that the generated C cannot use: keywords, functions and macros of the systems where it is built.
+"""Words of C and C++: keywords, functions and macros of the systems where the generated C is built.
 
 Gathered from the headers of glibc, newlib and picolibc, with those of microcontrollers, Windows and Qt; a macro of one
 header spoils a struct member of the same name in another. Families are given by patterns.
@@ -8,34 +8,28 @@ from __future__ import annotations
 
 import re
 
+from symgen.registered import Words, words
 
-def _words(text: str) -> frozenset[str]:
-    return frozenset(text.split())
-
-
-C_KEYWORDS = _words(
-    """auto break case char const continue default do double else enum extern float for goto if inline int long
-    register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while asm
-    fortran typeof bool complex imaginary"""
-)
-CPP_KEYWORDS = _words(
-    """alignas alignof and and_eq asm bitand bitor bool catch char16_t char32_t char8_t class compl concept consteval
-    constexpr constinit const_cast co_await co_return co_yield decltype delete dynamic_cast explicit export false
-    friend mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public
-    reinterpret_cast requires static_assert static_cast template this thread_local throw true try typeid typename
-    using virtual wchar_t xor xor_eq final override import module"""
-)
-PYTHON_KEYWORDS = _words(
-    """False None True and as assert async await break class continue def del elif else except finally for from global
-    if import in is lambda nonlocal not or pass raise return try while with yield"""
-)
-_MATH_FUNCTIONS = _words(
+_C = """auto break case char const continue default do double else enum extern float for goto if inline int long
+register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while"""
+_CPP = """alignas alignof and and_eq asm bitand bitor bool catch char8_t char16_t char32_t class co_await co_return
+co_yield compl concept const_cast consteval constexpr constinit decltype delete dynamic_cast explicit export false
+friend mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public reinterpret_cast
+requires static_assert static_cast template this thread_local throw true try typeid typename using virtual wchar_t xor
+xor_eq"""
+KEYWORDS = {
+    **dict.fromkeys(_CPP.split(), "a keyword of C++"),
+    **dict.fromkeys(_C.split(), "a keyword of C"),
+}
+# Keywords of some compilers or places only.
+_SOMETIMES = words("fortran typeof complex imaginary final override import module")
+_MATH_FUNCTIONS = words(
     """acos acosh asin asinh atan atan2 atanh cbrt ceil copysign cos cosh erf erfc exp exp2 expm1 fabs fdim floor fma
     fmax fmin fmod frexp hypot ilogb ldexp lgamma llrint llround log log10 log1p log2 logb lrint lround modf nan
     nearbyint nextafter nexttoward pow remainder remquo rint round scalbln scalbn sin sinh sqrt tan tanh tgamma
     trunc sincos exp10 pow10 drem gamma significand scalb finite j0 j1 jn y0 y1 yn"""
 )
-LIBRARY_NAMES = frozenset(name + suffix for name in _MATH_FUNCTIONS for suffix in ("", "f", "l")) | _words(
+LIBRARY_NAMES = frozenset(name + suffix for name in _MATH_FUNCTIONS for suffix in ("", "f", "l")) | words(
     """memchr memcmp memcpy memmove memset strcat strchr strcmp strcoll strcpy strcspn strerror strlen strncat strncmp
     strncpy strpbrk strrchr strspn strstr strtok strxfrm
     abs labs llabs div ldiv lldiv abort exit atexit malloc calloc realloc free signgam isfinite isinf isnan isnormal
@@ -46,12 +40,12 @@ LIBRARY_NAMES = frozenset(name + suffix for name in _MATH_FUNCTIONS for suffix i
     FP_INFINITE FP_ZERO FP_SUBNORMAL FP_NORMAL"""
 )
 # complex.h, POSIX and Windows
-PLATFORM_MACROS = _words(
+PLATFORM_MACROS = words(
     """I linux unix i386 near far small hyper interface min max major minor CONST VOID TRUE FALSE BOOL IN OUT OPTIONAL
     ERROR DELETE"""
 )
 ARDUINO_MACROS = (
-    _words(
+    words(
         """F HIGH LOW INPUT OUTPUT INPUT_PULLUP PI HALF_PI TWO_PI DEG_TO_RAD RAD_TO_DEG EULER SERIAL DISPLAY LSBFIRST
         MSBFIRST CHANGE FALLING RISING DEFAULT EXTERNAL INTERNAL constrain radians degrees sq interrupts noInterrupts
         lowByte highByte bit bitRead bitSet bitClear bitWrite word boolean byte cli sei SP SS SCK MOSI MISO SDA SCL
@@ -59,7 +53,7 @@ ARDUINO_MACROS = (
     )
 )
 # Macros of complex.h, POSIX, the C libraries and their extensions that no pattern below covers.
-_HEADER_MACROS = _words(
+_HEADER_MACROS = words(
     """BS0 BS1 CR0 CR1 CR2 CR3 CS5 CS6 CS7 CS8 EIO EOF ERA FF0 FF1 F_OK HZ MAX MIN NCC NL0 NL1 NO R_OK TAB0 TAB1 TAB2
     TAB3 VT0 VT1 W_OK X_OK YES L_ctermid L_cuserid L_tmpnam P_tmpdir Nil nil alloca assert_perror basename carg
     cimag clearerr clearerr_unlocked clearerror clrbit conj cproj creal d_fileno dadd ddiv dfma dmul dsqrt dsub fadd
@@ -92,12 +86,10 @@ _MACRO_PATTERNS = re.compile(
     r"|si_(?:addr|addr_lsb|arch|band|call_addr|fd|int|lower|overrun|pid|pkey|ptr|status|stime|syscall|timerid|uid|upper"
     r"|utime|value)"
 )
-RESERVED = (
-    C_KEYWORDS | CPP_KEYWORDS | PYTHON_KEYWORDS | LIBRARY_NAMES | PLATFORM_MACROS | ARDUINO_MACROS | _HEADER_MACROS
-)
+_TAKEN = frozenset(KEYWORDS) | _SOMETIMES | LIBRARY_NAMES | PLATFORM_MACROS | ARDUINO_MACROS | _HEADER_MACROS
 
-# Headers and modules that the generated files, or what is built beside them, look for by these names.
-_HEADERS = _words(
+# Headers that the generated files, or what is built beside them, look for by these names.
+_HEADERS = words(
     """aio alloca argz assert byteswap complex cpio ctype dirent dlfcn elf endian envz err errno error execinfo fcntl
     fenv float fnmatch getopt glob grp iconv inttypes iso646 langinfo libgen limits link locale malloc math memory
     monetary netdb poll pthread pwd regex sched search semaphore setjmp signal spawn stdalign stdarg stdatomic
@@ -105,35 +97,20 @@ _HEADERS = _words(
     tgmath threads time uchar ucontext ulimit unistd utime utmpx values wait wchar wctype windows arduino binary
     eeprom print printable sd servo spi stepper stream udp wifi wire main sdkconfig freertos board"""
 )
-_PYTHON_MODULES = _words(
-    """abc aifc antigravity argparse array ast asynchat asyncio asyncore atexit audioop base64 bdb binascii bisect
-    builtins bz2 calendar cgi cgitb chunk cmath cmd code codecs codeop collections colorsys compileall concurrent
-    configparser contextlib contextvars copy copyreg cprofile crypt csv ctypes curses dataclasses datetime dbm
-    decimal difflib dis distutils doctest email encodings ensurepip enum faulthandler filecmp fileinput fractions
-    ftplib functools gc genericpath getpass gettext graphlib gzip hashlib heapq hmac html http idlelib imaplib
-    imghdr imp importlib inspect io ipaddress itertools json keyword lib2to3 linecache logging lzma mailbox mailcap
-    marshal mimetypes mmap modulefinder msilib msvcrt multiprocessing netrc nis nntplib nt ntpath nturl2path numbers
-    numpy opcode operator optparse os ossaudiodev pathlib pdb pickle pickletools pip pipes pkg_resources pkgutil
-    platform plistlib poplib posix posixpath pprint profile pstats pty py_compile pyclbr pydoc pydoc_data pyexpat
-    queue quopri random re readline reprlib resource rlcompleter runpy scipy secrets select selectors setuptools
-    shelve shlex shutil site smtpd smtplib sndhdr socket socketserver spwd sqlite3 sre_compile sre_constants
-    sre_parse ssl stat statistics stringprep struct subprocess sunau symtable sys sysconfig tabnanny tarfile
-    telnetlib tempfile test textwrap this threading timeit tkinter token tokenize tomllib trace traceback
-    tracemalloc tty turtle turtledemo types typing unicodedata unittest urllib uu uuid venv warnings wave weakref
-    webbrowser winreg winsound wsgiref xdrlib xml xmlrpc zipapp zipfile zipimport zlib zoneinfo"""
-)
 # Targets of CMake and Zephyr, and libraries that linkers look for by a short name.
-_TARGETS = _words(
+_TARGETS = words(
     """all all_build clean depend edit_cache help install list_install_components package package_source preinstall
     rebuild_cache run_tests test zero_check app kernel zephyr offsets linker c m gcc gcc_s rt dl pthread util ssp
     nosys semihost crt0 g gloss winpthread mingw32 msvcrt kernel32 user32 atomic"""
 )
-_WINDOWS_FILES = _words("con prn aux nul") | {f"{port}{k}" for port in ("com", "lpt") for k in range(10)}
+_WINDOWS_FILES = words("con prn aux nul") | {f"{port}{k}" for port in ("com", "lpt") for k in range(10)}
 # Macros and enumerators in capitals such as R_OK of unistd.h, HAL_OK, ESP_OK of makers, Z_OK, FR_OK of libraries.
-_STATUSES = _words("always err esp ex f force fr hal lfs nvs pm psa r res sqlite static tcl tx w x z")
-HIDING = _HEADERS | _PYTHON_MODULES | _TARGETS | _WINDOWS_FILES | _STATUSES
+_STATUSES = words("always err esp ex f force fr hal lfs nvs pm psa r res sqlite static tcl tx w x z")
 
 
-def is_reserved(name: str) -> bool:
+def is_taken(name: str) -> bool:
     """Whether a name is taken where the generated C may be built; with enough underscores behind it none is."""
-    return name in RESERVED or (name[-1] != "_" and _MACRO_PATTERNS.fullmatch(name) is not None)
+    return name in _TAKEN or (name[-1] != "_" and _MACRO_PATTERNS.fullmatch(name) is not None)
+
+
+WORDS = Words(KEYWORDS, is_taken, _HEADERS | _TARGETS | _WINDOWS_FILES | _STATUSES)
