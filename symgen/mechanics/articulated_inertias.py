@@ -10,6 +10,7 @@ like small turns of the joints instead of errors of single entries of G (Feather
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
+from types import MappingProxyType
 
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.guards import Guard, magnitude
@@ -26,6 +27,7 @@ from symgen.symbolic.scalar import Graph, Scalar
 # Turning rates and velocities of the origin, or moments and forces, in the frame's axes.
 Six = tuple[Scalar, ...]
 Sizes = tuple[Vector3, Scalar]
+NOTHING: Mapping[str, Six] = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,13 +68,14 @@ class ArticulatedFactor:
         unit = {name: joint.directions(dict(directions[name]), self.graph) for name, joint in self._free.items()}
         self.directions = directions | unit
         self._yielding: dict[str, list[Yielding]] = {}
+        self._resisting: dict[str, Matrix] = {}
         sizes = self.sizes()
         pivots: dict[int, Scalar] = {}
         scales: dict[int, Scalar] = {}
         self.own: dict[int, Scalar] = {}
         inertias = {name: self.own_inertia(name) for name in self.frames}
         for name in reversed(self.frames):
-            inertia = inertias[name]
+            inertia = self._resisting[name] = inertias[name]
             rigid = self.own_inertia(name)
             yielding: list[Yielding] = []
             for coordinate, direction in reversed(self.directions[name]):
@@ -97,11 +100,24 @@ class ArticulatedFactor:
 
     def lowered(self, b: Sequence[Scalar], wrenches: Mapping[str, Six] | None = None) -> Vector:
         """The solution of L y = b; `wrenches` on frames are part of the generalized force b."""
+        return self.brought_inwards(b, wrenches or {})[0]
+
+    def brought_inwards(
+        self, b: Sequence[Scalar], wrenches: Mapping[str, Six], added: Mapping[str, Six] = NOTHING
+    ) -> tuple[Vector, dict[str, Six]]:
+        """The same, and what loads each frame before its joint yields.
+
+        `added` are accelerations of frames beside those that their parents hand on and their coordinates give them,
+        angular and linear, in their axes.
+        """
         zero = self.graph.zero
-        loads = {name: (wrenches or {}).get(name, (zero,) * 6) for name in self.frames}
+        loads = {name: wrenches.get(name, (zero,) * 6) for name in self.frames}
         y = list(b)
         for name in reversed(self.frames):
             load = loads[name]
+            if name in added:
+                resisted = self._times(self._resisting[name], added[name])
+                load = loads[name] = tuple(x - r for x, r in zip(load, resisted, strict=True))
             if name in self._free:
                 y[:] = self._replaced(y, self._free[name].wrench(y))
             for one in self._yielding[name]:
@@ -117,10 +133,10 @@ class ArticulatedFactor:
             if parent != WORLD:
                 carried = self._carried_wrench(name, load)
                 loads[parent] = tuple(x + c for x, c in zip(loads[parent], carried, strict=True))
-        return tuple(y)
+        return tuple(y), loads
 
-    def raised(self, b: Sequence[Scalar]) -> Vector:
-        """The solution of L^T x = b."""
+    def raised(self, b: Sequence[Scalar], added: Mapping[str, Six] = NOTHING) -> Vector:
+        """The solution of L^T x = b; with `added` as in `brought_inwards` x are accelerations."""
         zero = self.graph.zero
         twists: dict[str, Six] = {WORLD: (zero,) * 6}
         x = list(b)
@@ -130,7 +146,8 @@ class ArticulatedFactor:
                 rate = x[one.coordinate] - self._dot(one.share, twist)
                 x[one.coordinate] = rate
                 twist = tuple(t if d.is_zero else t + d * rate for t, d in zip(twist, one.direction, strict=True))
-            twists[name] = twist
+            # the joint itself has met what is added by its force
+            twists[name] = tuple(t + a for t, a in zip(twist, added[name], strict=True)) if name in added else twist
             if name in self._free:
                 x[:] = self._replaced(x, self._free[name].rates(x))
         return tuple(x)

@@ -45,6 +45,19 @@ class Wrench:
 
 
 @dataclass(frozen=True)
+class JointMotions:
+    """What rates do joint by joint while no rate changes, by frame.
+
+    `added` is how a frame moves whose parent is not accelerated, `turning` how it moves if it is not either: by its
+    angular velocity alone.  What stands on the world is accelerated against gravity.
+    """
+
+    added: Mapping[str, FrameMotion]
+    turning: Mapping[str, FrameMotion]
+    wrenches: Mapping[str, Wrench]  # what turning so takes of the bodies
+
+
+@dataclass(frozen=True)
 class Lump:
     """Mass, first moment and inertia tensor about a frame's origin, in its axes."""
 
@@ -95,6 +108,17 @@ def frame_motions(bodies: Bodies, qd: Vector, qdd: Vector, gravity: Vector3) -> 
     recursion = _Recursion(bodies, qd, qdd, gravity)
     recursion.moving()
     return recursion.motions
+
+
+def joint_motions(bodies: Bodies, qd: Vector, gravity: Vector3) -> JointMotions:
+    """What rates do joint by joint; arguments as for `newton_euler`."""
+    recursion = _Recursion(bodies, qd, (bodies.graph.zero,) * len(qd), gravity)
+    added: dict[str, FrameMotion] = {}
+    frames = bodies.mechanism.frames
+    for frame in frames:
+        moved = added[frame.name] = recursion.step(frame.name)
+        recursion.motions[frame.name] = motion(moved.velocity, recursion.none, recursion.none)
+    return JointMotions(added, recursion.motions, recursion.wrenches(frames, recursion.motions))
 
 
 class _Recursion:
@@ -156,7 +180,7 @@ class _Recursion:
         loaded = self._loaded()
         frames = [frame for frame in self.bodies.mechanism.frames if frame.name in loaded]
         for frame in frames:
-            self.motions[frame.name] = self._motion(frame.name)
+            self.motions[frame.name] = self.step(frame.name)
         return frames
 
     def wrenches(self, frames: Sequence[Frame], motions: Mapping[str, FrameMotion]) -> dict[str, Wrench]:
@@ -174,7 +198,7 @@ class _Recursion:
             loaded.update(self.kinematics.lineage(body.frame))
         return loaded
 
-    def _motion(self, name: str) -> FrameMotion:
+    def step(self, name: str) -> FrameMotion:
         """The parent's motion carried to the frame's origin, the joint's own added."""
         joint, parent = self.kinematics.joint(name), self.motions[self.kinematics.frames[name].parent]
         inward = transposed(joint.axes)

@@ -1,4 +1,4 @@
-"""Long chains: forms that cannot be the cheapest are not built, u and accelerations grow linearly."""
+"""Long chains: forms that cannot be the cheapest are not built, u and accelerations grow linearly, digits stay."""
 
 from __future__ import annotations
 
@@ -7,11 +7,14 @@ from pathlib import Path
 import pytest
 from chains import chain
 
+from symgen.generation.draft import draft_of
 from symgen.generation.results import Options
 from symgen.model.load import load_model
 from symgen.pipeline import generate
 from symgen.quantities.select import ABSOLUTE, ARTICULATED, Selection, derive_quantities
 from symgen.symbolic.traverse import topological
+from symgen.verify.expected import Expected
+from symgen.verify.searched import WorstStateSearch
 
 
 def derived(links: int, folder: Path, *outputs: str) -> Selection:
@@ -64,3 +67,16 @@ def test_the_size_of_long_code_is_told(tmp_path: Path) -> None:
     (told,) = notices(32)
     assert "kB of machine code on a Cortex-M4" in told
     assert "inverse_dynamics 1" in told
+
+
+@pytest.mark.slow  # 400 states of a chain of 24 links, with the reference at the worst
+def test_links_that_turn_quickly_beside_a_tip_that_hardly_pulls(tmp_path: Path) -> None:
+    """Centripetal accelerations gathered from the root, and taken off again, cost 11 units at one state."""
+    path = tmp_path / "chain24.yaml"
+    path.write_text(chain(24), encoding="utf-8")
+    draft = draft_of(load_model(path), ["multipliers"], Options())
+    assert draft.choice("multipliers").way == ARTICULATED
+    search = WorstStateSearch(Expected(draft.model, ["multipliers"], 8, lambda _: None))
+    kernel = draft.kernels("multipliers")["float64"]
+    search.look(kernel)
+    assert search.largest(kernel, draft.programs["float64"].sincos, "float64") < 8

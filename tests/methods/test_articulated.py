@@ -14,6 +14,7 @@ import symgen.methods.forward_dynamics.articulated as by_frames
 from symgen.mechanics.genericity import genericity, parameter_values
 from symgen.mechanics.newton_euler import frame_motions
 from symgen.mechanics.system import System
+from symgen.methods.forward_dynamics import joint_accelerations
 from symgen.methods.forward_dynamics.articulated import articulated
 from symgen.methods.forward_dynamics.loop_points import acceleration, loop_points
 from symgen.methods.forward_dynamics.motion import Problem
@@ -62,6 +63,53 @@ rotor_inertias:
   c: J/10
 """
 
+
+# a cart with a stack of slides and turns about one axis that branches; points of two branches meet, one keeps a place
+PLANE = """model: plane
+coordinates:
+  x: {unit: m, range: [-1, 1]}
+  y: {unit: m, range: [-1, 1]}
+  a: {unit: rad, range: [-1, 1]}
+  s: {unit: m, range: [0.2, 1]}
+  b: {unit: rad, range: [-1, 1]}
+  c: {unit: rad, range: [-1, 1]}
+  d: {unit: rad, range: [-1, 1]}
+  e: {unit: rad, range: [-1, 1]}
+parameters:
+  l: {value: 0.4, unit: m}
+  m: {value: 1.5, unit: kg}
+  J: {value: 0.02, unit: kg*m**2}
+  g: {value: 9.81, unit: m/s**2}
+gravity: [g/3, 0, -g]
+frames:
+  ramp: {translation: [0, l, 0], rotation: [[y, 0.4]]}
+  cart: {parent: ramp, translation: [x, l, y], rotation: [[y, a]]}
+  slide: {parent: cart, translation: [l, 0, s*s/l]}
+  elbow: {parent: slide, translation: [0, l/2, l], rotation: [[y, -b]]}
+  tail: {parent: elbow, translation: [l, l/3, l/5], rotation: [[y, c]]}
+  leg: {parent: cart, translation: [-l, 0, l/4], rotation: [[y, d]]}
+  foot: {parent: leg, translation: [0, 0, -l], rotation: [[y, e]]}
+bodies:
+  cart: {mass: 2*m, com: [l/3, l/5, 0], inertia: {xx: J, yy: 2*J, zz: 2*J, xy: J/5}}
+  elbow: {mass: m, com: [l/2, 0, l/7], inertia: {xx: J, yy: J, zz: J, xz: J/5}}
+  tail: {mass: 3*m, com: [0, l/2, l/3], inertia: {xx: J, yy: 2*J, zz: 1.5*J, yz: J/7}}
+  leg: {mass: m, com: [0, 0, -l/2], inertia: {xx: J, yy: J, zz: J}}
+  foot: {mass: m/3, com: [l/9, 0, -l/2], inertia: {xx: J, yy: J, zz: J}}
+points:
+  tip: {frame: tail, at: [l/2, 0, l/4]}
+  toe: {frame: foot, at: [l, l, -l/8]}
+constraints:
+  geometric:
+    across: tip.x - 2*toe.x
+    along: tip.z - 2*toe.z
+    held: toe.z - l
+    gear: b - 2*c
+inputs:
+  u: {unit: N, joint: s}
+  v: {unit: N*m, joint: d}
+rotor_inertias:
+  c: J/10
+"""
 
 # the tip stays at a place of the world, in place of a height only
 HELD = """to_x: tip.x - l
@@ -163,6 +211,23 @@ def test_a_loop_in_space_beside_other_rows(tmp_path: Path, monkeypatch: pytest.M
     path.write_text(JOINTS.replace("height: tip.z - l", HELD), encoding="utf-8")
     assert compared(load_model(path)) < 1e-9
     assert [frame for frame, _ in chosen] == ["slide"]
+
+
+def test_accelerations_joint_by_joint_in_a_plane(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Weights are an acceleration of the ramp, which rows whose weights do not add up to 0 must not see."""
+    taken = []
+
+    def by_joints(*given: Any) -> Any:
+        taken.append(joint_accelerations.by_joints(*given))
+        return taken[-1]
+
+    monkeypatch.setattr(by_frames, "by_joints", by_joints)
+    path = tmp_path / "plane.yaml"
+    path.write_text(PLANE, encoding="utf-8")
+    assert compared(load_model(path)) < 1e-9
+    path.write_text(PLANE.replace("gear: b - 2*c", "far: (tip.x - toe.x)**2 - l**2"), encoding="utf-8")
+    assert compared(load_model(path)) < 1e-9
+    assert [made is not None for made in taken] == [True, False]
 
 
 @pytest.mark.parametrize("text", [FREE, JOINTS])

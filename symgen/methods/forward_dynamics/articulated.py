@@ -21,6 +21,7 @@ from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.newton_euler import frame_motions, inertial_wrenches
 from symgen.mechanics.system import System
 from symgen.methods.forward_dynamics.held_lengths import HeldLengths, LengthsApart, held_lengths
+from symgen.methods.forward_dynamics.joint_accelerations import by_joints
 from symgen.methods.forward_dynamics.loop_points import LoopPoint, acceleration, loop_points, wrenches
 from symgen.methods.forward_dynamics.motion import MotionMethod, Problem
 from symgen.model.expressions.expression import Number
@@ -60,7 +61,7 @@ class _Loops(Problem):
         self, mechanics: System, guards: tuple[Guard, ...], loops: Sequence[tuple[LoopPoint, str]]
     ) -> None:
         super().__init__(mechanics, guards)
-        self._loops = loops
+        self.loops = loops
 
     @cached_property
     def bias(self) -> Vector:
@@ -70,14 +71,14 @@ class _Loops(Problem):
         """B q_ddot + a."""
         mechanics = self._mechanics
         weight = mechanics.bodies.gravity
-        motions = frame_motions(mechanics.bodies, mechanics.qd, q_ddot, weight) if self._loops else {}
-        held = [i for loop, _ in self._loops if motions.keys() >= set(loop.frames) for i in loop.rows.values()]
+        motions = frame_motions(mechanics.bodies, mechanics.qd, q_ddot, weight) if self.loops else {}
+        held = [i for loop, _ in self.loops if motions.keys() >= set(loop.frames) for i in loop.rows.values()]
         if len(held) < self.r:
             given = zip(self.rows, mechanics.constraint_acceleration_bias(mechanics.qd), strict=True)
             return self._turned(tuple(a + dot(self.graph, row, q_ddot) for row, a in given), inward=True)
         # nothing else is worked out: the first way to a function is the one that stands in the graph
         found = dict[int, Scalar]()
-        for loop, axes in self._loops:
+        for loop, axes in self.loops:
             along = acceleration(mechanics, motions, loop, axes)
             found |= {i: along[axis] for axis, i in loop.rows.items()}
         return tuple(found[i] for i in range(self.r))
@@ -88,7 +89,7 @@ class _Loops(Problem):
 
     def _turned(self, values: Vector, inward: bool) -> Vector:
         found = list(values)
-        for loop, frame in self._loops:
+        for loop, frame in self.loops:
             if frame != WORLD:
                 axes = self._mechanics.bodies.kinematics.axes(frame)
                 three = triple([values[i] for i in loop.rows.values()])
@@ -130,6 +131,9 @@ class BodyEquations:
     def motion(self, by_bodies: bool = False) -> MotionMethod:
         """q_ddot and lambda; `by_bodies` they are refined by Newton and Euler's equations of the bodies."""
         mechanics, problem = self._mechanics, self._problem
+        if not by_bodies and (own := by_joints(mechanics, self._factor, problem.loops, self._forces)) is not None:
+            found = self._apart.solve(own.force, own.bias, raised=own.raised)
+            return MotionMethod(found[0], self._completed(problem.of_the_model(found[1])), self.guards)
         none = (mechanics.graph.zero,) * mechanics.n
         given = mechanics.given_force
         force = self._factor.lowered(given, self._inertial_forces(mechanics.qd, none, mechanics.bodies.gravity))

@@ -152,20 +152,23 @@ class LengthsApart:
         """The denominators."""
         return tuple(dict.fromkeys((*self._rest.guards, *self._held.guards)))
 
-    def solve(self, force: Vector, bias: Vector, refining: bool = True) -> Solution:
-        """q_ddot and lambda for L^-1 f and a."""
+    def solve(
+        self, force: Vector, bias: Vector, refining: bool = True, raised: Callable[[Vector], Vector] | None = None
+    ) -> Solution:
+        """q_ddot and lambda for L^-1 f and a; `raised` leads to q_ddot if that of the factor does not."""
         graph, held = self._graph, self._held
         # the rates of the lengths are known
         rates = [-bias[i] / slope for i, slope in zip(held.rows, held.slopes, strict=True)]
         rest = tuple(bias[i] + dot(graph, self._felt[i], rates) for i in self._others)
         x, multipliers = self._rest.by_columns(self._without_lengths(force), rest, refining)
         known = dict(zip(self._places, rates, strict=True))
-        weighted = [known.get(j, entry * w) for j, (entry, w) in enumerate(zip(x, self._rest.weights, strict=True))]
+        pairs = enumerate(zip(x, self._rest.weights, strict=True))
+        weighted = tuple(known.get(j, entry * w) for j, (entry, w) in pairs)
         found = dict(zip(self._others, multipliers, strict=True))
         for k, (i, j, slope) in enumerate(zip(held.rows, self._places, held.slopes, strict=True)):
             taken = dot(graph, [self._felt[other][k] for other in self._others], multipliers)
             found[i] = (force[j] - taken) / slope
-        return self._factor.raised(weighted), tuple(found[i] for i in range(self._count))
+        return (raised or self._factor.raised)(weighted), tuple(found[i] for i in range(self._count))
 
     def _without_lengths(self, column: Vector) -> Vector:
         return tuple(self._graph.zero if j in self._places else x for j, x in enumerate(column))

@@ -47,12 +47,12 @@ class LoopPoint:
         return tuple(dict.fromkeys(point.frame for point in self.points))
 
 
-def loop_points(mechanics: System) -> list[LoopPoint]:
-    """The geometric rows that hold points in space, those of one loop together."""
+def loop_points(mechanics: System, in_planes: bool = False) -> list[LoopPoint]:
+    """The geometric rows that hold points, those of one loop together: in space, and where asked for in planes."""
     graph, kinematics = mechanics.graph, mechanics.bodies.kinematics
     components = [component(name) for name in components_in(mechanics.model)]
     held = {one.owner: place for one in components if (place := _fixed(mechanics, one.owner)) is not None}
-    if all(kinematics.plane(WORLD, frame) is not None for frame, _ in held.values()):
+    if not in_planes and all(kinematics.plane(WORLD, frame) is not None for frame, _ in held.values()):
         return []
     names, leaves = with_leaves(mechanics, list(held))
     places = {leaf: (owner, axis) for owner, three in leaves.items() for axis, leaf in enumerate(three)}
@@ -64,8 +64,8 @@ def loop_points(mechanics: System) -> list[LoopPoint]:
         own = [(owner, axis, slope) for slope, (owner, axis) in slopes if not slope.is_zero]
         axes = {axis for _, axis, _ in own}
         moves = not reached([residual]).isdisjoint(mechanics.q)
-        in_space = any(kinematics.plane(WORLD, held[owner][0]) is None for owner, _, _ in own)
-        if in_space and len(axes) == 1 and not moves and all(slope.constant is not None for _, _, slope in own):
+        taken = in_planes or any(kinematics.plane(WORLD, held[owner][0]) is None for owner, _, _ in own)
+        if taken and len(axes) == 1 and not moves and all(slope.constant is not None for _, _, slope in own):
             found.setdefault(tuple((owner, slope) for owner, _, slope in own), {})[axes.pop()] = i
     return [
         LoopPoint(dict(sorted(by_axis.items())), tuple(HeldPoint(slope, *held[owner]) for owner, slope in weights))
