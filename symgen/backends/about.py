@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from symgen.backends.comments import docstring_lines, indent_of, one_line
 from symgen.backends.locals import Names
 from symgen.backends.operations import count_operations
 from symgen.ir.kernel import Kernel, Program, Status
-from symgen.model.model import Allocation, Model
+from symgen.model.model import Allocation, Model, Parameter
 
 STATUS_MEANING: dict[Status, str] = {
     Status.OK: "the result is valid",
@@ -59,6 +60,24 @@ def count_lines(program: Program) -> Iterator[str]:
         c = count_operations(kernel.statements)
         yield f"{kernel.name:<{width}} {c.add:7d}{c.mul:7d}{c.div:7d}{c.sqrt:7d}{c.sincos:7d}{c.other:7d}"
     yield "(changes of sign are not counted)"
+
+
+def module_lines(model: Model, program: Program) -> tuple[str, ...]:
+    """What opens the docstring of a module in Python."""
+    lines = list(docstring_lines(f"{model.name}: {model.description or 'constrained mechanical system'}"))
+    if model.source:
+        lines += ["", *docstring_lines(f"Source: {model.source}")]
+    for group in (symbol_lines(model), count_lines(program)):
+        lines.append("")
+        for line in group:
+            indent = indent_of(line)
+            lines += [indent + wrapped for wrapped in docstring_lines(line, "    ")] if indent else [line]
+    return tuple(lines)
+
+
+def parameter_text(parameter: Parameter) -> str:
+    """Unit and description of a parameter, on one line."""
+    return one_line(" ".join(part for part in (unit_text(parameter.unit), parameter.description) if part))
 
 
 def shape_text(kernel: Kernel) -> str:

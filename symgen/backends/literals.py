@@ -43,13 +43,18 @@ class LiteralRangeError(Exception):
         self.scalar = scalar
 
 
+def in_range(scalar: Scalar, value: Fraction) -> float:
+    """`value` rounded to the scalar type; LiteralRangeError for one that this does not hold."""
+    try:
+        return round_to(scalar, value)
+    except OverflowError as error:
+        raise LiteralRangeError(scalar, value) from error
+
+
 @cache
 def decimal_text(scalar: Scalar, value: Fraction) -> str:
     """The shortest decimal that reads back as `value` rounded to the scalar type; always with a point or exponent."""
-    try:
-        rounded = round_to(scalar, value)
-    except OverflowError as error:
-        raise LiteralRangeError(scalar, value) from error
+    rounded = in_range(scalar, value)
     if scalar == "float64":
         return repr(rounded)
     texts = (f"{rounded:.{digits}g}" for digits in range(1, 10))  # nine digits always read back

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Mapping, Sequence
 from fractions import Fraction
 
@@ -11,37 +12,46 @@ from symgen.naming import identifiers
 
 _INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
 _CHOICES = {"min": "<", "max": ">"}
+_OPERATORS = {*_INFIX, "neg"}
 
 
-class Statements:
+class Statements(ABC):
     """What a language says of each kind of statement; `names` are those of the locals."""
 
     __slots__ = ()
     names: Mapping[str, str]
 
+    @abstractmethod
     def literal(self, value: Fraction) -> str:
         """An exact number, rounded once."""
-        raise NotImplementedError
 
+    @abstractmethod
     def declare(self, targets: Sequence[str], expression: str) -> str:
         """The line that gives names to results."""
-        raise NotImplementedError
 
+    @abstractmethod
     def function(self, name: str) -> str:
         """What a function of the IR is called."""
-        raise NotImplementedError
 
+    @abstractmethod
     def ratio_or_zero(self, above: str, below: str) -> str:
         """`above / below`, and 0 where `below` is 0."""
-        raise NotImplementedError
 
+    @abstractmethod
     def choice(self, condition: str, yes: str, no: str) -> str:
         """One of two values."""
-        raise NotImplementedError
 
+    @abstractmethod
     def sincos(self, targets: tuple[str, ...], angle: str) -> tuple[str, ...]:
         """The lines that give names to a sine and a cosine."""
-        raise NotImplementedError
+
+    def of_pairs(self, operation: str) -> str:
+        """The file's own function for an operation on pairs of numbers, up to its operands."""
+        return f"_{operation}("
+
+    def argument(self, operand: Operand) -> str:
+        """An operand of what is no operator."""
+        return self.operand(operand)
 
     def operand(self, operand: Operand) -> str:
         """A local's identifier or a constant."""
@@ -49,11 +59,12 @@ class Statements:
 
     def statement(self, statement: Statement) -> tuple[str, ...]:
         """One statement as lines."""
-        operands = [self.operand(operand) for operand in statement.operands]
+        spelled = self.operand if statement.operation in _OPERATORS else self.argument
+        operands = [spelled(operand) for operand in statement.operands]
         if statement.operation == "sincos":
             return self.sincos(statement.targets, operands[0])
         if is_wide(statement):
-            return (self.declare(statement.targets, f"_{statement.operation}({', '.join(operands)})"),)
+            return (self.declare(statement.targets, f"{self.of_pairs(statement.operation)}{', '.join(operands)})"),)
         return (self.declare(statement.targets, self.expression(statement.operation, operands)),)
 
     def expression(self, operation: str, operands: Sequence[str]) -> str:

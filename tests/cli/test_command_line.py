@@ -73,6 +73,7 @@ def test_generates_into_generated(asked: list[Options], tmp_path: Path, capsys: 
         (["--scalar", "float32"], Options(scalars=("float32",))),
         (["--trig", "libm"], Options(trig="libm")),
         (["--only", "python,c"], Options(parts=("c", "python"))),
+        (["--only", "report,array_api,c"], Options(parts=("c", "array_api", "report"))),
         (["--no-verify", "--states", "200"], Options(verify=False, states=200)),
     ],
 )

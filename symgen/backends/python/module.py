@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from symgen.backends.about import STATUS_MEANING, count_lines, symbol_lines, unit_text
+from symgen.backends.about import STATUS_MEANING, module_lines, parameter_text
 from symgen.backends.c.reserved import is_taken as is_taken_in_c
-from symgen.backends.comments import docstring_lines, indent_of, one_line
+from symgen.backends.comments import docstring_lines
 from symgen.backends.defaults import default_values
 from symgen.backends.literals import decimal_text
 from symgen.backends.locals import Names, all_statements, array_arguments, names_of, used_locals
@@ -86,7 +86,7 @@ def emit_python(model: Model, program: Program) -> dict[str, str]:
     view = PythonView(
         model=model.c_name,
         stem=model.c_name,
-        about=_about(model, program),
+        about=module_lines(model, program),
         statuses=tuple((status.name, int(status), STATUS_MEANING[status]) for status in Status),
         fields=_fields(model, names),
         functions=tuple(_kernel(kernel, names, None if pair is None else _SINCOS) for kernel in program.kernels),
@@ -104,18 +104,6 @@ def _is_taken(name: str) -> bool:
     return WORDS.is_taken(name) or is_taken_in_c(name)
 
 
-def _about(model: Model, program: Program) -> tuple[str, ...]:
-    lines = list(docstring_lines(f"{model.name}: {model.description or 'constrained mechanical system'}"))
-    if model.source:
-        lines += ["", *docstring_lines(f"Source: {model.source}")]
-    for group in (symbol_lines(model), count_lines(program)):
-        lines.append("")
-        for line in group:
-            indent = indent_of(line)
-            lines += [indent + wrapped for wrapped in docstring_lines(line, "    ")] if indent else [line]
-    return tuple(lines)
-
-
 def _fields(model: Model, names: Names) -> tuple[FieldView, ...]:
     values = default_values(model)
     return tuple(
@@ -123,7 +111,7 @@ def _fields(model: Model, names: Names) -> tuple[FieldView, ...]:
             name=parameter.name,
             member=names.members[parameter.name],
             default=decimal_text("float64", values[parameter.name]),
-            comment=one_line(" ".join(part for part in (unit_text(parameter.unit), parameter.description) if part)),
+            comment=parameter_text(parameter),
         )
         for parameter in model.parameters
     )

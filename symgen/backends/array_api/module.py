@@ -1,0 +1,122 @@
+"""A module of pure functions on the array API standard: `function(xp, q, ...)` for arrays of the namespace `xp`."""
+
+from __future__ import annotations
+
+from symgen.backends.about import STATUS_MEANING, module_lines, parameter_text
+from symgen.backends.array_api.reserved import WORDS
+from symgen.backends.array_api.statements import ArrayStatements
+from symgen.backends.comments import docstring_lines
+from symgen.backends.defaults import default_values
+from symgen.backends.literals import in_range
+from symgen.backends.locals import Names, all_statements, array_arguments, names_of, used_locals
+from symgen.backends.quantities import meaning
+from symgen.backends.render import render
+from symgen.backends.scalars import SUFFIX
+from symgen.backends.statements import lines_of, names_inside
+from symgen.ir.kernel import Kernel, OperationName, Program, Scalar, Status
+from symgen.ir.wide_functions import wide_function, wide_operations, with_bodies
+from symgen.model.model import Model
+from symgen.records import dataclass
+
+# Names inside of functions.
+_INSIDE = ("xp", "status", "like", "entries")
+
+
+@dataclass(frozen=True, slots=True)
+class FieldView:
+    """One parameter: name, default, comment."""
+
+    name: str
+    default: str
+    comment: str
+
+
+@dataclass(frozen=True, slots=True)
+class FunctionView:
+    """One quantity: names and lengths of its arrays, docstring, body lines, entries of the result and its shape."""
+
+    name: str
+    arguments: tuple[tuple[str, int], ...]
+    docstring: tuple[str, ...]
+    body: tuple[str, ...]
+    entries: tuple[str, ...]
+    shape: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class WideView:
+    """A function of pairs of numbers."""
+
+    name: str
+    parameters: tuple[str, ...]
+    body: tuple[str, ...]
+    results: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ModuleView:
+    """Everything the template prints."""
+
+    about: tuple[str, ...]
+    scalar: Scalar
+    other: str
+    statuses: tuple[tuple[str, int, str], ...]
+    not_finite: int
+    fields: tuple[FieldView, ...]
+    functions: tuple[FunctionView, ...]
+    needs_ratio: bool
+    wide: tuple[WideView, ...]
+
+
+def emit_array_api(model: Model, program: Program) -> dict[str, str]:
+    """`array_api/<model>.py` (float64) or `array_api/<model>_f.py`; it imports nothing but the standard library."""
+    own = {kernel.name for kernel in program.kernels} | {"Parameters", "PARAMETERS", "Status"}
+    names = names_of(model, program, WORDS.is_taken, own, _INSIDE)
+    statements = [statement for kernel in program.kernels for statement in all_statements(kernel)]
+    other: Scalar = "float32" if program.scalar == "float64" else "float64"
+    values = default_values(model)
+    view = ModuleView(
+        about=module_lines(model, program),
+        scalar=program.scalar,
+        other=f"{model.c_name}{SUFFIX[other]}",
+        statuses=tuple((status.name, int(status), STATUS_MEANING[status]) for status in Status),
+        not_finite=int(Status.NOT_FINITE),
+        fields=tuple(
+            FieldView(one.name, repr(in_range(program.scalar, values[one.name])), parameter_text(one))
+            for one in model.parameters
+        ),
+        functions=tuple(_function(program, kernel, names) for kernel in program.kernels),
+        needs_ratio="ratio_or_zero" in {statement.operation for statement in with_bodies(statements)},
+        wide=tuple(_wide(operation, program.scalar) for operation in wide_operations(statements)),
+    )
+    return {f"array_api/{model.c_name}{SUFFIX[program.scalar]}.py": render("array_api/module.py.jinja", view)}
+
+
+def _function(program: Program, kernel: Kernel, names: Names) -> FunctionView:
+    used = used_locals(kernel)
+    printer = ArrayStatements(program.scalar, names.locals, used)
+    body = []
+    for load in kernel.loads:
+        if load.local in used:
+            place = f"_real(xp, p.{load.member})" if load.argument == "p" else f"{load.argument}[..., {load.index}]"
+            body.append(f"{names.locals[load.local]} = {place}")
+    body += [line for block in kernel.blocks for line in printer.block(block)]
+    arguments = tuple((argument.name, argument.length) for argument in array_arguments(kernel))
+    given = ", ".join(f"{name} (..., {length})" for name, length in arguments)
+    result = ", ".join(str(extent) for extent in kernel.shape)
+    return FunctionView(
+        name=kernel.name,
+        arguments=arguments,
+        docstring=docstring_lines(f"{meaning(kernel)}: {given} -> (..., {result}), and the status of each state."),
+        body=tuple(body),
+        entries=tuple(map(printer.argument, kernel.outputs)),
+        shape=kernel.shape,
+    )
+
+
+def _wide(operation: OperationName, scalar: Scalar) -> WideView:
+    function = wide_function(operation, scalar)
+    names = names_inside(function, WORDS.is_taken, _INSIDE)
+    body = lines_of(function, ArrayStatements(scalar, names, frozenset(names)))
+    parameters, results = (tuple(names[one] for one in part) for part in (function.parameters, function.results))
+    return WideView(f"_{operation}", parameters, body, results)

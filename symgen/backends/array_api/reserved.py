@@ -1,0 +1,5 @@
+"""Words of Python, and of no language besides."""
+
+from __future__ import annotations
+
+from symgen.backends.python.reserved import WORDS as WORDS

@@ -1,0 +1,73 @@
+"""Statements and checks on arrays of a namespace `xp`; a state keeps the first status it gets, and nothing branches."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from fractions import Fraction
+
+from symgen.backends.literals import in_range
+from symgen.backends.statements import Statements, signed
+from symgen.ir.kernel import Block, Check, Literal, Operand, Scalar
+from symgen.records import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class ArrayStatements(Statements):
+    """Prints statements and checks; of a sine and a cosine what is `used`."""
+
+    scalar: Scalar
+    names: Mapping[str, str]
+    used: Collection[str]
+
+    def literal(self, value: Fraction) -> str:
+        """A Python float, which takes the type of the array beside it."""
+        return signed(repr(in_range(self.scalar, value)))
+
+    def argument(self, operand: Operand) -> str:
+        """An array: functions take nothing else."""
+        spelled = self.operand(operand)
+        return f"_real(xp, {spelled.strip('()')})" if isinstance(operand, Literal) else spelled
+
+    def of_pairs(self, operation: str) -> str:
+        """A function of the module, with the namespace."""
+        return f"_{operation}(xp, "
+
+    def function(self, name: str) -> str:
+        """A function of the namespace."""
+        return f"xp.{name}"
+
+    def declare(self, targets: Sequence[str], expression: str) -> str:
+        """An assignment."""
+        return f"{', '.join(self.names[target] for target in targets)} = {expression}"
+
+    def ratio_or_zero(self, above: str, below: str) -> str:
+        """A function of the module."""
+        return f"_ratio_or_zero(xp, {above}, {below})"
+
+    def choice(self, condition: str, yes: str, no: str) -> str:
+        """One of two values, by state."""
+        return f"xp.where({condition}, {yes}, {no})"
+
+    def sincos(self, targets: tuple[str, ...], angle: str) -> tuple[str, ...]:
+        """The namespace's: a pair that rounds its angle to quadrants has no derivative that tools could find."""
+        halves = ((t, half) for t, half in zip(targets, ("sin", "cos"), strict=True) if t in self.used)
+        return tuple(self.declare((target,), f"{self.function(half)}({angle})") for target, half in halves)
+
+    def block(self, block: Block, context: str = "") -> tuple[str, ...]:
+        """Statements, then checks; `context` names the mask of states that this block is about (empty: all)."""
+        statements = [line for statement in block.statements for line in self.statement(statement)]
+        checks = [line for check in block.checks for line in self._check(check, context)]
+        return (*statements, *checks)
+
+    def _check(self, check: Check, context: str) -> tuple[str, ...]:
+        relation = ">=" if check.inclusive else ">"
+        failed = f"~({self.argument(check.value)} {relation} {self.argument(check.limit)})"
+        failed = f"{context} & {failed}" if context else failed
+        if check.first is None:
+            return (f"status = _first(xp, status, {failed}, {int(check.status)})",)
+        mask = f"{context or '_failed'}_"  # a leading underscore is no name of the user's
+        return (
+            f"{mask} = {failed}",
+            *self.block(check.first, mask),
+            f"status = _first(xp, status, {mask}, {int(check.status)})",
+        )
