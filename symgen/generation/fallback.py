@@ -146,8 +146,10 @@ class Fallback:
         self._check_algebra(kernels["float64"], draft.way(quantity), faults[0].state)
         tried.append((draft.way(quantity), f"{faults[0].what} ({faults[0].target})"))
         self._seen[quantity].add(_digest(kernels))
-        # laws that a number with few digits violates beside are no reason of their own: its algebra is right
-        if known == 0 and all(fault.what.startswith((INACCURATE, VIOLATES)) for fault in faults):
+        # laws that a number with few digits violates beside are no reason of their own: its algebra is right; nor is a
+        # status of float32, whose thresholds twice the digits bring down
+        judged = [fault for fault in faults if fault.scalar == "float64"] or faults
+        if known == 0 and all(fault.what.startswith((INACCURATE, VIOLATES)) for fault in judged):
             self._inaccurate[quantity].append(draft.taken(quantity))
         if all(fault.scalar == "float32" for fault in faults):
             passing.append(_Candidate(0.0, ("float64",), draft.taken(quantity), kernels))

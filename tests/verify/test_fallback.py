@@ -569,3 +569,14 @@ def test_laws_that_a_number_with_few_digits_violates_too_do_not_keep_it_from_mor
     result = made(yoke)
     assert result.left_out == ()
     assert derived(result)["kernels"]["forward_dynamics"]["twice_the_digits"] == ["float64", "float32"]
+
+
+def test_a_status_of_float32_does_not_keep_what_loses_digits_from_more_of_them(
+    yoke: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The first choice is as good as another way there, which is judged in float64 first."""
+    spoil_choice(monkeypatch, lambda motion: refusing_float32(losing_digits(motion)))
+    monkeypatch.setattr(alternatives.Alternatives, "of", lambda *_: ())
+    result = made(yoke)
+    assert result.left_out == ()
+    assert derived(result)["kernels"]["multipliers"]["twice_the_digits"] == ["float64", "float32"]
