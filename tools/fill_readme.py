@@ -128,11 +128,15 @@ def quantities() -> str:
         "Names in `outputs:`, C and Python, with the symbols and equation numbers of the paper.",
         "τ = G q̈ + C q̇ + Q − Q_a. Matrices are row-major.",
         "",
-        "| name | symbol | equation | what | arguments |",
-        "|---|---|---|---|---|",
+        "n coordinates, m inputs, r constraints, of these r_g geometric, δ degrees of freedom, p points.",
+        "",
+        "| name | symbol | equation | what | arguments | shape |",
+        "|---|---|---|---|---|---|",
     ]
     for q in QUANTITIES:
-        lines.append(f"| `{q.name}` | {q.symbol} | {q.equation} | {q.description} | {', '.join(q.arguments)} |")
+        shape = " × ".join(q.shape).replace("delta", "δ").replace("3*points", "3p").replace("points", "p")
+        row = (f"`{q.name}`", q.symbol, q.equation, q.description, ", ".join(q.arguments), shape)
+        lines.append(f"| {' | '.join(row)} |")
     return "\n".join(lines) + "\n"
 
 

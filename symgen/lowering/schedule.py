@@ -31,7 +31,7 @@ from symgen.linear_algebra.guards import Guard, magnitude, where_negligible
 from symgen.lowering.writer import ANGLE, Test, Writer, angles_among, angles_of
 from symgen.mechanics.system import System
 from symgen.methods.quantity import Quantity
-from symgen.model.quantities import QUANTITIES
+from symgen.model.quantities import ROWS
 from symgen.runtime.activity import each
 from symgen.symbolic.angles import share_angles
 from symgen.symbolic.scalar import Graph
@@ -42,7 +42,6 @@ from symgen.symbolic.traverse import topological
 ORDER = (Status.ANGLE_RANGE, Status.CONSTRAINT_RANK, Status.MASS_RANK, Status.ACTUATION_RANK)
 # Two bodies are computed side by side where a vector of 16 bytes holds two values.
 IN_TWOS: Scalar = "float64"
-ARGUMENTS = {quantity.name: quantity.arguments for quantity in QUANTITIES}
 
 
 def schedule(mechanics: System, quantities: Sequence[Quantity], scalars: Sequence[Scalar]) -> dict[Scalar, Program]:
@@ -190,7 +189,7 @@ def _kernel(mechanics: System, derived: Quantity, limits: _Limits, apart: bool =
     regular = share_angles(mechanics.graph, [*derived.outputs, *roots])
     outputs = regular[: len(derived.outputs)]
     image = dict(zip(roots, regular[len(outputs) :], strict=True))
-    writer = Writer(mechanics, ARGUMENTS[derived.name], apart)
+    writer = Writer(mechanics, ROWS[derived.name].arguments, apart)
     order = topological(regular)
     arguments = angles_among(order)
     # what only a failure looks at must not decide which angles a regular state evaluates
@@ -236,7 +235,7 @@ def _meant(outputs: Sequence[Node], tests: Sequence[Test], image: Mapping[Node, 
 
 def _arguments(mechanics: System, quantity: str) -> tuple[Argument, ...]:
     sizes = {"q": mechanics.n, "qd": mechanics.n, "qdd": mechanics.n, "u": mechanics.m}
-    return tuple(Argument(name, sizes[name]) for name in ARGUMENTS[quantity] if sizes[name])
+    return tuple(Argument(name, sizes[name]) for name in ROWS[quantity].arguments if sizes[name])
 
 
 def _causes(tests: Sequence[Test]) -> list[Node]:

@@ -2,70 +2,117 @@
 
 from __future__ import annotations
 
-from typing import Literal, TypeAlias
+import math
+from collections.abc import Mapping
+from typing import Literal, TypeAlias, cast
 
 from symgen.records import dataclass
 
 Argument: TypeAlias = Literal["q", "qd", "qdd", "u"]
+# What a model must have for some quantities.
+PARTITION, ACTUATORS, POINTS = "independent_velocities", "m = delta", "points"
 
 
 @dataclass(frozen=True, slots=True)
 class QuantityRow:
-    """A quantity by the name used in `outputs`, C and Python; `equation` is the number in Müller's paper, or empty."""
+    """A quantity by the name used in `outputs`, C and Python; `equation` is the number in Müller's paper, or empty.
+
+    `result` is what its array is called in C.  `shape` has its extents, products of numbers and of sizes of the system:
+    n coordinates, m inputs, r rows, of these r_g geometric, delta degrees of freedom, points.  A quantity exists where
+    none of them is 0 and the model has what it `needs`.
+    """
 
     name: str
     symbol: str
     equation: str
-    description: str
+    result: str
     arguments: tuple[Argument, ...]
+    shape: tuple[str, ...]
+    description: str
+    needs: str
+
+    @property
+    def sizes(self) -> frozenset[str]:
+        """What its extents are made of."""
+        return frozenset(factor for extent in self.shape for factor in extent.split("*"))
+
+    def extents(self, sizes: Mapping[str, int]) -> tuple[int, ...]:
+        """Its shape in numbers."""
+        known = {factor: int(factor) if factor.isdigit() else sizes[factor] for factor in self.sizes}
+        return tuple(math.prod(known[factor] for factor in extent.split("*")) for extent in self.shape)
 
 
-_Q: tuple[Argument, ...] = ("q",)
-_QV: tuple[Argument, ...] = ("q", "qd")
-_QVA: tuple[Argument, ...] = ("q", "qd", "qdd")
-_QVU: tuple[Argument, ...] = ("q", "qd", "u")
+def _row(
+    name: str, symbol: str, equation: str, result: str, arguments: str, shape: str, description: str, needs: str = ""
+) -> QuantityRow:
+    given = cast(tuple[Argument, ...], tuple(arguments.split()))
+    return QuantityRow(name, symbol, equation, result, given, tuple(shape.split()), description, needs)
 
+
+# fmt: off
 QUANTITIES: tuple[QuantityRow, ...] = (
-    QuantityRow("mass_matrix", "G", "(3)", "generalized mass matrix", _Q),
-    QuantityRow("coriolis_matrix", "C", "(3)", "Coriolis matrix of Christoffel symbols, along qd as given", _QV),
-    QuantityRow("coriolis_force", "C q̇", "(3)", "Coriolis and centrifugal forces", _QV),
-    QuantityRow("potential_force", "Q", "(3)", "gradient of the potential energy", _Q),
-    QuantityRow("applied_force", "Q_a", "", "applied generalized forces, on the right-hand side", _QV),
-    QuantityRow("constraint_residual", "g", "(4)", "geometric constraints, zero on the configuration space", _Q),
-    QuantityRow("constraint_jacobian", "B", "(1)", "coefficients of the velocity constraints", _Q),
-    QuantityRow("constraint_jacobian_dot", "Ḃ", "", "time derivative of the constraint Jacobian along qd", _QV),
-    QuantityRow("constraint_pseudoinverse", "B⁺", "", "Moore-Penrose inverse of the constraint Jacobian", _Q),
-    QuantityRow("nullspace_projector", "N_B", "(21)", "orthogonal projector onto the admissible velocities", _Q),
-    QuantityRow("nullspace_projector_dot", "Ṅ_B", "Remark 9", "time derivative of the projector along qd", _QV),
-    QuantityRow("weighted_pseudoinverse", "B_G⁺", "(17)", "pseudoinverse of B weighted by the mass matrix", _Q),
-    QuantityRow("weighted_nullspace_projector", "N_{B,G}", "(19)", "projector weighted by the mass matrix", _Q),
-    QuantityRow("control_matrix", "M", "(3)", "generalized forces per unit of each input", _Q),
-    QuantityRow("projected_control_matrix", "M̃", "(21)", "control matrix projected with N_B", _Q),
-    QuantityRow("projected_control_pseudoinverse", "M̃⁺", "(27), (28)", "pseudoinverse of M̃", _Q),
-    QuantityRow("orthogonal_complement", "F", "(8)", "velocities per independent velocity", _Q),
-    QuantityRow("projected_mass_matrix", "G̃", "(30)", "projected mass matrix", _Q),
-    QuantityRow("projected_coriolis_matrix", "C̃", "(30)", "projected Coriolis matrix, along N_B qd", _QV),
-    QuantityRow("projected_potential_force", "Q̃", "(30)", "projected potential forces", _Q),
-    QuantityRow("projected_applied_force", "N_B Q_a", "", "projected applied forces, at N_B qd", _QV),
-    QuantityRow("minimal_mass_matrix", "Ḡ", "(9)", "mass matrix in the independent velocities", _Q),
-    QuantityRow("minimal_coriolis_matrix", "C̄", "(9)", "Coriolis matrix in the independent velocities", _QV),
-    QuantityRow("minimal_potential_force", "Q̄", "(9)", "potential forces on the independent velocities", _Q),
-    QuantityRow("minimal_applied_force", "FᵀQ_a", "", "applied forces on the independent velocities", _QV),
-    QuantityRow("minimal_control_matrix", "M̄", "(9)", "control matrix of the independent velocities", _Q),
-    QuantityRow(
-        "admissible_velocity", "N_B q̇₀", "Remark 9", "the nearest velocity that satisfies the constraints", _QV
-    ),
-    QuantityRow("admissible_acceleration", "N_B q̈₀ + Ṅ_B q̇", "Remark 9", "acceleration made admissible", _QVA),
-    QuantityRow("projected_configuration", "q − B⁺g", "", "two Newton steps towards the configuration space", _Q),
-    QuantityRow("inverse_dynamics", "u", "(27)", "the smallest inputs that produce the motion", _QVA),
-    QuantityRow("inverse_dynamics_residual", "F Fᵀ(τ − M u)", "", "the force no input can supply", _QVA),
-    QuantityRow("actuator_velocity", "ν", "Remark 10", "velocities along the inputs", _QV),
-    QuantityRow("actuator_mass_matrix", "WᵀGW", "Remark 10", "mass matrix in the actuator velocities", _Q),
-    QuantityRow("actuator_bias", "Wᵀ(GẆν + Cq̇ + Q − Q_a)", "Remark 10", "further forces along the inputs", _QV),
-    QuantityRow("forward_dynamics", "q̈", "(15)", "accelerations under the inputs", _QVU),
-    QuantityRow("multipliers", "λ", "(14)", "Lagrange multipliers; the reaction on the system is −Bᵀλ", _QVU),
-    QuantityRow("energy", "T, U", "", "kinetic and potential energy", _QV),
-    QuantityRow("singularity", "σ", "", "distances from constraint and input singularities, 0 to 1", _Q),
-    QuantityRow("point_position", "(x, y, z)", "", "places of the points, a row for each in the order of the file", _Q),
-    QuantityRow("point_jacobian", "J", "", "velocities of the points per rate, three rows for each", _Q),
+    _row("mass_matrix", "G", "(3)", "G", "q", "n n", "generalized mass matrix"),
+    _row("coriolis_matrix", "C", "(3)", "C", "q qd", "n n",
+         "Coriolis matrix of Christoffel symbols, along qd as given"),
+    _row("coriolis_force", "C q̇", "(3)", "C_qd", "q qd", "n", "Coriolis and centrifugal forces"),
+    _row("potential_force", "Q", "(3)", "Q", "q", "n", "gradient of the potential energy"),
+    _row("applied_force", "Q_a", "", "Q_a", "q qd", "n", "applied generalized forces, on the right-hand side"),
+    _row("constraint_residual", "g", "(4)", "g", "q", "r_g", "geometric constraints, zero on the configuration space"),
+    _row("constraint_jacobian", "B", "(1)", "B", "q", "r n", "coefficients of the velocity constraints"),
+    _row("constraint_jacobian_dot", "Ḃ", "", "B_dot", "q qd", "r n",
+         "time derivative of the constraint Jacobian along qd"),
+    _row("constraint_pseudoinverse", "B⁺", "", "B_pinv", "q", "n r",
+         "Moore-Penrose inverse of the constraint Jacobian"),
+    _row("nullspace_projector", "N_B", "(21)", "N_B", "q", "n n",
+         "orthogonal projector onto the admissible velocities"),
+    _row("nullspace_projector_dot", "Ṅ_B", "Remark 9", "N_B_dot", "q qd", "n n",
+         "time derivative of the projector along qd"),
+    _row("weighted_pseudoinverse", "B_G⁺", "(17)", "B_G_pinv", "q", "n r",
+         "pseudoinverse of B weighted by the mass matrix"),
+    _row("weighted_nullspace_projector", "N_{B,G}", "(19)", "N_BG", "q", "n n",
+         "projector weighted by the mass matrix"),
+    _row("control_matrix", "M", "(3)", "M", "q", "n m", "generalized forces per unit of each input"),
+    _row("projected_control_matrix", "M̃", "(21)", "M_tilde", "q", "n m", "control matrix projected with N_B"),
+    _row("projected_control_pseudoinverse", "M̃⁺", "(27), (28)", "M_tilde_pinv", "q", "m n", "pseudoinverse of M̃"),
+    _row("orthogonal_complement", "F", "(8)", "F_B", "q", "n delta", "velocities per independent velocity", PARTITION),
+    _row("projected_mass_matrix", "G̃", "(30)", "G_tilde", "q", "n n", "projected mass matrix"),
+    _row("projected_coriolis_matrix", "C̃", "(30)", "C_tilde", "q qd", "n n",
+         "projected Coriolis matrix, along N_B qd"),
+    _row("projected_potential_force", "Q̃", "(30)", "Q_tilde", "q", "n", "projected potential forces"),
+    _row("projected_applied_force", "N_B Q_a", "", "Q_a_tilde", "q qd", "n", "projected applied forces, at N_B qd"),
+    _row("minimal_mass_matrix", "Ḡ", "(9)", "G_bar", "q", "delta delta",
+         "mass matrix in the independent velocities", PARTITION),
+    _row("minimal_coriolis_matrix", "C̄", "(9)", "C_bar", "q qd", "delta delta",
+         "Coriolis matrix in the independent velocities", PARTITION),
+    _row("minimal_potential_force", "Q̄", "(9)", "Q_bar", "q", "delta",
+         "potential forces on the independent velocities", PARTITION),
+    _row("minimal_applied_force", "FᵀQ_a", "", "Q_a_bar", "q qd", "delta",
+         "applied forces on the independent velocities", PARTITION),
+    _row("minimal_control_matrix", "M̄", "(9)", "M_bar", "q", "delta m",
+         "control matrix of the independent velocities", PARTITION),
+    _row("admissible_velocity", "N_B q̇₀", "Remark 9", "qd_admissible", "q qd", "n",
+         "the nearest velocity that satisfies the constraints"),
+    _row("admissible_acceleration", "N_B q̈₀ + Ṅ_B q̇", "Remark 9", "qdd_admissible", "q qd qdd", "n",
+         "acceleration made admissible"),
+    _row("projected_configuration", "q − B⁺g", "", "q_projected", "q", "n",
+         "two Newton steps towards the configuration space"),
+    _row("inverse_dynamics", "u", "(27)", "u", "q qd qdd", "m", "the smallest inputs that produce the motion"),
+    _row("inverse_dynamics_residual", "F Fᵀ(τ − M u)", "", "residual", "q qd qdd", "n",
+         "the force no input can supply"),
+    _row("actuator_velocity", "ν", "Remark 10", "nu", "q qd", "m", "velocities along the inputs", ACTUATORS),
+    _row("actuator_mass_matrix", "WᵀGW", "Remark 10", "G_nu", "q", "m m",
+         "mass matrix in the actuator velocities", ACTUATORS),
+    _row("actuator_bias", "Wᵀ(GẆν + Cq̇ + Q − Q_a)", "Remark 10", "bias_nu", "q qd", "m",
+         "further forces along the inputs", ACTUATORS),
+    _row("forward_dynamics", "q̈", "(15)", "qdd", "q qd u", "n", "accelerations under the inputs"),
+    _row("multipliers", "λ", "(14)", "lambda_B", "q qd u", "r",
+         "Lagrange multipliers; the reaction on the system is −Bᵀλ"),
+    _row("energy", "T, U", "", "T_U", "q qd", "2", "kinetic and potential energy"),
+    _row("singularity", "σ", "", "measure", "q", "2", "distances from constraint and input singularities, 0 to 1"),
+    _row("point_position", "(x, y, z)", "", "position", "q", "points 3",
+         "places of the points, a row for each in the order of the file", POINTS),
+    _row("point_jacobian", "J", "", "J", "q", "3*points n",
+         "velocities of the points per rate, three rows for each", POINTS),
 )
+# fmt: on
+ROWS = {quantity.name: quantity for quantity in QUANTITIES}

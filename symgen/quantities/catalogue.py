@@ -1,8 +1,8 @@
-"""Which quantities a system has, their shapes, and the derivation of each: one explicit line per quantity."""
+"""Which quantities a system has, and the derivation of each: one explicit line per quantity."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from symgen.linear_algebra.guards import Guard
 from symgen.linear_algebra.null_spaces import rests_on_rank
@@ -10,31 +10,38 @@ from symgen.mechanics.genericity import Genericity
 from symgen.methods.derivation import Derivation
 from symgen.methods.quantity import Quantity, is_fixed
 from symgen.model.model import Model
+from symgen.model.quantities import ACTUATORS, QUANTITIES, QuantityRow
+from symgen.model.quantities import PARTITION as PARTITION
+from symgen.model.quantities import POINTS as POINTS
 from symgen.records import dataclass
 from symgen.symbolic.matrix import Vector, flatten
 
 
 @dataclass(frozen=True, slots=True)
-class Sizes:
-    """The numbers shapes are made of."""
-
-    n: int
-    r: int
-    r_g: int
-    m: int
-    delta: int
-    points: int
-
-
-@dataclass(frozen=True, slots=True)
 class Entry:
-    """How one quantity is derived: its shape and its scalars; `needs` names what else must hold for it to exist."""
+    """How one quantity is derived: its scalars, and what they divide by."""
 
-    name: str
-    shape: Callable[[Sizes], tuple[int, ...]]
+    row: QuantityRow
     outputs: Callable[[Derivation], Vector]
-    guards: Callable[[Derivation], tuple[Guard, ...]] = lambda _: ()
-    needs: tuple[str, ...] = ()
+    guards: Callable[[Derivation], tuple[Guard, ...]]
+
+    @property
+    def name(self) -> str:
+        """The quantity's."""
+        return self.row.name
+
+    @property
+    def needs(self) -> str:
+        """What a model must have."""
+        return self.row.needs
+
+    def shape(self, sizes: Mapping[str, int]) -> tuple[int, ...]:
+        """Of its result, in numbers."""
+        return self.row.extents(sizes)
+
+
+def _none(_: Derivation) -> tuple[Guard, ...]:
+    return ()
 
 
 def _constraint(d: Derivation) -> tuple[Guard, ...]:
@@ -73,137 +80,74 @@ def _partition_rate(d: Derivation) -> tuple[Guard, ...]:
     return (*d.space.guards, *d.partition_guards)
 
 
-def _nxn(s: Sizes) -> tuple[int, ...]:
-    return s.n, s.n
-
-
-def _n(s: Sizes) -> tuple[int, ...]:
-    return (s.n,)
-
-
-def _nxm(s: Sizes) -> tuple[int, ...]:
-    return s.n, s.m
-
-
-def _rxn(s: Sizes) -> tuple[int, ...]:
-    return s.r, s.n
-
-
-def _nxr(s: Sizes) -> tuple[int, ...]:
-    return s.n, s.r
-
-
-def _dxd(s: Sizes) -> tuple[int, ...]:
-    return s.delta, s.delta
-
-
-def _d(s: Sizes) -> tuple[int, ...]:
-    return (s.delta,)
-
-
-PARTITION = ("independent_velocities",)
-ACTUATORS = ("m = delta",)
-POINTS = ("points",)
-
-CATALOGUE: tuple[Entry, ...] = (
-    Entry("mass_matrix", _nxn, lambda d: flatten(d.mechanics.mass_matrix)),
-    Entry("coriolis_matrix", _nxn, lambda d: flatten(d.mechanics.coriolis_matrix(d.mechanics.qd))),
-    Entry("coriolis_force", _n, lambda d: d.mechanics.coriolis_force),
-    Entry("potential_force", _n, lambda d: d.mechanics.potential_force),
-    Entry("applied_force", _n, lambda d: d.mechanics.applied_force),
-    Entry("constraint_residual", lambda s: (s.r_g,), lambda d: d.mechanics.constraint_residual),
-    Entry("constraint_jacobian", _rxn, lambda d: flatten(d.mechanics.constraint_jacobian)),
-    Entry("constraint_jacobian_dot", _rxn, lambda d: flatten(d.mechanics.constraint_jacobian_dot(d.mechanics.qd))),
-    Entry("constraint_pseudoinverse", _nxr, lambda d: flatten(d.space.pseudoinverse), _constraint),
-    Entry("nullspace_projector", _nxn, lambda d: flatten(d.space.projector), _constraint),
-    Entry("nullspace_projector_dot", _nxn, lambda d: flatten(d.projector_dot(d.mechanics.qd)), _constraint),
-    Entry("weighted_pseudoinverse", _nxr, lambda d: flatten(d.weighted_pseudoinverse), _weighted),
-    Entry("weighted_nullspace_projector", _nxn, lambda d: flatten(d.weighted_projector), _weighted),
-    Entry("control_matrix", _nxm, lambda d: flatten(d.mechanics.control_matrix)),
-    Entry(
-        "projected_control_matrix",
-        _nxm,
+_DERIVED: dict[str, tuple[Callable[[Derivation], Vector], Callable[[Derivation], tuple[Guard, ...]]]] = {
+    "mass_matrix": (lambda d: flatten(d.mechanics.mass_matrix), _none),
+    "coriolis_matrix": (lambda d: flatten(d.mechanics.coriolis_matrix(d.mechanics.qd)), _none),
+    "coriolis_force": (lambda d: d.mechanics.coriolis_force, _none),
+    "potential_force": (lambda d: d.mechanics.potential_force, _none),
+    "applied_force": (lambda d: d.mechanics.applied_force, _none),
+    "constraint_residual": (lambda d: d.mechanics.constraint_residual, _none),
+    "constraint_jacobian": (lambda d: flatten(d.mechanics.constraint_jacobian), _none),
+    "constraint_jacobian_dot": (lambda d: flatten(d.mechanics.constraint_jacobian_dot(d.mechanics.qd)), _none),
+    "constraint_pseudoinverse": (lambda d: flatten(d.space.pseudoinverse), _constraint),
+    "nullspace_projector": (lambda d: flatten(d.space.projector), _constraint),
+    "nullspace_projector_dot": (lambda d: flatten(d.projector_dot(d.mechanics.qd)), _constraint),
+    "weighted_pseudoinverse": (lambda d: flatten(d.weighted_pseudoinverse), _weighted),
+    "weighted_nullspace_projector": (lambda d: flatten(d.weighted_projector), _weighted),
+    "control_matrix": (lambda d: flatten(d.mechanics.control_matrix), _none),
+    "projected_control_matrix": (
         lambda d: tuple(x for row in zip(*map(d.space.project, d.mechanics.inputs), strict=True) for x in row),
         _constraint,
     ),
-    Entry(
-        "projected_control_pseudoinverse",
-        lambda s: (s.m, s.n),
-        lambda d: flatten(d.control_pseudoinverse),
-        _actuation,
-    ),
-    Entry("orthogonal_complement", lambda s: (s.n, s.delta), lambda d: flatten(d.complement), _partition, PARTITION),
-    Entry("projected_mass_matrix", _nxn, lambda d: flatten(d.projected_mass_matrix()), _constraint),
-    Entry("projected_coriolis_matrix", _nxn, lambda d: flatten(d.projected_coriolis_matrix()), _constraint),
-    Entry("projected_potential_force", _n, lambda d: d.space.project(d.mechanics.potential_force), _constraint),
-    Entry(
-        "projected_applied_force",
-        _n,
-        lambda d: d.space.project(d.mechanics.applied_force_at(d.admissible)),
-        _constraint,
-    ),
-    Entry("minimal_mass_matrix", _dxd, lambda d: flatten(d.minimal(d.mechanics.mass_matrix)), _partition, PARTITION),
-    Entry("minimal_coriolis_matrix", _dxd, lambda d: flatten(d.minimal_coriolis_matrix()), _partition_rate, PARTITION),
-    Entry(
-        "minimal_potential_force",
-        _d,
-        lambda d: d.minimal_vector(d.mechanics.potential_force),
-        _partition,
-        PARTITION,
-    ),
-    Entry("minimal_applied_force", _d, lambda d: d.minimal_vector(d.mechanics.applied_force), _partition, PARTITION),
-    Entry(
-        "minimal_control_matrix",
-        lambda s: (s.delta, s.m),
+    "projected_control_pseudoinverse": (lambda d: flatten(d.control_pseudoinverse), _actuation),
+    "orthogonal_complement": (lambda d: flatten(d.complement), _partition),
+    "projected_mass_matrix": (lambda d: flatten(d.projected_mass_matrix()), _constraint),
+    "projected_coriolis_matrix": (lambda d: flatten(d.projected_coriolis_matrix()), _constraint),
+    "projected_potential_force": (lambda d: d.space.project(d.mechanics.potential_force), _constraint),
+    "projected_applied_force": (lambda d: d.space.project(d.mechanics.applied_force_at(d.admissible)), _constraint),
+    "minimal_mass_matrix": (lambda d: flatten(d.minimal(d.mechanics.mass_matrix)), _partition),
+    "minimal_coriolis_matrix": (lambda d: flatten(d.minimal_coriolis_matrix()), _partition_rate),
+    "minimal_potential_force": (lambda d: d.minimal_vector(d.mechanics.potential_force), _partition),
+    "minimal_applied_force": (lambda d: d.minimal_vector(d.mechanics.applied_force), _partition),
+    "minimal_control_matrix": (
         lambda d: tuple(x for row in zip(*map(d.minimal_vector, d.mechanics.inputs), strict=True) for x in row),
         _partition,
-        PARTITION,
     ),
-    Entry("admissible_velocity", _n, lambda d: d.admissible, _constraint),
-    Entry("admissible_acceleration", _n, lambda d: d.admissible_acceleration(), _constraint),
-    Entry("projected_configuration", _n, lambda d: d.projected_configuration(), lambda d: d.newton_guards),
-    Entry("inverse_dynamics", lambda s: (s.m,), lambda d: d.inverse_dynamics, _inverse_dynamics),
-    Entry("inverse_dynamics_residual", _n, lambda d: d.inverse_dynamics_residual(), _residual),
-    Entry("actuator_velocity", lambda s: (s.m,), lambda d: d.actuator_velocity(), needs=ACTUATORS),
-    Entry(
-        "actuator_mass_matrix",
-        lambda s: (s.m, s.m),
-        lambda d: flatten(d.actuator_mass_matrix()),
-        _actuation,
-        ACTUATORS,
-    ),
-    Entry("actuator_bias", lambda s: (s.m,), lambda d: d.actuator_bias(), _actuator, ACTUATORS),
-    Entry("forward_dynamics", _n, lambda d: d.forward_dynamics, lambda d: d.acceleration.guards),
-    Entry("multipliers", lambda s: (s.r,), lambda d: d.multipliers(), lambda d: d.reaction.guards),
-    Entry("energy", lambda _: (2,), lambda d: d.energy()),
-    Entry("singularity", lambda _: (2,), lambda d: d.singularity()),
-    Entry("point_position", lambda s: (s.points, 3), lambda d: d.mechanics.bodies.point_position, needs=POINTS),
-    Entry(
-        "point_jacobian",
-        lambda s: (3 * s.points, s.n),
-        lambda d: flatten(d.mechanics.bodies.point_jacobian),
-        needs=POINTS,
-    ),
-)
+    "admissible_velocity": (lambda d: d.admissible, _constraint),
+    "admissible_acceleration": (lambda d: d.admissible_acceleration(), _constraint),
+    "projected_configuration": (lambda d: d.projected_configuration(), lambda d: d.newton_guards),
+    "inverse_dynamics": (lambda d: d.inverse_dynamics, _inverse_dynamics),
+    "inverse_dynamics_residual": (lambda d: d.inverse_dynamics_residual(), _residual),
+    "actuator_velocity": (lambda d: d.actuator_velocity(), _none),
+    "actuator_mass_matrix": (lambda d: flatten(d.actuator_mass_matrix()), _actuation),
+    "actuator_bias": (lambda d: d.actuator_bias(), _actuator),
+    "forward_dynamics": (lambda d: d.forward_dynamics, lambda d: d.acceleration.guards),
+    "multipliers": (lambda d: d.multipliers(), lambda d: d.reaction.guards),
+    "energy": (lambda d: d.energy(), _none),
+    "singularity": (lambda d: d.singularity(), _none),
+    "point_position": (lambda d: d.mechanics.bodies.point_position, _none),
+    "point_jacobian": (lambda d: flatten(d.mechanics.bodies.point_jacobian), _none),
+}
+CATALOGUE = tuple(Entry(row, *_DERIVED[row.name]) for row in QUANTITIES)
 BY_NAME = {entry.name: entry for entry in CATALOGUE}
 
 
-def sizes(model: Model, generic: Genericity) -> Sizes:
-    """The sizes of a system."""
+def sizes(model: Model, generic: Genericity) -> dict[str, int]:
+    """The sizes of a system, which shapes are made of."""
     geometric = sum(row.kind == "geometric" for row in model.constraints)
-    return Sizes(generic.n, generic.r, geometric, generic.m, generic.delta, len(model.mechanism.points))
+    points = len(model.mechanism.points)
+    return {"n": generic.n, "r": generic.r, "r_g": geometric, "m": generic.m, "delta": generic.delta, "points": points}
 
 
 def missing(entry: Entry, model: Model, generic: Genericity) -> str | None:
     """Why this system does not have a quantity, or None."""
     if entry.needs == POINTS and not model.mechanism.points:
         return "the model has no points"
-    shape = entry.shape(sizes(model, generic))
-    if 0 in shape:
+    if 0 in entry.shape(sizes(model, generic)):
         return "its result would be empty"
-    if PARTITION[0] in entry.needs and not model.independent_velocities:
+    if entry.needs == PARTITION and not model.independent_velocities:
         return "the model names no independent_velocities"
-    if ACTUATORS[0] in entry.needs and not (generic.m == generic.delta == generic.alpha):
+    if entry.needs == ACTUATORS and not (generic.m == generic.delta == generic.alpha):
         return "it needs as many independent inputs as degrees of freedom"
     return None
 

@@ -23,29 +23,7 @@ from symgen.model.file.reading import entries, key_span, member
 from symgen.model.file.scope import Scope
 from symgen.model.file.source import MappingNode
 from symgen.model.model import Model
-
-NEEDS_CONSTRAINTS = frozenset(
-    {
-        "constraint_jacobian",
-        "constraint_jacobian_dot",
-        "constraint_pseudoinverse",
-        "weighted_pseudoinverse",
-        "multipliers",
-    }
-)
-NEEDS_POINTS = frozenset({"point_position", "point_jacobian"})
-NEEDS_INPUTS = frozenset(
-    {
-        "control_matrix",
-        "projected_control_matrix",
-        "projected_control_pseudoinverse",
-        "minimal_control_matrix",
-        "inverse_dynamics",
-        "actuator_velocity",
-        "actuator_mass_matrix",
-        "actuator_bias",
-    }
-)
+from symgen.model.quantities import PARTITION, ROWS, QuantityRow
 
 
 def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expression | None, whole: bool) -> Model:
@@ -145,21 +123,26 @@ def _told_of_tied(model: Model, tied: Iterable[str]) -> Iterator[Notice]:
 def notice_empty_outputs(scope: Scope, tree: MappingNode, model: Model) -> None:
     """Requested quantities that this model does not have."""
     span = key_span(tree, "outputs")
-    geometric = any(row.kind == "geometric" for row in model.constraints)
     for name in model.outputs:
-        reason = None
-        if name in NEEDS_CONSTRAINTS and not model.r:
-            reason = "the model has no constraints"
-        elif name == "constraint_residual" and not geometric:
-            reason = "the model has no geometric constraints"
-        elif name in NEEDS_INPUTS and not model.m:
-            reason = "the model has no inputs"
-        elif name in NEEDS_POINTS and not model.mechanism.points:
-            reason = "the model has no points"
-        elif (name == "orthogonal_complement" or name.startswith("minimal_")) and not model.independent_velocities:
-            reason = "the model names no `independent_velocities`"
-        if reason is not None:
+        if name in ROWS and (reason := _lacking(ROWS[name], model)) is not None:
             scope.notices.append(Notice(f"`{name}` is not made: {reason}", span))
+
+
+def _lacking(quantity: QuantityRow, model: Model) -> str | None:
+    """What a model lacks for a quantity, as far as its file tells."""
+    geometric = sum(row.kind == "geometric" for row in model.constraints)
+    counts = {
+        "r": (model.r, "constraints"),
+        "r_g": (geometric, "geometric constraints"),
+        "m": (model.m, "inputs"),
+        "points": (len(model.mechanism.points), "points"),
+    }
+    for size, (count, what) in counts.items():
+        if size in quantity.sizes and not count:
+            return f"the model has no {what}"
+    if quantity.needs == PARTITION and not model.independent_velocities:
+        return "the model names no `independent_velocities`"
+    return None
 
 
 def notice_efforts(scope: Scope, model: Model) -> None:
