@@ -5,11 +5,7 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
-from symgen.backends.c.batch import emit_c_batch
-from symgen.backends.c.given_sines import emit_c_sc
-from symgen.backends.c.plain import emit_c
-from symgen.backends.c.prepared import emit_c_prepared
-from symgen.backends.python.module import emit_python
+from symgen.backends.backend import backend
 from symgen.generation.results import Options
 from symgen.ir.kernel import Program, Scalar
 from symgen.lowering.schedule import schedule
@@ -17,6 +13,7 @@ from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.pipeline import generate
 from symgen.quantities.select import derive_quantities
+from symgen.registered import USUAL
 
 ROOT = Path(__file__).resolve().parent.parent
 ALL = tuple(sorted(path.stem for path in (ROOT / "models").glob("*.yaml")))
@@ -51,12 +48,11 @@ def programs(name: str) -> dict[Scalar, Program]:
 
 @cache
 def sources(name: str) -> dict[str, str]:
-    files = emit_python(model(name), programs(name)["float64"])
-    for scalar in SCALARS:
-        files |= emit_c(model(name), programs(name)[scalar])
-        files |= emit_c_batch(model(name), programs(name)[scalar])
-        files |= emit_c_sc(model(name), programs(name)[scalar])
-        files |= emit_c_prepared(model(name), programs(name)[scalar])
+    files: dict[str, str] = {}
+    for made in map(backend, USUAL):
+        for program in made.programs(programs(name), SCALARS):
+            for emit in made.variants:
+                files |= emit(model(name), program)
     return files
 
 

@@ -9,6 +9,7 @@ from fractions import Fraction
 from symgen.ir.kernel import Function, Local, Operand, Statement
 from symgen.ir.wide_functions import is_wide
 from symgen.naming import identifiers
+from symgen.records import dataclass
 
 _INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
 _CHOICES = {"min": "<", "max": ">"}
@@ -80,15 +81,28 @@ class Statements(ABC):
         return f"{self.function(operation)}({', '.join(operands)})"
 
 
-def lines_of(function: Function, printer: Statements) -> tuple[str, ...]:
-    """The lines of a helper's body."""
-    return tuple(line for statement in function.statements for line in printer.statement(statement))
+@dataclass(frozen=True, slots=True)
+class Helper:
+    """A function that kernels share, such as the sine and cosine: parameters, lines, and where the results are."""
+
+    parameters: tuple[str, ...]
+    body: tuple[str, ...]
+    results: tuple[str, ...]
 
 
-def names_inside(function: Function, is_taken: Callable[[str], bool], taken: Collection[str]) -> dict[str, str]:
-    """The names in a helper's body."""
+def helper(
+    function: Function,
+    printer: Callable[[Mapping[str, str]], Statements],
+    is_taken: Callable[[str], bool],
+    taken: Collection[str],
+) -> Helper:
+    """The function in a language, its names none of those `taken`; `printer` is made for the names."""
     own = [*function.parameters, *(target for statement in function.statements for target in statement.targets)]
-    return identifiers(own, is_taken, taken)
+    names = identifiers(own, is_taken, taken)
+    spelled = printer(names)
+    parameters, results = (tuple(names[one] for one in part) for part in (function.parameters, function.results))
+    lines = (line for statement in function.statements for line in spelled.statement(statement))
+    return Helper(parameters, tuple(lines), results)
 
 
 def signed(text: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from symgen.backends.about import STATUS_MEANING, module_lines, parameter_text
 from symgen.backends.array_api.reserved import WORDS
-from symgen.backends.array_api.statements import ArrayStatements
+from symgen.backends.array_api.statements import ArrayStatements, array_helper
 from symgen.backends.comments import docstring_lines
 from symgen.backends.defaults import default_values
 from symgen.backends.literals import in_range
@@ -12,23 +12,14 @@ from symgen.backends.locals import Names, all_statements, array_arguments, names
 from symgen.backends.quantities import meaning
 from symgen.backends.render import render
 from symgen.backends.scalars import SUFFIX
-from symgen.backends.statements import lines_of, names_inside
-from symgen.ir.kernel import Kernel, OperationName, Program, Scalar, Status
+from symgen.backends.statements import Helper
+from symgen.ir.kernel import Kernel, Program, Scalar, Status
 from symgen.ir.wide_functions import wide_function, wide_operations, with_bodies
 from symgen.model.model import Model
 from symgen.records import dataclass
 
 # Names inside of functions.
 _INSIDE = ("xp", "status", "like", "entries")
-
-
-@dataclass(frozen=True, slots=True)
-class FieldView:
-    """One parameter: name, default, comment."""
-
-    name: str
-    default: str
-    comment: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,28 +35,18 @@ class FunctionView:
 
 
 @dataclass(frozen=True, slots=True)
-class WideView:
-    """A function of pairs of numbers."""
-
-    name: str
-    parameters: tuple[str, ...]
-    body: tuple[str, ...]
-    results: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
 class ModuleView:
-    """Everything the template prints."""
+    """Everything the template prints; `fields` are names, defaults and comments of the parameters."""
 
     about: tuple[str, ...]
     scalar: Scalar
     other: str
     statuses: tuple[tuple[str, int, str], ...]
     not_finite: int
-    fields: tuple[FieldView, ...]
+    fields: tuple[tuple[str, str, str], ...]
     functions: tuple[FunctionView, ...]
     needs_ratio: bool
-    wide: tuple[WideView, ...]
+    wide: tuple[tuple[str, Helper], ...]
 
 
 def emit_array_api(model: Model, program: Program) -> dict[str, str]:
@@ -74,7 +55,7 @@ def emit_array_api(model: Model, program: Program) -> dict[str, str]:
     names = names_of(model, program, WORDS.is_taken, own, _INSIDE)
     statements = [statement for kernel in program.kernels for statement in all_statements(kernel)]
     other: Scalar = "float32" if program.scalar == "float64" else "float64"
-    values = default_values(model)
+    values, wide = default_values(model), wide_operations(statements)
     view = ModuleView(
         about=module_lines(model, program),
         scalar=program.scalar,
@@ -82,12 +63,12 @@ def emit_array_api(model: Model, program: Program) -> dict[str, str]:
         statuses=tuple((status.name, int(status), STATUS_MEANING[status]) for status in Status),
         not_finite=int(Status.NOT_FINITE),
         fields=tuple(
-            FieldView(one.name, repr(in_range(program.scalar, values[one.name])), parameter_text(one))
+            (one.name, repr(in_range(program.scalar, values[one.name])), parameter_text(one))
             for one in model.parameters
         ),
         functions=tuple(_function(program, kernel, names) for kernel in program.kernels),
         needs_ratio="ratio_or_zero" in {statement.operation for statement in with_bodies(statements)},
-        wide=tuple(_wide(operation, program.scalar) for operation in wide_operations(statements)),
+        wide=tuple((name, array_helper(program.scalar, wide_function(name, program.scalar))) for name in wide),
     )
     return {f"array_api/{model.c_name}{SUFFIX[program.scalar]}.py": render("array_api/module.py.jinja", view)}
 
@@ -112,11 +93,3 @@ def _function(program: Program, kernel: Kernel, names: Names) -> FunctionView:
         entries=tuple(map(printer.argument, kernel.outputs)),
         shape=kernel.shape,
     )
-
-
-def _wide(operation: OperationName, scalar: Scalar) -> WideView:
-    function = wide_function(operation, scalar)
-    names = names_inside(function, WORDS.is_taken, _INSIDE)
-    body = lines_of(function, ArrayStatements(scalar, names, frozenset(names)))
-    parameters, results = (tuple(names[one] for one in part) for part in (function.parameters, function.results))
-    return WideView(f"_{operation}", parameters, body, results)

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from fractions import Fraction
 
+from symgen.backends.array_api.reserved import WORDS
 from symgen.backends.literals import in_range
-from symgen.backends.statements import Statements, signed
-from symgen.ir.kernel import Block, Check, Literal, Operand, Scalar
+from symgen.backends.statements import Helper, Statements, helper, signed
+from symgen.ir.kernel import Block, Check, Function, Literal, Operand, Scalar
 from symgen.records import dataclass
 
 
@@ -71,3 +72,8 @@ class ArrayStatements(Statements):
             *self.block(check.first, mask),
             f"status = _first(xp, status, {mask}, {int(check.status)})",
         )
+
+
+def array_helper(scalar: Scalar, function: Function) -> Helper:
+    """A function that kernels share."""
+    return helper(function, lambda names: ArrayStatements(scalar, names, frozenset(names)), WORDS.is_taken, {"xp"})

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from symgen.backends.c.statements import c_body
+from symgen.backends.c.statements import c_helper
 from symgen.backends.scalars import C_TYPE
 from symgen.ir.kernel import Block, Function, Kernel, Program, Scalar, Statement
 from symgen.ir.wide_functions import works_with_pairs
@@ -77,9 +77,9 @@ def pair_names(name: str, suffix: str) -> set[str]:
 
 def pair_body(scalar: Scalar, function: Function, name: str) -> tuple[str, tuple[str, ...]]:
     """Parameter and lines of the function `name` that sets `*sine` and `*cosine`."""
-    names, body = c_body(scalar, function, {"sine", "cosine", name})
-    sine, cosine = (names[result] for result in function.results)
-    return names[function.parameters[0]], (*body, f"*sine = {sine};", f"*cosine = {cosine};")
+    made = c_helper(scalar, function, {"sine", "cosine", name})
+    sine, cosine = made.results
+    return made.parameters[0], (*made.body, f"*sine = {sine};", f"*cosine = {cosine};")
 
 
 def leading_group(kernel: Kernel) -> tuple[Statement, ...]:

@@ -9,7 +9,7 @@ from fractions import Fraction
 from symgen.backends.c.reserved import is_taken
 from symgen.backends.literals import decimal_text
 from symgen.backends.scalars import C_TYPE
-from symgen.backends.statements import Statements, lines_of, names_inside, signed
+from symgen.backends.statements import Helper, Statements, helper, signed
 from symgen.ir.kernel import Block, Check, Function, Scalar, Status
 from symgen.records import dataclass
 
@@ -97,7 +97,6 @@ class CStatements(Statements):
         return (*first, f"return {self.status(check.status)};")
 
 
-def c_body(scalar: Scalar, function: Function, taken: Collection[str]) -> tuple[Mapping[str, str], tuple[str, ...]]:
-    """The names in a helper's body, none of them `taken`, and its lines."""
-    names = names_inside(function, is_taken, taken)
-    return names, lines_of(function, CStatements(scalar, names, frozenset(names)))
+def c_helper(scalar: Scalar, function: Function, taken: Collection[str]) -> Helper:
+    """A function that kernels share, in C."""
+    return helper(function, lambda names: CStatements(scalar, names, frozenset(names)), is_taken, taken)

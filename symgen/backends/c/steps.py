@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from heapq import heappop, heappush
 
-from symgen.backends.c.statements import CStatements, c_body, c_literal
+from symgen.backends.c.statements import CStatements, c_helper, c_literal
 from symgen.backends.scalars import C_TYPE
 from symgen.ir.kernel import Kernel, Literal, Operand, OperationName, Program, Scalar
 from symgen.ir.split import names_in, names_of_check
@@ -222,8 +222,6 @@ def _wide_name(pair: str, operation: OperationName) -> str:
 
 
 def _function(operation: OperationName, scalar: Scalar, pair: str) -> WideFunction:
-    function = wide_function(operation, scalar)
-    names, body = c_body(scalar, function, {"pair"})
-    parameters = tuple(f"const {C_TYPE[scalar]} {names[one]}" for one in function.parameters)
-    value, rest = (names[result] for result in function.results)
-    return WideFunction(_wide_name(pair, operation), parameters, body, value, rest)
+    made = c_helper(scalar, wide_function(operation, scalar), {"pair"})
+    parameters = tuple(f"const {C_TYPE[scalar]} {one}" for one in made.parameters)
+    return WideFunction(_wide_name(pair, operation), parameters, made.body, *made.results)

@@ -9,10 +9,11 @@ from symgen.backends.defaults import default_values
 from symgen.backends.literals import decimal_text
 from symgen.backends.locals import Names, all_statements, array_arguments, names_of, used_locals
 from symgen.backends.python.reserved import WORDS
-from symgen.backends.python.statements import NumpyStatements, numpy_body
+from symgen.backends.python.statements import NumpyStatements, numpy_helper
 from symgen.backends.quantities import BATCHED, meaning
 from symgen.backends.render import render
-from symgen.ir.kernel import Function, Kernel, OperationName, Program, Status
+from symgen.backends.statements import Helper
+from symgen.ir.kernel import Kernel, Program, Status
 from symgen.ir.wide_functions import wide_function, wide_operations, with_bodies
 from symgen.model.model import Model
 from symgen.records import dataclass
@@ -49,16 +50,6 @@ class FunctionView:
 
 
 @dataclass(frozen=True, slots=True)
-class WideView:
-    """A function of pairs of numbers."""
-
-    name: str
-    parameters: tuple[str, ...]
-    body: tuple[str, ...]
-    results: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
 class PythonView:
     """Everything the Python template prints."""
 
@@ -68,10 +59,9 @@ class PythonView:
     statuses: tuple[tuple[str, int, str], ...]
     fields: tuple[FieldView, ...]
     functions: tuple[FunctionView, ...]
-    sincos_parameter: str
-    sincos_body: tuple[str, ...]
+    sincos: Helper | None
     needs_ratio: bool
-    wide: tuple[WideView, ...]
+    wide: tuple[tuple[str, Helper], ...]
     c_files: tuple[str, ...]
 
 
@@ -82,7 +72,7 @@ def emit_python(model: Model, program: Program) -> dict[str, str]:
     statements = [statement for kernel in program.kernels for statement in all_statements(kernel)]
     operations = {statement.operation for statement in with_bodies(statements)}
     pair = program.sincos if "sincos" in operations else None
-    parameter, body = ("", ()) if pair is None else _sincos(pair)
+    operations |= set() if pair is None else {statement.operation for statement in pair.statements}
     view = PythonView(
         model=model.c_name,
         stem=model.c_name,
@@ -90,10 +80,9 @@ def emit_python(model: Model, program: Program) -> dict[str, str]:
         statuses=tuple((status.name, int(status), STATUS_MEANING[status]) for status in Status),
         fields=_fields(model, names),
         functions=tuple(_kernel(kernel, names, None if pair is None else _SINCOS) for kernel in program.kernels),
-        sincos_parameter=parameter,
-        sincos_body=body,
-        needs_ratio="ratio_or_zero" in operations or (pair is not None and _has_ratio(pair)),
-        wide=tuple(map(_wide, wide_operations(statements))),
+        sincos=None if pair is None else numpy_helper(pair),
+        needs_ratio="ratio_or_zero" in operations,
+        wide=tuple((name, numpy_helper(wide_function(name))) for name in wide_operations(statements)),
         c_files=_c_files(model, program),
     )
     return {f"python/{view.stem}.py": render("python/module.py.jinja", view)}
@@ -149,20 +138,3 @@ def _c_files(model: Model, program: Program) -> tuple[str, ...]:
     stem = model.c_name
     stems = (stem, f"{stem}_batch") if any(kernel.name in BATCHED for kernel in program.kernels) else (stem,)
     return tuple(name + ending for name in stems for ending in (".h", ".c"))
-
-
-def _sincos(function: Function) -> tuple[str, tuple[str, ...]]:
-    names, body = numpy_body(function)
-    sine, cosine = function.results
-    return names[function.parameters[0]], (*body, f"return {names[sine]}, {names[cosine]}")
-
-
-def _wide(operation: OperationName) -> WideView:
-    function = wide_function(operation)
-    names, body = numpy_body(function)
-    parameters, results = (tuple(names[one] for one in part) for part in (function.parameters, function.results))
-    return WideView(f"_{operation}", parameters, body, results)
-
-
-def _has_ratio(function: Function) -> bool:
-    return any(statement.operation == "ratio_or_zero" for statement in function.statements)

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from symgen.backends.literals import decimal_text
 from symgen.backends.python.reserved import WORDS
-from symgen.backends.statements import Statements, lines_of, names_inside, signed
+from symgen.backends.statements import Helper, Statements, helper, signed
 from symgen.ir.kernel import Block, Check, Function
 from symgen.records import dataclass
 
@@ -76,7 +76,6 @@ class NumpyStatements(Statements):
         )
 
 
-def numpy_body(function: Function) -> tuple[Mapping[str, str], tuple[str, ...]]:
-    """The names in a helper's body, and its lines."""
-    names = names_inside(function, WORDS.is_taken, {"np"})
-    return names, lines_of(function, NumpyStatements(names, frozenset(names)))
+def numpy_helper(function: Function) -> Helper:
+    """A function that kernels share."""
+    return helper(function, lambda names: NumpyStatements(names, frozenset(names)), WORDS.is_taken, {"np"})
