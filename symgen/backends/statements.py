@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Mapping, Sequence
 from fractions import Fraction
 
-from symgen.ir.kernel import Function, Local, Operand, Statement
+from symgen.ir.kernel import Block, Check, Function, Local, Operand, Statement
 from symgen.ir.wide_functions import is_wide
 from symgen.naming import identifiers
 from symgen.records import dataclass
@@ -17,18 +17,18 @@ _OPERATORS = {*_INFIX, "neg"}
 
 
 class Statements(ABC):
-    """What a language says of each kind of statement; `names` are those of the locals."""
+    """What a language says of each kind of statement and of checks.
+
+    `names` are those of the locals; of a sine and a cosine that are two functions, what is not `used` is left out.
+    """
 
     __slots__ = ()
     names: Mapping[str, str]
+    used: Collection[str]
 
     @abstractmethod
     def literal(self, value: Fraction) -> str:
         """An exact number, rounded once."""
-
-    @abstractmethod
-    def declare(self, targets: Sequence[str], expression: str) -> str:
-        """The line that gives names to results."""
 
     @abstractmethod
     def function(self, name: str) -> str:
@@ -46,6 +46,14 @@ class Statements(ABC):
     def sincos(self, targets: tuple[str, ...], angle: str) -> tuple[str, ...]:
         """The lines that give names to a sine and a cosine."""
 
+    @abstractmethod
+    def check(self, check: Check, context: str) -> tuple[str, ...]:
+        """The lines of a check; `context` says which states it is about where that is not all."""
+
+    def declare(self, targets: Sequence[str], expression: str) -> str:
+        """The line that gives names to results."""
+        return f"{', '.join(self.names[target] for target in targets)} = {expression}"
+
     def of_pairs(self, operation: str) -> str:
         """The file's own function for an operation on pairs of numbers, up to its operands."""
         return f"_{operation}("
@@ -57,6 +65,20 @@ class Statements(ABC):
     def operand(self, operand: Operand) -> str:
         """A local's identifier or a constant."""
         return self.names[operand.name] if isinstance(operand, Local) else self.literal(operand.value)
+
+    def halves(self, targets: tuple[str, ...], angle: str) -> tuple[str, ...]:
+        """A sine and a cosine as two functions."""
+        found = ((target, half) for target, half in zip(targets, ("sin", "cos"), strict=True) if target in self.used)
+        return tuple(self.declare((target,), f"{self.function(half)}({angle})") for target, half in found)
+
+    def passes(self, check: Check) -> str:
+        """The condition of a check, which NaN does not meet."""
+        return f"{self.argument(check.value)} {'>=' if check.inclusive else '>'} {self.argument(check.limit)}"
+
+    def block(self, block: Block, context: str = "") -> tuple[str, ...]:
+        """Statements, then checks."""
+        statements = [line for statement in block.statements for line in self.statement(statement)]
+        return (*statements, *(line for check in block.checks for line in self.check(check, context)))
 
     def statement(self, statement: Statement) -> tuple[str, ...]:
         """One statement as lines."""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from fractions import Fraction
 
 from symgen.backends.array_api.reserved import WORDS
 from symgen.backends.literals import in_range
 from symgen.backends.statements import Helper, Statements, helper, signed
-from symgen.ir.kernel import Block, Check, Function, Literal, Operand, Scalar
+from symgen.ir.kernel import Check, Function, Literal, Operand, Scalar
 from symgen.records import dataclass
 
 
@@ -37,10 +37,6 @@ class ArrayStatements(Statements):
         """A function of the namespace."""
         return f"xp.{name}"
 
-    def declare(self, targets: Sequence[str], expression: str) -> str:
-        """An assignment."""
-        return f"{', '.join(self.names[target] for target in targets)} = {expression}"
-
     def ratio_or_zero(self, above: str, below: str) -> str:
         """A function of the module."""
         return f"_ratio_or_zero(xp, {above}, {below})"
@@ -51,18 +47,11 @@ class ArrayStatements(Statements):
 
     def sincos(self, targets: tuple[str, ...], angle: str) -> tuple[str, ...]:
         """The namespace's: a pair that rounds its angle to quadrants has no derivative that tools could find."""
-        halves = ((t, half) for t, half in zip(targets, ("sin", "cos"), strict=True) if t in self.used)
-        return tuple(self.declare((target,), f"{self.function(half)}({angle})") for target, half in halves)
+        return self.halves(targets, angle)
 
-    def block(self, block: Block, context: str = "") -> tuple[str, ...]:
-        """Statements, then checks; `context` names the mask of states that this block is about (empty: all)."""
-        statements = [line for statement in block.statements for line in self.statement(statement)]
-        checks = [line for check in block.checks for line in self._check(check, context)]
-        return (*statements, *checks)
-
-    def _check(self, check: Check, context: str) -> tuple[str, ...]:
-        relation = ">=" if check.inclusive else ">"
-        failed = f"~({self.argument(check.value)} {relation} {self.argument(check.limit)})"
+    def check(self, check: Check, context: str) -> tuple[str, ...]:
+        """A status for what fails; `context` names the mask of states that this is about (empty: all)."""
+        failed = f"~({self.passes(check)})"
         failed = f"{context} & {failed}" if context else failed
         if check.first is None:
             return (f"status = _first(xp, status, {failed}, {int(check.status)})",)

@@ -177,8 +177,6 @@ class _Lanes(CStatements):
         results = [self.names[o.name] for o in dict.fromkeys(outputs) if isinstance(o, Local)]
         lines = [f"{C_TYPE[self.scalar]} rest = {' + '.join(rests(results)) or zero};"]
         for check in checks:
-            relation = ">=" if check.inclusive else ">"
             # a sum leaves nothing to skip, so the loop stays free of branches
-            passes = f"{self.operand(check.value)} {relation} {self.operand(check.limit)}"
-            lines.append(f"rest += {passes} ? {zero} : {one};")
+            lines.append(f"rest += {self.passes(check)} ? {zero} : {one};")
         return [*lines, "flag[k] = rest;"]

@@ -10,7 +10,7 @@ from symgen.backends.c.reserved import is_taken
 from symgen.backends.literals import decimal_text
 from symgen.backends.scalars import C_TYPE
 from symgen.backends.statements import Helper, Statements, helper, signed
-from symgen.ir.kernel import Block, Check, Function, Scalar, Status
+from symgen.ir.kernel import Check, Function, Scalar, Status
 from symgen.records import dataclass
 
 _FUNCTIONS = {"abs": "fabs"}
@@ -68,24 +68,16 @@ class CStatements(Statements):
         if function is None and all(target in self.used for target in targets):
             function = self.both
         if function is None:
-            halves = ((t, half) for t, half in zip(targets, ("sin", "cos"), strict=True) if t in self.used)
-            return tuple(self.declare((target,), f"{self.function(half)}({angle})") for target, half in halves)
+            return self.halves(targets, angle)
         sine, cosine = (self.names[target] for target in targets)
         # Taking the address is a use, so a half that nothing reads gives no warning.
         kind = C_TYPE[self.scalar]
         return (f"{kind} {sine};", f"{kind} {cosine};", f"{function}({angle}, &{sine}, &{cosine});")
 
-    def block(self, block: Block) -> tuple[str, ...]:
-        """Statements, then checks."""
-        statements = [line for statement in block.statements for line in self.statement(statement)]
-        checks = [line for check in block.checks for line in self.check(check)]
-        return (*statements, *checks)
-
-    def check(self, check: Check) -> tuple[str, ...]:
-        """The early return of a failed check as lines."""
-        relation = ">=" if check.inclusive else ">"
-        # what tells one failure from another is off the regular way as a whole
-        failed = f"!({self.operand(check.value)} {relation} {self.operand(check.limit)})"
+    def check(self, check: Check, context: str = "") -> tuple[str, ...]:
+        """The early return of a failed check; what tells one failure from another is off the regular way as a whole."""
+        del context  # one state at a time
+        failed = f"!({self.passes(check)})"
         opened = f"if ({self.rare}({failed})) {{" if self.rare else f"if ({failed}) {{"
         if check.apart and self.cause is not None:
             return (opened, f"    return {self.cause(check)};", "}")

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from fractions import Fraction
 
 from symgen.backends.literals import decimal_text
 from symgen.backends.python.reserved import WORDS
 from symgen.backends.statements import Helper, Statements, helper, signed
-from symgen.ir.kernel import Block, Check, Function
+from symgen.ir.kernel import Check, Function
 from symgen.records import dataclass
 
 _FUNCTIONS = {"asin": "arcsin", "acos": "arccos", "atan": "arctan", "atan2": "arctan2", "pow": "power"}
@@ -35,10 +35,6 @@ class NumpyStatements(Statements):
         """A universal function."""
         return f"np.{_FUNCTIONS.get(name, name)}"
 
-    def declare(self, targets: Sequence[str], expression: str) -> str:
-        """An assignment."""
-        return f"{', '.join(self.names[target] for target in targets)} = {expression}"
-
     def ratio_or_zero(self, above: str, below: str) -> str:
         """A function of the module."""
         return f"_ratio_or_zero({above}, {below})"
@@ -51,18 +47,11 @@ class NumpyStatements(Statements):
         """A call, or two."""
         if self.sincos_name is not None:
             return (self.declare(targets, f"{self.sincos_name}({angle})"),)
-        halves = ((t, half) for t, half in zip(targets, ("sin", "cos"), strict=True) if t in self.used)
-        return tuple(self.declare((target,), f"{self.function(half)}({angle})") for target, half in halves)
+        return self.halves(targets, angle)
 
-    def block(self, block: Block, context: str = "") -> tuple[str, ...]:
-        """Statements, then checks; `context` names the mask of states that this block is about (empty: all)."""
-        statements = [line for statement in block.statements for line in self.statement(statement)]
-        checks = [line for check in block.checks for line in self._check(check, context)]
-        return (*statements, *checks)
-
-    def _check(self, check: Check, context: str) -> tuple[str, ...]:
-        relation = ">=" if check.inclusive else ">"
-        failed = f"~np.asarray({self.operand(check.value)} {relation} {self.operand(check.limit)})"
+    def check(self, check: Check, context: str) -> tuple[str, ...]:
+        """A status for what fails; `context` names the mask of states that this is about (empty: all)."""
+        failed = f"~np.asarray({self.passes(check)})"
         if context:
             failed = f"{context} & {failed}"
         if check.first is None:
