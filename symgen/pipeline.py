@@ -31,7 +31,8 @@ from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.quantities.catalogue import BY_NAME
 from symgen.quantities.everything import OF_ALL
-from symgen.quantities.select import Selection, short_of_inputs
+from symgen.quantities.finish import short_of_inputs
+from symgen.quantities.select import Selection
 from symgen.runtime.activity import working
 from symgen.runtime.garbage import let_go_and_keep
 
@@ -178,13 +179,12 @@ def _compared(draft: Draft, quantity: str) -> MethodChoice | None:
     derivations = draft.derivations
     if quantity == "inverse_dynamics":
         return derivations.form
-    from symgen.methods.by_name import forms_compared
-
     taken = {choice.quantity: choice.form for choice in derivations.choices}
     named = dict(derivations.named)
     if quantity in named or quantity not in FORMS or quantity not in taken:
         return named.get(quantity)
-    return forms_compared(draft.model, derivations.generic, quantity, taken[quantity])
+    methods = derivations.methods
+    return None if methods is None else methods.compared(quantity, taken[quantity])
 
 
 def _outputs(model: Model, options: Options) -> tuple[str, ...]:
@@ -265,7 +265,7 @@ def _failing_forms(draft: Draft) -> tuple[tuple[str, str], ...]:
     # articulated inertias are taken only where G is definite, and then no form fails
     moving = [choice.quantity for choice in derivations.choices if choice.form not in ("", BY_FRAMES)]
     if moving:
-        from symgen.methods.by_name import failing_motions
+        from symgen.methods.forward_dynamics.motions import failing_motions
 
         for name, why in failing_motions(derivations.mechanics):
             asked = " ".join(f"--form {quantity}={name}" for quantity in moving)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from symgen.diagnostics import Notice
 from symgen.ir.kernel import Scalar
+from symgen.methods.table import NAMED, methods
 from symgen.model.model import Model
 from symgen.records import dataclass
 from symgen.registered import BACKENDS, USUAL
@@ -23,13 +24,9 @@ ALL_PARTS = (*BACKENDS, *_BESIDE)
 PARTS = (*USUAL, *_BESIDE)
 DEFAULT_STATES = 64
 AUTO = "auto"
-_MOTIONS = ("minor", "schur_qr", "schur_ldl", "nullspace", "shifted", "kkt", "articulated", "articulated_refined")
-# By quantity, the forms that may be asked for.
+# By quantity, the methods that may be asked for.
 FORMS: Mapping[str, tuple[str, ...]] = {
-    "inverse_dynamics": ("minor", "nullspace", "elimination", "householder", "printed", "weighted", "kkt"),
-    "forward_dynamics": _MOTIONS,
-    "multipliers": _MOTIONS,
-    "nullspace_projector": ("minor", "householder"),
+    quantity: tuple(row.name for row in methods(quantity)) for quantity in NAMED
 }
 Trig: TypeAlias = Literal["portable", "libm"]
 TRIG: tuple[Trig, ...] = ("portable", "libm")

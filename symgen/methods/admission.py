@@ -74,6 +74,22 @@ def proof_for(system: MethodInput, measures: Sequence[Scalar]) -> Proof:
     return Proof(system.definite, [p.name for p in system.mechanics.model.parameters], measures)
 
 
+class ByTheorem:
+    """A method that is valid at every regular state for a reason that needs no look at its denominators."""
+
+    theorem: str
+
+    def validity(self, workspace: Workspace, candidate: Candidate, first_only: bool) -> Verdict:
+        """By theorem."""
+        del workspace, candidate, first_only
+        return Verdict(0, 0, (), self.theorem)
+
+    def least_cost(self, system: MethodInput) -> int:
+        """Nothing is known before it is built."""
+        del system
+        return 0
+
+
 def ranks(workspace: Workspace, candidate: Candidate) -> list[Scalar]:
     """Denominators that vanish only where a rank drops, by theorem: minors of B and of the inputs."""
     del candidate

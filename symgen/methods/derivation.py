@@ -7,7 +7,6 @@ by quantity name; `select` compares the derivations along different null spaces 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
 
@@ -15,7 +14,6 @@ from symgen.ir.kernel import Status
 from symgen.linear_algebra.constrained_inverse import BasisInertia, ConstrainedInertia, FreeInertia, MinorInertia
 from symgen.linear_algebra.guards import Guard, magnitude
 from symgen.linear_algebra.null_spaces import (
-    LONGEST_PRODUCT,
     HouseholderSpace,
     InputEquations,
     MinorSpace,
@@ -28,13 +26,8 @@ from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.mechanics.system import System
 from symgen.methods.allocation import InputAllocation
-from symgen.methods.forward_dynamics.absolute import in_absolute_angles, motion_brought_back
-from symgen.methods.forward_dynamics.held_lengths import completed_multipliers
 from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
-from symgen.methods.forward_dynamics.motion import MotionMethod, Problem
-from symgen.methods.forward_dynamics.motions import MotionName, candidates, cheapest, few_minors, motion
-from symgen.methods.forward_dynamics.schur import schur_qr
-from symgen.runtime.effort import TooLongError, at_most, worth_trying
+from symgen.methods.forward_dynamics.motion import Problem
 from symgen.symbolic.calculus import derivative_along
 from symgen.symbolic.matrix import (
     Matrix,
@@ -52,7 +45,6 @@ from symgen.symbolic.matrix import (
 )
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost, substitute
-from symgen.validity.definiteness import positive_definite
 from symgen.validity.rank_measures import rank_measures
 from symgen.validity.solvable import solvable
 
@@ -112,59 +104,6 @@ class Derivation:
         if isinstance(space, HouseholderSpace):
             return BasisInertia(space, mass_matrix)
         return BasisInertia(reflected_rows(self.mechanics, self.generic), mass_matrix)
-
-    @cached_property
-    def _motions(self) -> dict[MotionName, MotionMethod]:
-        names = candidates(self.generic, self.space)
-        if "nullspace" in names and not positive_definite(self.mechanics):
-            # not even built: equal functions are one node, and pivots of a singular G may be 0/0 where others are not
-            names = tuple(name for name in names if name != "schur_qr")
-            if self.generic.rank == self.r and few_minors(self.generic):
-                # where the constraints carry a load, what is left of it along a motion cancels in the minors only
-                names = ("minor", *names)
-        motions: dict[MotionName, MotionMethod] = {}
-        for name in names:
-            if name != "minor" or len(names) == 1:
-                motions[name] = self.motion(name)
-                continue
-            # sums of minors may double with each row; another form is at hand
-            with suppress(TooLongError), at_most(worth_trying(0)):
-                motions[name] = self.motion(name)
-        if self.generic.rank:
-            return motions
-        # rows that hold nothing press on nothing
-        still = (self.graph.zero,) * self.r
-        return {name: replace(made, multipliers=still) for name, made in motions.items()}
-
-    def motion(self, name: MotionName) -> MotionMethod:
-        """One form; `schur_qr` and `minor` are worked out in absolute angles.
-
-        There G keeps the inertias of bodies apart, and a crank does not feel what the links behind it carry.  They are
-        so on a graph of their own and brought here as they stand: beside each other equal functions are one node.
-        """
-        if name not in ("schur_qr", "minor"):
-            return motion(name, self.mechanics, self.space, self.inertia)
-        own, rank = self.mechanics, self.generic.rank
-        apart = own.apart() if own.change is not None else in_absolute_angles(own.model) or own.apart()
-        problem, completed = Problem(apart, ()), completed_multipliers(apart)
-        made = schur_qr(problem, rank) if name == "schur_qr" else minor_motion(problem).motion
-        # symbols of absolute angles stay where these are the coordinates of this derivation
-        made = replace(made, multipliers=completed(made.multipliers))
-        made = motion_brought_back(self.graph, apart if own.change is None else None, made)
-        apart.graph.dissolve()
-        # `schur_qr` measures ranks itself where rows are many, or depend on each other
-        measured = name == "schur_qr" and self.r > min(rank, LONGEST_PRODUCT)
-        return replace(made, guards=(*(() if measured else self.space.guards), *made.guards), name=name)
-
-    @cached_property
-    def acceleration(self) -> MotionMethod:
-        """The form of q_ddot that counts least."""
-        return cheapest(self._motions, "accelerations", self.mechanics)
-
-    @cached_property
-    def reaction(self) -> MotionMethod:
-        """The form of lambda that counts least."""
-        return cheapest(self._motions, "multipliers", self.mechanics)
 
     @cached_property
     def _actuation(self) -> tuple[InputEquations, Restriction]:
@@ -398,17 +337,6 @@ class Derivation:
         here = dict(zip((*mechanics.qd, *mechanics.qdd), (*v, *rate), strict=True))
         force = substitute(graph, mechanics.balance, here)
         return matvec(graph, self.control_pseudoinverse, tuple(force))
-
-    # forward dynamics (15) -------------------------------------------------------------------------------------------
-
-    @cached_property
-    def forward_dynamics(self) -> Vector:
-        """q_ddot of G q_ddot + B^T lambda = f, B q_ddot = -B_dot q_dot."""
-        return self.acceleration.accelerations
-
-    def multipliers(self) -> Vector:
-        """lambda of the same system, the one of least norm where rows depend on each other."""
-        return self.reaction.multipliers
 
     # diagnostics -----------------------------------------------------------------------------------------------------
 

@@ -19,11 +19,12 @@ if TYPE_CHECKING:
     from symgen.methods.workspace import Workspace
 
 INPUTS = "inverse_dynamics"
+MOTIONS = ("forward_dynamics", "multipliers")
 
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """A quantity by the method of a name, on the graph of `system`.
+    """A quantity by the method of a name, or along a null space, or both, on the graph of `system`.
 
     `divisors` holds what decides on its validity where no theorem does: every scalar that is not a number and by which
     the outputs divide, apart from those that the model's own expressions divide by.
@@ -33,6 +34,12 @@ class Candidate:
     derived: Quantity
     divisors: tuple[Scalar, ...] = ()
     name: str = ""
+    along: str = ""
+
+    @property
+    def way(self) -> str:
+        """What it is told apart by from the others."""
+        return self.along or self.name
 
     @property
     def weight(self) -> int:

@@ -6,24 +6,24 @@ cheaper than one already known to be valid is not examined.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
+from typing import TypeAlias
 
-from symgen.linear_algebra.guards import Guard
 from symgen.mechanics.genericity import Genericity, genericity
 from symgen.mechanics.system import System
 from symgen.methods.admission import FAILS, Verdict
+from symgen.methods.graphs import derived_on
 from symgen.methods.method import INPUTS, Candidate, solved_for_u
-from symgen.methods.quantity import Quantity, is_fixed
+from symgen.methods.quantity import Quantity
 from symgen.methods.system import MethodInput
-from symgen.methods.table import Use, method, methods
+from symgen.methods.table import METHODS, Use, method, methods
 from symgen.methods.workspace import Workspace
 from symgen.model.model import Model
 from symgen.records import dataclass
-from symgen.symbolic.scalar import Graph, Scalar
-from symgen.symbolic.transplant import transplanted
+from symgen.symbolic.scalar import Scalar
 
 # Longer outputs are not multiplied out; multiplied out, terms that vanish have cancelled exactly, which is worth a few
 # operations more where minors were summed.
@@ -33,6 +33,7 @@ FACTORING_GAIN = Fraction(1, 3)
 # Methods that are not taken and count more than this are not derived only to say where they fail.
 LONGEST_EXAMINED = 600
 AUTO = "auto"
+Weight: TypeAlias = Fraction | int | tuple[bool, Fraction]
 FACTORED = "minor factored"
 
 
@@ -73,8 +74,7 @@ class Methods:
 
     def verdict(self, candidate: Candidate, first_only: bool = False) -> Verdict:
         """Whether a candidate may be chosen by itself."""
-        name = "minor" if candidate.name == FACTORED else candidate.name
-        return method(candidate.derived.name, name).validity(self.workspace, candidate, first_only)
+        return method(candidate.derived.name, candidate.name).validity(self.workspace, candidate, first_only)
 
     def choose(self, quantity: str, name: str = AUTO) -> tuple[Candidate, MethodChoice] | str:
         """The method asked for, or the cheapest valid one; why there is none by that name."""
@@ -104,12 +104,26 @@ class Methods:
         key = candidate.derived.name, candidate.name
         return key in self._verdicts and self._verdicts[key].admitted
 
+    def compared(self, quantity: str, taken: str) -> MethodChoice | None:
+        """Every method of a quantity by counted cost, with `taken` as the name of the one taken; None without any."""
+        made = [one for row in methods(quantity) if isinstance(one := self.candidate(quantity, row.name), Candidate)]
+        if not made:
+            return None
+        known = sorted((one.weight, one.name, self.verdict(one)) for one in made)
+        chosen = next((verdict for _, name, verdict in known if name == taken), known[0][2])
+        return MethodChoice(taken, chosen, tuple((name, weight, one.explanation) for weight, name, one in known))
+
+    def settle(self) -> None:
+        """Lets go of what several quantities share; it is derived again where it is asked for."""
+        self.workspace.motions.clear()
+        self._candidates = {key: one for key, one in self._candidates.items() if key[0] == INPUTS}
+
     def _cheapest(self, quantity: str) -> tuple[Candidate, MethodChoice] | str:
         made = self._built(quantity)
         if not made:
             return "this system has none of the forms that are chosen by themselves"
         weights = {name: one.weight for name, one in made.items()}
-        best, verdicts = cheapest(made.values(), self._first_verdict, weights)
+        best, verdicts = cheapest(made.values(), self._first_verdict, lambda one: weights[one.name])
         remarks = dict.fromkeys(made, "not examined, because it is not cheaper")
         remarks |= {name: found.explanation for name, found in verdicts.items()}
         shorter = self._factored(best) if "minor" in made else None
@@ -118,10 +132,10 @@ class Methods:
             found = verdicts[FACTORED] = self.verdict(shorter, first_only=True)
             remarks[FACTORED] = found.explanation
             worth = CANCELLATION_WORTH if best.name == "minor" else 0
-            if found.admitted and weight < weights[best.name] * (1 + worth):
+            if found.admitted and weight < weights[best.way] * (1 + worth):
                 best = shorter
         others = tuple((name, weights[name], remarks[name]) for name in sorted(weights, key=lambda n: (weights[n], n)))
-        return best, MethodChoice(best.name, verdicts[best.name], others)
+        return best, MethodChoice(best.way, verdicts[best.way], others)
 
     def _built(self, quantity: str) -> dict[str, Candidate]:
         """The methods that may be the cheapest: those that cannot fall below a valid first one are not derived.
@@ -165,7 +179,7 @@ class Methods:
         along = self.workspace.minor
         kept = frozenset[Scalar]() if isinstance(along, str) else along.whole_for_inputs
         outputs = minor.system.mechanics.factoring.shorten(minor.derived.outputs, kept)
-        return replace(solved_for_u(minor.system, outputs, minor.derived.guards), name=FACTORED)
+        return replace(solved_for_u(minor.system, outputs, minor.derived.guards), name="minor", along=FACTORED)
 
     @cached_property
     def _counted(self) -> MethodInput:
@@ -175,22 +189,20 @@ class Methods:
 
 
 def cheapest(
-    candidates: Iterable[Candidate],
-    validity: Callable[[Candidate], Verdict],
-    weights: Mapping[str, Fraction | int],
+    candidates: Iterable[Candidate], validity: Callable[[Candidate], Verdict], weight: Callable[[Candidate], Weight]
 ) -> tuple[Candidate, dict[str, Verdict]]:
     """The valid candidate of least weight, and the verdicts on it and on those before it; the first of equals.
 
     In double precision one whose denominators are lost in single precision may do; a status where it is singular is
     told, and better than nothing at all.
     """
-    order = sorted(candidates, key=lambda one: weights[one.name])
+    order = sorted(candidates, key=weight)
     verdicts: dict[str, Verdict] = {}
     for one in order:
-        verdicts[one.name] = validity(one)
-        if verdicts[one.name].admitted:
+        verdicts[one.way] = validity(one)
+        if verdicts[one.way].admitted:
             return one, verdicts
-    return next((one for one in order if verdicts[one.name].lost), order[0]), verdicts
+    return next((one for one in order if verdicts[one.way].lost), order[0]), verdicts
 
 
 def _factoring_limit(best: Candidate) -> int:
@@ -198,48 +210,16 @@ def _factoring_limit(best: Candidate) -> int:
     return min(FACTORING_LIMIT, int(best.weight * (1 + FACTORING_GAIN)))
 
 
-def derived_on(graph: Graph, candidate: Candidate) -> Quantity:
-    """The quantity on the graph of the other quantities."""
-    derived = candidate.derived
-    if is_fixed(derived.outputs):
-        derived = replace(derived, guards=())  # a status is decided on what the result depends on: here on nothing
-    return moved(graph, derived)
-
-
-def moved(graph: Graph, derived: Quantity) -> Quantity:
-    """A quantity on another graph."""
-    there = Moved(graph)
-    return replace(derived, outputs=there.scalars(derived.outputs), guards=there.guards(derived.guards))
-
-
-class Moved:
-    """Guards and scalars on another graph; equal guards stay equal."""
-
-    def __init__(self, graph: Graph) -> None:
-        self._graph = graph
-
-    def scalars(self, given: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
-        """The scalars on the other graph."""
-        return tuple(transplanted(self._graph, given))
-
-    def guards(self, given: tuple[Guard, ...]) -> tuple[Guard, ...]:
-        """The guards with all their scalars on the other graph."""
-        return tuple(map(self._guard, given))
-
-    def _guard(self, guard: Guard) -> Guard:
-        (denominator,) = self.scalars((guard.denominator,))
-        scale = None if guard.scale is None else self.scalars((guard.scale,))[0]
-        return replace(guard, denominator=denominator, scale=scale, first=self.guards(guard.first))
-
-
-def every_method(model: Model, quantities: Iterable[str]) -> dict[str, tuple[System, tuple[Quantity, ...]]]:
-    """Every method that a system has: what it was derived on, and the quantities there."""
+def every_method(model: Model, quantities: Iterable[str]) -> list[tuple[str, System, list[Quantity]]]:
+    """Every method that a system has by name: what it was derived on, and the quantities there."""
     made = Methods(model, genericity(System(model)))
-    found: dict[str, tuple[System, tuple[Quantity, ...]]] = {}
-    for quantity in quantities:
-        for row in methods(quantity):
-            one = made.candidate(quantity, row.name)
-            if isinstance(one, Candidate):
-                mechanics, before = found.get(row.name, (one.system.mechanics, ()))
-                found[row.name] = mechanics, (*before, derived_on(mechanics.graph, one))
+    found: list[tuple[str, System, list[Quantity]]] = []
+    for row, quantity in ((row, quantity) for row in METHODS for quantity in quantities if quantity in row.quantities):
+        one = made.candidate(quantity, row.name)
+        if isinstance(one, str):
+            continue
+        mechanics = one.system.mechanics
+        if not found or found[-1][1] is not mechanics:
+            found.append((row.name, mechanics, []))
+        found[-1][2].append(derived_on(mechanics.graph, one))
     return found

@@ -24,8 +24,10 @@ class Use(IntEnum):
     """Where it is valid and counts least."""
     SPARE = 1
     """Where verification rejects what was chosen."""
-    COMPARISON = 2
-    """Where verification rejects all others: it squares the condition of B, or is long."""
+    LAST = 2
+    """Where verification rejects all others."""
+    COMPARISON = 3
+    """Never."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +49,8 @@ def _method(name: str, quantities: tuple[str, ...], place: str, implementation: 
     return Row(name, quantities, partial(_load, place, implementation), use)
 
 
-_U = ("inverse_dynamics",)
+_U, _MOTION, _PROJECTOR = ("inverse_dynamics",), ("forward_dynamics", "multipliers"), ("nullspace_projector",)
+_WEIGHTED = ("weighted_pseudoinverse", "weighted_nullspace_projector")
 
 # Of methods that count alike the first is taken.
 METHODS: tuple[Row, ...] = (
@@ -55,10 +58,24 @@ METHODS: tuple[Row, ...] = (
     _method("minor", _U, "inverse_dynamics.along_spaces", "MINOR"),
     _method("nullspace", _U, "inverse_dynamics.nullspace", "NULLSPACE"),
     _method("householder", _U, "inverse_dynamics.along_spaces", "HOUSEHOLDER"),
-    _method("printed", _U, "inverse_dynamics.printed", "PRINTED", Use.COMPARISON),
-    _method("weighted", _U, "inverse_dynamics.weighted", "WEIGHTED", Use.COMPARISON),
-    _method("kkt", _U, "inverse_dynamics.weighted", "KKT", Use.COMPARISON),
+    _method("printed", _U, "comparisons.printed", "PRINTED", Use.COMPARISON),
+    _method("weighted", _U, "comparisons.weighted", "WEIGHTED", Use.COMPARISON),
+    _method("kkt", _U, "comparisons.weighted", "KKT", Use.COMPARISON),
+    _method("minor", _MOTION, "forward_dynamics.along_spaces", "MINOR"),
+    _method("schur_qr", _MOTION, "forward_dynamics.along_spaces", "SCHUR_QR"),
+    _method("schur_ldl", _MOTION, "comparisons.motions", "SCHUR_LDL", Use.LAST),
+    _method("nullspace", _MOTION, "forward_dynamics.along_spaces", "NULLSPACE"),
+    _method("shifted", _MOTION, "comparisons.motions", "SHIFTED", Use.LAST),
+    _method("kkt", _MOTION, "comparisons.motions", "KKT", Use.LAST),
+    _method("articulated", _MOTION, "forward_dynamics.articulated", "ARTICULATED"),
+    _method("articulated_refined", _MOTION, "forward_dynamics.articulated", "REFINED", Use.SPARE),
+    _method("minor", _PROJECTOR, "projector", "MINOR", Use.COMPARISON),
+    _method("householder", _PROJECTOR, "projector", "HOUSEHOLDER", Use.COMPARISON),
+    _method("schur_qr", _WEIGHTED, "forward_dynamics.weighted_projection", "SCHUR_QR", Use.SPARE),
+    _method("articulated", _WEIGHTED, "forward_dynamics.weighted_projection", "ARTICULATED", Use.SPARE),
 )
+# `--form` takes the methods of these by name.
+NAMED = (*_U, *_MOTION, *_PROJECTOR)
 
 
 def methods(quantity: str, most: Use = Use.COMPARISON) -> tuple[Row, ...]:

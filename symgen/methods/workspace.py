@@ -8,6 +8,7 @@ from functools import cached_property
 from symgen.mechanics.genericity import Genericity, configurations
 from symgen.mechanics.system import System
 from symgen.methods.derivation import Derivation
+from symgen.methods.quantity import Quantity
 from symgen.methods.spaces import along_minors
 from symgen.methods.system import MethodInput
 from symgen.model.model import Model
@@ -25,6 +26,8 @@ class Workspace:
     def __init__(self, model: Model, generic: Genericity) -> None:
         self.model = model
         self.generic = generic
+        # q_ddot and lambda come together: what was solved for one of them, by method
+        self.motions: dict[object, tuple[MethodInput, dict[str, Quantity]] | str] = {}
 
     def fresh(self) -> MethodInput:
         """The system on a new graph."""

@@ -6,36 +6,27 @@ Each is derived on a graph of its own, so that it depends neither on what was de
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
 from dataclasses import replace
 
 from symgen.mechanics.genericity import Genericity
-from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.mechanics.system import System
-from symgen.methods.compared import MOTIONS, quantities_by
-from symgen.methods.forward_dynamics.motions import BY_BODIES, BY_FRAMES
-from symgen.methods.method import Candidate
+from symgen.methods.graphs import derived_on, forget_others
+from symgen.methods.method import MOTIONS
 from symgen.methods.quantity import Quantity, scalars
-from symgen.methods.selection import MethodChoice, Methods, derived_on, moved
+from symgen.methods.selection import MethodChoice, Methods
 from symgen.methods.spaces import SPACES
+from symgen.methods.table import NAMED, Use, methods
 from symgen.model.model import Model
 from symgen.quantities.catalogue import BY_NAME, derive
+from symgen.quantities.finish import complete, with_groups
 from symgen.quantities.row_units import in_ordinary_units
-from symgen.quantities.select import Choice, complete, with_groups
+from symgen.quantities.select import Choice
 from symgen.records import dataclass
 from symgen.runtime.effort import TooLongError, at_most, worth_trying
-from symgen.symbolic.matrix import flatten
-from symgen.symbolic.passes.forgetting import START
 from symgen.symbolic.traverse import cost, reached
 
-# Those of a tier come before any of the next.  The second ones square the condition of B, or are long.
-INPUTS = (("elimination", "minor", "nullspace", "householder"), ("printed", "weighted", "kkt"))
-MOTION = (("minor", "schur_qr", "nullspace", BY_FRAMES, BY_BODIES), ("schur_ldl", "shifted", "kkt"))
-OTHERS = (("minors", "householder", "blocks"), ())
-WEIGHTED = (("minors", "householder", "blocks", "schur_qr", BY_FRAMES), ())
 # Scalars of a way beyond which numbers are grouped in what is taken only: that is most of the work there.
 LONG = 6_000
-ELIMINATIONS = ("schur_qr", BY_FRAMES)
 TIERS = 2
 
 
@@ -59,18 +50,17 @@ class Alternative:
 
 
 class Alternatives:
-    """The ways to the quantities of one model; `methods` holds those of u that were looked at already."""
+    """The ways to the quantities of one model; those of u that were `looked_at` already are not built again."""
 
-    def __init__(self, model: Model, generic: Genericity, methods: Methods | None) -> None:
+    def __init__(self, model: Model, generic: Genericity, looked_at: Methods | None) -> None:
         self._model = in_ordinary_units(model)
         self._generic = generic
-        self._methods = methods
-        self._motions: dict[str, tuple[System, tuple[Quantity, ...]]] = {}
+        self._methods = looked_at or Methods(self._model, generic)
         self.too_long: dict[str, list[str]] = defaultdict(list)
 
     def settle(self) -> None:
         """Lets go of what several quantities share; it is derived again where it is asked for."""
-        self._motions.clear()
+        self._methods.settle()
 
     def of(self, quantity: str, taken: Choice, tier: int) -> tuple[Alternative, ...]:
         """The ways of a tier to a quantity, but the one taken, that are valid at all regular states.
@@ -81,7 +71,7 @@ class Alternatives:
         same = taken.form if taken.way in ("minors", "householder", taken.form) else ""
         most = worth_trying(dict(taken.costs)[taken.way])
         found = []
-        for name in _tiers(quantity)[tier]:
+        for name in _names(quantity, tier):
             if name in (taken.way, same):
                 continue
             try:
@@ -96,82 +86,36 @@ class Alternatives:
 
     def named(self, quantity: str, name: str) -> Alternative | None:
         """One way to a quantity by its name; None where the system does not have it."""
-        found = self._named(quantity, name) if any(name in tier for tier in _tiers(quantity)) else None
+        found = self._named(quantity, name) if any(name in _names(quantity, tier) for tier in range(TIERS)) else None
         return None if found is None else grouped(found)
 
     def _named(self, quantity: str, name: str) -> Alternative | None:
-        if quantity == "inverse_dynamics":
-            return self._of_inputs(name)
-        if quantity in MOTIONS:
-            return self._of_motion(quantity, name)
-        return self._by_elimination(quantity, name) if name in ELIMINATIONS else self._along(quantity, name)
-
-    def _of_inputs(self, name: str) -> Alternative | None:
-        """A form of u that is nowhere singular."""
-        if self._methods is None:
-            self._methods = Methods(self._model, self._generic)
-        candidate = self._methods.candidate("inverse_dynamics", name)
-        if not isinstance(candidate, Candidate):
+        mechanics = System(self._model)
+        if name in SPACES and _is_along_spaces(quantity):
+            along = SPACES[name](mechanics, self._generic)
+            if isinstance(along, str):
+                return None
+            derived = derive(BY_NAME[quantity], along)
+            return self._alone(derived, Choice(quantity, name, ((name, cost(scalars(derived)).weight),)), mechanics)
+        candidate = self._methods.candidate(quantity, name)
+        if isinstance(candidate, str):
             return None
         found = self._methods.verdict(candidate, first_only=True)
         if found.singular:
             return None
-        choice = MethodChoice(name, found, ((name, candidate.weight, found.explanation),))
-        mechanics = System(self._model)
-        return self._alone(derived_on(mechanics.graph, candidate), name, choice.costs, mechanics, choice)
-
-    def _of_motion(self, quantity: str, name: str) -> Alternative | None:
-        """A form of q_ddot or lambda that is valid wherever the motion is determined."""
-        from symgen.methods.by_name import valid_form
-
-        if name not in self._motions:
-            found = self._motions[name] = quantities_by(self._model, self._generic, name)
-            _forget_others(*found)
-        form = valid_form(*self._motions[name], quantity, name)
-        if form is None:
-            return None
-        mechanics = System(self._model)
-        derived = moved(mechanics.graph, form.derived)
-        return self._alone(derived, name, form.choice.costs, mechanics, form.choice, form=name)
-
-    def _along(self, quantity: str, name: str) -> Alternative | None:
-        """A quantity along a way to the null space."""
-        mechanics = System(self._model)
-        along = SPACES[name](mechanics, self._generic)
-        if isinstance(along, str):
-            return None
-        derived = derive(BY_NAME[quantity], along)
-        return self._alone(derived, name, ((name, cost(scalars(derived)).weight),), mechanics)
-
-    def _by_elimination(self, quantity: str, name: str) -> Alternative | None:
-        """A weighted projection as accelerations."""
-        # few models need it
-        from symgen.methods.forward_dynamics.weighted_projection import projection_of_bodies, weighted_projection
-
-        by = weighted_projection if name == "schur_qr" else projection_of_bodies
-        mechanics = System(self._model)
-        space = reflected_rows(mechanics, self._generic)
-        found = by(mechanics, self._generic, quantity, space.guards)
-        if found is None:
-            return None
-        matrix, guards = found
-        derived = Quantity(quantity, (len(matrix), len(matrix[0])), flatten(matrix), guards)
-        return self._alone(derived, name, ((name, cost(scalars(derived)).weight),), mechanics)
+        known = MethodChoice(name, found, ((name, candidate.weight, found.explanation),))
+        choice = Choice(quantity, name, known.costs, name if quantity in MOTIONS else "")
+        derived = derived_on(mechanics.graph, candidate)
+        return self._alone(derived, choice, mechanics, known if quantity in NAMED else None)
 
     def _alone(
-        self,
-        derived: Quantity,
-        way: str,
-        costs: tuple[tuple[str, int], ...],
-        mechanics: System,
-        known: MethodChoice | None = None,
-        form: str = "",
+        self, derived: Quantity, choice: Choice, mechanics: System, known: MethodChoice | None = None
     ) -> Alternative:
         """A quantity as it is scheduled, on a graph that holds nothing else any more."""
         made = complete(mechanics, self._generic, derived)
-        found = Alternative(Choice(derived.name, way, costs, form), mechanics, made, known, grouped=False)
+        found = Alternative(choice, mechanics, made, known, grouped=False)
         if len(reached(scalars(made))) > LONG:
-            _forget_others(mechanics, (made,))
+            forget_others(mechanics, (made,))
             return found
         return grouped(found)
 
@@ -181,25 +125,16 @@ def grouped(way: Alternative) -> Alternative:
     if way.grouped:
         return way
     made = with_groups(way.mechanics, way.derived)
-    _forget_others(way.mechanics, (made,))
+    forget_others(way.mechanics, (made,))
     return replace(way, derived=made, grouped=True)
 
 
-def _forget_others(mechanics: System, quantities: Sequence[Quantity]) -> None:
-    """Lets the graph of quantities go of all that they do not hold: no others are derived there."""
-    held = [*mechanics.q, *mechanics.qd, *mechanics.qdd, *mechanics.parameters, *mechanics.u]
-    held += [output for derived in quantities for output in derived.outputs]
-    guards = [guard for derived in quantities for guard in derived.guards]
-    while guards:
-        guard = guards.pop()
-        held += [guard.denominator] if guard.scale is None else [guard.denominator, guard.scale]
-        guards += guard.first
-    mechanics.factoring.forget(START, held)
+def _names(quantity: str, tier: int) -> tuple[str, ...]:
+    """The ways of a tier by name: null spaces, and methods that the table has for it."""
+    spaces = tuple(SPACES) if tier == 0 and _is_along_spaces(quantity) else ()
+    uses = (Use.CHOSEN, Use.SPARE) if tier == 0 else (Use.LAST,)
+    return (*spaces, *(row.name for row in methods(quantity) if row.use in uses))
 
 
-def _tiers(quantity: str) -> tuple[tuple[str, ...], ...]:
-    if quantity == "inverse_dynamics":
-        return INPUTS
-    if quantity in MOTIONS:
-        return MOTION
-    return WEIGHTED if quantity in ("weighted_pseudoinverse", "weighted_nullspace_projector") else OTHERS
+def _is_along_spaces(quantity: str) -> bool:
+    return BY_NAME[quantity].outputs is not None

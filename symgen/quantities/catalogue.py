@@ -19,10 +19,13 @@ from symgen.symbolic.matrix import Vector, flatten
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """How one quantity is derived: its scalars, and what they divide by."""
+    """How one quantity is derived along a null space: its scalars, and what they divide by.
+
+    Without `outputs` it is derived by the methods that `symgen.methods.table` has for it.
+    """
 
     row: QuantityRow
-    outputs: Callable[[Derivation], Vector]
+    outputs: Callable[[Derivation], Vector] | None
     guards: Callable[[Derivation], tuple[Guard, ...]]
 
     @property
@@ -60,10 +63,6 @@ def _actuation(d: Derivation) -> tuple[Guard, ...]:
     return d.actuation_guards
 
 
-def _inverse_dynamics(d: Derivation) -> tuple[Guard, ...]:
-    return d.inverse_dynamics_guards
-
-
 def _actuator(d: Derivation) -> tuple[Guard, ...]:
     return (*d.space.guards, *d.actuation_guards)
 
@@ -80,7 +79,8 @@ def _partition_rate(d: Derivation) -> tuple[Guard, ...]:
     return (*d.space.guards, *d.partition_guards)
 
 
-_DERIVED: dict[str, tuple[Callable[[Derivation], Vector], Callable[[Derivation], tuple[Guard, ...]]]] = {
+_BY_METHODS = (None, _none)
+_DERIVED: dict[str, tuple[Callable[[Derivation], Vector] | None, Callable[[Derivation], tuple[Guard, ...]]]] = {
     "mass_matrix": (lambda d: flatten(d.mechanics.mass_matrix), _none),
     "coriolis_matrix": (lambda d: flatten(d.mechanics.coriolis_matrix(d.mechanics.qd)), _none),
     "coriolis_force": (lambda d: d.mechanics.coriolis_force, _none),
@@ -116,13 +116,13 @@ _DERIVED: dict[str, tuple[Callable[[Derivation], Vector], Callable[[Derivation],
     "admissible_velocity": (lambda d: d.admissible, _constraint),
     "admissible_acceleration": (lambda d: d.admissible_acceleration(), _constraint),
     "projected_configuration": (lambda d: d.projected_configuration(), lambda d: d.newton_guards),
-    "inverse_dynamics": (lambda d: d.inverse_dynamics, _inverse_dynamics),
+    "inverse_dynamics": _BY_METHODS,
     "inverse_dynamics_residual": (lambda d: d.inverse_dynamics_residual(), _residual),
     "actuator_velocity": (lambda d: d.actuator_velocity(), _none),
     "actuator_mass_matrix": (lambda d: flatten(d.actuator_mass_matrix()), _actuation),
     "actuator_bias": (lambda d: d.actuator_bias(), _actuator),
-    "forward_dynamics": (lambda d: d.forward_dynamics, lambda d: d.acceleration.guards),
-    "multipliers": (lambda d: d.multipliers(), lambda d: d.reaction.guards),
+    "forward_dynamics": _BY_METHODS,
+    "multipliers": _BY_METHODS,
     "energy": (lambda d: d.energy(), _none),
     "singularity": (lambda d: d.singularity(), _none),
     "point_position": (lambda d: d.mechanics.bodies.point_position, _none),
@@ -159,9 +159,16 @@ def by_blocks(entry: Entry) -> bool:
 
 def derive(entry: Entry, derivation: Derivation) -> Quantity:
     """A quantity along one null space."""
+    assert entry.outputs is not None
+    return derived_from(entry, derivation, entry.outputs(derivation), entry.guards)
+
+
+def derived_from(
+    entry: Entry, derivation: Derivation, outputs: Vector, guards: Callable[[Derivation], tuple[Guard, ...]]
+) -> Quantity:
+    """The quantity of these outputs with its guards, where it depends on anything."""
     shape = entry.shape(sizes(derivation.mechanics.model, derivation.generic))
-    outputs = entry.outputs(derivation)
     if is_fixed(outputs) and not rests_on_rank(derivation.space):
         return Quantity(entry.name, shape, outputs, ())
-    guards = tuple(guard for guard in entry.guards(derivation) if guard.denominator.constant is None)
-    return Quantity(entry.name, shape, outputs, guards)
+    tested = tuple(guard for guard in guards(derivation) if guard.denominator.constant is None)
+    return Quantity(entry.name, shape, outputs, tested)

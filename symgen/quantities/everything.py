@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
+from typing import TypeVar
 
-from symgen.methods.quantity import Quantity
 from symgen.runtime.effort import SCALAR, TooLongError, at_most, done, worth_trying
 
 MAIN = ("inverse_dynamics", "forward_dynamics", "multipliers")
@@ -23,6 +23,7 @@ WIDE_OPERATIONS, WIDE_MAIN_OPERATIONS = 4_000, 10_000
 FIRST_SCALARS, SCALARS = 150_000, 800_000
 # What is asked for and takes longer along all ways is tried once more with so many times the scalars.
 GROWTH = 8
+Made = TypeVar("Made")
 OF_ALL = "`all` leaves it out"
 REMEDY = "name it in `outputs` to have it all the same"
 
@@ -35,8 +36,8 @@ class Everything:
         self._left = SCALAR * SCALARS
 
     def derived(
-        self, quantity: str, ways: Mapping[str, Callable[[], Quantity]], at_hand: int | None = None
-    ) -> dict[str, Quantity]:
+        self, quantity: str, ways: Mapping[str, Callable[[], Made]], at_hand: int | None = None
+    ) -> dict[str, Made]:
         """The quantity along each way that does not take many times what another takes.
 
         None where it is not asked for and takes too long, or where a way of so many operations is `at_hand`.
@@ -55,8 +56,8 @@ class Everything:
         return {name: way() for name, way in ways.items()}
 
     @staticmethod
-    def _within(ways: Mapping[str, Callable[[], Quantity]], most: float) -> dict[str, Quantity]:
-        found: dict[str, Quantity] = {}
+    def _within(ways: Mapping[str, Callable[[], Made]], most: float) -> dict[str, Made]:
+        found: dict[str, Made] = {}
         for name, way in ways.items():
             with suppress(TooLongError), at_most(most):
                 found[name] = way()

@@ -9,7 +9,8 @@ from symgen.mechanics.genericity import genericity
 from symgen.mechanics.system import System
 from symgen.model.load import load_text
 from symgen.quantities.alternatives import Alternatives
-from symgen.quantities.select import ARTICULATED, derive_quantities
+from symgen.quantities.candidates import ARTICULATED
+from symgen.quantities.select import derive_quantities
 from symgen.runtime import effort
 from symgen.runtime.effort import SCALAR, TooLongError, at_most
 from symgen.symbolic.scalar import Graph
@@ -66,12 +67,12 @@ def test_ways_that_take_too_long_are_named(monkeypatch: pytest.MonkeyPatch) -> N
     model = load_text(row_of_four_bars(2, ground="0.5", tail=tail), "row.yaml")
     choice = derive_quantities(model, ("inverse_dynamics",)).choices[0]
     free = Alternatives(model, genericity(System(model)), None)
-    ways = [one.choice.way for one in free.of("inverse_dynamics", choice, 1)]
+    ways = [one.choice.way for one in free.of("inverse_dynamics", choice, 0)]
     assert ways
     assert not free.too_long
     monkeypatch.setattr(effort, "FREE_SCALARS", 1000)
     monkeypatch.setattr(effort, "SCALARS_AN_OPERATION", 1)
     short = Alternatives(model, genericity(System(model)), None)
-    left = [one.choice.way for one in short.of("inverse_dynamics", choice, 1)]
+    left = [one.choice.way for one in short.of("inverse_dynamics", choice, 0)]
     assert short.too_long["inverse_dynamics"]
     assert {*left, *short.too_long["inverse_dynamics"]} >= {*ways}

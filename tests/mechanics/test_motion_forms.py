@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from shipped import model
 
-from symgen.linear_algebra.constrained_inverse import BasisInertia
 from symgen.linear_algebra.null_spaces import MinorSpace
 from symgen.linear_algebra.pivoted import PivotedSpace, elementary_symmetric, reflected
 from symgen.mechanics.genericity import configurations, genericity
 from symgen.mechanics.system import System
 from symgen.methods.derivation import Derivation
 from symgen.methods.forward_dynamics.motion import MotionMethod, Problem
-from symgen.methods.forward_dynamics.motions import MOTION_NAMES, MotionName, candidates, motion
+from symgen.methods.forward_dynamics.motions import AlongNullSpace, motions_along
+from symgen.methods.table import method, methods
 from symgen.model.load import load_text
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.matrix import flatten
@@ -85,21 +85,25 @@ def check(mechanics: System, found: MotionMethod, at: dict[str, float]) -> None:
         assert 1e-6 < abs(value) / abs(scale) <= 1 + 1e-12
 
 
-@pytest.mark.parametrize("name", MOTION_NAMES)
+NAMES = [row.name for row in methods("multipliers") if isinstance(row.load(), AlongNullSpace)]
+
+
+@pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("system", ["skate", "front_car_wheelset", "slider_crank", "rapkm_2rrr_rr"])
-def test_forms(system: str, name: MotionName) -> None:
+def test_methods(system: str, name: str) -> None:
     mechanics = System(model(system))
-    space = MinorSpace(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, mechanics.r)
-    orthonormal = reflected(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, mechanics.r)
-    inertia = BasisInertia(orthonormal, mechanics.mass_matrix)
-    check(mechanics, motion(name, mechanics, space, inertia), point(mechanics))
+    one = method("multipliers", name)
+    assert isinstance(one, AlongNullSpace)
+    make = reflected if one.orthonormal else MinorSpace
+    space = make(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, mechanics.r)
+    check(mechanics, one.solved(Derivation(mechanics, genericity(mechanics), space)), point(mechanics))
 
 
 @pytest.mark.parametrize("system", ["front_car", "slider_crank"])
 def test_only_forms_without_squared_condition_numbers_are_chosen(system: str) -> None:
     mechanics = System(model(system))
     space = MinorSpace(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, mechanics.r)
-    assert candidates(genericity(mechanics), space) == ("minor", "schur_qr")
+    assert [*motions_along(Derivation(mechanics, genericity(mechanics), space))] == ["minor", "schur_qr"]
 
 
 # at 90 degrees the rows a_x, b_x and d_x have no other entries but those of x and p: a choice without one of them fails
@@ -114,8 +118,10 @@ def test_dependent_rows_with_three_degrees_of_freedom(crank: float) -> None:
     space = reflected(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, generic.rank)
     assert isinstance(space, PivotedSpace)
     derivation = Derivation(mechanics, generic, space)
-    check(mechanics, derivation.acceleration, at)
-    check(mechanics, derivation.reaction, at)
+    motions = motions_along(derivation)
+    assert [*motions] == ["schur_qr", "nullspace"]
+    for found in motions.values():
+        check(mechanics, found, at)
     B = numbers(flatten(space.rows), at, 6, 8)
     assert numbers(flatten(space.pseudoinverse), at, 8, 6) == pytest.approx(np.linalg.pinv(B, rcond=1e-8), abs=1e-13)
     exact = np.eye(8) - np.linalg.pinv(B, rcond=1e-8) @ B

@@ -13,9 +13,10 @@ from symgen.linear_algebra.proportional_columns import FamilySpace, families
 from symgen.mechanics.genericity import configurations, genericity
 from symgen.mechanics.system import System
 from symgen.methods.allocation import orientation_of
+from symgen.methods.method import solved_for_u
 from symgen.methods.spaces import derivations
+from symgen.methods.system import MethodInput
 from symgen.model.load import load_text
-from symgen.quantities.catalogue import BY_NAME, derive
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.matrix import Matrix, flatten
 from symgen.symbolic.scalar import Graph
@@ -112,7 +113,8 @@ def test_the_null_space_is_constant_where_families_are_as_many_as_the_rank() -> 
     expected |= {(0, 0): 9 * gear / 4, (0, 4): 3 * gear / 2, (4, 0): 3 * gear / 2, (4, 4): gear}
     for i, row in enumerate(along.space.projector):
         assert [entry.constant for entry in row] == [expected.get((i, j), 0) for j in range(6)]
-    u = derive(BY_NAME["inverse_dynamics"], along)
+    system = MethodInput(mechanics, generic)
+    u = solved_for_u(system, along.inverse_dynamics, along.inverse_dynamics_guards).derived
     assert Status.CONSTRAINT_RANK in {guard.status for guard in u.guards}
     drawn = np.random.default_rng(2)
     rates = {f"{c.name}_{dots}": drawn.normal() for c in mechanics.model.coordinates for dots in ("dot", "ddot")}

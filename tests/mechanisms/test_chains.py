@@ -11,7 +11,8 @@ from symgen.generation.draft import draft_of
 from symgen.generation.results import Options
 from symgen.model.load import load_model
 from symgen.pipeline import generate
-from symgen.quantities.select import ABSOLUTE, ARTICULATED, Selection, derive_quantities
+from symgen.quantities.candidates import ABSOLUTE, ARTICULATED
+from symgen.quantities.select import Selection, derive_quantities
 from symgen.symbolic.traverse import topological
 from symgen.verify.expected import Expected
 from symgen.verify.searched import WorstStateSearch

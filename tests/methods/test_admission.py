@@ -17,7 +17,7 @@ from symgen.mechanics.genericity import Genericity, genericity
 from symgen.mechanics.never_zero import Definite
 from symgen.mechanics.system import System
 from symgen.methods.admission import verdict
-from symgen.methods.inverse_dynamics.printed import printed_form
+from symgen.methods.comparisons.printed import printed_form
 from symgen.methods.method import INPUTS, Candidate
 from symgen.methods.selection import Methods
 from symgen.methods.system import MethodInput

@@ -26,7 +26,7 @@ DRIVEN = [name for name in NAMES if model(name).inputs]
 def programs_of(given: Model) -> dict[str, dict[Scalar, Program]]:
     return {
         form: schedule(mechanics, found, ("float64", "float32"))
-        for form, (mechanics, found) in every_method(given, ("inverse_dynamics",)).items()
+        for form, mechanics, found in every_method(given, ("inverse_dynamics",))
     }
 
 

@@ -11,11 +11,12 @@ from symgen.linear_algebra.pivoted import reflected
 from symgen.mechanics.articulated_inertias import ArticulatedFactor
 from symgen.mechanics.genericity import genericity, parameter_values
 from symgen.mechanics.system import System
-from symgen.methods.compared import quantities_by
 from symgen.methods.forward_dynamics.articulated import articulated
 from symgen.methods.forward_dynamics.held_lengths import completed_multipliers
 from symgen.methods.forward_dynamics.motion import Problem
 from symgen.methods.forward_dynamics.projected_motion import nullspace
+from symgen.methods.method import MOTIONS, Candidate
+from symgen.methods.selection import Methods
 from symgen.model.load import load_text
 from symgen.model.model import Model
 from symgen.quantities.select import derive_quantities
@@ -91,9 +92,10 @@ def test_as_along_an_orthonormal_basis(model: Model) -> None:
     generic = genericity(System(model))
     found = articulated(model, generic)
     assert found is not None
-    mechanics, derived = quantities_by(model, generic, "nullspace")
+    methods, mechanics = Methods(model, generic), System(model)
+    made = [methods.candidate(quantity, "nullspace") for quantity in MOTIONS]
     one = Evaluator([*found[1].accelerations, *found[1].multipliers])
-    other = Evaluator([x for quantity in derived for x in quantity.outputs])
+    other = Evaluator([x for one in made if isinstance(one, Candidate) for x in one.derived.outputs])
     source = random.Random(5)
     for _ in range(4):
         point = dict(parameter_values(mechanics))
@@ -169,8 +171,9 @@ def test_lengths_are_completed_as_the_equations_have_it(model: Model) -> None:
 @pytest.mark.parametrize("name", ["nullspace", "shifted", "kkt"])
 def test_every_form_knows_that_no_force_stretches_a_quaternion(name: str) -> None:
     def unit(model: Model) -> bool:
-        (made,) = (x for x in quantities_by(model, genericity(System(model)), name)[1] if x.name == "multipliers")
-        return made.outputs[0].is_zero
+        made = Methods(model, genericity(System(model))).candidate("multipliers", name)
+        assert isinstance(made, Candidate)
+        return made.derived.outputs[0].is_zero
 
     assert unit(rail())
     assert not unit(rail(more=ODD))

@@ -10,8 +10,9 @@ import pytest
 from symgen.lowering.schedule import schedule
 from symgen.mechanics.genericity import genericity, parameter_values
 from symgen.mechanics.system import System
-from symgen.methods.compared import quantities_by
-from symgen.methods.forward_dynamics.motions import BY_BODIES, BY_FRAMES
+from symgen.methods.forward_dynamics.motions import BY_FRAMES
+from symgen.methods.method import MOTIONS, Candidate
+from symgen.methods.selection import Methods
 from symgen.model.load import load_text
 from symgen.model.model import Model
 from symgen.quantities.alternatives import Alternatives
@@ -117,20 +118,23 @@ def points(model: Model) -> list[dict[str, float]]:
     return found
 
 
-@pytest.mark.parametrize("form", [BY_FRAMES, BY_BODIES])
+@pytest.mark.parametrize("form", ["articulated", "articulated_refined"])
 @pytest.mark.parametrize("text", [PLANE, SPACE], ids=["plane", "space"])
 def test_rows_that_depend_on_each_other(text: str, form: str) -> None:
     """As along an orthonormal basis: the same accelerations, the same smallest multipliers."""
     model = load_text(text, "table.yaml")
     generic = genericity(System(model))
     assert generic.rank == generic.r - 1
-    (_, by_frames), (_, dense) = (quantities_by(model, generic, name) for name in (form, "nullspace"))
-    one, other = (Evaluator([x for quantity in found for x in quantity.outputs]) for found in (by_frames, dense))
+    methods = Methods(model, generic)
+    one, other = (
+        Evaluator([x for found in made if isinstance(found, Candidate) for x in found.derived.outputs])
+        for made in ([methods.candidate(quantity, name) for quantity in MOTIONS] for name in (form, "nullspace"))
+    )
     for point in points(model):
         assert one(point) == pytest.approx(other(point), rel=1e-9, abs=1e-8)
 
 
-@pytest.mark.parametrize("form", [BY_FRAMES, BY_BODIES])
+@pytest.mark.parametrize("form", ["articulated", "articulated_refined"])
 @pytest.mark.parametrize("text", [HUNG, ALWAYS], ids=["hung", "always"])
 def test_rows_of_loops_beside_quaternions(text: str, form: str) -> None:
     """As verification asks for, at its states."""
@@ -170,6 +174,6 @@ def test_heavy_bodies_at_the_end_of_light_links() -> None:
         program = schedule(way.mechanics, [way.derived], ("float64",))["float64"]
         return measured(program.kernels[0], program.sincos, "float64", expected)[0].largest
 
-    assert largest(motion, BY_BODIES) < 8
+    assert largest(motion, "articulated_refined") < 8
     assert largest(motion, BY_FRAMES) > 100
     assert largest(QUANTITIES[0], BY_FRAMES) < 8

@@ -18,12 +18,12 @@ from symgen.generation import fallback
 from symgen.generation.results import Options, Result
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.guards import Guard
-from symgen.mechanics.system import System
-from symgen.methods import by_name, compared, derivation
 from symgen.methods.forward_dynamics.motion import MotionMethod
+from symgen.methods.method import Candidate
 from symgen.methods.quantity import Quantity
+from symgen.methods.selection import Methods
 from symgen.pipeline import generate
-from symgen.quantities import alternatives, everything
+from symgen.quantities import alternatives, candidates, everything
 from symgen.quantities.alternatives import Alternative
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.verify.certificate import LeftOut
@@ -80,15 +80,21 @@ def off(values: Sequence[Scalar]) -> tuple[Scalar, ...]:
     return tuple(value * value.graph.const(OFF) for value in values)
 
 
-def spoil_choice(monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[MotionMethod], MotionMethod]) -> None:
-    """λ of the form that selection takes by itself."""
-    cheapest = derivation.cheapest
+def spoil_choice(
+    monkeypatch: pytest.MonkeyPatch,
+    spoilt: Callable[[MotionMethod], MotionMethod],
+    quantity: str = "multipliers",
+) -> None:
+    """λ of every method that selection may take by itself."""
+    derived_from = candidates.derived_from
 
-    def worse(motions: Any, part: Any, mechanics: System) -> MotionMethod:
-        found = cheapest(motions, part, mechanics)
-        return spoilt(found) if part == "multipliers" else found
+    def worse(entry: Any, along: Any, outputs: Any, guards: Any) -> Quantity:
+        if entry.name != quantity:
+            return derived_from(entry, along, outputs, guards)
+        motion = spoilt(MotionMethod((), outputs, guards(along)))
+        return derived_from(entry, along, motion.multipliers, lambda _: motion.guards)
 
-    monkeypatch.setattr(derivation, "cheapest", worse)
+    monkeypatch.setattr(candidates, "derived_from", worse)
 
 
 def wrong(motion: MotionMethod) -> MotionMethod:
@@ -158,21 +164,17 @@ def refusing_float32(motion: MotionMethod) -> MotionMethod:
 
 
 def spoil_named(monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[MotionMethod], MotionMethod]) -> None:
-    """λ of every form that can be asked for by name."""
-    quantities = compared.quantities_by
+    """λ of every method that can be asked for by name."""
+    candidate = Methods.candidate
 
-    def worse(model: Any, generic: Any, name: str) -> tuple[System, tuple[Quantity, ...]]:
-        mechanics, found = quantities(model, generic, name)
-        return mechanics, tuple(map(of_multipliers, found))
+    def worse(methods: Methods, quantity: str, name: str) -> Candidate | str:
+        found = candidate(methods, quantity, name)
+        if quantity != "multipliers" or isinstance(found, str):
+            return found
+        motion = spoilt(MotionMethod((), found.derived.outputs, found.derived.guards))
+        return replace(found, derived=replace(found.derived, outputs=motion.multipliers, guards=motion.guards))
 
-    def of_multipliers(one: Quantity) -> Quantity:
-        if one.name != "multipliers":
-            return one
-        motion = spoilt(MotionMethod((), one.outputs, one.guards))
-        return replace(one, outputs=motion.multipliers, guards=motion.guards)
-
-    monkeypatch.setattr(by_name, "quantities_by", worse)
-    monkeypatch.setattr(alternatives, "quantities_by", worse)
+    monkeypatch.setattr(Methods, "candidate", worse)
 
 
 @pytest.mark.parametrize(
@@ -555,16 +557,7 @@ def test_laws_that_a_number_with_few_digits_violates_too_do_not_keep_it_from_mor
     yoke: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The accelerations that lose digits violate the constraints, too."""
-    cheapest = derivation.cheapest
-
-    def few(motions: Any, part: Any, mechanics: System) -> MotionMethod:
-        found = cheapest(motions, part, mechanics)
-        if part == "multipliers":
-            return found
-        spoilt = losing_digits(replace(found, multipliers=found.accelerations))
-        return replace(found, accelerations=spoilt.multipliers)
-
-    monkeypatch.setattr(derivation, "cheapest", few)
+    spoil_choice(monkeypatch, losing_digits, "forward_dynamics")
     monkeypatch.setattr(alternatives.Alternatives, "of", lambda *_: ())
     result = made(yoke)
     assert result.left_out == ()

@@ -18,11 +18,10 @@ from symgen.diagnostics import ModelError
 from symgen.generation import trial
 from symgen.generation.results import Options, Result
 from symgen.ir.kernel import Program
-from symgen.mechanics.system import System
-from symgen.methods import derivation
-from symgen.methods.forward_dynamics.motion import MotionMethod
+from symgen.methods.quantity import Quantity
 from symgen.model.model import Model
 from symgen.pipeline import generate
+from symgen.quantities import candidates
 from symgen.verify import run
 from symgen.verify.states import VerificationError
 
@@ -75,20 +74,18 @@ def written(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 def _spoil(monkeypatch: pytest.MonkeyPatch, factor: Fraction) -> None:
     """λ of the form that selection takes by itself times 1 + factor (cosh^2 - sinh^2 - 1), which loses digits."""
-    cheapest = derivation.cheapest
+    derived_from = candidates.derived_from
 
-    def worse(motions: Any, part: Any, mechanics: System) -> MotionMethod:
-        found = cheapest(motions, part, mechanics)
-        if part != "multipliers":
-            return found
-        graph = mechanics.graph
-        cosh, sinh = (graph.raw(name, (graph.symbol("a"),)) for name in ("cosh", "sinh"))
-        squares = graph.raw("sub", (graph.raw("mul", (cosh, cosh)), graph.raw("mul", (sinh, sinh))))
-        lost = graph.raw("mul", (graph.const(factor), graph.raw("sub", (squares, graph.one))))
-        spoilt = (graph.raw("add", (x, graph.raw("mul", (x, lost)))) for x in found.multipliers)
-        return replace(found, multipliers=tuple(spoilt))
+    def worse(entry: Any, along: Any, outputs: Any, guards: Any) -> Quantity:
+        if entry.name == "multipliers":
+            graph = along.graph
+            cosh, sinh = (graph.raw(name, (graph.symbol("a"),)) for name in ("cosh", "sinh"))
+            squares = graph.raw("sub", (graph.raw("mul", (cosh, cosh)), graph.raw("mul", (sinh, sinh))))
+            lost = graph.raw("mul", (graph.const(factor), graph.raw("sub", (squares, graph.one))))
+            outputs = tuple(graph.raw("add", (x, graph.raw("mul", (x, lost)))) for x in outputs)
+        return derived_from(entry, along, outputs, guards)
 
-    monkeypatch.setattr(derivation, "cheapest", worse)
+    monkeypatch.setattr(candidates, "derived_from", worse)
 
 
 def _made(path: Path, monkeypatch: pytest.MonkeyPatch, first: bool) -> Result:

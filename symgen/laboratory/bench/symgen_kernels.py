@@ -23,11 +23,10 @@ from symgen.ir.library_trig import with_library_trig
 from symgen.laboratory.bench.candidate import CCandidate, CUnit, PythonCandidate, Task
 from symgen.lowering.schedule import schedule
 from symgen.mechanics.system import System
-from symgen.methods.compared import motions_of
 from symgen.methods.quantity import Quantity
 from symgen.methods.selection import every_method
 from symgen.model.model import Model
-from symgen.quantities.select import ABSOLUTE
+from symgen.quantities.candidates import ABSOLUTE
 from symgen.verify.python_module import PythonModule
 
 PORTABLE, LIBRARY = "portable", "libm"
@@ -64,11 +63,8 @@ def _never_valid(program: Program) -> bool:
 
 def _forms(model: Model, quantity: str) -> Iterator[tuple[str, tuple[System, Quantity]]]:
     """Every form by name, each on a graph of its own."""
-    found = every_method(model, (quantity,)) if quantity == "inverse_dynamics" else motions_of(model)
-    for form, (mechanics, derived) in found.items():
-        for one in derived:
-            if one.name == quantity:
-                yield form, (mechanics, one)
+    for form, mechanics, (derived,) in every_method(model, (quantity,)):
+        yield form, (mechanics, derived)
 
 
 def symgen_candidates(

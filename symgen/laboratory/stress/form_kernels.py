@@ -8,34 +8,28 @@ from pathlib import Path
 from symgen.generation.runnable import SCALARS, Runner
 from symgen.ir.kernel import Scalar, Status
 from symgen.lowering.schedule import schedule
-from symgen.methods.compared import motions_of
-from symgen.methods.forward_dynamics.motions import BY_FRAMES, MOTION_NAMES
 from symgen.methods.quantity import scalars
 from symgen.methods.selection import every_method
-from symgen.methods.table import METHODS
+from symgen.methods.table import METHODS, NAMED
 from symgen.model.model import Model
 from symgen.symbolic.traverse import cost
 from symgen.verify.reference.reference import State
 
 # Sums of minors of large systems grow past what a compiler takes in minutes.
 MOST_OPERATIONS = 20_000
-NAMES = (*(row.name for row in METHODS), *MOTION_NAMES, BY_FRAMES)
-LABELS: dict[str, str] = {name: f"form {name}" for name in NAMES}
+LABELS: dict[str, str] = {row.name: f"form {row.name}" for row in METHODS}
 
 
 class FormKernels:
     """Every form of the `quantities` of a model, for both scalar types; `left_out` says which are too long."""
 
     def __init__(self, model: Model, folder: Path, quantities: Sequence[str]) -> None:
-        derived = [(name, mechanics, found) for name, (mechanics, found) in motions_of(model).items()]
-        if "inverse_dynamics" in quantities:
-            derived += [(name, *found) for name, found in every_method(model, ("inverse_dynamics",)).items()]
+        derived = every_method(model, [name for name in quantities if name in NAMED])
         self._runners: list[tuple[str, Runner]] = []
         self.left_out: tuple[str, ...] = ()
         for count, (name, mechanics, found) in enumerate(derived):
-            asked = [quantity for quantity in found if quantity.name in quantities]
-            weights = {quantity.name: cost(scalars(quantity)).weight for quantity in asked}
-            wanted = [quantity for quantity in asked if weights[quantity.name] <= MOST_OPERATIONS]
+            weights = {quantity.name: cost(scalars(quantity)).weight for quantity in found}
+            wanted = [quantity for quantity in found if weights[quantity.name] <= MOST_OPERATIONS]
             self.left_out += tuple(
                 f"{LABELS[name]} of {quantity}: not run, {weight} operations"
                 for quantity, weight in weights.items()

@@ -9,7 +9,7 @@ were rounded one by one.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 
 from symgen.linear_algebra.guards import Guard
 from symgen.linear_algebra.null_spaces import LONGEST_PRODUCT
@@ -24,6 +24,9 @@ from symgen.methods.forward_dynamics.held_lengths import HeldLengths, LengthsApa
 from symgen.methods.forward_dynamics.joint_accelerations import by_joints
 from symgen.methods.forward_dynamics.loop_points import LoopPoint, acceleration, loop_points, wrenches
 from symgen.methods.forward_dynamics.motion import MotionMethod, Problem
+from symgen.methods.forward_dynamics.motions import BY_BODIES_ALONE, STRUCTURED, Alone
+from symgen.methods.method import Method
+from symgen.methods.workspace import Workspace
 from symgen.model.expressions.expression import Number
 from symgen.model.kinematics.components import components_in, definitions_before_frames
 from symgen.model.kinematics.triples import applied, transposed, triple
@@ -289,3 +292,12 @@ def _names(mechanics: System, stand_ins: Mapping[str, Scalar]) -> dict[str, Scal
         if definition.name not in names:
             names[definition.name] = translate(graph, definition.value, names)
     return names
+
+
+def _alone(workspace: Workspace, by_bodies: bool = False) -> tuple[System, MotionMethod] | str:
+    found = articulated(workspace.model, workspace.generic, by_bodies)
+    return BY_BODIES_ALONE if found is None else found
+
+
+ARTICULATED: Method = Alone(_alone, STRUCTURED)
+REFINED: Method = Alone(partial(_alone, by_bodies=True), STRUCTURED)

@@ -9,6 +9,7 @@ from functools import cached_property
 
 from symgen.linear_algebra.guards import Guard
 from symgen.mechanics.system import System
+from symgen.methods.method import MOTIONS
 from symgen.records import dataclass
 from symgen.symbolic.angles import share_angles
 from symgen.symbolic.identity import same_values
@@ -19,12 +20,15 @@ from symgen.symbolic.scalar import Graph, Scalar
 
 @dataclass(frozen=True, slots=True)
 class MotionMethod:
-    """q_ddot (n) and lambda (r) with the denominators they depend on, by the form of this name."""
+    """q_ddot (n) and lambda (r) with the denominators they depend on."""
 
     accelerations: Vector
     multipliers: Vector
     guards: tuple[Guard, ...]
-    name: str = ""
+
+    def part(self, quantity: str) -> Vector:
+        """The one of both that a quantity is."""
+        return self.accelerations if quantity == MOTIONS[0] else self.multipliers
 
 
 class Problem:

@@ -1,71 +1,159 @@
-"""The forms of q_ddot and lambda that a null space offers, and which of them may be chosen by counted cost.
+"""Methods of q_ddot and lambda, which come together: along a null space of B, or each in its own way.
 
 Valid wherever the system has a motion: `minor` (independent rows, delta of 1 or 2), `schur_qr` where G is positive
-definite everywhere, else `nullspace`.  `schur_ldl`, `shifted` and `kkt` are there to be compared with: the first two
-lose digits with the square of the condition number of B, the last is long.
+definite everywhere, else `nullspace`; of bodies also `articulated`.  What they divide by vanishes by theorem only where
+B loses rank or the motion is not determined; those that start from the inverse of G need G positive definite in all
+directions, which is minimised over configurations and parameters (`validity/definiteness.py`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
-from math import comb
-from typing import Literal, TypeAlias
 
-from symgen.linear_algebra.constrained_inverse import ConstrainedInertia
-from symgen.linear_algebra.null_spaces import MinorSpace, NullSpace
+from symgen.linear_algebra.null_spaces import MINOR_LIMIT
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
-from symgen.methods.forward_dynamics.held_lengths import completed_multipliers
-from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
-from symgen.methods.forward_dynamics.motion import MotionMethod, Problem
-from symgen.methods.forward_dynamics.projected_motion import kkt, nullspace, shifted
-from symgen.methods.forward_dynamics.schur import schur_ldl, schur_qr
-from symgen.symbolic.traverse import cost
-from symgen.validity.definiteness import positive_definite
+from symgen.methods.admission import DECIMALS, ByTheorem, Singular, Verdict
+from symgen.methods.derivation import Derivation
+from symgen.methods.forward_dynamics.motion import MotionMethod
+from symgen.methods.graphs import forget_others
+from symgen.methods.method import MOTIONS, Candidate
+from symgen.methods.quantity import Quantity, resting_on
+from symgen.methods.spaces import along_minors, along_reflections
+from symgen.methods.system import MethodInput
+from symgen.methods.table import Use, methods
+from symgen.methods.workspace import Workspace
+from symgen.records import dataclass
+from symgen.runtime.effort import TooLongError, at_most, worth_trying
+from symgen.validity.definiteness import Indefinite, indefinite
+from symgen.validity.formula import formula
 
-MotionName: TypeAlias = Literal["minor", "schur_qr", "schur_ldl", "nullspace", "shifted", "kkt"]
-MOTION_NAMES: tuple[MotionName, ...] = ("minor", "schur_qr", "schur_ldl", "nullspace", "shifted", "kkt")
-MOST_MINORS = 70
 # What `minor` is worth in operations where coordinates have several units: it alone does not add what has different
 # units up, as norms and reflections do (float32 q_ddot of a robot on wheels: 2 units of error in place of 24).
 MINOR_WORTH = Fraction(1, 4)
-BY_FRAMES = "articulated"  # of bodies only, without a null space: forms/articulated.py
-BY_BODIES = "articulated_refined"  # the same, refined by Newton and Euler's equations
+# What errors that act like turns of joints are worth in operations.
+STRUCTURED_WORTH = Fraction(1, 20)
+BY_FRAMES = "articulated"
+SQUARED = "; it loses digits with the square of the condition of B"
+STRUCTURED = "its pivots are inertias met along the joints, positive where G is definite, and those of B"
+BY_BODIES_ALONE = "it is for bodies alone with one frame for each coordinate and definite G"
+POSITIVE = "its pivots are those of G, which is positive definite everywhere, and those of B"
 
 
-def candidates(generic: Genericity, space: NullSpace) -> tuple[MotionName, ...]:
-    """The forms among which counted cost may decide; `schur_qr` only where `positive_definite` says so."""
-    by_minors = isinstance(space, MinorSpace) and 1 <= generic.delta <= LARGEST_DELTA
-    if generic.r == 0:
-        return ("minor", "schur_qr") if by_minors else ("schur_qr",)
-    if generic.rank < generic.r:
-        return ("schur_qr", "nullspace")
-    return ("minor", "schur_qr") if by_minors else ("schur_qr", "nullspace")
+def independent_rows(generic: Genericity) -> str | None:
+    """Why methods that need independent constraints do not apply, or None."""
+    return "the constraint rows depend on each other" if generic.rank < generic.r else None
 
 
-def few_minors(generic: Genericity) -> bool:
-    """Whether minors of the rows are at hand although the null space is not built from them."""
-    return 1 <= generic.delta <= LARGEST_DELTA and comb(generic.n, generic.n // 2) <= MOST_MINORS
+def constraints(generic: Genericity) -> str | None:
+    """Why methods that need constraints do not apply, or None."""
+    return None if generic.r else "there are no constraints"
 
 
-def cheapest(
-    motions: Mapping[MotionName, MotionMethod], part: Literal["accelerations", "multipliers"], mechanics: System
-) -> MotionMethod:
-    """The candidate that counts least, outputs and tested denominators together, exact cancellation worth some.
+@dataclass(frozen=True, slots=True)
+class AlongNullSpace(ByTheorem):
+    """A method of q_ddot and lambda along a null space of B.
 
-    `nullspace` is normwise accurate in the units that B is given in, and loses what masses and lengths are apart by: it
-    is left for systems in which G is definite along the constraints only.
+    `theorem` says why it is valid at every regular state: those that are `free` of the constraints are so where G is
+    positive definite in every direction.  `lacking` says why a system does not have it, `offered` whether it may be
+    chosen along the null space of a derivation.  Alone it has an `orthonormal` basis, or the minors of B.  What `grows`
+    may double with each row, and is given up where there are others.
     """
-    counted = {
-        name: cost((*getattr(one, part), *(guard.denominator for guard in one.guards))).weight
-        for name, one in motions.items()
-    }
-    weights = {name: count * cost_factor(name, mechanics) for name, count in counted.items()}
-    order = sorted(motions, key=lambda name: (name == "nullspace", weights[name]))
-    usable = (name for name in order if name != "schur_qr" or len(order) == 1 or positive_definite(mechanics))
-    return motions[next(usable)]
+
+    solved: Callable[[Derivation], MotionMethod]
+    theorem: str
+    lacking: Callable[[Genericity], str | None] | None = None
+    offered: Callable[[Derivation], bool] | None = None
+    free: bool = False
+    orthonormal: bool = False
+    grows: bool = False
+
+    def build(self, workspace: Workspace, quantity: str) -> Candidate | str:
+        """q_ddot or lambda on a graph that both have in common, or why the system does not have them so."""
+        return _shared(workspace, self, self._alone, quantity)
+
+    def validity(self, workspace: Workspace, candidate: Candidate, first_only: bool) -> Verdict:
+        """A theorem, or the state at which G is not definite."""
+        del workspace, first_only
+        found = indefinite(candidate.system.mechanics) if self.free else None
+        singular = () if found is None else (_singular(candidate.system.mechanics, found),)
+        return Verdict(0, 0, singular, "" if singular else self.theorem)
+
+    def _alone(self, workspace: Workspace) -> tuple[System, MotionMethod] | str:
+        generic = workspace.generic
+        if self.lacking is not None and (reason := self.lacking(generic)):
+            return reason
+        mechanics = System(workspace.model)
+        few = generic.minors <= MINOR_LIMIT and not self.orthonormal
+        along = (along_minors if few else along_reflections)(mechanics, generic)
+        return along if isinstance(along, str) else (mechanics, self.solved(along))
+
+
+@dataclass(frozen=True, slots=True)
+class Alone(ByTheorem):
+    """A method of q_ddot and lambda that needs no null space, and brings its own system."""
+
+    solved: Callable[[Workspace], tuple[System, MotionMethod] | str]
+    theorem: str
+
+    def build(self, workspace: Workspace, quantity: str) -> Candidate | str:
+        """q_ddot or lambda on a graph that both have in common, or why the system does not have them so."""
+        return _shared(workspace, self, self.solved, quantity)
+
+
+def motions_along(derivation: Derivation) -> dict[str, MotionMethod]:
+    """Those that may be chosen by themselves along the null space of a derivation, on its graph."""
+    made = ((row.name, row.load()) for row in methods(MOTIONS[0], Use.CHOSEN))
+    along = {name: one for name, one in made if isinstance(one, AlongNullSpace) and one.offered is not None}
+    offered = {name: one for name, one in along.items() if one.offered is not None and one.offered(derivation)}
+    found: dict[str, MotionMethod] = {}
+    for name, one in offered.items():
+        if not one.grows or len(offered) == 1:
+            found[name] = one.solved(derivation)
+            continue
+        with suppress(TooLongError), at_most(worth_trying(0)):
+            found[name] = one.solved(derivation)
+    if derivation.generic.rank:
+        return found
+    # rows that hold nothing press on nothing
+    still = (derivation.graph.zero,) * derivation.r
+    return {name: replace(one, multipliers=still) for name, one in found.items()}
+
+
+def motions_alone() -> list[str]:
+    """The names of those that may be chosen by themselves and need no null space."""
+    return [row.name for row in methods(MOTIONS[0], Use.CHOSEN) if not isinstance(row.load(), AlongNullSpace)]
+
+
+def _shared(
+    workspace: Workspace, key: object, solved: Callable[[Workspace], tuple[System, MotionMethod] | str], quantity: str
+) -> Candidate | str:
+    """One of both quantities; what was solved stays in the workspace for the other one."""
+    if key not in workspace.motions:
+        found = solved(workspace)
+        workspace.motions[key] = found if isinstance(found, str) else _kept(workspace.generic, *found)
+    kept = workspace.motions[key]
+    return kept if isinstance(kept, str) else Candidate(kept[0], kept[1][quantity])
+
+
+def _kept(generic: Genericity, mechanics: System, made: MotionMethod) -> tuple[MethodInput, dict[str, Quantity]]:
+    """q_ddot, and lambda where there are constraints, and nothing else on their graph."""
+    both = {name: resting_on(made.guards, name, made.part(name)) for name in MOTIONS[: 1 + bool(generic.r)]}
+    forget_others(mechanics, both.values())
+    return MethodInput(mechanics, generic), both
+
+
+def failing_motions(mechanics: System) -> tuple[tuple[str, str], ...]:
+    """The methods of q_ddot and lambda that fail at regular states of a system, and where."""
+    found = indefinite(mechanics)
+    if found is None:
+        return ()
+    why = Verdict(0, 0, (_singular(mechanics, found),)).explanation
+    made = ((row.name, row.load()) for row in methods(MOTIONS[0]))
+    return tuple((name, why) for name, one in made if isinstance(one, AlongNullSpace) and one.free)
 
 
 def one_unit(mechanics: System) -> bool:
@@ -74,31 +162,16 @@ def one_unit(mechanics: System) -> bool:
 
 
 def cost_factor(name: str, mechanics: System) -> Fraction:
-    """The factor by which the counted cost of a form is taken."""
+    """The factor by which the counted cost of a method is taken."""
+    if name == BY_FRAMES:
+        return 1 - STRUCTURED_WORTH
     return 1 - MINOR_WORTH * (name == "minor" and not one_unit(mechanics))
 
 
-def motion(
-    name: MotionName, mechanics: System, space: NullSpace, inertia: ConstrainedInertia | None = None
-) -> MotionMethod:
-    """One form along a null space; `nullspace` needs the constrained inverse of G that belongs to it."""
-    completed = completed_multipliers(mechanics)
-    made = _motion(name, Problem(mechanics, space.guards), space, inertia)
-    return replace(made, multipliers=completed(made.multipliers), name=name)
-
-
-def _motion(name: MotionName, problem: Problem, space: NullSpace, inertia: ConstrainedInertia | None) -> MotionMethod:
-    match name:
-        case "minor":
-            return inertia.motion if isinstance(inertia, MinorMotion) else minor_motion(problem).motion
-        case "schur_qr":
-            return schur_qr(problem, problem.n - space.delta)
-        case "schur_ldl":
-            return schur_ldl(problem)
-        case "nullspace":
-            assert inertia is not None
-            return nullspace(problem, space, inertia)
-        case "shifted":
-            return shifted(problem, space)
-        case "kkt":
-            return kkt(problem)
+def _singular(mechanics: System, found: Indefinite) -> Singular:
+    """In words: the pivot of G is the inertia a coordinate has when those before it are free."""
+    coordinate = mechanics.model.coordinates[found.coordinate].name
+    pivot = f"the pivot of {coordinate} in G"
+    if not found.pivot.is_zero:
+        pivot += f", {formula(found.pivot)}"
+    return Singular(pivot, tuple((name, round(value, DECIMALS)) for name, value in found.state))

@@ -1,9 +1,8 @@
 """q_ddot and lambda by elimination of the accelerations: G = L D L^T, then the constraints in the metric of G^-1.
 
 With A = L^-1 B^T the system G q_ddot + B^T lambda = f, B q_ddot = -a becomes x + A lambda = L^-1 f, A^T D^-1 x = -a
-for x = D L^T q_ddot.  `schur_qr` factorises A = V R with columns of V that are orthogonal in the metric D^-1, so that
-the squared condition number of A^T D^-1 A is never met; `schur_ldl` forms that matrix, which is shorter and loses it
-(Golub and Van Loan, Matrix Computations, 4.1 and 5.2).
+for x = D L^T q_ddot.  A = V R is factorised with columns of V that are orthogonal in the metric D^-1, so that the
+squared condition number of A^T D^-1 A is never met (Golub and Van Loan, Matrix Computations, 4.1 and 5.2).
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ from symgen.linear_algebra.null_spaces import LONGEST_PRODUCT
 from symgen.linear_algebra.orthogonal import PivotedGramSchmidt, WeightedGramSchmidt
 from symgen.linear_algebra.refinement import Solution, less_forces, missing, of_columns, refined
 from symgen.methods.forward_dynamics.motion import MotionMethod, Problem
-from symgen.symbolic.matrix import Matrix, Vector, dot, subtract_vectors
+from symgen.symbolic.matrix import Matrix, Vector, subtract_vectors
 from symgen.symbolic.scalar import Graph, Scalar
 
 
@@ -148,28 +147,3 @@ class OrderedCholesky:
         """The solution of L^T x = b."""
         found = dict(zip(self._order, self._factor.raised(b), strict=True))
         return tuple(found[i] for i in range(len(self._order)))
-
-
-def schur_ldl(problem: Problem) -> MotionMethod:
-    """By L D L^T of A^T D^-1 A = B G^-1 B^T: shorter, with an error that grows with the square of B's condition."""
-    graph = problem.graph
-    factor = Cholesky(graph, problem.mass_matrix, diagonal_sizes(graph, problem.mass_matrix))
-    weights = tuple(1 / pivot for pivot in factor.pivots)
-    columns = [factor.lowered(row) for row in problem.rows]
-    weighted = [tuple(x * w for x, w in zip(column, weights, strict=True)) for column in columns]
-    upper = {
-        (i, j): dot(graph, weighted[i], columns[j]) for i in range(len(columns)) for j in range(i, len(columns))
-    }
-    schur: Matrix = tuple(
-        tuple(upper[min(i, j), max(i, j)] for j in range(len(columns))) for i in range(len(columns))
-    )
-    inner = Cholesky(graph, schur, [schur[i][i] for i in range(len(schur))])
-    force = factor.lowered(problem.force)
-    right = [dot(graph, column, force) + a for column, a in zip(weighted, problem.bias, strict=True)]
-    multipliers = inner.solve(right)
-    rest = [
-        f - graph.sum(column[i] * x for column, x in zip(columns, multipliers, strict=True))
-        for i, f in enumerate(force)
-    ]
-    accelerations = factor.raised(tuple(entry * weight for entry, weight in zip(rest, weights, strict=True)))
-    return MotionMethod(accelerations, multipliers, (*problem.guards, *factor.guards))

@@ -6,14 +6,24 @@ G x + B^T lambda = G e_j, B x = 0.  I - K G and K G, by any K, lose digits that 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from symgen.linear_algebra.guards import Guard
 from symgen.mechanics.genericity import Genericity
+from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.mechanics.system import System
+from symgen.methods.admission import ByTheorem
 from symgen.methods.forward_dynamics.absolute import in_absolute_angles, motion_brought_back
 from symgen.methods.forward_dynamics.motion import MotionMethod, Problem
+from symgen.methods.forward_dynamics.motions import BY_BODIES_ALONE, POSITIVE, STRUCTURED
 from symgen.methods.forward_dynamics.schur import SchurQR
-from symgen.methods.selection import Moved
-from symgen.symbolic.matrix import Matrix, identity, matvec, transpose
+from symgen.methods.graphs import Moved
+from symgen.methods.method import Candidate, Method
+from symgen.methods.quantity import Quantity
+from symgen.methods.system import MethodInput
+from symgen.methods.workspace import Workspace
+from symgen.records import dataclass
+from symgen.symbolic.matrix import Matrix, flatten, identity, matvec, transpose
 from symgen.symbolic.scalar import Scalar
 from symgen.validity.definiteness import positive_definite
 
@@ -66,6 +76,25 @@ def projection_of_bodies(
     return transpose(brought, n), guards
 
 
+@dataclass(frozen=True, slots=True)
+class _Eliminated(ByTheorem):
+    """A weighted projection as accelerations; `solved` gives the matrix with what it depends on."""
+
+    solved: Callable[[System, Genericity, str, tuple[Guard, ...]], tuple[Matrix, tuple[Guard, ...]] | None]
+    theorem: str
+    missing: str
+
+    def build(self, workspace: Workspace, quantity: str) -> Candidate | str:
+        """B_G^+ (n x r) or N_{B,G} (n x n) on a graph of its own, or why there is none."""
+        system = MethodInput.fresh(workspace.model, workspace.generic)
+        mechanics, generic = system.mechanics, system.generic
+        found = self.solved(mechanics, generic, quantity, reflected_rows(mechanics, generic).guards)
+        if found is None:
+            return self.missing
+        matrix, guards = found
+        return Candidate(system, Quantity(quantity, (len(matrix), len(matrix[0])), flatten(matrix), guards))
+
+
 def _motions(mechanics: System, solver: SchurQR, quantity: str) -> list[MotionMethod]:
     """The solution for each right-hand side."""
     graph, n, r = mechanics.graph, mechanics.n, mechanics.r
@@ -76,3 +105,7 @@ def _motions(mechanics: System, solver: SchurQR, quantity: str) -> list[MotionMe
     if mechanics.change is not None:
         units = tuple(map(mechanics.change.absolute, units))
     return [solver.motion(matvec(graph, mechanics.mass_matrix, unit), nothing[1]) for unit in units]
+
+
+SCHUR_QR: Method = _Eliminated(weighted_projection, POSITIVE, "G is not positive definite everywhere")
+ARTICULATED: Method = _Eliminated(projection_of_bodies, STRUCTURED, BY_BODIES_ALONE)

@@ -1,0 +1,112 @@
+"""q_ddot and lambda by minors, by elimination of the accelerations, and by an orthonormal basis of the null space."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from math import comb
+
+from symgen.linear_algebra.null_spaces import LONGEST_PRODUCT, MINOR_LIMIT, MinorSpace
+from symgen.mechanics.genericity import Genericity
+from symgen.methods.derivation import Derivation
+from symgen.methods.forward_dynamics.absolute import in_absolute_angles, motion_brought_back
+from symgen.methods.forward_dynamics.held_lengths import completed_multipliers
+from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA, minor_motion
+from symgen.methods.forward_dynamics.motion import MotionMethod, Problem
+from symgen.methods.forward_dynamics.motions import POSITIVE, AlongNullSpace, constraints, independent_rows
+from symgen.methods.forward_dynamics.projected_motion import nullspace
+from symgen.methods.forward_dynamics.schur import schur_qr
+from symgen.methods.method import Method
+from symgen.validity.definiteness import positive_definite
+
+MOST_MINORS = 70
+
+
+def _few_directions(generic: Genericity) -> bool:
+    return generic.rank == generic.r and 1 <= generic.delta <= LARGEST_DELTA
+
+
+def _few_minors(generic: Genericity) -> bool:
+    """Whether minors of the rows are at hand although the null space is not built from them."""
+    return comb(generic.n, generic.n // 2) <= MOST_MINORS
+
+
+def _no_minors(generic: Genericity) -> str | None:
+    if generic.minors > MINOR_LIMIT:
+        return f"B has {generic.minors} minors"
+    if _few_directions(generic):
+        return None
+    directions = f"it is for {LARGEST_DELTA} degrees of freedom at most, of which the system has {generic.delta}"
+    return independent_rows(generic) or directions
+
+
+def _by_minors(derivation: Derivation) -> bool:
+    """Along minors, and where the constraints carry a load: what is left of it along a motion cancels in minors only.
+
+    There G is not definite in every direction.
+    """
+    generic = derivation.generic
+    if not _few_directions(generic):
+        return False
+    if isinstance(derivation.space, MinorSpace):
+        return True
+    return generic.r > 0 and _few_minors(generic) and not positive_definite(derivation.mechanics)
+
+
+def _by_basis(derivation: Derivation) -> bool:
+    """Where there are constraints, and minors are not at hand."""
+    generic = derivation.generic
+    return generic.r > 0 and not (_few_directions(generic) and isinstance(derivation.space, MinorSpace))
+
+
+def _by_elimination(derivation: Derivation) -> bool:
+    """Not even built beside a basis where G is singular somewhere.
+
+    Equal functions are one node, and its pivots may be 0/0 where those of the other are not.
+    """
+    return not _by_basis(derivation) or positive_definite(derivation.mechanics)
+
+
+def _solved_apart(
+    derivation: Derivation, solved: Callable[[Problem], MotionMethod], measured: bool = False
+) -> MotionMethod:
+    """A motion worked out in absolute angles; `measured` tells that it looks at the rank of B itself.
+
+    There G keeps the inertias of bodies apart, and a crank does not feel what the links behind it carry.  They are so
+    on a graph of their own and brought here as they stand: beside each other equal functions are one node.
+    """
+    own = derivation.mechanics
+    apart = own.apart() if own.change is not None else in_absolute_angles(own.model) or own.apart()
+    problem, completed = Problem(apart, ()), completed_multipliers(apart)
+    made = solved(problem)
+    # symbols of absolute angles stay where these are the coordinates of this derivation
+    made = replace(made, multipliers=completed(made.multipliers))
+    made = motion_brought_back(own.graph, apart if own.change is None else None, made)
+    apart.graph.dissolve()
+    return replace(made, guards=(*(() if measured else derivation.space.guards), *made.guards))
+
+
+def _minor(derivation: Derivation) -> MotionMethod:
+    return _solved_apart(derivation, lambda problem: minor_motion(problem).motion)
+
+
+def _schur_qr(derivation: Derivation) -> MotionMethod:
+    rank = derivation.generic.rank
+    # it measures ranks itself where rows are many, or depend on each other
+    measured = derivation.r > min(rank, LONGEST_PRODUCT)
+    return _solved_apart(derivation, lambda problem: schur_qr(problem, rank), measured)
+
+
+def _nullspace(derivation: Derivation) -> MotionMethod:
+    inertia, completed = derivation.inertia, completed_multipliers(derivation.mechanics)
+    made = nullspace(Problem(derivation.mechanics, derivation.space.guards), derivation.space, inertia)
+    return replace(made, multipliers=completed(made.multipliers))
+
+
+MINOR: Method = AlongNullSpace(
+    _minor, "its denominator is the determinant of the equations of motion", _no_minors, _by_minors, grows=True
+)
+SCHUR_QR: Method = AlongNullSpace(_schur_qr, POSITIVE, offered=_by_elimination, free=True)
+NULLSPACE: Method = AlongNullSpace(
+    _nullspace, "its pivots are those of G along the constraints", constraints, _by_basis, orthonormal=True
+)

@@ -1,0 +1,146 @@
+"""The candidates for a quantity beside the others: along null spaces on their graph, and by methods that need none."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from functools import partial
+
+from symgen.mechanics.genericity import Genericity
+from symgen.mechanics.reflected_rows import reflected_rows
+from symgen.mechanics.system import System
+from symgen.methods.admission import Verdict
+from symgen.methods.derivation import Derivation
+from symgen.methods.forward_dynamics.absolute import brought_back, in_absolute_angles
+from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA
+from symgen.methods.forward_dynamics.motion import MotionMethod
+from symgen.methods.forward_dynamics.motions import BY_FRAMES, cost_factor, motions_alone, motions_along
+from symgen.methods.graphs import moved
+from symgen.methods.method import MOTIONS, Candidate
+from symgen.methods.quantity import scalars
+from symgen.methods.selection import CANCELLATION_WORTH, FACTORING_LIMIT, Methods, cheapest
+from symgen.methods.spaces import derivations
+from symgen.methods.system import MethodInput
+from symgen.model.model import Model
+from symgen.quantities.catalogue import PARTITION, Entry, by_blocks, derive, derived_from
+from symgen.quantities.everything import Everything
+from symgen.runtime.activity import working
+from symgen.symbolic.traverse import cost
+
+ABSOLUTE = "householder in absolute angles"
+# What derivation.json calls ways that are no null space, by method.
+ARTICULATED = "articulated inertias"
+WAYS = {BY_FRAMES: ARTICULATED}
+MOST_WORTH = 1 + CANCELLATION_WORTH
+VALID = Verdict(0, 0, (), "along null spaces only ranks are divided by")
+
+
+class Candidates:
+    """The candidates for the quantities of a model; `asked` are those for which no method is named."""
+
+    def __init__(self, mechanics: System, methods: Methods, everything: Everything, asked: Sequence[str]) -> None:
+        model, generic = mechanics.model, methods.workspace.generic
+        self._mechanics, self._generic = mechanics, generic
+        self._system = MethodInput(mechanics, generic)
+        self._methods, self._everything = methods, everything
+        self._derivations = derivations(mechanics, generic)
+        moving = [name for name in MOTIONS if name in asked]
+        with working("articulated inertias"):
+            self._alone = {name: self._without_null_space(name) for name in moving}
+        need = moving and not any(self._alone.values())
+        self._absolute = _in_absolute_angles(model, generic) if need else None
+        self._motions: dict[str, dict[str, MotionMethod]] = {}
+
+    def cheapest(self, entry: Entry) -> tuple[Candidate, dict[str, int]] | None:
+        """The one that is taken, and the counted cost of all by way; None where each takes too long."""
+        made = self._of(entry)
+        if not made:
+            return None
+        costs = {way: cost(scalars(one.derived)).weight for way, one in made.items()}
+        best, _ = cheapest(made.values(), self._validity, lambda one: self._weight(one))
+        # F is unbounded near its singularities: there it is the one determinant of the minors that keeps its digits
+        if entry.needs == PARTITION and "minors" in costs and costs["minors"] <= costs[best.way] * MOST_WORTH:
+            best = made["minors"]
+        # minors of rows that depend on each other become small together: multiplied out, their squares would cancel
+        if self._generic.rank == self._generic.r and 0 < costs.get("minors", 0) <= FACTORING_LIMIT:
+            shorter = self._factored(made["minors"])
+            costs[shorter.way] = cost(scalars(shorter.derived)).weight
+            # multiplied out, terms that vanish have cancelled exactly: worth a few operations more
+            if costs[shorter.way] <= costs[best.way] * (1 if entry.name in MOTIONS else MOST_WORTH):
+                best = shorter
+        return best, costs
+
+    def _of(self, entry: Entry) -> dict[str, Candidate]:
+        alone = self._alone.get(entry.name, {})
+        # where minors are not listed, no other method is derived to be counted: they grow faster than these
+        if alone and self._generic.r > 0 and self._generic.delta > LARGEST_DELTA:
+            return self._brought(alone)
+        if entry.name in MOTIONS and self._absolute is not None:
+            one = self._along(entry, ABSOLUTE, self._absolute)
+            back = brought_back(self._mechanics.graph, self._absolute.mechanics, one.derived)
+            return {ABSOLUTE: replace(one, derived=back)}
+        ways = {
+            way: partial(self._along, entry, way, derivation)
+            for way, derivation in self._derivations.items()
+            if way != "blocks" or by_blocks(entry)
+        }
+        # a tree has articulated inertias; what goes without them may take as long as they are worth, and no longer
+        least = min((cost(scalars(one.derived)).weight for one in alone.values()), default=None)
+        return {**self._everything.derived(entry.name, ways, least), **self._brought(alone)}
+
+    def _along(self, entry: Entry, way: str, derivation: Derivation) -> Candidate:
+        """A quantity along a null space, q_ddot and lambda by the method that counts least there."""
+        if entry.name not in MOTIONS:
+            return Candidate(self._system, derive(entry, derivation), along=way)
+        if way not in self._motions:
+            self._motions[way] = motions_along(derivation)
+        made = [self._moving(entry, name, derivation, one) for name, one in self._motions[way].items()]
+        # a basis is normwise accurate in the units that B is given in, and loses what masses and lengths are apart by:
+        # it is left for systems in which G is definite along the constraints only
+        best, _ = cheapest(made, self._validity, lambda one: (one.name == "nullspace", self._weight(one)))
+        return replace(best, along=way)
+
+    def _moving(self, entry: Entry, name: str, derivation: Derivation, motion: MotionMethod) -> Candidate:
+        found = derived_from(entry, derivation, motion.part(entry.name), lambda _: motion.guards)
+        return Candidate(self._system, found, name=name)
+
+    def _without_null_space(self, quantity: str) -> dict[str, Candidate]:
+        """By methods that need none.
+
+        Where rows depend on each other, choosing among them is most of the work by any method: left for when others
+        fail.
+        """
+        if self._generic.rank < self._generic.r:
+            return {}
+        found = {name: self._methods.candidate(quantity, name) for name in motions_alone()}
+        ways = {WAYS.get(name, name): one for name, one in found.items() if isinstance(one, Candidate)}
+        return {way: replace(one, along=way) for way, one in ways.items()}
+
+    def _brought(self, made: dict[str, Candidate]) -> dict[str, Candidate]:
+        """The same on the graph of the other quantities."""
+        graph = self._mechanics.graph
+        return {way: replace(one, derived=moved(graph, one.derived)) for way, one in made.items()}
+
+    def _factored(self, minors: Candidate) -> Candidate:
+        """What was derived along minors multiplied out and factored."""
+        kept = self._derivations["minors"].whole
+        outputs = self._mechanics.factoring.shorten(minors.derived.outputs, kept)
+        return replace(minors, derived=replace(minors.derived, outputs=outputs), along="factored")
+
+    def _validity(self, one: Candidate) -> Verdict:
+        """Of a method; along a null space only ranks are divided by."""
+        return self._methods.verdict(one, first_only=True) if one.name else VALID
+
+    def _weight(self, one: Candidate) -> Fraction:
+        return cost(scalars(one.derived)).weight * cost_factor(one.name, self._mechanics)
+
+
+def _in_absolute_angles(model: Model, generic: Genericity) -> Derivation | None:
+    """The derivation of q_ddot and lambda along reflections in absolute angles, on a graph of its own.
+
+    Taken where angles are relative and minors too many: the rounding errors of G in relative angles grow with the
+    length of a chain.
+    """
+    seen = in_absolute_angles(model) if model.constraints and generic.delta > LARGEST_DELTA else None
+    return None if seen is None else Derivation(seen, generic, reflected_rows(seen, generic))

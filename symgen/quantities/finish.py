@@ -1,0 +1,74 @@
+"""What is done to a quantity once its way is chosen, before it is scheduled."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from symgen.mechanics.genericity import Genericity
+from symgen.mechanics.system import System
+from symgen.methods.method import INPUTS, MOTIONS
+from symgen.methods.quantity import Quantity, is_fixed, scalars
+from symgen.model.model import Model
+from symgen.quantities.excess import with_test_of_excess
+from symgen.quantities.row_units import in_units_of_the_file
+from symgen.symbolic.hidden_zeros import without_hidden_zeros
+from symgen.symbolic.passes.grouping import grouped as grouped_scalars
+
+
+def finished(mechanics: System, generic: Genericity, derived: Quantity) -> Quantity:
+    """A quantity on the graph of `mechanics` as it is scheduled: complete, and numbers grouped."""
+    return with_groups(mechanics, complete(mechanics, generic, derived))
+
+
+def complete(mechanics: System, generic: Genericity, derived: Quantity) -> Quantity:
+    """A quantity without entries that are 0 unseen, with ranks tested that other branches may exceed, told what its
+    reader must know, rows in the units of the file."""
+    outputs = without_hidden_zeros(derived.outputs)
+    # what is locked is so where B has its rank, and results that are fixed may rest on that
+    needless = is_fixed(outputs) and not (generic.locked and is_fixed(derived.outputs))
+    derived = replace(derived, outputs=outputs, guards=() if needless else derived.guards)
+    tested = with_test_of_excess(mechanics, generic, derived)
+    tested = in_units_of_the_file(mechanics.graph, mechanics.model, tested)
+    return _remarked(tested, generic)
+
+
+def with_alike_bodies(model: Model, derived: Quantity) -> Quantity:
+    """u with what its bodies have in common, where there are bodies."""
+    if derived.name != INPUTS or not model.mechanism.has_mass:
+        return derived
+    from symgen.mechanics.alike import alike_bodies  # models given by energies start without it
+
+    return replace(derived, alike=alike_bodies(model, derived.outputs))
+
+
+def _remarked(derived: Quantity, generic: Genericity) -> Quantity:
+    """What dependent rows leave open, or inputs cannot produce, is said where the quantity is called."""
+    if derived.name == MOTIONS[1] and generic.rank < generic.r:
+        which = f"not unique, as the constraints depend on each other (rank {generic.rank} of {generic.r})"
+        return replace(derived, remark=f"{which}: these are the smallest; u and q̈ are not affected")
+    if derived.name == INPUTS and not generic.full_actuation:
+        return replace(derived, remark=short_of_inputs(generic))
+    return derived
+
+
+def short_of_inputs(generic: Genericity) -> str:
+    """What u is where inputs span fewer directions than the system has."""
+    spans = f"the inputs span {generic.alpha} of {generic.delta} directions"
+    return f"{spans}: of the motions that they cannot produce it is the part they can, see inverse_dynamics_residual"
+
+
+def with_groups(mechanics: System, derived: Quantity) -> Quantity:
+    """The quantity with numbers multiplied into groups of parameters, where that saves operations."""
+    # with the scales of denominators, so that they go on sharing what they have in common with results
+    scales = [guard.scale for guard in derived.guards if guard.scale is not None]
+    mark = mechanics.graph.mark()
+    regrouped = grouped_scalars(mechanics.graph, mechanics.factoring, [*scalars(derived), *scales])
+    mechanics.factoring.forget(mark, regrouped)
+    found = iter(regrouped)
+    outputs = tuple(next(found) for _ in derived.outputs)
+    denominators = [next(found) for _ in derived.guards]
+    guards = tuple(
+        replace(guard, denominator=denominator, scale=None if guard.scale is None else next(found))
+        for guard, denominator in zip(derived.guards, denominators, strict=True)
+    )
+    return replace(derived, outputs=outputs, guards=guards)
