@@ -7,16 +7,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterable
+from functools import cache
 
-from symgen.registered import hiding
+from symgen.registered import endings, hiding
 
 # Endings by which the files of one model, and groups of functions, differ: `rob_f.h` is the float32 of `rob`.
 _KINDS = r"(?:_(?:batch|prepared|sc))?(?:_f)?"
-_CLASHING = re.compile(
-    r".*_(?:f|batch|prepared|sc|eva|fuzz|error|default|actuator|minimal|projected|weighted|"
-    r"(?:inverse|forward)_dynamics|multipliers)(?:_model)*",
-    re.IGNORECASE,
-)
 _STEM = re.compile(rf"(.*?)({_KINDS})")
 _RENAMED = "_model"
 
@@ -50,8 +46,13 @@ def c_name(model_name: str) -> str:
     plain = model_name.lower()
     while plain.endswith(_RENAMED):
         plain = plain.removesuffix(_RENAMED)
-    clashes = plain in hiding() or _CLASHING.fullmatch(model_name) is not None
+    clashes = plain in hiding() or _clashing().fullmatch(model_name.lower()) is not None
     return model_name + _RENAMED if clashes else model_name
+
+
+@cache
+def _clashing() -> re.Pattern[str]:
+    return re.compile(f".*_(?:{'|'.join(sorted(endings()))})(?:_model)*")
 
 
 def macro_name(stem: str) -> str:

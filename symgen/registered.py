@@ -22,12 +22,14 @@ class Words:
     """What names must not be because of one language.
 
     `keywords` are refused in model files, each with what it is; `is_taken` says which names are no identifiers of the
-    language, where it is built and used; `hiding` are names that a model's files must not have.
+    language, where it is built and used; `hiding` are names that a model's files must not have, in small letters, and
+    `endings` those by which files and functions of one model differ: another model's name must not end so.
     """
 
     keywords: Mapping[str, str]
     is_taken: Callable[[str], bool]
     hiding: frozenset[str] = frozenset()
+    endings: frozenset[str] = frozenset()
 
 
 def words(text: str) -> frozenset[str]:
@@ -54,3 +56,9 @@ def keywords() -> dict[str, str]:
 def hiding() -> frozenset[str]:
     """What no files of a model may be called, in small letters."""
     return frozenset().union(*(words_of(backend).hiding for backend in BACKENDS))
+
+
+@cache
+def endings() -> frozenset[str]:
+    """What no name of a model's files ends in, behind an underscore."""
+    return frozenset().union(*(words_of(backend).endings for backend in BACKENDS))

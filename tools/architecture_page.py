@@ -148,7 +148,7 @@ A backend prints finished kernels in one language, as `--only` names it. It is o
 its templates in `templates/<name>`, and its name in `symgen/registered.py`. The folder has three modules:
 
 - `reserved`: `WORDS`, which are the keywords of the language, refused as names in model files; what else is taken
-  there, so that identifiers get an ending; names of files that would hide something. This is data and imports nothing.
+  there, so that identifiers get an ending; names and endings that a model's files must not have. This is data.
 - `statements`: how the language spells an operation, a choice, a sine and cosine, a check. The walk over the statements
   is that of `symgen/backends/statements.py`.
 - `backend`: `BACKEND`, which are the functions that make files of a program (its *variants*, such as kernels for many

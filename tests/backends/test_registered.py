@@ -71,3 +71,4 @@ def test_keywords_are_refused_in_model_files(word: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", BACKENDS)
 def test_files_hide_nothing_of_its_language(name: str) -> None:
     assert all(c_name(word) == f"{word}_model" for word in words_of(name).hiding)
+    assert all(c_name(f"Rob_{word.upper()}") == f"Rob_{word.upper()}_model" for word in words_of(name).endings)

@@ -113,4 +113,9 @@ def is_taken(name: str) -> bool:
     return name in _TAKEN or (name[-1] != "_" and _MACRO_PATTERNS.fullmatch(name) is not None)
 
 
-WORDS = Words(KEYWORDS, is_taken, _HEADERS | _TARGETS | _WINDOWS_FILES | _STATUSES)
+# Of files (eva, fuzz and error are drivers for proofs), and how functions begin behind the model's name.
+_ENDINGS = words(
+    """f batch prepared sc eva fuzz error
+    default actuator minimal projected weighted inverse_dynamics forward_dynamics multipliers"""
+)
+WORDS = Words(KEYWORDS, is_taken, _HEADERS | _TARGETS | _WINDOWS_FILES | _STATUSES, _ENDINGS)
