@@ -11,10 +11,10 @@ from symgen.linear_algebra.pivoted import reflected
 from symgen.mechanics.articulated_inertias import ArticulatedFactor
 from symgen.mechanics.genericity import genericity, parameter_values
 from symgen.mechanics.system import System
+from symgen.methods.forward_dynamics.along_spaces import nullspace
 from symgen.methods.forward_dynamics.articulated import articulated
 from symgen.methods.forward_dynamics.held_lengths import completed_multipliers
 from symgen.methods.forward_dynamics.motion import Problem
-from symgen.methods.forward_dynamics.projected_motion import nullspace
 from symgen.methods.method import MOTIONS, Candidate
 from symgen.methods.selection import Methods
 from symgen.model.load import load_text

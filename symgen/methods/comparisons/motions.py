@@ -14,10 +14,10 @@ from symgen.linear_algebra.constrained_inverse import Cholesky, diagonal_sizes
 from symgen.linear_algebra.guards import Guard
 from symgen.linear_algebra.null_spaces import NullSpace, Reflections
 from symgen.methods.derivation import Derivation
+from symgen.methods.forward_dynamics.along_spaces import reactions
 from symgen.methods.forward_dynamics.held_lengths import completed_multipliers
 from symgen.methods.forward_dynamics.motion import MotionMethod, Problem
 from symgen.methods.forward_dynamics.motions import POSITIVE, SQUARED, AlongNullSpace, constraints, independent_rows
-from symgen.methods.forward_dynamics.projected_motion import reactions
 from symgen.methods.method import Method
 from symgen.symbolic.matrix import Matrix, Vector, dot, identity, matmul, matvec
 from symgen.symbolic.scalar import Scalar

@@ -6,7 +6,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from math import comb
 
-from symgen.linear_algebra.null_spaces import LONGEST_PRODUCT, MINOR_LIMIT, MinorSpace
+from symgen.linear_algebra.constrained_inverse import ConstrainedInertia
+from symgen.linear_algebra.guards import Guard
+from symgen.linear_algebra.null_spaces import LONGEST_PRODUCT, MINOR_LIMIT, MinorSpace, NullSpace
+from symgen.linear_algebra.refinement import of_motion, refined
 from symgen.mechanics.genericity import Genericity
 from symgen.methods.derivation import Derivation
 from symgen.methods.forward_dynamics.absolute import in_absolute_angles, motion_brought_back
@@ -14,9 +17,9 @@ from symgen.methods.forward_dynamics.held_lengths import completed_multipliers
 from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA, minor_motion
 from symgen.methods.forward_dynamics.motion import MotionMethod, Problem
 from symgen.methods.forward_dynamics.motions import POSITIVE, AlongNullSpace, constraints, independent_rows
-from symgen.methods.forward_dynamics.projected_motion import nullspace
 from symgen.methods.forward_dynamics.schur import schur_qr
 from symgen.methods.method import Method
+from symgen.symbolic.matrix import Vector, matvec, subtract_vectors
 from symgen.validity.definiteness import positive_definite
 
 MOST_MINORS = 70
@@ -101,6 +104,37 @@ def _nullspace(derivation: Derivation) -> MotionMethod:
     inertia, completed = derivation.inertia, completed_multipliers(derivation.mechanics)
     made = nullspace(Problem(derivation.mechanics, derivation.space.guards), derivation.space, inertia)
     return replace(made, multipliers=completed(made.multipliers))
+
+
+def nullspace(problem: Problem, space: NullSpace, inertia: ConstrainedInertia) -> MotionMethod:
+    """q_ddot = K (f + G B^+ a) - B^+ a, lambda = (B^+)^T (f - G q_ddot), with one step of refinement.
+
+    It needs G positive definite on ker B only.  Both expressions lose what masses are apart by, in f - G q_ddot most of
+    all; what the equations still ask for is solved for once more.
+    """
+
+    def solve(f: Vector, c: Vector) -> tuple[Vector, Vector]:
+        lifted = space.lift(c)
+        pushed = matvec(problem.graph, problem.mass_matrix, lifted)
+        along = inertia.solve(subtract_vectors(f, pushed))
+        q_ddot = tuple(x + y for x, y in zip(along, lifted, strict=True))
+        return q_ddot, reactions(problem, space, f, q_ddot)
+
+    asked = tuple(-a for a in problem.bias)
+    first = solve(problem.force, asked)
+    left_over = of_motion(problem.graph, problem.mass_matrix, problem.rows, problem.force, asked)
+    accelerations, multipliers = refined(problem.graph, first, left_over, solve)
+    return MotionMethod(accelerations, multipliers, (*space.guards, *_own(space, inertia)))
+
+
+def _own(space: NullSpace, inertia: ConstrainedInertia) -> tuple[Guard, ...]:
+    return tuple(guard for guard in inertia.guards if guard not in space.guards)
+
+
+def reactions(problem: Problem, space: NullSpace, force: Vector, accelerations: Vector) -> Vector:
+    """lambda = (B^+)^T (f - G q_ddot)."""
+    inertial = matvec(problem.graph, problem.mass_matrix, accelerations)
+    return space.lift_transposed(subtract_vectors(force, inertial))
 
 
 MINOR: Method = AlongNullSpace(
