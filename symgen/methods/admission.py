@@ -36,7 +36,7 @@ class Singular:
 class Verdict:
     """How many denominators are proved harmless, how many were searched in vain, and which are singular.
 
-    `theorem` says why none has to be looked at, where that is known of a form as a whole.  `lost` says that a
+    `theorem` says why none has to be looked at, where that is known of a method as a whole.  `lost` says that a
     denominator is so small among its terms that single precision could not tell it from zero anywhere.
     """
 
@@ -48,7 +48,7 @@ class Verdict:
 
     @property
     def admitted(self) -> bool:
-        """Whether the form is valid wherever the ranks of B and M~ are what they generically are, in float32 too."""
+        """Whether it is valid wherever the ranks of B and M~ are what they generically are, in float32 too."""
         return not self.singular and not self.lost
 
     @property

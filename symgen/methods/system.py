@@ -1,7 +1,7 @@
-"""What the builders of forms start from: a system on a graph of its own.
+"""What methods start from: a system on a graph of its own.
 
-Every form is built on a fresh graph: two forms of u are the same function, and a graph holds one node for equal
-functions, so on one graph the second form would turn into the first.
+Every method of u has a fresh graph: two of them are the same function, and a graph holds one node for equal
+functions, so on one graph the second would turn into the first.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class MethodInput:
 
     @cached_property
     def given(self) -> Vector:
-        """The model's own expressions, whose denominators no form is to blame for."""
+        """The model's own expressions, whose denominators no method is to blame for."""
         mechanics = self.mechanics
         return (*mechanics.balance, *flatten(mechanics.constraint_jacobian), *flatten(mechanics.control_matrix))
 
@@ -48,12 +48,12 @@ class MethodInput:
 
     @property
     def driven(self) -> str | None:
-        """Why forms that solve the balance exactly do not apply, or None: they need full actuation."""
+        """Why methods that solve the balance exactly do not apply, or None: they need full actuation."""
         if self.mechanics.model.allocation is not None:
             return "the model's `allocation` shares the inputs in another way than by their norm"
         return None if self.generic.full_actuation else "it needs inputs that span every admissible direction"
 
     @property
     def regular(self) -> str | None:
-        """Why forms that need independent constraints do not apply, or None."""
+        """Why methods that need independent constraints do not apply, or None."""
         return None if self.generic.rank == self.generic.r else "the constraint rows depend on each other"

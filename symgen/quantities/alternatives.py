@@ -32,7 +32,7 @@ TIERS = 2
 
 @dataclass(frozen=True, slots=True)
 class Alternative:
-    """A quantity along another way, on the graph of `mechanics`; `form` is what is known of it where it is a form.
+    """A quantity along another way, on the graph of `mechanics`; `form` is what is known of its method.
 
     A long one has its numbers `grouped` only once it is known to be of use.
     """

@@ -14,7 +14,7 @@ from symgen.methods.admission import Verdict
 from symgen.methods.derivation import Derivation
 from symgen.methods.forward_dynamics.absolute import brought_back, in_absolute_angles
 from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA
-from symgen.methods.forward_dynamics.motion import MotionMethod
+from symgen.methods.forward_dynamics.motion import Motion
 from symgen.methods.forward_dynamics.motions import BY_FRAMES, cost_factor, motions_alone, motions_along
 from symgen.methods.graphs import moved
 from symgen.methods.method import MOTIONS, Candidate
@@ -50,7 +50,7 @@ class Candidates:
             self._alone = {name: self._without_null_space(name) for name in moving}
         need = moving and not any(self._alone.values())
         self._absolute = _in_absolute_angles(model, generic) if need else None
-        self._motions: dict[str, dict[str, MotionMethod]] = {}
+        self._motions: dict[str, dict[str, Motion]] = {}
 
     def cheapest(self, entry: Entry) -> tuple[Candidate, dict[str, int]] | None:
         """The one that is taken, and the counted cost of all by way; None where each takes too long."""
@@ -101,7 +101,7 @@ class Candidates:
         best, _ = cheapest(made, self._validity, lambda one: (one.name == "nullspace", self._weight(one)))
         return replace(best, along=way)
 
-    def _moving(self, entry: Entry, name: str, derivation: Derivation, motion: MotionMethod) -> Candidate:
+    def _moving(self, entry: Entry, name: str, derivation: Derivation, motion: Motion) -> Candidate:
         found = derived_from(entry, derivation, motion.part(entry.name), lambda _: motion.guards)
         return Candidate(self._system, found, name=name)
 

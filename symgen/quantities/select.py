@@ -25,9 +25,10 @@ from symgen.symbolic.traverse import reached
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """Which way a quantity took, and the counted cost of each way tried; q_ddot and lambda have a form along it.
+    """Which way a quantity took, and the counted cost of each way tried.
 
-    `wide` are the scalar types in which its kernel works with twice the digits.
+    `form` is the method that q_ddot and lambda take along it, `wide` the scalar types in which its kernel works
+    with twice the digits.
     """
 
     quantity: str

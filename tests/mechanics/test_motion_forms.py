@@ -15,7 +15,7 @@ from symgen.linear_algebra.pivoted import PivotedSpace, elementary_symmetric, re
 from symgen.mechanics.genericity import configurations, genericity
 from symgen.mechanics.system import System
 from symgen.methods.derivation import Derivation
-from symgen.methods.forward_dynamics.motion import MotionMethod, Problem
+from symgen.methods.forward_dynamics.motion import Motion, Problem
 from symgen.methods.forward_dynamics.motions import AlongNullSpace, motions_along
 from symgen.methods.table import method, methods
 from symgen.model.load import load_text
@@ -76,7 +76,7 @@ def solution(mechanics: System, at: dict[str, float]) -> tuple[Any, Any]:
     return qdd, np.linalg.pinv(B.T, rcond=1e-8) @ (f - G @ qdd)
 
 
-def check(mechanics: System, found: MotionMethod, at: dict[str, float]) -> None:
+def check(mechanics: System, found: Motion, at: dict[str, float]) -> None:
     qdd, multipliers = solution(mechanics, at)
     assert numbers(found.accelerations, at, mechanics.n) == pytest.approx(qdd, rel=1e-9, abs=1e-9)
     assert numbers(found.multipliers, at, mechanics.r) == pytest.approx(multipliers, rel=1e-9, abs=1e-9)

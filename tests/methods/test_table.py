@@ -11,7 +11,7 @@ from symgen.mechanics.system import System
 from symgen.methods import table
 from symgen.methods.admission import FAILS, OfInputs
 from symgen.methods.derivation import Derivation
-from symgen.methods.forward_dynamics.motion import MotionMethod
+from symgen.methods.forward_dynamics.motion import Motion
 from symgen.methods.forward_dynamics.motions import AlongNullSpace
 from symgen.methods.method import INPUTS, MOTIONS, Candidate, Method, solved_for_u
 from symgen.methods.selection import Methods
@@ -70,13 +70,13 @@ def longer(workspace: Workspace) -> Candidate | str:
     return solved_for_u(made.system, (graph.sum((u, *more)),), ())
 
 
-def motion_of_one_wheel(derivation: Derivation) -> MotionMethod:
+def motion_of_one_wheel(derivation: Derivation) -> Motion:
     """q_ddot and lambda from the motor's wheel alone."""
     graph = derivation.graph
     turning = graph.symbol("T") / reduced_inertia(graph)
     drums = [ratio * turning for ratio in (2, 3, 6)]
     forces = tuple(-(graph.symbol("K") * drum) for drum in drums)
-    return MotionMethod((turning, *drums), forces, derivation.space.guards)
+    return Motion((turning, *drums), forces, derivation.space.guards)
 
 
 def register(

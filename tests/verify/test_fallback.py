@@ -18,7 +18,7 @@ from symgen.generation import fallback
 from symgen.generation.results import Options, Result
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.guards import Guard
-from symgen.methods.forward_dynamics.motion import MotionMethod
+from symgen.methods.forward_dynamics.motion import Motion
 from symgen.methods.method import Candidate
 from symgen.methods.quantity import Quantity
 from symgen.methods.selection import Methods
@@ -82,7 +82,7 @@ def off(values: Sequence[Scalar]) -> tuple[Scalar, ...]:
 
 def spoil_choice(
     monkeypatch: pytest.MonkeyPatch,
-    spoilt: Callable[[MotionMethod], MotionMethod],
+    spoilt: Callable[[Motion], Motion],
     quantity: str = "multipliers",
 ) -> None:
     """λ of every method that selection may take by itself."""
@@ -91,38 +91,38 @@ def spoil_choice(
     def worse(entry: Any, along: Any, outputs: Any, guards: Any) -> Quantity:
         if entry.name != quantity:
             return derived_from(entry, along, outputs, guards)
-        motion = spoilt(MotionMethod((), outputs, guards(along)))
+        motion = spoilt(Motion((), outputs, guards(along)))
         return derived_from(entry, along, motion.multipliers, lambda _: motion.guards)
 
     monkeypatch.setattr(candidates, "derived_from", worse)
 
 
-def wrong(motion: MotionMethod) -> MotionMethod:
+def wrong(motion: Motion) -> Motion:
     """λ that is another function."""
     return replace(motion, multipliers=off(motion.multipliers))
 
 
-def cancelling(motion: MotionMethod) -> MotionMethod:
+def cancelling(motion: Motion) -> Motion:
     """λ that loses digits."""
     return replace(motion, multipliers=tuple(lossy(value, Fraction(2**21)) for value in motion.multipliers))
 
 
-def narrow(motion: MotionMethod) -> MotionMethod:
+def narrow(motion: Motion) -> Motion:
     """λ that takes a good half of what is allowed, where the crank turns little."""
     return replace(motion, multipliers=tuple(lossy(value, Fraction(5)) for value in motion.multipliers))
 
 
-def edgy(motion: MotionMethod) -> MotionMethod:
+def edgy(motion: Motion) -> Motion:
     """λ that loses digits where the crank is nearly turned around, and little elsewhere."""
     return replace(motion, multipliers=tuple(lossy(value, Fraction(1, 4)) for value in motion.multipliers))
 
 
-def edging(motion: MotionMethod) -> MotionMethod:
+def edging(motion: Motion) -> Motion:
     """The same, less: a good half of what is allowed is lost there."""
     return replace(motion, multipliers=tuple(lossy(value, Fraction(1, 16)) for value in motion.multipliers))
 
 
-def losing_digits(motion: MotionMethod) -> MotionMethod:
+def losing_digits(motion: Motion) -> Motion:
     """λ that loses digits in roots, products and sums: times 1 + 2^12 (sqrt(3 r)^2 - 3 r)."""
     graph = motion.multipliers[0].graph
     r = graph.const(3) * graph.symbol("r")
@@ -151,19 +151,19 @@ def refused(graph: Graph, size: Fraction) -> Guard:
     return Guard(Status.MASS_RANK, graph.symbol("J") * graph.const(size), 1, scale=graph.symbol("m"))
 
 
-def refusing(motion: MotionMethod) -> MotionMethod:
+def refusing(motion: Motion) -> Motion:
     """λ with a denominator that every state takes for zero."""
     tiny = refused(motion.multipliers[0].graph, Fraction(1, 2**80))
     return replace(motion, guards=(*motion.guards, tiny))
 
 
-def refusing_float32(motion: MotionMethod) -> MotionMethod:
+def refusing_float32(motion: Motion) -> Motion:
     """λ with a denominator that is beyond float32."""
     small = refused(motion.multipliers[0].graph, Fraction(1, 2**20))
     return replace(motion, guards=(*motion.guards, small))
 
 
-def spoil_named(monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[MotionMethod], MotionMethod]) -> None:
+def spoil_named(monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[Motion], Motion]) -> None:
     """λ of every method that can be asked for by name."""
     candidate = Methods.candidate
 
@@ -171,7 +171,7 @@ def spoil_named(monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[MotionMethod]
         found = candidate(methods, quantity, name)
         if quantity != "multipliers" or isinstance(found, str):
             return found
-        motion = spoilt(MotionMethod((), found.derived.outputs, found.derived.guards))
+        motion = spoilt(Motion((), found.derived.outputs, found.derived.guards))
         return replace(found, derived=replace(found.derived, outputs=motion.multipliers, guards=motion.guards))
 
     monkeypatch.setattr(Methods, "candidate", worse)
@@ -186,7 +186,7 @@ def spoil_named(monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[MotionMethod]
     ],
 )
 def test_what_is_rejected_takes_the_next_way(
-    yoke: Path, monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[MotionMethod], MotionMethod], why: str
+    yoke: Path, monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[Motion], Motion], why: str
 ) -> None:
     usual = made(yoke)
     assert "rejected" not in derived(usual)

@@ -16,17 +16,17 @@ from symgen.linear_algebra.null_spaces import NullSpace, Reflections
 from symgen.methods.derivation import Derivation
 from symgen.methods.forward_dynamics.along_spaces import reactions
 from symgen.methods.forward_dynamics.held_lengths import completed_multipliers
-from symgen.methods.forward_dynamics.motion import MotionMethod, Problem
+from symgen.methods.forward_dynamics.motion import Motion, Problem
 from symgen.methods.forward_dynamics.motions import POSITIVE, SQUARED, AlongNullSpace, constraints, independent_rows
 from symgen.methods.method import Method
 from symgen.symbolic.matrix import Matrix, Vector, dot, identity, matmul, matvec
 from symgen.symbolic.scalar import Scalar
 
 
-def _completed(solved: Callable[[Problem, NullSpace], MotionMethod]) -> Callable[[Derivation], MotionMethod]:
+def _completed(solved: Callable[[Problem, NullSpace], Motion]) -> Callable[[Derivation], Motion]:
     """Along the null space of a derivation, with the multipliers of rows that hold lengths."""
 
-    def made(derivation: Derivation) -> MotionMethod:
+    def made(derivation: Derivation) -> Motion:
         completed = completed_multipliers(derivation.mechanics)
         found = solved(Problem(derivation.mechanics, derivation.space.guards), derivation.space)
         return replace(found, multipliers=completed(found.multipliers))
@@ -34,7 +34,7 @@ def _completed(solved: Callable[[Problem, NullSpace], MotionMethod]) -> Callable
     return made
 
 
-def shifted(problem: Problem, space: NullSpace) -> MotionMethod:
+def shifted(problem: Problem, space: NullSpace) -> Motion:
     """(22) as corrected: (N G N + mu P) q_ddot = N f + N G l - mu l with l = B^+ a and mu = tr G / n (errata, C)."""
     graph, n, projector = problem.graph, problem.n, space.projector
     inner = matmul(graph, matmul(graph, projector, problem.mass_matrix, n), projector, n)
@@ -54,10 +54,10 @@ def shifted(problem: Problem, space: NullSpace) -> MotionMethod:
     right = space.project(tuple(f + g for f, g in zip(problem.force, pushed, strict=True)))
     accelerations = factor.solve(tuple(x - mu * y for x, y in zip(right, lifted, strict=True)))
     multipliers = reactions(problem, space, problem.force, accelerations)
-    return MotionMethod(accelerations, multipliers, (*space.guards, *factor.guards))
+    return Motion(accelerations, multipliers, (*space.guards, *factor.guards))
 
 
-def kkt(problem: Problem, _: NullSpace) -> MotionMethod:
+def kkt(problem: Problem, _: NullSpace) -> Motion:
     """The whole system [G, s B^T; s B, 0] by reflections, s = tr G / n: valid wherever it is regular."""
     graph, n, r = problem.graph, problem.n, problem.r
     zero = graph.zero
@@ -76,14 +76,14 @@ def kkt(problem: Problem, _: NullSpace) -> MotionMethod:
     pairs = zip(turned.pivots, columns, strict=True)
     guards = tuple(Guard(Status.MASS_RANK, pivot, 2, scale=_square(problem, column)) for pivot, column in pairs)
     multipliers = tuple(x * size for x in solution[n:])
-    return MotionMethod(tuple(solution[:n]), multipliers, (*problem.guards, *guards))
+    return Motion(tuple(solution[:n]), multipliers, (*problem.guards, *guards))
 
 
 def _square(problem: Problem, column: Vector) -> Scalar:
     return dot(problem.graph, column, column)
 
 
-def schur_ldl(problem: Problem, _: NullSpace) -> MotionMethod:
+def schur_ldl(problem: Problem, _: NullSpace) -> Motion:
     """By L D L^T of A^T D^-1 A = B G^-1 B^T: shorter, with an error that grows with the square of B's condition."""
     graph = problem.graph
     factor = Cholesky(graph, problem.mass_matrix, diagonal_sizes(graph, problem.mass_matrix))
@@ -105,7 +105,7 @@ def schur_ldl(problem: Problem, _: NullSpace) -> MotionMethod:
         for i, f in enumerate(force)
     ]
     accelerations = factor.raised(tuple(entry * weight for entry, weight in zip(rest, weights, strict=True)))
-    return MotionMethod(accelerations, multipliers, (*problem.guards, *factor.guards))
+    return Motion(accelerations, multipliers, (*problem.guards, *factor.guards))
 
 
 SCHUR_LDL: Method = AlongNullSpace(_completed(schur_ldl), POSITIVE + SQUARED, independent_rows, free=True)

@@ -1,4 +1,4 @@
-"""The weighted form (18) and the KKT form: N_{B,G}^T tau = N_{B,G}^T M u, and the conditions of least norm.
+"""u by (18) and by the whole system: N_{B,G}^T tau = N_{B,G}^T M u, and the conditions of least norm.
 
 Both work on matrices of the whole size and square the condition of B; they are here to be compared with.
 """

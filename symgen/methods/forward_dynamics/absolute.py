@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from symgen.mechanics.absolute_angles import absolute_angles
 from symgen.mechanics.system import System
-from symgen.methods.forward_dynamics.motion import MotionMethod
+from symgen.methods.forward_dynamics.motion import Motion
 from symgen.methods.graphs import Moved
 from symgen.methods.quantity import Quantity
 from symgen.model.model import Model
@@ -37,7 +37,7 @@ def brought_back(graph: Graph, mechanics: System, derived: Quantity) -> Quantity
     return replace(derived, outputs=there.scalars(outputs), guards=guards)
 
 
-def motion_brought_back(graph: Graph, mechanics: System | None, motion: MotionMethod) -> MotionMethod:
+def motion_brought_back(graph: Graph, mechanics: System | None, motion: Motion) -> Motion:
     """The same for q_ddot and lambda together; in the coordinates they have where no `mechanics` are given."""
     change = None if mechanics is None else mechanics.change
     accelerations = motion.accelerations if change is None else change.relative(motion.accelerations)

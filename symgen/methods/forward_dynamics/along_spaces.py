@@ -15,7 +15,7 @@ from symgen.methods.derivation import Derivation
 from symgen.methods.forward_dynamics.absolute import in_absolute_angles, motion_brought_back
 from symgen.methods.forward_dynamics.held_lengths import completed_multipliers
 from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA, minor_motion
-from symgen.methods.forward_dynamics.motion import MotionMethod, Problem
+from symgen.methods.forward_dynamics.motion import Motion, Problem
 from symgen.methods.forward_dynamics.motions import POSITIVE, AlongNullSpace, constraints, independent_rows
 from symgen.methods.forward_dynamics.schur import schur_qr
 from symgen.methods.method import Method
@@ -71,8 +71,8 @@ def _by_elimination(derivation: Derivation) -> bool:
 
 
 def _solved_apart(
-    derivation: Derivation, solved: Callable[[Problem], MotionMethod], measured: bool = False
-) -> MotionMethod:
+    derivation: Derivation, solved: Callable[[Problem], Motion], measured: bool = False
+) -> Motion:
     """A motion worked out in absolute angles; `measured` tells that it looks at the rank of B itself.
 
     There G keeps the inertias of bodies apart, and a crank does not feel what the links behind it carry.  They are so
@@ -89,24 +89,24 @@ def _solved_apart(
     return replace(made, guards=(*(() if measured else derivation.space.guards), *made.guards))
 
 
-def _minor(derivation: Derivation) -> MotionMethod:
+def _minor(derivation: Derivation) -> Motion:
     return _solved_apart(derivation, lambda problem: minor_motion(problem).motion)
 
 
-def _schur_qr(derivation: Derivation) -> MotionMethod:
+def _schur_qr(derivation: Derivation) -> Motion:
     rank = derivation.generic.rank
     # it measures ranks itself where rows are many, or depend on each other
     measured = derivation.r > min(rank, LONGEST_PRODUCT)
     return _solved_apart(derivation, lambda problem: schur_qr(problem, rank), measured)
 
 
-def _nullspace(derivation: Derivation) -> MotionMethod:
+def _nullspace(derivation: Derivation) -> Motion:
     inertia, completed = derivation.inertia, completed_multipliers(derivation.mechanics)
     made = nullspace(Problem(derivation.mechanics, derivation.space.guards), derivation.space, inertia)
     return replace(made, multipliers=completed(made.multipliers))
 
 
-def nullspace(problem: Problem, space: NullSpace, inertia: ConstrainedInertia) -> MotionMethod:
+def nullspace(problem: Problem, space: NullSpace, inertia: ConstrainedInertia) -> Motion:
     """q_ddot = K (f + G B^+ a) - B^+ a, lambda = (B^+)^T (f - G q_ddot), with one step of refinement.
 
     It needs G positive definite on ker B only.  Both expressions lose what masses are apart by, in f - G q_ddot most of
@@ -124,7 +124,7 @@ def nullspace(problem: Problem, space: NullSpace, inertia: ConstrainedInertia) -
     first = solve(problem.force, asked)
     left_over = of_motion(problem.graph, problem.mass_matrix, problem.rows, problem.force, asked)
     accelerations, multipliers = refined(problem.graph, first, left_over, solve)
-    return MotionMethod(accelerations, multipliers, (*space.guards, *_own(space, inertia)))
+    return Motion(accelerations, multipliers, (*space.guards, *_own(space, inertia)))
 
 
 def _own(space: NullSpace, inertia: ConstrainedInertia) -> tuple[Guard, ...]:

@@ -23,7 +23,7 @@ from symgen.mechanics.system import System
 from symgen.methods.forward_dynamics.held_lengths import HeldLengths, LengthsApart, held_lengths
 from symgen.methods.forward_dynamics.joint_accelerations import by_joints
 from symgen.methods.forward_dynamics.loop_points import LoopPoint, acceleration, loop_points, wrenches
-from symgen.methods.forward_dynamics.motion import MotionMethod, Problem
+from symgen.methods.forward_dynamics.motion import Motion, Problem
 from symgen.methods.forward_dynamics.motions import BY_BODIES_ALONE, STRUCTURED, Alone
 from symgen.methods.method import Method
 from symgen.methods.workspace import Workspace
@@ -131,12 +131,12 @@ class BodyEquations:
         self._apart = LengthsApart(self._problem, factor, columns, held, rank)
         self.guards = self._apart.guards
 
-    def motion(self, by_bodies: bool = False) -> MotionMethod:
+    def motion(self, by_bodies: bool = False) -> Motion:
         """q_ddot and lambda; `by_bodies` they are refined by Newton and Euler's equations of the bodies."""
         mechanics, problem = self._mechanics, self._problem
         if not by_bodies and (own := by_joints(mechanics, self._factor, problem.loops, self._forces)) is not None:
             found = self._apart.solve(own.force, own.bias, raised=own.raised)
-            return MotionMethod(found[0], self._completed(problem.of_the_model(found[1])), self.guards)
+            return Motion(found[0], self._completed(problem.of_the_model(found[1])), self.guards)
         none = (mechanics.graph.zero,) * mechanics.n
         given = mechanics.given_force
         force = self._factor.lowered(given, self._inertial_forces(mechanics.qd, none, mechanics.bodies.gravity))
@@ -149,7 +149,7 @@ class BodyEquations:
                 return self._less(given, loads, q_ddot, multipliers), problem.bias_at(q_ddot)
 
             found = self._refined(force, problem.bias, left_over)
-        return MotionMethod(found[0], self._completed(problem.of_the_model(found[1])), self.guards)
+        return Motion(found[0], self._completed(problem.of_the_model(found[1])), self.guards)
 
     def answered(self, asked: Vector) -> Vector:
         """x with G x + B^T lambda = 0, B x = `asked`, of rows that are not `turned`."""
@@ -194,7 +194,7 @@ class BodyEquations:
         return {name: tuple(-x for x in (*wrench.moment, *wrench.force)) for name, wrench in found.items()}
 
 
-def articulated(model: Model, generic: Genericity, by_bodies: bool = False) -> tuple[System, MotionMethod] | None:
+def articulated(model: Model, generic: Genericity, by_bodies: bool = False) -> tuple[System, Motion] | None:
     """The motion and the system it was derived on, a graph of its own; `by_bodies` it is refined by their equations.
 
     None where T is not that of bodies alone, a coordinate moves several frames or none, or G is not definite.
@@ -204,7 +204,7 @@ def articulated(model: Model, generic: Genericity, by_bodies: bool = False) -> t
 
 
 def body_equations(model: Model, generic: Genericity, turned: bool) -> tuple[System, BodyEquations] | None:
-    """The equations of a system of bodies on a graph of their own; None where it lacks that form."""
+    """The equations of a system of bodies on a graph of their own; None where it lacks them."""
     energy = model.kinetic_energy
     if not model.mechanism.has_mass or not isinstance(energy, Number) or energy.value != 0:
         return None
@@ -225,7 +225,7 @@ def body_equations(model: Model, generic: Genericity, turned: bool) -> tuple[Sys
 
 
 def lacking(model: Model, generic: Genericity) -> str:
-    """Why a system of bodies has no articulated form, and what would give it one."""
+    """Why a system of bodies has no articulated inertias, and what would give it one."""
     energy = model.kinetic_energy
     if not isinstance(energy, Number) or energy.value != 0:
         return "part of the kinetic energy is written out: describe it by bodies"
@@ -294,7 +294,7 @@ def _names(mechanics: System, stand_ins: Mapping[str, Scalar]) -> dict[str, Scal
     return names
 
 
-def _alone(workspace: Workspace, by_bodies: bool = False) -> tuple[System, MotionMethod] | str:
+def _alone(workspace: Workspace, by_bodies: bool = False) -> tuple[System, Motion] | str:
     found = articulated(workspace.model, workspace.generic, by_bodies)
     return BY_BODIES_ALONE if found is None else found
 

@@ -83,7 +83,7 @@ def held_lengths(joints: Sequence[QuaternionJoint], rows: Matrix, graph: Graph) 
 
 
 def completed_multipliers(mechanics: System) -> Callable[[Vector], Vector]:
-    """What completes multipliers of any form by those of rows that hold lengths, see `HeldLengths.multipliers`.
+    """What completes multipliers by any method by those of rows that hold lengths, see `HeldLengths.multipliers`.
 
     Only where nothing but the attitudes of frames depends on a quaternion: then bodies do no work on its length.
     """

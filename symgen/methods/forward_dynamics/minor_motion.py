@@ -18,7 +18,7 @@ from symgen.ir.kernel import Status
 from symgen.linear_algebra.constrained_inverse import diagonal_sizes
 from symgen.linear_algebra.exterior import Multivector, in_either_sign, unit, wedge, wedge_all
 from symgen.linear_algebra.guards import Guard, magnitude
-from symgen.methods.forward_dynamics.motion import MotionMethod, Problem
+from symgen.methods.forward_dynamics.motion import Motion, Problem
 from symgen.symbolic.matrix import Matrix, Vector, dot, identity, matmul, matvec, transpose
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost
@@ -129,14 +129,14 @@ class MinorMotion:
         return transpose(tuple(self.lift(axis) for axis in identity(self._graph, self._problem.r)), self._n)
 
     @cached_property
-    def motion(self) -> MotionMethod:
+    def motion(self) -> Motion:
         """q_ddot = K f - y and lambda = (B_G^+)^T (f + G y) with y = B_G^+ a."""
         problem = self._problem
         shift = self.lift(problem.bias)
         accelerations = tuple(x - y for x, y in zip(self.solve(problem.force), shift, strict=True))
         inertial = matvec(self._graph, problem.mass_matrix, shift)
         loaded = tuple(f + x for f, x in zip(problem.force, inertial, strict=True))
-        return MotionMethod(accelerations, self.press(loaded), self.guards)
+        return Motion(accelerations, self.press(loaded), self.guards)
 
 
 def minor_motion(problem: Problem) -> MinorMotion:

@@ -1,4 +1,4 @@
-"""The equations of motion as one linear system, and what a form of its solution consists of.
+"""The equations of motion as one linear system, and its solution.
 
 G q_ddot + B^T lambda = f and B q_ddot = -a, with f = M u - C q_dot - Q + Q_a and a = B_dot q_dot (3), (1).
 """
@@ -19,7 +19,7 @@ from symgen.symbolic.scalar import Graph, Scalar
 
 
 @dataclass(frozen=True, slots=True)
-class MotionMethod:
+class Motion:
     """q_ddot (n) and lambda (r) with the denominators they depend on."""
 
     accelerations: Vector

@@ -18,7 +18,7 @@ from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
 from symgen.methods.admission import DECIMALS, ByTheorem, Singular, Verdict
 from symgen.methods.derivation import Derivation
-from symgen.methods.forward_dynamics.motion import MotionMethod
+from symgen.methods.forward_dynamics.motion import Motion
 from symgen.methods.graphs import forget_others
 from symgen.methods.method import MOTIONS, Candidate
 from symgen.methods.quantity import Quantity, resting_on
@@ -63,7 +63,7 @@ class AlongNullSpace(ByTheorem):
     may double with each row, and is given up where there are others.
     """
 
-    solved: Callable[[Derivation], MotionMethod]
+    solved: Callable[[Derivation], Motion]
     theorem: str
     lacking: Callable[[Genericity], str | None] | None = None
     offered: Callable[[Derivation], bool] | None = None
@@ -82,7 +82,7 @@ class AlongNullSpace(ByTheorem):
         singular = () if found is None else (_singular(candidate.system.mechanics, found),)
         return Verdict(0, 0, singular, "" if singular else self.theorem)
 
-    def _alone(self, workspace: Workspace) -> tuple[System, MotionMethod] | str:
+    def _alone(self, workspace: Workspace) -> tuple[System, Motion] | str:
         generic = workspace.generic
         if self.lacking is not None and (reason := self.lacking(generic)):
             return reason
@@ -96,7 +96,7 @@ class AlongNullSpace(ByTheorem):
 class Alone(ByTheorem):
     """A method of q_ddot and lambda that needs no null space, and brings its own system."""
 
-    solved: Callable[[Workspace], tuple[System, MotionMethod] | str]
+    solved: Callable[[Workspace], tuple[System, Motion] | str]
     theorem: str
 
     def build(self, workspace: Workspace, quantity: str) -> Candidate | str:
@@ -104,12 +104,14 @@ class Alone(ByTheorem):
         return _shared(workspace, self, self.solved, quantity)
 
 
-def motions_along(derivation: Derivation) -> dict[str, MotionMethod]:
+def motions_along(derivation: Derivation) -> dict[str, Motion]:
     """Those that may be chosen by themselves along the null space of a derivation, on its graph."""
-    made = ((row.name, row.load()) for row in methods(MOTIONS[0], Use.CHOSEN))
-    along = {name: one for name, one in made if isinstance(one, AlongNullSpace) and one.offered is not None}
-    offered = {name: one for name, one in along.items() if one.offered is not None and one.offered(derivation)}
-    found: dict[str, MotionMethod] = {}
+    offered: dict[str, AlongNullSpace] = {}
+    for row in methods(MOTIONS[0], Use.CHOSEN):
+        one = row.load()
+        if isinstance(one, AlongNullSpace) and one.offered is not None and one.offered(derivation):
+            offered[row.name] = one
+    found: dict[str, Motion] = {}
     for name, one in offered.items():
         if not one.grows or len(offered) == 1:
             found[name] = one.solved(derivation)
@@ -129,7 +131,7 @@ def motions_alone() -> list[str]:
 
 
 def _shared(
-    workspace: Workspace, key: object, solved: Callable[[Workspace], tuple[System, MotionMethod] | str], quantity: str
+    workspace: Workspace, key: object, solved: Callable[[Workspace], tuple[System, Motion] | str], quantity: str
 ) -> Candidate | str:
     """One of both quantities; what was solved stays in the workspace for the other one."""
     if key not in workspace.motions:
@@ -139,7 +141,7 @@ def _shared(
     return kept if isinstance(kept, str) else Candidate(kept[0], kept[1][quantity])
 
 
-def _kept(generic: Genericity, mechanics: System, made: MotionMethod) -> tuple[MethodInput, dict[str, Quantity]]:
+def _kept(generic: Genericity, mechanics: System, made: Motion) -> tuple[MethodInput, dict[str, Quantity]]:
     """q_ddot, and lambda where there are constraints, and nothing else on their graph."""
     both = {name: resting_on(made.guards, name, made.part(name)) for name in MOTIONS[: 1 + bool(generic.r)]}
     forget_others(mechanics, both.values())

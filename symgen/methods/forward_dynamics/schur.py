@@ -16,7 +16,7 @@ from symgen.linear_algebra.guards import Guard
 from symgen.linear_algebra.null_spaces import LONGEST_PRODUCT
 from symgen.linear_algebra.orthogonal import PivotedGramSchmidt, WeightedGramSchmidt
 from symgen.linear_algebra.refinement import Solution, less_forces, missing, of_columns, refined
-from symgen.methods.forward_dynamics.motion import MotionMethod, Problem
+from symgen.methods.forward_dynamics.motion import Motion, Problem
 from symgen.symbolic.matrix import Matrix, Vector, subtract_vectors
 from symgen.symbolic.scalar import Graph, Scalar
 
@@ -48,7 +48,7 @@ class SchurQR:
         columns = [self._factor.lowered(row) for row in problem.rows]
         self._elimination = Elimination(problem, self._factor, columns, rank)
 
-    def motion(self, force: Vector, bias: Vector) -> MotionMethod:
+    def motion(self, force: Vector, bias: Vector) -> Motion:
         """The solution of G q_ddot + B^T lambda = f, B q_ddot = -a."""
         graph, factor, elimination, rows = self._graph, self._factor, self._elimination, self._elimination.rows
         asked = elimination.asked(bias)
@@ -62,7 +62,7 @@ class SchurQR:
         return elimination.motion(factor.lowered(force), asked, left_over)
 
 
-def schur_qr(problem: Problem, rank: int) -> MotionMethod:
+def schur_qr(problem: Problem, rank: int) -> Motion:
     """q_ddot and lambda of a system's own right-hand sides."""
     return SchurQR(problem, rank).motion(problem.force, problem.bias)
 
@@ -101,10 +101,10 @@ class Elimination:
         """q_ddot of x = D L^T q_ddot."""
         return self._factor.raised(tuple(entry * weight for entry, weight in zip(x, self.weights, strict=True)))
 
-    def motion(self, force: Vector, asked: Vector, left_over: Callable[[Vector, Vector], Solution]) -> MotionMethod:
+    def motion(self, force: Vector, asked: Vector, left_over: Callable[[Vector, Vector], Solution]) -> Motion:
         """q_ddot and lambda for L^-1 f; `left_over` is what a solution leaves of the right-hand sides."""
         x, multipliers = self._solution(force, asked, left_over)
-        return MotionMethod(self.accelerations(x), multipliers, self.guards)
+        return Motion(self.accelerations(x), multipliers, self.guards)
 
     def by_columns(self, force: Vector, bias: Vector, refining: bool = True) -> Solution:
         """x and lambda for L^-1 f and a, refined by the columns of A."""

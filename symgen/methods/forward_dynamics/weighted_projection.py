@@ -14,7 +14,7 @@ from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.mechanics.system import System
 from symgen.methods.admission import ByTheorem
 from symgen.methods.forward_dynamics.absolute import in_absolute_angles, motion_brought_back
-from symgen.methods.forward_dynamics.motion import MotionMethod, Problem
+from symgen.methods.forward_dynamics.motion import Motion, Problem
 from symgen.methods.forward_dynamics.motions import BY_BODIES_ALONE, POSITIVE, STRUCTURED
 from symgen.methods.forward_dynamics.schur import SchurQR
 from symgen.methods.graphs import Moved
@@ -35,7 +35,7 @@ def weighted_projection(
 ) -> tuple[Matrix, tuple[Guard, ...]] | None:
     """One of both quantities on the graph of `mechanics` with its guards; None where G is not positive definite.
 
-    `before` tell where B loses rank.  G is factorised in absolute angles, as for the form of the same name of q_ddot.
+    `before` tell where B loses rank.  G is factorised in absolute angles, as for the method of the same name of q_ddot.
     """
     if not mechanics.r or not positive_definite(mechanics):
         return None
@@ -95,7 +95,7 @@ class _Eliminated(ByTheorem):
         return Candidate(system, Quantity(quantity, (len(matrix), len(matrix[0])), flatten(matrix), guards))
 
 
-def _motions(mechanics: System, solver: SchurQR, quantity: str) -> list[MotionMethod]:
+def _motions(mechanics: System, solver: SchurQR, quantity: str) -> list[Motion]:
     """The solution for each right-hand side."""
     graph, n, r = mechanics.graph, mechanics.n, mechanics.r
     nothing: tuple[tuple[Scalar, ...], tuple[Scalar, ...]] = (graph.zero,) * n, (graph.zero,) * r

@@ -1,4 +1,4 @@
-"""u along a null space: the minor form (Cauchy-Binet over the inputs, theory section 3.1) and the Householder form.
+"""u along a null space: minors (Cauchy-Binet over the inputs) and reflections.
 
 Minor: sum_J Delta_J^2 u_J / sum_J Delta_J^2 over the input subsets.  Householder: B^T = Q R, applied to M and tau, then
 determinants of the last rows of Q^T M.

@@ -1,6 +1,6 @@
 """Counted costs that methods of u cannot fall below, known before they are built.
 
-A form whose bound exceeds the cost of one that is admitted need not be derived.  Every form evaluates the model's own
+A method whose bound exceeds the cost of a valid one need not be derived.  Every method evaluates the model's own
 expressions (balance, B, M).  Only what is certain is added: rows of B in which every entry differs from zero count, so
 that sparse models, where minors vanish, are never judged by the number of their subsets.
 """
@@ -14,7 +14,7 @@ from symgen.mechanics.system import System
 from symgen.methods.system import MethodInput
 from symgen.symbolic.matrix import Matrix
 
-# A root and a division for each reflection are the least that the Householder form adds to its data.
+# A root and a division for each reflection are the least that `householder` adds to its data.
 REFLECTION = 12
 
 

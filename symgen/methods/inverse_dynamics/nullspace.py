@@ -1,9 +1,9 @@
-"""The null-space form: a closed basis W of ker B, then u = (W^T M)^+ W^T tau with delta x delta determinants.
+"""The null-space method: a closed basis W of ker B, then u = (W^T M)^+ W^T tau with delta x delta determinants.
 
 B q_dot = 0 is first reduced by steps that cannot fail (`rates`).  The small rest falls into components that share no
 rate.  Where one direction is left in a component, it is the cross product of its rows; where more are, some rates have
 to be solved for by Cramer's rule, and the basis fails where their determinant vanishes although the rest keeps its
-rank: that determinant is one of the form's pivots.
+rank: that determinant is one of the method's pivots.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class _Kernel:
 
 
 def nullspace_form(system: MethodInput, allowed: Callable[[Scalar], bool]) -> Candidate | str:
-    """The form along the first choice of rates whose determinant is `allowed`, or along the first of all."""
+    """u along the first choice of rates whose determinant is `allowed`, or along the first of all."""
     reason = system.driven or system.regular
     if reason is not None:
         return reason
