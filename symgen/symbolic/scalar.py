@@ -255,8 +255,19 @@ class Graph:
         return self._new(key, op, args, payload) if node is None else node
 
     def over(self, node: Scalar, args: tuple[Scalar, ...]) -> Scalar:
-        """The operation of a scalar over other arguments, as it stands; the scalar itself over its own."""
-        return node if args == node.args else self.raw(node.op, args, node.payload)
+        """The operation of a scalar over other arguments, their signs taken out; the scalar itself over its own."""
+        if args == node.args:
+            return node
+        if node.op == "mul" and any(a.op == "neg" for a in args):
+            # as twins: x (-y) and -(x y) are found to be opposite
+            negative = sum(a.op == "neg" for a in args) == 1
+            product = self.raw("mul", tuple(a.args[0] if a.op == "neg" else a for a in args))
+            return self.raw("neg", (product,)) if negative else product
+        if node.op in ("add", "sub") and args[1].op == "neg":
+            return self.raw("sub" if node.op == "add" else "add", (args[0], args[1].args[0]))
+        if node.op == "add" and args[0].op == "neg":
+            return self.raw("sub", (args[1], args[0].args[0]))
+        return self.raw(node.op, args, node.payload)
 
     def sum(self, terms: Iterable[Scalar]) -> Scalar:
         """Left-to-right sum; 0 for no terms."""
