@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 
-from sympy import Add, Expr, ImmutableDenseMatrix, Integer, Symbol
+from sympy import Add, Expr, ImmutableDenseMatrix, Integer, Symbol, preorder_traversal
 from sympy.polys.rings import PolyElement
 
 from symgen.closedform.algebra.limits import TooLargeError
@@ -26,6 +26,9 @@ MOST_PRODUCTS = 20 * LONGEST_SQUARES
 
 MOST_MINORS = 30
 """More named minors than this are not listed."""
+
+LONGEST_MINORS = 10_000
+"""Minors of more symbols, numbers and operations are not listed: some ten pages, which take a gigabyte beyond that."""
 
 
 @dataclass(slots=True)
@@ -193,4 +196,8 @@ def _finish(entries: Sequence[Sequence[Expr]], naming: Naming, sums: Iterable[tu
     first = [(symbol, value) for symbol, value in naming.elements.items() if symbol in used]
     if len(first) > MOST_MINORS:
         raise TooLargeError(f"{len(first)} minors")
-    return Structured(matrix, (*((symbol, naming.speller.polynomial(value)) for symbol, value in first), *last))
+    named = [(symbol, naming.speller.polynomial(value)) for symbol, value in first]
+    length = sum(1 for _, meaning in named for _ in preorder_traversal(meaning))
+    if length > LONGEST_MINORS:
+        raise TooLargeError(f"minors with {length} symbols and operations")
+    return Structured(matrix, (*named, *last))

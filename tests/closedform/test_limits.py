@@ -65,3 +65,40 @@ configuration: {{{", ".join(f"{angle}: {0.5 * k - 1}" for k, angle in enumerate(
     )
     closed = derive_closed_forms(load_model(path))
     assert closed.null_space is None
+
+
+SPATIAL = """
+model: wedged
+parameters: {g: {value: 9.81}, l: {value: 0.37}, rod: {value: 0.52}}
+gravity: [0, "-g", 0]
+joints:
+  j_1: {type: cylindrical, axis: z, rotation: [[x, 0.3]], child: link, coordinates: [s_1, a_1]}
+  j_2: {type: cylindrical, at: [0.75, -0.35, -0.75], axis: x, coordinates: [s_2, a_2]}
+  j_3: {type: revolute, parent: link, at: [0, 0, 0.75], axis: y, rotation: [[y, 1.1]], coordinate: a_3}
+  j_4: {type: revolute, parent: j_3, at: [0, 0, l], axis: x, child: tool, coordinate: a_4}
+bodies:
+  link: {mass: 6.9, inertia: {xx: 0.1, yy: 0.05, zz: 0.05}}
+  tool: {mass: 2.4, com: [0, 0.1, 0], inertia: {xx: 0.08, yy: 0.05, zz: 0.05}}
+points:
+  tip: {frame: j_2, at: [0, 0.6, 0]}
+  anchor: {frame: link, at: [1.17, 0.45, -1.09]}
+  end: {frame: tool, at: [0, 0.25, 0]}
+  pin: {frame: j_2, at: [-1.07, 1.03, 1.53]}
+loops:
+  first: {type: distance, between: [tip, anchor], length: rod}
+  second: {type: distance, between: [end, pin], length: rod}
+"""
+
+
+def test_minors_of_many_pages_are_not_printed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # rods in space, behind oblique axes: few minors, each of them pages long
+    path = tmp_path / "wedged.yaml"
+    path.write_text(SPATIAL, encoding="utf-8")
+    projector = derive_closed_forms(load_model(path)).forms["nullspace_projector"]
+    printed = sum(len(str(meaning)) for _, meaning in projector.intermediates)
+    assert printed < 100_000
+    monkeypatch.setattr("symgen.closedform.structured.LONGEST_MINORS", 10)
+    model = load_model(Path(__file__).resolve().parents[2] / "models" / "five_bar.yaml")
+    projector = derive_closed_forms(model).forms["nullspace_projector"]
+    assert projector.matrix is None
+    assert "symbols and operations" in projector.note
