@@ -60,6 +60,25 @@ def test_what_a_sum_adds_and_another_term_takes_off_is_gone(graph: Graph) -> Non
     assert Evaluator([found])(big) == pytest.approx(values([b * f - g]))
 
 
+def test_what_is_taken_off_by_a_sign_within_a_product_is_gone(graph: Graph) -> None:
+    # a difference and the opposite one become one, with a sign before it inside of a product
+    a, b, c, f, g, h, _, x, y, _ = symbols(graph)
+    inner, opposite = f * (x * c - y * h), f * (y * h - x * c)
+    outputs = [((a + b) * inner - g) + a * opposite, inner]
+    found = grouped(graph, Factoring(graph, ()), outputs)
+    assert Evaluator(found)({**POINT, "a": 1e20}) == pytest.approx(values([b * inner - g, inner]))
+
+
+@pytest.mark.parametrize("sign", range(8))
+def test_signs_of_operands_are_taken_out(graph: Graph, sign: int) -> None:
+    a, b, c, *_ = symbols(graph)
+    left, right = (-x if sign >> k & 1 else x for k, x in enumerate((a, b)))
+    node = graph.raw(["add", "sub", "mul"][sign % 3], (c, a))
+    found = graph.over(node, (left, right))
+    assert values([found]) == values([graph.raw(node.op, (left, right))])
+    assert cost([found]).signs <= cost([left, right]).signs
+
+
 def test_terms_without_a_partner_and_all_signs(graph: Graph) -> None:
     a, b, c, f, g, *_ = symbols(graph)
     for outputs in ([graph.neg(a * f) - b * f], [g - a * f - b * f - c], [a * f - (b * f - c * f)]):
