@@ -19,7 +19,7 @@ typedef struct {
 
 arm7_prepared arm7_prepare(const arm7_params *p);
 
-/* q̈: accelerations under the inputs, (15); 1425 operations instead of 1756 */
+/* q̈: accelerations under the inputs, (15); 1421 operations instead of 1751 */
 arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7], const double u[7], const arm7_prepared *p, double qdd[7]);
 
 #ifdef __cplusplus

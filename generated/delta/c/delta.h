@@ -18,9 +18,9 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      52     71      1      0      3      0
- * forward_dynamics     247    366      9      2      3      0
- * multipliers          231    340      9      2      3      0
- * singularity           60    108     13      3      3      0
+ * forward_dynamics     247    365      9      2      3      0
+ * multipliers          229    339      9      2      3      0
+ * singularity           56    107     13      3      3      0
  * (changes of sign are not counted)
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

@@ -29,7 +29,7 @@
  * constraint_pseudoinverse            134    202     14      4      6      0
  * nullspace_projector                 105    168      4      4      6      0
  * nullspace_projector_dot             375    533     14      4      6      0
- * weighted_pseudoinverse              291    530      1      0      6      0
+ * weighted_pseudoinverse              286    491      1      0      6      0
  * weighted_nullspace_projector        207    320     17      4      6      0
  * control_matrix                        0      0      0      0      0      0
  * projected_control_matrix            101    177      1      0      6      0
@@ -40,7 +40,7 @@
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                  75    134      1      0      6      0
- * minimal_coriolis_matrix             333    595      2      0      6      0
+ * minimal_coriolis_matrix             330    566      2      0      6      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix               27     61      1      0      6      0
@@ -49,8 +49,8 @@
  * projected_configuration             217    234     16      8     12      0
  * inverse_dynamics                     51     79      3      0      5      0
  * inverse_dynamics_residual             0      0      0      0      0      0
- * forward_dynamics                    338    467     18      3      6      0
- * multipliers                         319    444     18      3      6      0
+ * forward_dynamics                    338    469     18      3      6      0
+ * multipliers                         319    446     18      3      6      0
  * energy                               20     31      0      0      3      0
  * singularity                          55     96     17      4      6      0
  * (changes of sign are not counted)

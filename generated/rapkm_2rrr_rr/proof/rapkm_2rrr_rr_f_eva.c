@@ -399,7 +399,7 @@ void eva_nullspace_projector_dot(void) {
 
 void eva_weighted_pseudoinverse(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t385. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t364. */
 void eva_weighted_pseudoinverse(void) {
     float q[6];
     rapkm_2rrr_rr_params_f p;
@@ -494,7 +494,7 @@ void eva_control_matrix(void) {
 
 void eva_projected_control_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t164. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t162. */
 void eva_projected_control_matrix(void) {
     float q[6];
     rapkm_2rrr_rr_params_f p;
@@ -762,7 +762,7 @@ void eva_minimal_mass_matrix(void) {
 
 void eva_minimal_coriolis_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t217, t181. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t211, t175. */
 void eva_minimal_coriolis_matrix(void) {
     float q[6];
     float qd[6];
@@ -1110,7 +1110,7 @@ void eva_inverse_dynamics_residual(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t157, t236, t227, t261, t296, t209, t337, t419, t429, t434, t405. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t157, t236, t227, t261, t296, t209, t337, t418, t428, t433, t404. */
 void eva_forward_dynamics(void) {
     float q[6];
     float qd[6];
@@ -1153,7 +1153,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t157, t236, t227, t261, t296, t209, t337, t419, t429, t434, t405. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t88, t157, t236, t227, t261, t296, t209, t337, t418, t428, t433, t404. */
 void eva_multipliers(void) {
     float q[6];
     float qd[6];
