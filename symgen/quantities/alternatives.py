@@ -15,7 +15,7 @@ from symgen.methods.method import MOTIONS
 from symgen.methods.quantity import Quantity, scalars
 from symgen.methods.selection import MethodChoice, Methods
 from symgen.methods.spaces import SPACES
-from symgen.methods.table import NAMED, Use, methods
+from symgen.methods.table import Use, methods
 from symgen.model.model import Model
 from symgen.quantities.catalogue import BY_NAME, derive
 from symgen.quantities.finish import complete, with_groups
@@ -91,22 +91,30 @@ class Alternatives:
 
     def _named(self, quantity: str, name: str) -> Alternative | None:
         mechanics = System(self._model)
-        if name in SPACES and _is_along_spaces(quantity):
+        if not _is_along_spaces(quantity):
+            return self._by_method(quantity, name, mechanics)
+        if name in SPACES:
             along = SPACES[name](mechanics, self._generic)
-            if isinstance(along, str):
-                return None
-            derived = derive(BY_NAME[quantity], along)
-            return self._alone(derived, Choice(quantity, name, ((name, cost(scalars(derived)).weight),)), mechanics)
+            found = along if isinstance(along, str) else derive(BY_NAME[quantity], along)
+        else:
+            made = self._methods.candidate(quantity, name)
+            found = made if isinstance(made, str) else derived_on(mechanics.graph, made)
+        if isinstance(found, str):
+            return None
+        # counted alike along null spaces and by methods
+        return self._alone(found, Choice(quantity, name, ((name, cost(scalars(found)).weight),)), mechanics)
+
+    def _by_method(self, quantity: str, name: str, mechanics: System) -> Alternative | None:
+        """u, q_ddot or lambda by a method that is nowhere singular."""
         candidate = self._methods.candidate(quantity, name)
         if isinstance(candidate, str):
             return None
-        found = self._methods.verdict(candidate, first_only=True)
-        if found.singular:
+        verdict = self._methods.verdict(candidate, first_only=True)
+        if verdict.singular:
             return None
-        known = MethodChoice(name, found, ((name, candidate.weight, found.explanation),))
+        known = MethodChoice(name, verdict, ((name, candidate.weight, verdict.explanation),))
         choice = Choice(quantity, name, known.costs, name if quantity in MOTIONS else "")
-        derived = derived_on(mechanics.graph, candidate)
-        return self._alone(derived, choice, mechanics, known if quantity in NAMED else None)
+        return self._alone(derived_on(mechanics.graph, candidate), choice, mechanics, known)
 
     def _alone(
         self, derived: Quantity, choice: Choice, mechanics: System, known: MethodChoice | None = None
