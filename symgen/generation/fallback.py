@@ -12,6 +12,7 @@ from collections import defaultdict, deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from itertools import islice
 from typing import TypeAlias
 
 from symgen.diagnostics import SymgenBug
@@ -245,19 +246,29 @@ class Fallback:
         scalars = tuple(draft.kernels(quantity))
         passing = [one for one in self._passing[quantity] if "float32" in scalars and one.scalars == ("float64",)]
         passing.sort(key=lambda one: (one.largest > MARGIN, one.way.cost))
-        single: tuple[Scalar, ...] = ("float32",)
-        chosen = [(one.way, single) for one in passing]
+        for one in islice((one for one in passing if one.way.cost <= LONGEST), WIDENED):
+            yield self._widened_way(draft, one.way, scalars, ("float32",), expected)
+        # those among them that are beyond what is allowed in float64 where they are worst
         inaccurate = sorted(self._inaccurate.pop(quantity, ()), key=lambda way: way.cost)
         asked = self._options.outputs or draft.model.outputs
         if inaccurate and inaccurate[0].cost > most_with_twice_the_digits(quantity, asked, self._options.forms):
             self._too_wide[quantity] = inaccurate[0].cost
-        else:
-            chosen += [(way, scalars) for way in inaccurate]
-        for way, wide in [one for one in chosen if one[0].cost <= LONGEST][:WIDENED]:
-            self._progress(f"twice the digits for {quantity}, {way.choice.way}")
-            way = grouped(way)
-            way = replace(way, choice=replace(way.choice, wide=wide))
-            yield self._measured(draft, way, draft.kernels_along(way, scalars), expected)
+            return
+        shortest: dict[str, Alternative] = {}
+        for way in inaccurate:
+            if way.cost <= LONGEST:
+                shortest.setdefault(way.choice.way, way)
+        for way in islice(shortest.values(), WIDENED):
+            yield self._widened_way(draft, way, scalars, scalars, expected)
+
+    def _widened_way(
+        self, draft: Draft, way: Alternative, scalars: tuple[Scalar, ...], wide: tuple[Scalar, ...], expected: Expected
+    ) -> _Candidate:
+        """A way with twice the digits in some types, measured."""
+        self._progress(f"twice the digits for {way.choice.quantity}, {way.choice.way}")
+        way = grouped(way)
+        way = replace(way, choice=replace(way.choice, wide=wide))
+        return self._measured(draft, way, draft.kernels_along(way, scalars), expected)
 
     def _measured(self, draft: Draft, way: Alternative, kernels: Kernels, expected: Expected) -> _Candidate:
         """The scalar types in which kernels pass by interpretation, and the largest error there; the rest is noted."""

@@ -23,7 +23,8 @@ from symgen.methods.selection import CANCELLATION_WORTH, FACTORING_LIMIT, Method
 from symgen.methods.spaces import derivations
 from symgen.methods.system import MethodInput
 from symgen.model.model import Model
-from symgen.quantities.catalogue import PARTITION, Entry, by_blocks, derive, derived_from
+from symgen.model.quantities import PARTITION
+from symgen.quantities.catalogue import Entry, by_blocks, derive, derived_from
 from symgen.quantities.everything import Everything
 from symgen.runtime.activity import working
 from symgen.symbolic.traverse import cost

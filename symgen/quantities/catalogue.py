@@ -10,9 +10,7 @@ from symgen.mechanics.genericity import Genericity
 from symgen.methods.derivation import Derivation
 from symgen.methods.quantity import Quantity, is_fixed
 from symgen.model.model import Model
-from symgen.model.quantities import ACTUATORS, QUANTITIES, QuantityRow
-from symgen.model.quantities import PARTITION as PARTITION
-from symgen.model.quantities import POINTS as POINTS
+from symgen.model.quantities import ACTUATORS, PARTITION, POINTS, QUANTITIES, QuantityRow
 from symgen.records import dataclass
 from symgen.symbolic.matrix import Vector, flatten
 

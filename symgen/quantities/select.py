@@ -13,8 +13,9 @@ from symgen.methods.method import INPUTS
 from symgen.methods.quantity import Quantity, scalars
 from symgen.methods.selection import AUTO, MethodChoice, Methods
 from symgen.model.model import Model
+from symgen.model.quantities import POINTS
 from symgen.quantities.candidates import Candidates
-from symgen.quantities.catalogue import BY_NAME, CATALOGUE, POINTS, missing
+from symgen.quantities.catalogue import BY_NAME, CATALOGUE, missing
 from symgen.quantities.everything import Everything, too_long
 from symgen.quantities.finish import finished, with_alike_bodies
 from symgen.quantities.row_units import in_ordinary_units

@@ -435,6 +435,27 @@ def test_where_every_way_loses_digits_one_works_with_twice_as_many(
     assert cli.main([*common, "--quiet", "--check"]) == 0
 
 
+def test_more_digits_in_float32_alone_take_nothing_from_more_in_both(
+    yoke: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ways that pass in float64 may be beyond what is allowed at states that others were looked for at."""
+    spoil_choice(monkeypatch, refusing_float32)
+    spoil_named(monkeypatch, losing_digits)
+    monkeypatch.setattr(fallback, "WIDENED", 1)
+    widened = fallback.Fallback._widened_way
+    tried = []
+
+    def failing(self: Any, draft: Any, way: Alternative, scalars: Any, wide: Any, expected: Any) -> Any:
+        tried.append(wide)
+        found = widened(self, draft, way, scalars, wide, expected)
+        return replace(found, scalars=()) if wide == ("float32",) else found
+
+    monkeypatch.setattr(fallback.Fallback, "_widened_way", failing)
+    result = made(yoke)
+    assert derived(result)["kernels"]["multipliers"]["twice_the_digits"] == ["float64", "float32"]
+    assert tried == [("float32",), ("float64", "float32")]
+
+
 def test_kernels_that_are_too_long_stay_as_they_are(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     spoil_choice(monkeypatch, losing_digits)
     spoil_named(monkeypatch, losing_digits)
