@@ -71,7 +71,7 @@ class Conditions:
         return bool(lengths.min() < GRADED * lengths.max())
 
     def _of_masses(self, state: State, name: str) -> float:
-        """κ(G), to which the loss of q̈ and λ under extreme mass ratios is compared."""
+        """κ(G), to which the loss of q̈ and λ is compared."""
         if name not in MASSIVE:
             return 1.0
         values = np.linalg.eigvalsh(self.matrix("mass_matrix", state))
