@@ -17,15 +17,28 @@ from symgen.symbolic.scalar import Graph, Scalar
 class ReflectedInputs:
     """A u = f for the columns of A, with as much rank as `degree` says; in the interface of `ActuationForms`.
 
-    `by_columns`: each pivot is what is left of one of the columns, otherwise of a component of all of them.
+    With `weights` w the columns are A_j / sqrt(w_j), and u_j their factors by sqrt(w_j).  `by_columns`: each pivot is
+    what is left of one of the columns, otherwise of a component of all of them.
     """
 
     single = False
     minors: frozenset[Scalar] = frozenset()
 
-    def __init__(self, graph: Graph, columns: Sequence[Vector], size: int, degree: int, everywhere: bool) -> None:
+    def __init__(
+        self,
+        graph: Graph,
+        columns: Sequence[Vector],
+        size: int,
+        degree: int,
+        everywhere: bool,
+        weights: Sequence[Scalar] = (),
+    ) -> None:
         self.graph, self.degree = graph, degree
-        self._columns = tuple(columns)
+        self._given = (tuple(columns), size, degree, everywhere)
+        self._shares = [1 / graph.function("sqrt", (weight,)) for weight in weights] or [graph.one] * len(columns)
+        self._columns = tuple(
+            tuple(entry * share for entry in column) for column, share in zip(columns, self._shares, strict=True)
+        )
         self.by_columns = degree == len(self._columns) < size
         rows = self._columns if self.by_columns else transpose(self._columns, size)
         self._space: HouseholderSpace = reflected(graph, rows, len(rows[0]), degree, everywhere, own=False)
@@ -34,9 +47,35 @@ class ReflectedInputs:
         """Nothing is multiplied out."""
         return self
 
+    def weighted(self, weights: Sequence[Scalar]) -> ReflectedInputs:
+        """The same with weights of the inputs."""
+        columns, size, degree, everywhere = self._given
+        return ReflectedInputs(self.graph, columns, size, degree, everywhere, weights)
+
+    def lengths(self, squares: Sequence[Scalar]) -> list[Scalar]:
+        """The squared lengths of the columns from those without weights."""
+        return [square * share * share for square, share in zip(squares, self._shares, strict=True)]
+
     def solve(self, force: Vector) -> Vector:
-        """A^+ f."""
-        return self._space.lift_transposed(force) if self.by_columns else self._space.lift(force)
+        """A^+ f; with weights the one of least weighted norm."""
+        factors = self._space.lift_transposed(force) if self.by_columns else self._space.lift(force)
+        return self._shared(factors)
+
+    def direction(self) -> Vector:
+        """The inputs of weighted norm 1 that move nothing, of one input more than directions.
+
+        Their sign is that of (-1)^k det[A without column k]: with A^T = Q R they are the last column of Q, which
+        stands first beside A^T in a determinant of det Q det R, and every reflection has the determinant -1.
+        """
+        reflections = self._space.reflections
+        (axis,) = transpose(self._space.basis, 1)
+        sign = self.graph.const(-1 if (len(reflections.reflectors) + self.degree) & 1 else 1)
+        for k, column in enumerate(reflections.triangle):
+            sign = sign * self.graph.function("copysign", (self.graph.one, column[k]))
+        return self._shared(tuple(sign * entry for entry in axis))
+
+    def _shared(self, factors: Vector) -> Vector:
+        return tuple(factor * share for factor, share in zip(factors, self._shares, strict=True))
 
     def square(self) -> Scalar:
         """The sum of the squared minors of A."""

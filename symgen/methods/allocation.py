@@ -2,8 +2,9 @@
 
 Of all inputs that produce a motion, those with the least weighted norm u^T W u are found by Cramer's rule over the
 input subsets, each multiplied by the weights of the inputs left out (columns scaled by 1/sqrt(w), theory 3.5, without
-a root).  For m = delta + 1 the internal force has one direction, the minors Delta_k = (-1)^(k-1) det[M without column
-k, B^T]; sum_k w_k Delta_k^2 is the denominator of u already, so Delta over its root has the weighted norm 1.
+a root), or by reflections of the scaled columns where the subsets are too many.  For m = delta + 1 the internal force
+has one direction, the minors Delta_k = (-1)^(k-1) det[M without column k, B^T]; sum_k w_k Delta_k^2 is the denominator
+of u already, so Delta over its root has the weighted norm 1, as the last direction of the reflections has.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from fractions import Fraction
 
 from symgen.linear_algebra.exterior import ActuationForms
 from symgen.linear_algebra.null_spaces import HouseholderSpace, NullSpace
+from symgen.linear_algebra.reflected_inputs import ReflectedInputs
 from symgen.mechanics.system import System
 from symgen.model.model import Allocation
 from symgen.symbolic.matrix import Vector, matvec, subtract_vectors
@@ -33,8 +35,13 @@ class InputAllocation:
         weights = [graph.one] * mechanics.m
         for name, parameter in allocation.weights:
             weights[self._place[name]] = graph.symbol(parameter)
-        forms, self._restriction = space.listed_actuation(mechanics.inputs, degree)
-        self.forms = ActuationForms(forms.rows, forms.inputs, forms.degree, weights)
+        self.forms: ActuationForms | ReflectedInputs
+        equations, self._restriction = space.actuation(mechanics.inputs, degree)
+        if isinstance(equations, ReflectedInputs):
+            self.forms = equations.weighted(weights)
+        else:
+            forms, self._restriction = space.listed_actuation(mechanics.inputs, degree)
+            self.forms = ActuationForms(forms.rows, forms.inputs, forms.degree, weights)
 
     def solve(self, force: Vector) -> Vector:
         """u (m): the inputs for a generalized force (n)."""
@@ -61,6 +68,8 @@ class InputAllocation:
         """Internal force: (-1)^(k-1) det[M without column k, B^T], or a positive multiple of it."""
         forms, graph = self.forms, self._graph
         sign = orientation_of(self._space)
+        if isinstance(forms, ReflectedInputs):
+            return tuple(sign * share for share in forms.direction())
         whole = (1 << forms.rows.n) - 1
         (family,) = forms.products
         # the subset that comes last leaves out the first input
@@ -76,7 +85,9 @@ class InputAllocation:
         graph, allocation = self._graph, self._allocation
         share = graph.zero
         if allocation.preload is not None:
-            share = graph.symbol(allocation.preload) / graph.function("sqrt", (self.forms.square(),))
+            share = graph.symbol(allocation.preload)
+            if isinstance(self.forms, ActuationForms):
+                share = share / graph.function("sqrt", (self.forms.square(),))
         lowest: list[Scalar] = []
         highest: list[Scalar] = []
         for limit in allocation.limits:

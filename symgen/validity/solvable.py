@@ -47,7 +47,7 @@ def solvable(
     bounds = magnitude(graph, lengths)
     sizes = [bound if _near(mechanics, x) else own for x, own, bound in zip(columns, lengths, bounds, strict=True)]
     if isinstance(forms, ReflectedInputs):
-        directions = _by_pivots(graph, forms, sizes, status, space.guards)
+        directions = _by_pivots(graph, forms, forms.lengths(sizes), status, space.guards)
     else:
         assert isinstance(forms, ActuationForms)
         directions = _by_minors(mechanics, generic, space, forms, sizes, status)

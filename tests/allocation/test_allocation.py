@@ -16,7 +16,10 @@ from symgen.backends.c.plain import emit_c
 from symgen.backends.python.module import emit_python
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.exterior import ActuationForms
+from symgen.linear_algebra.null_spaces import HouseholderSpace
+from symgen.linear_algebra.reflected_inputs import ReflectedInputs
 from symgen.methods.allocation import orientation_of
+from symgen.methods.derivation import Derivation
 from symgen.methods.spaces import derivations
 from symgen.symbolic.evaluate import Evaluator
 from symgen.verify.reference.allocation import internal_force
@@ -188,6 +191,27 @@ def test_every_way_gives_the_same_inputs(text: str) -> None:
             wanted = [float(x) for x in QUANTITIES["inverse_dynamics"](e).entries()]
             size = max(map(abs, wanted))
             assert evaluate(point(made, state)) == pytest.approx(wanted, rel=1e-9, abs=1e-9 * size)
+
+
+@pytest.mark.parametrize("text", [*WEIGHTS, *LIMITS], ids=lambda text: text.split()[1])
+def test_reflections_of_the_inputs_give_the_same(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As where determinants would be too many: the direction of the internal force keeps its sign."""
+    made = system(text, {**WEIGHTS, **LIMITS}[text])
+    monkeypatch.setattr("symgen.linear_algebra.null_spaces.small_family", lambda *_: False)
+    mechanics, generic = made.derivations.mechanics, made.derivations.generic
+    derivation = derivations(mechanics, generic).get("householder")
+    if derivation is None:
+        assert not made.model.r
+        derivation = Derivation(mechanics, generic, HouseholderSpace(mechanics.graph, (), made.model.n))
+    equations = derivation._allocation.forms
+    assert isinstance(equations, ReflectedInputs)
+    guards = derivation.inverse_dynamics_guards
+    evaluate = Evaluator([*derivation.inverse_dynamics, *(guard.denominator for guard in guards)])
+    for state, e in evaluations(made):
+        wanted = [float(x) for x in QUANTITIES["inverse_dynamics"](e).entries()]
+        found = evaluate(point(made, state))
+        assert found[: len(wanted)] == pytest.approx(wanted, rel=1e-12, abs=1e-12 * max(map(abs, wanted)))
+        assert all(x > 0 for x in found[len(wanted) :])
 
 
 def by_enumeration(made: System, state: State, e: Evaluation) -> Any | None:
