@@ -37,6 +37,7 @@ WITHHELD = "zoo.yaml: verification failed, nothing is written\n  C float64, G: e
         (Run(0, "", "zoo: reading\n", 1, 1), VERIFIED, ""),
         (Run(0, "", "zoo.yaml: notice: one thing\n", 1, 1), NOTICED, ""),
         (Run(1, "", MISTAKE, 1, 1), REFUSED, ""),
+        (Run(1, "", MISTAKE.replace(".yaml", ".urdf"), 1, 1), REFUSED, ""),
         (Run(1, "", "zoo.yaml: no\n", 1, 1), "failed", UNPLACED),
         (Run(1, "", WITHOUT_REMEDY, 1, 1), "failed", UNPLACED),
         (Run(1, "", UNTRUE, 1, 1), "failed", "refused without reason"),

@@ -10,7 +10,7 @@ from symgen.laboratory.zoo.run import Run
 VERIFIED, NOTICED, REFUSED, FAILED = "verified", "verified with a notice", "refused", "failed"
 # file:line:column: message, excerpt, marker, remedy
 PLACED = re.compile(
-    r"^[^\n]*?\.yaml:\d+:\d+: (?!notice: )(?P<message>[^\n]+)\n.*?^  remedy: (?P<remedy>[^\n]+)", re.M | re.S
+    r"^[^\n]*?\.(?:yaml|urdf):\d+:\d+: (?!notice: )(?P<message>[^\n]+)\n.*?^  remedy: (?P<remedy>[^\n]+)", re.M | re.S
 )
 LEFT_OUT = re.compile(r"(\w+) is left out in [\w ]+: verification rejects every way of it\n\s*([^\n]*)")
 NUMBERS = re.compile(r"[-+]?\d+(\.\d+)?([eE][-+]?\d+)?")
