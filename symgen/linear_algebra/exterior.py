@@ -184,6 +184,10 @@ class ActuationForms:
     def _product(self, form: Multivector, subset: tuple[int, ...]) -> Multivector:
         return wedge_all(form, [self.inputs[k] for k in subset])
 
+    def weighted(self, weights: Sequence[Scalar]) -> ActuationForms:
+        """The same with weights of the inputs."""
+        return ActuationForms(self.rows, self.inputs, self.degree, weights)
+
     @property
     def single(self) -> bool:
         """Whether there is one determinant only, so that a plain quotient solves (m = delta, independent rows)."""
@@ -262,6 +266,13 @@ class ActuationForms:
             return tuple(numerator / denominator for numerator in numerators)
         inverse = 1 / denominator
         return tuple(numerator * inverse for numerator in numerators)
+
+    def internal_force(self) -> tuple[Vector, Scalar]:
+        """Of one input more than directions: (-1)^k det[omega, M without column k], and their squared weighted norm."""
+        (family,) = self.products
+        # the subset that comes last leaves out the first input
+        minors = [product.get((1 << self.rows.n) - 1, self.graph.zero) for product in reversed(family)]
+        return tuple(-minor if k & 1 else minor for k, minor in enumerate(minors)), self.square()
 
     def _replaced(self, number: int, force: Vector) -> dict[tuple[int, ...], Multivector]:
         """By subset, the products of one row subset in which the force stands for the input that is missing."""

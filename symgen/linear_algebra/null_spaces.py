@@ -39,8 +39,17 @@ class InputEquations(Protocol):
     def cancelled(self, cancel: Callable[[Scalar], Scalar]) -> InputEquations:
         """The same with a single determinant multiplied out."""
 
+    def weighted(self, weights: Sequence[Scalar]) -> InputEquations:
+        """The same with weights of the inputs."""
+
     def solve(self, force: Vector) -> Vector:
         """The inputs of least norm."""
+
+    def internal_force(self) -> tuple[Vector, Scalar]:
+        """Of one input more than directions: inputs that move nothing, and their squared weighted norm.
+
+        Their signs are those of (-1)^k det[A without column k] for the columns A of the equations.
+        """
 
     def square(self) -> Scalar:
         """The sum of the squared determinants."""
@@ -97,16 +106,26 @@ def without(x: Vector, locked: Sequence[int]) -> Vector:
 class Restriction:
     """Brings a generalized force to the space in which the input equations are solved."""
 
-    def __init__(self, reflections: Reflections | None, skip: int, locked: Sequence[int] = ()) -> None:
+    def __init__(
+        self, rank: int, delta: int, reflections: Reflections | None = None, locked: Sequence[int] = ()
+    ) -> None:
+        self._rank, self._delta = rank, delta
         self._reflections = reflections
-        self._skip = skip
         self._locked = locked
+
+    def orientation(self, graph: Graph) -> Scalar:
+        """The sign between determinants of columns brought there and det[M_J, B^T], of independent rows.
+
+        With B^T = Q R the latter is (-1)^(rank delta) det Q det R det(F^T M_J).
+        """
+        sign = graph.const(-1 if self._rank * self._delta & 1 else 1)
+        return sign if self._reflections is None else sign * self._reflections.determinant_sign
 
     def __call__(self, force: Vector) -> Vector:
         """The force itself, or its components F^T f along the orthonormal null-space basis."""
         if self._reflections is None:
             return force
-        return self._reflections.apply_transposed(without(force, self._locked))[self._skip :]
+        return self._reflections.apply_transposed(without(force, self._locked))[self._rank :]
 
 
 class MinorSpace:
@@ -175,7 +194,7 @@ class MinorSpace:
 
     def listed_actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[ActuationForms, Restriction]:
         """By determinants of all coordinates: forces stay as they are."""
-        return ActuationForms(self.forms, inputs, degree), Restriction(None, 0)
+        return ActuationForms(self.forms, inputs, degree), Restriction(self.rank, self.delta)
 
 
 class Reflections:
@@ -215,6 +234,19 @@ class Reflections:
             self.reflectors.append((k, (head + signed, *tail[1:]), factor))
             self.pivots.append(squared)
             self.triangle.append((*y[:k], -signed))
+
+    @property
+    def determinant_sign(self) -> Scalar:
+        """The sign of det Q det R: each reflection has the determinant -1."""
+        graph = self.graph
+        sign = graph.const(-1 if len(self.reflectors) & 1 else 1)
+        for k, column in enumerate(self.triangle):
+            pivot = column[k]
+            if pivot.constant is not None:
+                sign = -sign if pivot.constant < 0 else sign
+            else:
+                sign = sign * graph.function("copysign", (graph.one, pivot))
+        return sign
 
     def apply_transposed(self, x: Vector) -> Vector:
         """Q^T x."""
@@ -331,7 +363,7 @@ class HouseholderSpace:
     @property
     def restriction(self) -> Restriction:
         """Components of a force along the null space, F^T f."""
-        return Restriction(self.reflections, self.rank, self.locked)
+        return Restriction(self.rank, self.delta, self.reflections, self.locked)
 
     def actuation(self, inputs: Sequence[Vector], degree: int) -> tuple[InputEquations, Restriction]:
         """By determinants of F^T M where these are few, by reflections of it otherwise."""

@@ -278,7 +278,7 @@ class FamilySpace(HouseholderSpace):
 
 class _FamilyRestriction(Restriction):
     def __init__(self, space: FamilySpace) -> None:
-        super().__init__(space.reflections, space.rank)
+        super().__init__(space.rank, space.delta, space.reflections)
         self._space = space
 
     def __call__(self, force: Vector) -> Vector:

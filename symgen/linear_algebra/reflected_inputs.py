@@ -61,18 +61,15 @@ class ReflectedInputs:
         factors = self._space.lift_transposed(force) if self.by_columns else self._space.lift(force)
         return self._shared(factors)
 
-    def direction(self) -> Vector:
-        """The inputs of weighted norm 1 that move nothing, of one input more than directions.
+    def internal_force(self) -> tuple[Vector, Scalar]:
+        """Of one input more than directions: inputs of weighted norm 1 that move nothing.
 
         Their sign is that of (-1)^k det[A without column k]: with A^T = Q R they are the last column of Q, which
-        stands first beside A^T in a determinant of det Q det R, and every reflection has the determinant -1.
+        stands first beside A^T in a determinant of det Q det R.
         """
-        reflections = self._space.reflections
         (axis,) = transpose(self._space.basis, 1)
-        sign = self.graph.const(-1 if (len(reflections.reflectors) + self.degree) & 1 else 1)
-        for k, column in enumerate(reflections.triangle):
-            sign = sign * self.graph.function("copysign", (self.graph.one, column[k]))
-        return self._shared(tuple(sign * entry for entry in axis))
+        sign = self._space.reflections.determinant_sign * (-1 if self.degree & 1 else 1)
+        return self._shared(tuple(sign * entry for entry in axis)), self.graph.one
 
     def _shared(self, factors: Vector) -> Vector:
         return tuple(factor * share for factor, share in zip(factors, self._shares, strict=True))

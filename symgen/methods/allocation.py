@@ -11,9 +11,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from symgen.linear_algebra.exterior import ActuationForms
-from symgen.linear_algebra.null_spaces import HouseholderSpace, NullSpace
-from symgen.linear_algebra.reflected_inputs import ReflectedInputs
+from symgen.linear_algebra.null_spaces import NullSpace
 from symgen.mechanics.system import System
 from symgen.model.model import Allocation
 from symgen.symbolic.matrix import Vector, matvec, subtract_vectors
@@ -30,26 +28,20 @@ class InputAllocation:
         self._allocation = allocation
         self._mechanics = mechanics
         self._graph = graph = mechanics.graph
-        self._space = space
         self._place = {item.name: k for k, item in enumerate(mechanics.model.inputs)}
         weights = [graph.one] * mechanics.m
         for name, parameter in allocation.weights:
             weights[self._place[name]] = graph.symbol(parameter)
-        self.forms: ActuationForms | ReflectedInputs
         equations, self._restriction = space.actuation(mechanics.inputs, degree)
-        if isinstance(equations, ReflectedInputs):
-            self.forms = equations.weighted(weights)
-        else:
-            forms, self._restriction = space.listed_actuation(mechanics.inputs, degree)
-            self.forms = ActuationForms(forms.rows, forms.inputs, forms.degree, weights)
+        self.forms = equations.weighted(weights)
 
     def solve(self, force: Vector) -> Vector:
         """u (m): the inputs for a generalized force (n)."""
         least = self._nearest(force)
         if not self._allocation.directed:
             return least
-        direction = self.direction()
-        share = self._share(least, direction)
+        direction, square = self.internal_force()
+        share = self._share(least, direction, square)
         return tuple(u + share * z for u, z in zip(least, direction, strict=True))
 
     def _nearest(self, force: Vector) -> Vector:
@@ -64,19 +56,13 @@ class InputAllocation:
         solved = self.forms.solve(self._restriction(rest))
         return tuple(p + u for p, u in zip(preferred, solved, strict=True))
 
-    def direction(self) -> Vector:
-        """Internal force: (-1)^(k-1) det[M without column k, B^T], or a positive multiple of it."""
-        forms, graph = self.forms, self._graph
-        sign = orientation_of(self._space)
-        if isinstance(forms, ReflectedInputs):
-            return tuple(sign * share for share in forms.direction())
-        whole = (1 << forms.rows.n) - 1
-        (family,) = forms.products
-        # the subset that comes last leaves out the first input
-        minors = [sign * product.get(whole, graph.zero) for product in reversed(family)]
-        return tuple(-minor if k & 1 else minor for k, minor in enumerate(minors))
+    def internal_force(self) -> tuple[Vector, Scalar]:
+        """(-1)^(k-1) det[M without column k, B^T], or a positive multiple of it, and its squared weighted norm."""
+        direction, square = self.forms.internal_force()
+        sign = self._restriction.orientation(self._graph)
+        return tuple(sign * entry for entry in direction), square
 
-    def _share(self, least: Vector, direction: Vector) -> Scalar:
+    def _share(self, least: Vector, direction: Vector, square: Scalar) -> Scalar:
         """What multiplies the direction: the preload's share, brought into the interval that the limits leave.
 
         The middle one of the preload and the interval's ends is the nearest point of the interval.  Where the limits
@@ -85,9 +71,7 @@ class InputAllocation:
         graph, allocation = self._graph, self._allocation
         share = graph.zero
         if allocation.preload is not None:
-            share = graph.symbol(allocation.preload)
-            if isinstance(self.forms, ActuationForms):
-                share = share / graph.function("sqrt", (self.forms.square(),))
+            share = graph.symbol(allocation.preload) / graph.function("sqrt", (square,))
         lowest: list[Scalar] = []
         highest: list[Scalar] = []
         for limit in allocation.limits:
@@ -111,25 +95,6 @@ class InputAllocation:
         reciprocal = 1 / graph.function("copysign", (size, z))
         ends = [(graph.symbol(limit) - u) * reciprocal for limit in (lower, upper)]
         return _smaller(graph, *ends), _larger(graph, *ends)
-
-
-def orientation_of(space: NullSpace) -> Scalar:
-    """The sign between the minors in a space's own coordinates and det[M_J, B^T]."""
-    graph = space.graph
-    rows = len(space.rows)
-    sign = graph.const(-1 if rows * space.delta & 1 else 1)
-    if not isinstance(space, HouseholderSpace):
-        return sign
-    # det[M_J, B^T] = det Q det R det(F^T M_J) up to the sign above, and each reflection has determinant -1
-    if len(space.reflections.reflectors) & 1:
-        sign = -sign
-    for k, column in enumerate(space.reflections.triangle):
-        pivot = column[k]
-        if pivot.constant is not None:
-            sign = -sign if pivot.constant < 0 else sign
-        else:
-            sign = sign * graph.function("copysign", (graph.one, pivot))
-    return sign
 
 
 def _smaller(graph: Graph, a: Scalar, b: Scalar) -> Scalar:

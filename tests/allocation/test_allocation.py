@@ -18,7 +18,6 @@ from symgen.ir.kernel import Status
 from symgen.linear_algebra.exterior import ActuationForms
 from symgen.linear_algebra.null_spaces import HouseholderSpace
 from symgen.linear_algebra.reflected_inputs import ReflectedInputs
-from symgen.methods.allocation import orientation_of
 from symgen.methods.derivation import Derivation
 from symgen.methods.spaces import derivations
 from symgen.symbolic.evaluate import Evaluator
@@ -162,9 +161,9 @@ def test_direction_has_the_documented_sign_along_every_null_space(text: str) -> 
     spaces = {name: derivation.space for name, derivation in derivations(mechanics, generic).items()}
     assert len(spaces) == 1 + bool(made.model.r)
     for space in spaces.values():
-        forms, _ = space.actuation(mechanics.inputs, generic.alpha)
+        forms, restriction = space.actuation(mechanics.inputs, generic.alpha)
         minors = [product.get((1 << forms.rows.n) - 1, mechanics.graph.zero) for product in forms.products[0][::-1]]
-        evaluate = Evaluator([*minors, orientation_of(space)])
+        evaluate = Evaluator([*minors, restriction.orientation(mechanics.graph)])
         for state, e in evaluations(made):
             *found, sign = evaluate(point(made, state))
             z = [float(x) for x in internal_force(e, [ball(1)] * made.model.m).entries()]
@@ -199,19 +198,18 @@ def test_reflections_of_the_inputs_give_the_same(text: str, monkeypatch: pytest.
     made = system(text, {**WEIGHTS, **LIMITS}[text])
     monkeypatch.setattr("symgen.linear_algebra.null_spaces.small_family", lambda *_: False)
     mechanics, generic = made.derivations.mechanics, made.derivations.generic
-    derivation = derivations(mechanics, generic).get("householder")
-    if derivation is None:
-        assert not made.model.r
-        derivation = Derivation(mechanics, generic, HouseholderSpace(mechanics.graph, (), made.model.n))
-    equations = derivation._allocation.forms
-    assert isinstance(equations, ReflectedInputs)
-    guards = derivation.inverse_dynamics_guards
-    evaluate = Evaluator([*derivation.inverse_dynamics, *(guard.denominator for guard in guards)])
-    for state, e in evaluations(made):
-        wanted = [float(x) for x in QUANTITIES["inverse_dynamics"](e).entries()]
-        found = evaluate(point(made, state))
-        assert found[: len(wanted)] == pytest.approx(wanted, rel=1e-12, abs=1e-12 * max(map(abs, wanted)))
-        assert all(x > 0 for x in found[len(wanted) :])
+    ways = derivations(mechanics, generic)
+    assert made.model.r == 0 or set(ways) == {"minors", "householder"}
+    ways.setdefault("householder", Derivation(mechanics, generic, HouseholderSpace(mechanics.graph, (), made.model.n)))
+    for derivation in ways.values():
+        assert isinstance(derivation._allocation.forms, ReflectedInputs)
+        guards = derivation.inverse_dynamics_guards
+        evaluate = Evaluator([*derivation.inverse_dynamics, *(guard.denominator for guard in guards)])
+        for state, e in evaluations(made):
+            wanted = [float(x) for x in QUANTITIES["inverse_dynamics"](e).entries()]
+            found = evaluate(point(made, state))
+            assert found[: len(wanted)] == pytest.approx(wanted, rel=1e-12, abs=1e-12 * max(map(abs, wanted)))
+            assert all(x > 0 for x in found[len(wanted) :])
 
 
 def by_enumeration(made: System, state: State, e: Evaluation) -> Any | None:

@@ -12,7 +12,6 @@ from symgen.linear_algebra.null_spaces import HouseholderSpace
 from symgen.linear_algebra.proportional_columns import FamilySpace, families
 from symgen.mechanics.genericity import configurations, genericity
 from symgen.mechanics.system import System
-from symgen.methods.allocation import orientation_of
 from symgen.methods.method import solved_for_u
 from symgen.methods.spaces import derivations
 from symgen.methods.system import MethodInput
@@ -74,7 +73,8 @@ def test_what_a_space_of_families_gives_is_what_columns_give(kept: tuple[int, ..
     _, restriction = space.actuation([tuple(x)], 1)
     made = (rows, space.projector, space.basis, space.pseudoinverse)
     vectors = (restriction(tuple(x)), space.project(tuple(x)), space.lift(tuple(a)), space.lift_transposed(tuple(x)))
-    plain = [orientation_of(space), orientation_of(HouseholderSpace(graph, rows, n))] if rank == r else []
+    spaces = (space, HouseholderSpace(graph, rows, n)) if rank == r else ()
+    plain = [each.restriction.orientation(graph) for each in spaces]
     scalars = [entry for vector in (*map(flatten, made), *vectors) for entry in vector]
     drawn = np.random.default_rng(1)
     names = ("s", "t", *(f"x{j}" for j in range(n)), *(f"a{j}" for j in range(r)))
