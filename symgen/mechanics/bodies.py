@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 
 from symgen.model.expressions.expression import Expression
@@ -49,12 +49,21 @@ class Scalars:
 
 
 class Bodies:
-    """A mechanism at one state: `q` and `qd` are the symbols that move, `names` what frames and bodies may use."""
+    """A mechanism at one state: `q` and `qd` are the symbols that move, `names` what frames and bodies may use.
+
+    `held` are the numbers of coordinates that constraints leave no motion.
+    """
 
     def __init__(
-        self, mechanism: Mechanism, graph: Graph, names: Mapping[str, Scalar], q: Vector, qd: Vector
+        self,
+        mechanism: Mechanism,
+        graph: Graph,
+        names: Mapping[str, Scalar],
+        q: Vector,
+        qd: Vector,
+        held: Sequence[int] = (),
     ) -> None:
-        self.mechanism, self.graph, self.q, self.qd = mechanism, graph, q, qd
+        self.mechanism, self.graph, self.q, self.qd, self.held = mechanism, graph, q, qd, frozenset(held)
         self.names = names
         self.scalars = Scalars(graph, names, dict(zip(q, qd, strict=True)))
         self.kinematics: Kinematics[Scalar, Scalar] = Kinematics(mechanism, self.scalars)

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from symgen.mechanics.bodies import Bodies, Vector3
-from symgen.model.kinematics.triples import Rows, applied, cross, plus, transposed, triple
+from symgen.model.kinematics.triples import Rows, applied, cross, inner, plus, transposed, triple
 from symgen.model.mechanism import WORLD, Body, Frame, RotorInertia
 from symgen.symbolic.calculus import derivative_along, gradient
 from symgen.symbolic.matrix import Vector
@@ -86,10 +86,22 @@ def newton_euler(
     return _Recursion(bodies, qd, qdd, gravity, named).forces(lumped, twists)
 
 
-def inertial_wrench(motion: FrameMotion, mass: Scalar, com: Vector3, tensor: Rows[Scalar]) -> Wrench:
-    """What moving a body so takes: m a of its centre of mass; the moment of that and I w' + w x I w."""
+def inertial_wrench(
+    motion: FrameMotion, mass: Scalar, com: Vector3, tensor: Rows[Scalar], apart: bool = False
+) -> Wrench:
+    """What moving a body so takes: m a of its centre of mass; the moment of that and I w' + w x I w.
+
+    With `apart` centrifugal forces stand apart from the others, c x (w x (w x c)) = (w.c) (c x w): without a rounding
+    they have no moment about w, which c x (m a) gives a rest of.
+    """
     x, y, z = (mass * a for a in plus(motion.linear, applied(motion.field, com)))
-    return Wrench((x, y, z), plus(_turning_moment(tensor, motion), cross(com, (x, y, z))))
+    if not apart:
+        return Wrench((x, y, z), plus(_turning_moment(tensor, motion), cross(com, (x, y, z))))
+    along = inner(motion.velocity, com)
+    others = cross(com, plus(motion.linear, cross(motion.acceleration, com)))
+    centrifugal = (along * a for a in cross(com, motion.velocity))
+    a, b, c = (mass * (one + other) for one, other in zip(others, centrifugal, strict=True))
+    return Wrench((x, y, z), plus(_turning_moment(tensor, motion), (a, b, c)))
 
 
 def motion(velocity: Vector3, acceleration: Vector3, linear: Vector3) -> FrameMotion:
@@ -251,8 +263,21 @@ class _Recursion:
     def _inertial(self, body: Body, motion: FrameMotion) -> Wrench:
         """What the body takes of its frame, or the name of that."""
         mass, com = self.bodies.scalars.value(body.mass), self.kinematics.space.values(body.com)
-        found = self.named(body, motion)
-        return inertial_wrench(motion, mass, com, self.bodies.inertia(body.name)) if found is None else found
+        apart = motion is self.motions[body.frame] and self._on_still_parent(body.frame)
+        found = None if apart else self.named(body, motion)
+        return inertial_wrench(motion, mass, com, self.bodies.inertia(body.name), apart) if found is None else found
+
+    def _on_still_parent(self, name: str) -> bool:
+        """Whether a frame turns about a fixed place: what its own rate alone loads its joint with is exactly 0 then."""
+        held, lineage = self.bodies.held, self.kinematics.lineage(name)[1:]
+        return bool(held) and all(self._rates_of(frame) <= held for frame in lineage if frame != WORLD)
+
+    def _rates_of(self, name: str) -> set[int]:
+        """The numbers of the coordinates whose rates move a frame against its parent."""
+        joint = self.kinematics.joint(name)
+        moving = [x for x in (*joint.turning, *joint.place_rate) if not x.is_zero]
+        shares = (gradient(self.graph, rate, self.bodies.qd) for rate in moving)
+        return {j for row in shares for j, share in enumerate(row) if not share.is_zero}
 
     def _inertial_about_origin(self, lump: Lump, motion: FrameMotion) -> Wrench:
         """m a + U h and its moment, I w' + w x I w + h x a."""

@@ -74,7 +74,8 @@ class System:
         """The bodies, and every component of points and frames that a formula uses, entered in `names`."""
         for definition in definitions_before_frames(self.model):
             self.names[definition.name] = translate(self.graph, definition.value, self.names)
-        bodies = Bodies(along_joints(self.model.mechanism), self.graph, dict(self.names), self.q, self.qd)
+        held = () if self.model.assembly is None else self.model.assembly.held
+        bodies = Bodies(along_joints(self.model.mechanism), self.graph, dict(self.names), self.q, self.qd, held)
         for name in components_in(self.model):
             self.names[name] = bodies.component(name)
         return bodies

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import random
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -76,3 +79,45 @@ def test_a_rank_that_moved_to_other_rows_is_a_status() -> None:
     regular, lost = (Evaluator(pairs)({"s": s}) for s in (0.5, 0.0))
     assert all(a > 1e-3 * b for a, b in zip(regular[::2], regular[1::2], strict=True))
     assert any(abs(a) < 1e-12 * b for a, b in zip(lost[::2], lost[1::2], strict=True))
+
+
+# A triangle of two bars, at whose joint a flap turns that nothing else moves; its own axes are turned against the bars.
+FLAP = """
+model: flap
+parameters: {l: 0.7, c: 0.31, d: 0.17, e: 0.11}
+joints:
+  left: {type: revolute, axis: y, coordinate: a}
+  right: {type: revolute, parent: left, at: [l, 0, 0], axis: y, coordinate: b}
+  flap: {type: revolute, parent: left, at: [l, 0, 0], axis: AXIS, coordinate: f}
+bodies:
+  left: {mass: 2, com: [l/2, 0, 0], inertia: {yy: 0.1}}
+  flap: {mass: 3, com: [c, e, d], inertia: {xx: 0.1, yy: 0.2, zz: 0.25, xy: 0.01, yz: -0.02}}
+points:
+  foot: {frame: right, at: [0.6, 0, 0]}
+  pin: {at: [0.5, 0, 0]}
+loops:
+  triangle: {type: point, between: [foot, pin]}
+inputs:
+  motor: {joint: a}
+outputs: [forward_dynamics]
+configuration: {a: 1, b: -2.2}
+"""
+
+
+@pytest.mark.parametrize("axis", ["y", "[0, -1, 0]", "[1, 2, 3]"])
+def test_a_body_on_what_cannot_move_is_turned_by_nothing(axis: str) -> None:
+    """Its acceleration is exactly 0, of which no rounding may be left (draw 1115:186)."""
+    mechanics = System(load_text(FLAP.replace("AXIS", axis), "flap.yaml"))
+    assert mechanics.bodies.held == {0, 1}
+    plain = System(replace(mechanics.model, assembly=None))
+    evaluate, other = Evaluator(mechanics.applied_balance), Evaluator(plain.applied_balance)
+    drawn = random.Random(axis)
+    values = {"l": 0.7, "c": 0.31, "d": 0.17, "e": 0.11, "motor": 0.4}
+    rests = []
+    for _ in range(20):
+        at = values | {name: drawn.uniform(-3, 3) for name in ("a", "b", "f", "a_dot", "b_dot", "f_dot")}
+        assert evaluate(at) == pytest.approx(other(at), rel=1e-12, abs=1e-12)
+        still = at | {"a_dot": 0.0, "b_dot": 0.0}
+        assert evaluate(still)[2] == 0
+        rests.append(other(still)[2])
+    assert any(rests)

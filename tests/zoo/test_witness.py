@@ -15,6 +15,7 @@ from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.expressions import FUNCTIONS, NotReadError, read_expression
 from symgen.laboratory.zoo.fields import Balls, Floats, precision
 from symgen.laboratory.zoo.generated import Answer
+from symgen.laboratory.zoo.linear import basis
 from symgen.laboratory.zoo.mechanics import equations
 from symgen.laboratory.zoo.reader import System
 from symgen.laboratory.zoo.run import run_command
@@ -266,6 +267,17 @@ def test_what_rounding_leaves_of_an_idle_input_spans_nothing() -> None:
     witness = Witness(RADIAL, {"a": 0.7})
     _, ranks = Walker(witness._system, witness._evaluate, {"a": 0.7}, Dice("radial")).states({}, 6)
     assert ranks.actuation == 1
+
+
+def test_what_rounding_leaves_of_a_row_that_is_zero_is_no_row() -> None:
+    """Beside two rows that are nearly parallel it has all of its length left (draw 1115:253)."""
+    held, shares = basis([[1.0, 0.0, 0.0], [0.0, 1e-8, 0.0], [0.999, 0.0, 0.04]], 2)
+    assert [[abs(x) for x in vector] for vector in held] == [[1, 0, 0], [0, 0, 1]]
+    assert shares == pytest.approx([1, 0.04], rel=1e-3)
+    # a short row of its own comes before what rounding leaves of a long one that follows from others
+    held, _ = basis([[1e-6, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 1e3, 1e-5]], 2)
+    assert [max(vector, key=abs) for vector in held] == pytest.approx([1, 1])
+    assert abs(held[1][0]) == 1
 
 
 def test_powers_of_what_may_be_zero() -> None:

@@ -33,20 +33,23 @@ def size(a: Sequence[Any]) -> float:
 
 
 def basis(vectors: Sequence[Sequence[Any]], rank: int) -> tuple[Matrix, list[float]]:
-    """Orthonormal vectors that span the `rank` leading ones, and the lengths that were left when each was taken.
+    """Orthonormal vectors that span the `rank` leading ones, and what share of its length each had left when taken.
 
-    The vectors are scaled to length 1 first, so that their units do not matter; the longest remainder is taken.
+    The most that is left is taken, times the share that this is: by shares alone what rounding leaves of a vector that
+    is 0 would count as much as any, by lengths alone what it leaves of a long one that depends on others.
     """
-    lengths = [size(vector) for vector in vectors]
-    left = [[x / length for x in vector] for vector, length in zip(vectors, lengths, strict=True) if length > NOTHING]
+    lengths = [length for vector in vectors if (length := size(vector)) > NOTHING]
+    left = [list(vector) for vector in vectors if size(vector) > NOTHING]
     taken: Matrix = []
     pivots: list[float] = []
     while len(taken) < rank and left:
         sizes = [size(vector) for vector in left]
-        best = max(range(len(left)), key=sizes.__getitem__)
+        shares = [rest / length for rest, length in zip(sizes, lengths, strict=True)]
+        best = max(range(len(left)), key=lambda k: sizes[k] * shares[k])
         if sizes[best] == 0:
             break
-        pivots.append(sizes[best])
+        pivots.append(shares[best])
+        del lengths[best]
         chosen = left.pop(best)
         length = inner(chosen, chosen) ** _HALF
         direction = [x / length for x in chosen]
