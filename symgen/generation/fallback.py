@@ -176,7 +176,7 @@ class Fallback:
         """The next way that passes with a margin, or else the best of those that pass; others are noted."""
         passing, needed = self._passing[quantity], tuple(draft.kernels(quantity))
         for tier in range(TIERS):
-            for one in self._candidates(draft, quantity, tier, expected):
+            for one in self._candidates(draft, quantity, tier, expected, MARGIN):
                 if one.scalars == needed and one.largest <= MARGIN:
                     return one
                 if "float64" in one.scalars:
@@ -203,7 +203,7 @@ class Fallback:
         here = _Candidate(largest, tuple(kernels), taken, kernels)
         self._seen[quantity].add(_digest(kernels))
         most = cost(scalars(taken.derived)).weight * (1 + MARGIN_WORTH)
-        for one in self._candidates(draft, quantity, 0, expected):
+        for one in self._candidates(draft, quantity, 0, expected, largest / 2):
             if one.scalars == here.scalars and 2 * one.largest <= here.largest and one.way.cost <= most:
                 self._passing[quantity].append(here)
                 why = f"error {largest:.3g} times d + eps |y*| of {FACTOR:g} leaves no margin"
@@ -213,8 +213,10 @@ class Fallback:
                 self._passing[quantity].append(one)
         return draft
 
-    def _candidates(self, draft: Draft, quantity: str, tier: int, expected: Expected) -> Iterator[_Candidate]:
-        """The ways of a tier that are left, measured; what fails is noted."""
+    def _candidates(
+        self, draft: Draft, quantity: str, tier: int, expected: Expected, most: float
+    ) -> Iterator[_Candidate]:
+        """The ways of a tier that are left, measured; what fails is noted.  Up to an error of `most` they are taken."""
         if self._options.forms.get(quantity, AUTO) != AUTO or self._alternatives is None:
             return
         if (quantity, tier) not in self._left:
@@ -229,7 +231,7 @@ class Fallback:
                 self._seen[quantity].add(digest)
                 one = self._measured(draft, way, kernels, expected)
                 # long ways are grouped where that may be what is taken: it takes longer than measuring
-                yield self._grouped(draft, one, expected) if one.largest <= MARGIN else one
+                yield self._grouped(draft, one, expected) if one.largest <= most else one
 
     def _grouped(self, draft: Draft, one: _Candidate, expected: Expected) -> _Candidate:
         """A way that passes, with its numbers grouped and measured anew."""

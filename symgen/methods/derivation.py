@@ -121,7 +121,23 @@ class Derivation:
 
     def _solve_inputs(self, force: Vector) -> Vector:
         forms, restriction = self._actuation
-        return forms.solve(restriction(force))
+        given, rest = self._taken_directly(force)
+        return tuple(a + b for a, b in zip(given, forms.solve(restriction(rest)), strict=True))
+
+    def _taken_directly(self, force: Vector) -> tuple[Vector, Vector]:
+        """Inputs p that take what loads the coordinates that they drive alone, and what is left, f - M p.
+
+        u = p + M~^+ (f - M p) where no input does what others do: a large load of a drive's own passes no projection.
+        Where inputs span all directions that is what the elimination of forces does, and less cancels here.
+        """
+        given, rest = [self.graph.zero] * self.m, list(force)
+        if self.m == self.generic.alpha < self.generic.delta:
+            for k, column in enumerate(self.mechanics.inputs):
+                driven = [(j, entry.constant) for j, entry in enumerate(column) if not entry.is_zero]
+                (j, factor), *others = driven or [(0, None)]
+                if factor is not None and not others:
+                    given[k], rest[j] = rest[j] * (1 / factor), self.graph.zero
+        return tuple(given), tuple(rest)
 
     def _columns(self, solve: Sequence[Vector]) -> Matrix:
         return transpose(tuple(solve), len(solve[0])) if solve else ()
@@ -308,8 +324,9 @@ class Derivation:
         """N_B (tau - M u); nothing is left where the system is fully actuated."""
         if self.generic.full_actuation:
             return (self.graph.zero,) * self.n
-        least = self._solve_inputs(self.mechanics.balance)
-        return residual(self.space, self.mechanics.balance, self.mechanics.inputs, least)
+        forms, restriction = self._actuation
+        _, rest = self._taken_directly(self.mechanics.balance)
+        return residual(self.space, rest, self.mechanics.inputs, forms.solve(restriction(rest)))
 
     @cached_property
     def actuator_basis(self) -> Matrix:

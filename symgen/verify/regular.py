@@ -38,8 +38,10 @@ LONGEST_STEP, SHORTEST_STEP = 0.2, 1e-5
 FRESH = 4
 # Of so many starts one lies in an assembly mode, and in some the parameters are those of the file.
 CYCLE, MODE, DEFAULTS = 5, 2, (2, 3)
-# Starts of the parts of a system that lead elsewhere than to regular states, while the others stay.
+# Starts of the loops of a system that lead elsewhere than to regular states, while the others stay.
 ATTEMPTS = 12
+# Where of the first starts less than a share leads to regular states in the ranges, steps along V look for the others.
+PROBES, POOR = 40, 8
 CLOSED, BRANCH, TURNED = "do not close", "lie on other branches", "lie turns outside of the ranges"
 VALUE, SINGULAR = "have no value", "are singular"
 
@@ -94,7 +96,10 @@ class RegularStateSearch:
     def candidates(self) -> Iterator[tuple[Regular, bool]]:
         """Regular states, and whether the coordinates lie in their ranges."""
         last: list[Any] | None = None
+        inside: list[Any] | None = None
         for index, point in enumerate(self._points):
+            if index == PROBES and self._system.r_geometric and self._kept[True] < PROBES // POOR:
+                break
             parameters = self._parameters(vary=index > 0 and index % CYCLE not in DEFAULTS)
             if self._modes and index % CYCLE == MODE:
                 start: Sequence[Any] = self._modes[index // CYCLE % len(self._modes)]
@@ -105,9 +110,10 @@ class RegularStateSearch:
             found = self._found(start, parameters)
             if found is not None:
                 last = found[0]
+                inside = last if found[2] else inside
                 yield found[1:]
-        if sum(self._kept.values()) < FEWEST_STATES and self._system.r_geometric:
-            yield from self._along(last)
+        if self._kept[True] < FEWEST_STATES and self._system.r_geometric:
+            yield from self._along(inside)
 
     def has_no_value(self) -> None:
         """A state that was found is none: some quantity has no value there."""
@@ -130,7 +136,7 @@ class RegularStateSearch:
         known = known or [list(self._points[0])]
         reach = LONGEST_STEP
         for index in range(len(self._points)):
-            if sum(self._kept.values()) >= self._count:
+            if self._kept[True] >= self._count:
                 return
             here = known[index % len(known)] if last is None or reach <= SHORTEST_STEP else last
             reach = LONGEST_STEP if reach <= SHORTEST_STEP else reach
@@ -147,7 +153,10 @@ class RegularStateSearch:
             if found is None:
                 reach /= 2
                 continue
-            last, reach = found[0], min(LONGEST_STEP, 2 * reach)
+            if found[2]:
+                last, reach = found[0], min(LONGEST_STEP, 2 * reach)
+            else:  # on from where it left the ranges
+                reach /= 2
             yield found[1:]
 
     def _found(self, start: Sequence[Any], exact: Sequence[Any]) -> tuple[list[Any], Regular, bool] | None:
@@ -156,7 +165,8 @@ class RegularStateSearch:
         Where parts of the system lead elsewhere these are started anew while the others stay: that all of many
         machines lead to a regular state at once is rare.
         """
-        for left in reversed(range(ATTEMPTS if len(self._system.parts) > 1 else 1)):
+        several = len(self._system.loops or self._system.parts) > 1
+        for left in reversed(range(ATTEMPTS if several else 1)):
             self._wanting.clear()
             found = self._led_to(start, exact, left > 0)
             if found is not None or not self._wanting:
