@@ -9,8 +9,9 @@ from symgen.linear_algebra.null_spaces import rests_on_rank
 from symgen.mechanics.genericity import Genericity
 from symgen.methods.derivation import Derivation
 from symgen.methods.quantity import Quantity, is_fixed
+from symgen.model.availability import lacking
 from symgen.model.model import Model
-from symgen.model.quantities import ACTUATORS, PARTITION, POINTS, QUANTITIES, QuantityRow
+from symgen.model.quantities import QUANTITIES, QuantityRow
 from symgen.records import dataclass
 from symgen.symbolic.matrix import Vector, flatten
 
@@ -139,15 +140,7 @@ def sizes(model: Model, generic: Genericity) -> dict[str, int]:
 
 def missing(entry: Entry, model: Model, generic: Genericity) -> str | None:
     """Why this system does not have a quantity, or None."""
-    if entry.needs == POINTS and not model.mechanism.points:
-        return "the model has no points"
-    if 0 in entry.shape(sizes(model, generic)):
-        return "its result would be empty"
-    if entry.needs == PARTITION and not model.independent_velocities:
-        return "the model names no independent_velocities"
-    if entry.needs == ACTUATORS and not (generic.m == generic.delta == generic.alpha):
-        return "it needs as many independent inputs as degrees of freedom"
-    return None
+    return lacking(entry.row, model, generic.delta, generic.alpha)
 
 
 def by_blocks(entry: Entry) -> bool:

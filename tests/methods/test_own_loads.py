@@ -43,7 +43,7 @@ def test_a_large_load_of_a_drive_leaves_the_other_inputs_alone() -> None:
             control = np.array([[1.0, 0], [0, 0], [0, -3], [0, 0]])
             rest = force - force[0] * control[:, 0]
             others = np.linalg.pinv(projector @ control) @ (projector @ rest)
-            assert u == pytest.approx(others + [force[0], 0], rel=1e-13, abs=1e-12)
+            assert u == pytest.approx(np.add(others, (force[0], 0)), rel=1e-13, abs=1e-12)
             # about 1e4 is what loads the first drive, and nothing is left of its rounding here
             assert abs(u[1] - others[1]) < 1e-14 * max(1, abs(others[1])) * 30
             assert residual == pytest.approx(projector @ (rest - control @ others), rel=1e-12, abs=1e-13)

@@ -1,4 +1,4 @@
-"""The reference imports the parsed model, python-flint and the standard library, and the import contract covers it."""
+"""The reference imports the parsed model, the table of quantities, python-flint and the standard library."""
 
 from __future__ import annotations
 
@@ -13,9 +13,11 @@ ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "symgen" / "verify" / "reference"
 MODULES = sorted(REFERENCE.glob("*.py"))
 ALLOWED = {
+    "symgen.model.availability",
     "symgen.model.expressions.expression",
     "symgen.model.mechanism",
     "symgen.model.model",
+    "symgen.model.quantities",
     "symgen.diagnostics",
     "flint",
 }

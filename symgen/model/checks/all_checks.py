@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from symgen.diagnostics import Mistake, Notice, Span
+from symgen.model.availability import lacking
 from symgen.model.checks.as_numbers import with_numbers
 from symgen.model.checks.bodies import check_bodies
 from symgen.model.checks.empty_rows import check_empty_rows, parameters_that_count
@@ -23,7 +24,7 @@ from symgen.model.file.reading import entries, key_span, member
 from symgen.model.file.scope import Scope
 from symgen.model.file.source import MappingNode
 from symgen.model.model import Model
-from symgen.model.quantities import PARTITION, ROWS, QuantityRow
+from symgen.model.quantities import ROWS
 
 
 def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expression | None, whole: bool) -> Model:
@@ -124,25 +125,8 @@ def notice_empty_outputs(scope: Scope, tree: MappingNode, model: Model) -> None:
     """Requested quantities that this model does not have."""
     span = key_span(tree, "outputs")
     for name in model.outputs:
-        if name in ROWS and (reason := _lacking(ROWS[name], model)) is not None:
+        if name in ROWS and (reason := lacking(ROWS[name], model)) is not None:
             scope.notices.append(Notice(f"`{name}` is not made: {reason}", span))
-
-
-def _lacking(quantity: QuantityRow, model: Model) -> str | None:
-    """What a model lacks for a quantity, as far as its file tells."""
-    geometric = sum(row.kind == "geometric" for row in model.constraints)
-    counts = {
-        "r": (model.r, "constraints"),
-        "r_g": (geometric, "geometric constraints"),
-        "m": (model.m, "inputs"),
-        "points": (len(model.mechanism.points), "points"),
-    }
-    for size, (count, what) in counts.items():
-        if size in quantity.sizes and not count:
-            return f"the model has no {what}"
-    if quantity.needs == PARTITION and not model.independent_velocities:
-        return "the model names no `independent_velocities`"
-    return None
 
 
 def notice_efforts(scope: Scope, model: Model) -> None:

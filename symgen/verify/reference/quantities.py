@@ -1,6 +1,6 @@
 """The quantities of docs/quantities.md at one state, each from its definition.
 
-Equation numbers are those of the paper as corrected in the README; notation as in `reference_evaluation`.
+Equation numbers are those of the paper as corrected in the README; notation as in `evaluation`.
 """
 
 from __future__ import annotations
@@ -11,9 +11,7 @@ from typing import Any
 from symgen.verify.reference.allocation import allocated
 from symgen.verify.reference.evaluation import Evaluation
 from symgen.verify.reference.linear import column, right_pseudoinverse
-from symgen.verify.reference.manifold import Ranks
 from symgen.verify.reference.measures import actuation_measure, constraint_measure
-from symgen.verify.reference.system import System
 
 
 def _inverse_dynamics(e: Evaluation) -> Any:
@@ -131,36 +129,3 @@ RATES = {
     "minimal_coriolis_matrix": ("mass", "constraints"),
     "actuator_bias": ("mass", "constraints", "control"),
 }
-
-NEEDS_CONSTRAINTS = {
-    "constraint_jacobian",
-    "constraint_jacobian_dot",
-    "constraint_pseudoinverse",
-    "weighted_pseudoinverse",
-    "multipliers",
-}
-NEEDS_INPUTS = {
-    "control_matrix",
-    "projected_control_matrix",
-    "projected_control_pseudoinverse",
-    "inverse_dynamics",
-    "minimal_control_matrix",
-}
-
-
-def offered(name: str, system: System, ranks: Ranks) -> bool:
-    """Whether the model has this quantity, its result not being empty."""
-    delta = system.n - ranks.constraints
-    if name.startswith("point_"):
-        return bool(system.model.mechanism.points)
-    if name == "constraint_residual":
-        return system.r_geometric > 0
-    if name in NEEDS_CONSTRAINTS and system.r == 0:
-        return False
-    if name in NEEDS_INPUTS and system.m == 0:
-        return False
-    if (name.startswith("minimal_") or name == "orthogonal_complement") and not system.model.independent_velocities:
-        return False
-    if name.startswith("actuator_"):
-        return system.m == delta == ranks.actuation
-    return True

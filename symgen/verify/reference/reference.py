@@ -15,12 +15,14 @@ from typing import Any, TypeAlias, TypeVar
 
 from flint import ctx
 
+from symgen.model.availability import lacking
 from symgen.model.model import Model
+from symgen.model.quantities import ROWS
 from symgen.verify.reference.evaluation import Evaluation
 from symgen.verify.reference.linear import square
 from symgen.verify.reference.manifold import Ranks, generic_ranks
 from symgen.verify.reference.measures import measures_of_parts
-from symgen.verify.reference.quantities import QUANTITIES, offered
+from symgen.verify.reference.quantities import QUANTITIES
 from symgen.verify.reference.system import System
 from symgen.verify.reference.tape import ball, precision
 from symgen.verify.reference.translation import literal_values
@@ -70,7 +72,8 @@ class Reference:
 
     def quantities(self) -> tuple[str, ...]:
         """The names this model has (not those whose result would be empty)."""
-        return tuple(name for name in QUANTITIES if offered(name, self.system, self.ranks))
+        delta, actuation = self.model.n - self.ranks.constraints, self.ranks.actuation
+        return tuple(name for name in QUANTITIES if lacking(ROWS[name], self.model, delta, actuation) is None)
 
     def literals(self) -> list[Any]:
         """The literals of the model at the working precision."""

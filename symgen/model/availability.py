@@ -1,0 +1,28 @@
+"""Which quantities a model has: the one rule, for its checks, the derivation and the reference."""
+
+from __future__ import annotations
+
+from symgen.model.model import Model
+from symgen.model.quantities import ACTUATORS, PARTITION, QuantityRow
+
+
+def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actuation: int | None = None) -> str | None:
+    """Why a model does not have a quantity, or None.
+
+    `delta` and `actuation`, the rank of the projected control matrix, are left out where only the file is known.
+    """
+    counts = {
+        "r": (model.r, "constraints"),
+        "r_g": (sum(row.kind == "geometric" for row in model.constraints), "geometric constraints"),
+        "m": (model.m, "inputs"),
+        "points": (len(model.mechanism.points), "points"),
+        "delta": (delta, "degrees of freedom"),
+    }
+    for size, (count, what) in counts.items():
+        if size in quantity.sizes and count == 0:
+            return f"the model has no {what}"
+    if quantity.needs == PARTITION and not model.independent_velocities:
+        return "the model names no `independent_velocities`"
+    if quantity.needs == ACTUATORS and delta is not None and not model.m == delta == actuation:
+        return "it needs as many independent inputs as degrees of freedom"
+    return None
