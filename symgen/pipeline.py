@@ -2,7 +2,8 @@
 
     load -> derive -> schedule -> emit (C, Python) -> verify -> report
 
-What a run does not need is not imported: the way from model to C uses the standard library, PyYAML and Jinja only.
+What a run does not need is not imported: the way from model to C uses the standard library, PyYAML, Jinja and
+python-flint only.
 """
 
 from __future__ import annotations

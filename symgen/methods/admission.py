@@ -148,7 +148,7 @@ def verdict(candidate: Candidate, measures: Sequence[Scalar], first_only: bool =
                 continue
             found = search.zero_of(divisor)
             if found is not None:
-                state = tuple((name, round(float(value), DECIMALS)) for name, value in found.point)
+                state = tuple((name, round(value, DECIMALS)) for name, value in found.point)
                 singular.append(Singular(formula(divisor), state))
                 proof.add(factor * measure for measure in here for factor in (divisor, divisor * divisor))
                 if first_only:

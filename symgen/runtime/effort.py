@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 # Steps that others take, by what they take beside an operation on floats (CPython 3.11).
-SCALAR, SLOPE, DECIMAL = 200, 5, 10
+SCALAR, SLOPE, PRECISE = 200, 5, 10
 # What deriving another way may take, in scalars: of shipped models none takes more than 12 for each operation.
 FREE_SCALARS, SCALARS_AN_OPERATION = 50_000, 20
 

@@ -12,7 +12,6 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Sequence
-from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
 
@@ -24,7 +23,7 @@ from symgen.records import dataclass
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import topological
-from symgen.validity.decimals import DecimalEvaluator, UndefinedError
+from symgen.validity.precise import PreciseEvaluator, UndefinedError, precise
 
 SEED = 15
 STARTS = 4
@@ -115,7 +114,7 @@ def smallest(mechanics: System, pivots: Sequence[Scalar]) -> tuple[float, dict[s
     """The smallest of pivots found in the ranges, where it was found, and whose it is."""
     evaluate = Evaluator(pivots)
     known, ranges = parameter_values(mechanics), _ranges(mechanics, pivots)
-    exact = DecimalEvaluator(pivots)
+    exact = PreciseEvaluator(pivots)
 
     def measure(point: dict[str, float]) -> tuple[float, int]:
         values = [-math.inf if math.isnan(x) else x for x in evaluate(point)]
@@ -123,8 +122,8 @@ def smallest(mechanics: System, pivots: Sequence[Scalar]) -> tuple[float, dict[s
 
     def decisive(point: dict[str, float]) -> tuple[float, int]:
         try:
-            values = exact.values({name: Decimal(value) for name, value in point.items()})
-        except UndefinedError:  # at this point, or a function without a rule for decimals
+            values = exact.values({name: precise(value) for name, value in point.items()})
+        except UndefinedError:  # at this point, or a function without a rule there
             return measure(point)
         return min((float(value), index) for index, value in enumerate(values))
 

@@ -12,9 +12,10 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Mapping, Sequence
-from decimal import Decimal, localcontext
 from fractions import Fraction
 from functools import cached_property
+
+from flint import arb_mat
 
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
@@ -24,8 +25,8 @@ from symgen.symbolic.matrix import flatten
 from symgen.symbolic.scalar import PI, Scalar
 from symgen.symbolic.translate import translate
 from symgen.symbolic.traverse import topological
-from symgen.validity.decimals import DIGITS, ONE, ZERO, DecimalEvaluator, UndefinedError
 from symgen.validity.floats import FloatGradients
+from symgen.validity.precise import Precise, PreciseEvaluator, UndefinedError, precise, precision
 
 SEED = 20120731
 STARTS = 12
@@ -34,18 +35,18 @@ STEPS = 40
 # slopes vanish too, each step takes away more.
 STALLED, STALLED_STEPS = 0.9, 8
 MOST_TERMS = 12  # of a sum of squares that are driven to 0 one by one
-VANISHED = Decimal("1e-12")  # of the scalar's usual size, and of the constraint residuals
-NEAR, FINISHED = 1e-8, 1e-14  # the same in double precision: where decimals go on, and where no step gains any more
-REGULAR = Decimal("1e-4")  # of the largest pivot of a matrix with rows that usually have length 1
+VANISHED = 1e-12  # of the scalar's usual size, and of the constraint residuals
+NEAR, FINISHED = 1e-8, 1e-14  # the same in double precision: where 40 digits go on, and where no step gains any more
+REGULAR = 1e-4  # of the largest pivot of a matrix with rows that usually have length 1
 LENGTH_POINTS = 4
-Point = dict[str, Decimal]
+Point = dict[str, Precise]
 
 
 @dataclass(frozen=True, slots=True)
 class Found:
     """A regular state at which a scalar vanishes: coordinates and parameters."""
 
-    point: tuple[tuple[str, Decimal], ...]
+    point: tuple[tuple[str, float], ...]
 
 
 class ZeroSearch:
@@ -54,22 +55,22 @@ class ZeroSearch:
     def __init__(self, mechanics: System, generic: Genericity) -> None:
         self._generic = generic
         model = mechanics.model
-        self._box: dict[str, tuple[Decimal, Decimal]] = {}
+        self._box: dict[str, tuple[Precise, Precise]] = {}
         self._angles: set[str] = set()
         turn = 2 * PI
         self._coordinates = frozenset(c.name for c in model.coordinates)
         for c in model.coordinates:
             lower, upper = (Fraction(0), turn) if c.is_angle else c.range
-            self._box[c.name] = (_decimal(lower), _decimal(upper))
+            self._box[c.name] = (precise(lower), precise(upper))
             if c.is_angle:
                 self._angles.add(c.name)
         for p in model.parameters:
             if p.range is not None:
-                self._box[p.name] = (_decimal(p.range[0]), _decimal(p.range[1]))
+                self._box[p.name] = (precise(p.range[0]), precise(p.range[1]))
         self._fixed = self._defaults(mechanics)
         self._residuals = mechanics.constraint_residual
         inputs = [entry for column in mechanics.inputs for entry in column]
-        self._rows = DecimalEvaluator([*flatten(mechanics.constraint_jacobian), *inputs])
+        self._rows = PreciseEvaluator([*flatten(mechanics.constraint_jacobian), *inputs])
 
     def zero_of(self, scalar: Scalar) -> Found | None:
         """A regular state at which the scalar vanishes, or None if no start led to one.
@@ -92,14 +93,13 @@ class ZeroSearch:
         return [residual for k, residual in enumerate(self._residuals) if k not in left]
 
     def _zero_of(self, scalar: Scalar, residuals: Sequence[Scalar]) -> Found | None:
-        with localcontext() as context:
-            context.prec = DIGITS
+        with precision():
             terms = squares(scalar)
             if len(terms) > MOST_TERMS:
                 terms = [scalar]
             reached = symbols([scalar, *residuals])
             names = [name for name in self._box if name in reached]
-            evaluator = DecimalEvaluator([*residuals, *terms])
+            evaluator = PreciseEvaluator([*residuals, *terms])
             floats = FloatGradients([*residuals, *terms], names)
             source = random.Random(SEED)
             sizes: list[float] = []
@@ -109,21 +109,21 @@ class ZeroSearch:
                 found = None if near is None else self._descend(evaluator, *near, names, len(residuals))
                 if found is not None and self._regular(found):
                     shown = [*self._angles, *names]
-                    return Found(tuple((name, found[name]) for name in self._box if name in shown))
+                    return Found(tuple((name, float(found[name])) for name in self._box if name in shown))
             return None
 
     def _start(self, source: random.Random, inner: bool) -> Point:
         """Anywhere in the box; parameters at their defaults in the first half of the starts."""
         point = dict(self._fixed)
         for name, (lower, upper) in self._box.items():
-            share = Decimal(source.randrange(10**9)) / 10**9
+            share = precise(Fraction(source.randrange(10**9), 10**9))
             if not (inner and name in self._fixed):
-                point[name] = lower + (upper - lower) * share
+                point[name] = (lower + (upper - lower) * share).mid()
         return point
 
     def _approach(
         self, evaluate: FloatGradients, point: Point, names: Sequence[str], sizes: list[float], rows: int
-    ) -> tuple[Point, Decimal] | None:
+    ) -> tuple[Point, float] | None:
         """Where the way from a start ends close to a zero, and the scalar's usual size."""
         at = {name: float(value) for name, value in point.items()}
         state = evaluate(at)
@@ -168,30 +168,30 @@ class ZeroSearch:
                 damping = damping * 10
                 if damping > 1000:
                     return None
-        return ({name: Decimal(value) for name, value in at.items()}, Decimal(usual)) if size <= NEAR else None
+        return ({name: precise(value) for name, value in at.items()}, usual) if size <= NEAR else None
 
     def _descend(
-        self, evaluator: DecimalEvaluator, point: Point, usual: Decimal, names: Sequence[str], rows: int
+        self, evaluator: PreciseEvaluator, point: Point, usual: float, names: Sequence[str], rows: int
     ) -> Point | None:
         """The zero beside a point, if there is one."""
-        damping = Decimal("1e-12")
+        damping = 1e-12
         try:
             values, slopes = evaluator.gradients(point, names)
         except UndefinedError:
             return None
-        weights = [ONE] * rows + [ONE / usual] * (len(values) - rows)
-        widths = [self._box[name][1] - self._box[name][0] for name in names]
+        weights = [1.0] * rows + [1 / usual] * (len(values) - rows)
         size = _size(values, weights)
         for _ in range(STEPS):
             if size <= VANISHED:
                 return point
-            trial = self._step(point, names, values, slopes, weights, widths, damping)
-            try:
-                fresh, fresh_slopes = evaluator.gradients(trial, names)
-            except UndefinedError:
-                return None
-            fresh_size = _size(fresh, weights)
-            if fresh_size < size:
+            trial = self._step(point, names, values, slopes, weights, damping)
+            if trial is not None:
+                try:
+                    fresh, fresh_slopes = evaluator.gradients(trial, names)
+                except UndefinedError:
+                    return None
+                fresh_size = _size(fresh, weights)
+            if trial is not None and fresh_size < size:
                 point, values, slopes, size, damping = trial, fresh, fresh_slopes, fresh_size, damping / 10
             else:
                 damping = damping * 10
@@ -203,25 +203,27 @@ class ZeroSearch:
         self,
         point: Point,
         names: Sequence[str],
-        values: Sequence[Decimal],
-        slopes: Sequence[Sequence[Decimal]],
-        weights: Sequence[Decimal],
-        widths: Sequence[Decimal],
-        damping: Decimal,
-    ) -> Point:
-        j = [
-            [w * s * width for s, width in zip(row, widths, strict=True)]
-            for w, row in zip(weights, slopes, strict=True)
-        ]
-        right = [w * v for w, v in zip(weights, values, strict=True)]
-        scale = sum((x * x for row in j for x in row), ZERO) / len(j)
-        normal = [[sum((x * y for x, y in zip(p, q, strict=True)), ZERO) for q in j] for p in j]
-        for i, row in enumerate(normal):
-            row[i] += damping * scale + Decimal("1e-30")
-        y = _solve(normal, right)
+        values: Sequence[Precise],
+        slopes: Sequence[Sequence[Precise]],
+        weights: Sequence[float],
+        damping: float,
+    ) -> Point | None:
+        """Where a damped step leads; None where rounding leaves its equations singular."""
+        widths = [self._box[name][1] - self._box[name][0] for name in names]
+        pairs = zip(weights, slopes, strict=True)
+        j = arb_mat([[w * s * width for s, width in zip(row, widths, strict=True)] for w, row in pairs])
+        right = arb_mat([[w * v] for w, v in zip(weights, values, strict=True)])
+        normal = (j * j.transpose()).mid()
+        shift = damping * sum(normal[i, i] for i in range(normal.nrows())) / normal.nrows() + 1e-30
+        for i in range(normal.nrows()):
+            normal[i, i] += shift
+        try:
+            shares = j.transpose() * normal.mid().solve(right.mid(), algorithm="approx")
+        except ZeroDivisionError:
+            return None
         trial = dict(point)
         for k, name in enumerate(names):
-            moved = point[name] - widths[k] * sum((j[i][k] * y[i] for i in range(len(j))), ZERO)
+            moved = (point[name] - widths[k] * shares[k, 0]).mid()
             if name not in self._angles:
                 lower, upper = self._box[name]
                 moved = min(max(moved, lower), upper)
@@ -244,33 +246,32 @@ class ZeroSearch:
             and _smallest_pivot(rows, generic.rank + generic.alpha) > REGULAR
         )
 
-    def _matrix(self, values: Sequence[Decimal]) -> list[Sequence[Decimal]]:
+    def _matrix(self, values: Sequence[Precise]) -> list[list[float]]:
         n = self._generic.n
-        return [values[i * n : (i + 1) * n] for i in range(self._generic.r + self._generic.m)]
+        return [[float(x) for x in values[i * n : (i + 1) * n]] for i in range(self._generic.r + self._generic.m)]
 
     @cached_property
-    def _lengths(self) -> list[Decimal]:
+    def _lengths(self) -> list[float]:
         """The largest length of each row of [B; M^T] at some points: a row that all but vanishes is a drop of rank."""
         source = random.Random(SEED)
-        lengths = [ZERO] * (self._generic.r + self._generic.m)
+        lengths = [0.0] * (self._generic.r + self._generic.m)
         for _ in range(LENGTH_POINTS):
             try:
                 values = self._rows.values(self._start(source, inner=True))
             except UndefinedError:
                 continue
-            found = (sum((x * x for x in row), ZERO).sqrt() for row in self._matrix(values))
+            found = (math.hypot(*row) for row in self._matrix(values))
             lengths = [max(pair) for pair in zip(lengths, found, strict=True)]
         return lengths
 
     @staticmethod
     def _defaults(mechanics: System) -> Point:
         graph = mechanics.graph
-        with localcontext() as context:
-            context.prec = DIGITS
+        with precision():
             values: Point = {}
             for parameter in mechanics.model.parameters:
                 names = {name: graph.symbol(name) for name in values}
-                values[parameter.name] = DecimalEvaluator([translate(graph, parameter.value, names)]).values(values)[0]
+                values[parameter.name] = PreciseEvaluator([translate(graph, parameter.value, names)]).values(values)[0]
         return values
 
 
@@ -292,38 +293,20 @@ def squares(scalar: Scalar) -> list[Scalar]:
             return [scalar]
 
 
-def _decimal(value: Fraction) -> Decimal:
-    return Decimal(value.numerator) / Decimal(value.denominator)
+def _size(values: Sequence[Precise], weights: Sequence[float]) -> float:
+    return max(float(abs(v) * w) for v, w in zip(values, weights, strict=True))
 
 
-def _size(values: Sequence[Decimal], weights: Sequence[Decimal]) -> Decimal:
-    return max(abs(v) * w for v, w in zip(values, weights, strict=True))
-
-
-def _solve(a: list[list[Decimal]], b: Sequence[Decimal]) -> list[Decimal]:
-    """A y = b for a symmetric positive definite A."""
-    rows = [[*row, value] for row, value in zip(a, b, strict=True)]
-    size = len(rows)
-    for k in range(size):
-        for i in range(k + 1, size):
-            factor = rows[i][k] / rows[k][k]
-            rows[i] = [x - factor * y for x, y in zip(rows[i], rows[k], strict=True)]
-    y = [ZERO] * size
-    for k in reversed(range(size)):
-        y[k] = (rows[k][size] - sum((rows[k][i] * y[i] for i in range(k + 1, size)), ZERO)) / rows[k][k]
-    return y
-
-
-def _smallest_pivot(rows: Sequence[Sequence[Decimal]], rank: int) -> Decimal:
+def _smallest_pivot(rows: Sequence[Sequence[float]], rank: int) -> float:
     """The pivot number `rank` of elimination with complete pivoting; rows of large mechanisms hold few coordinates."""
     work = [{j: x for j, x in enumerate(row) if x} for row in rows]
     # of each row its largest entry, the first of equal ones
     largest = [_largest(row) for row in work]
-    size = ONE
+    size = 1.0
     for k in range(rank):
-        size, i, j = max(((largest[i][0], -i, largest[i][1]) for i in range(k, len(work))), default=(ZERO, 0, 0))
+        size, i, j = max(((largest[i][0], -i, largest[i][1]) for i in range(k, len(work))), default=(0.0, 0, 0))
         if not size:
-            return ZERO
+            return 0.0
         i, j = -i, -j
         work[k], work[i], largest[k], largest[i] = work[i], work[k], largest[i], largest[k]
         for other in range(k + 1, len(work)):
@@ -332,12 +315,12 @@ def _smallest_pivot(rows: Sequence[Sequence[Decimal]], rank: int) -> Decimal:
                 continue
             factor = row[j] / work[k][j]
             for column, y in work[k].items():
-                row[column] = row.get(column, ZERO) - factor * y
+                row[column] = row.get(column, 0.0) - factor * y
             del row[j]
             largest[other] = _largest(row)
     return size
 
 
-def _largest(row: Mapping[int, Decimal]) -> tuple[Decimal, int]:
+def _largest(row: Mapping[int, float]) -> tuple[float, int]:
     """The size of the largest entry of a row, and its column with a minus sign."""
-    return max(((abs(x), -j) for j, x in row.items()), default=(ZERO, 0))
+    return max(((abs(x), -j) for j, x in row.items()), default=(0.0, 0))

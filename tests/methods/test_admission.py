@@ -6,7 +6,7 @@ import os
 import subprocess
 import sys
 from dataclasses import replace
-from decimal import Decimal, localcontext
+from fractions import Fraction
 from functools import cache
 from pathlib import Path
 
@@ -26,7 +26,7 @@ from symgen.runtime.effort import done
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.validity import search as search_module
-from symgen.validity.decimals import DIGITS, DecimalEvaluator, sine_cosine
+from symgen.validity.precise import PreciseEvaluator, UndefinedError, precise, precision
 from symgen.validity.proof import Proof
 from symgen.validity.search import ZeroSearch
 
@@ -136,24 +136,28 @@ def test_intervals_hold_what_parameters_can_be() -> None:
     assert not definite.holds(m("a_1"))
 
 
-def test_decimals_agree_with_known_values_and_difference_quotients() -> None:
-    with localcontext() as context:
-        context.prec = DIGITS
-        sine, cosine = sine_cosine(Decimal("1"))
-    assert str(sine)[:30] == "0.8414709848078965066525023216"
-    assert str(cosine)[:30] == "0.5403023058681397174009366074"
+def test_precise_slopes_agree_with_difference_quotients() -> None:
     graph = Graph()
     a, b = graph.symbol("a"), graph.symbol("b")
     root = graph.function("sqrt", (a * a + 2,))
     value = graph.trig("sin", a * 1 + b) * root / (b * b + 1) - graph.function("exp", (a,))
-    evaluator = DecimalEvaluator([value])
-    point = {"a": Decimal("0.7"), "b": Decimal("-0.3")}
+    evaluator = PreciseEvaluator([value])
+    point = {"a": precise(Fraction(7, 10)), "b": precise(Fraction(-3, 10))}
     _, ((slope_a, slope_b),) = evaluator.gradients(point, ("a", "b"))
-    step = Decimal("1e-12")
-    for name, slope in (("a", slope_a), ("b", slope_b)):
-        ahead = evaluator.values({**point, name: point[name] + step})[0]
-        behind = evaluator.values({**point, name: point[name] - step})[0]
-        assert abs((ahead - behind) / (2 * step) - slope) < Decimal("1e-20")
+    step = precise(Fraction(1, 10**12))
+    with precision():
+        for name, slope in (("a", slope_a), ("b", slope_b)):
+            ahead = evaluator.values({**point, name: point[name] + step})[0]
+            behind = evaluator.values({**point, name: point[name] - step})[0]
+            assert abs((ahead - behind) / (2 * step) - slope) < 1e-20
+
+
+def test_what_has_no_value_is_undefined() -> None:
+    graph = Graph()
+    a = graph.symbol("a")
+    for value in (graph.function("sqrt", (a,)), graph.function("log", (a,)), 1 / (a + 1)):
+        with pytest.raises(UndefinedError):
+            PreciseEvaluator([value]).values({"a": precise(-1.0)})
 
 
 def test_the_search_ends_without_a_zero_where_there_is_none() -> None:

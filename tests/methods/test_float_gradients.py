@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from decimal import Decimal
-
 import pytest
 
 from symgen.symbolic.scalar import Graph
-from symgen.validity.decimals import DecimalEvaluator
 from symgen.validity.floats import FloatGradients
+from symgen.validity.precise import PreciseEvaluator, precise
 
 
 def test_values_and_slopes_are_those_in_40_digits() -> None:
@@ -28,7 +26,7 @@ def test_values_and_slopes_are_those_in_40_digits() -> None:
     found = FloatGradients(outputs, ("x", "y"))(point)
     assert found is not None
     values, rows = found
-    exact, slopes = DecimalEvaluator(outputs).gradients({k: Decimal(v) for k, v in point.items()}, ("x", "y"))
+    exact, slopes = PreciseEvaluator(outputs).gradients({k: precise(v) for k, v in point.items()}, ("x", "y"))
     assert values == pytest.approx([float(value) for value in exact], rel=1e-13)
     for row, wanted in zip(rows, slopes, strict=True):
         assert [row.get(j, 0.0) for j in range(2)] == pytest.approx([float(s) for s in wanted], rel=1e-12, abs=1e-15)
