@@ -105,11 +105,11 @@ class Elimination:
             found[name] = value if pivot.is_one else value * (1 / pivot)
         return tuple(found.get(j, self._graph.zero) for j in self.inputs)
 
-    def lengths(self) -> Scalar:
-        """The product of the factors of pivots that depend on coordinates, each of them once; 1 without such pivots."""
+    def lengths(self) -> tuple[Scalar, ...]:
+        """The factors of pivots that depend on coordinates, each of them once."""
         monomials = (self._graph.products.monomial(pivot)[1] for pivot in self._tested)
         factors = dict.fromkeys(factor for powers in monomials for factor, power in powers.items() if power > 0)
-        return self._graph.product(factor for factor in factors if not self._safe(factor))
+        return tuple(factor for factor in factors if not self._safe(factor))
 
     def content(self, entries: Sequence[Scalar]) -> dict[Scalar, int]:
         """The parameters, declared nonzero, that are factors of all entries."""

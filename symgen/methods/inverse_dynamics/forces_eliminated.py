@@ -83,7 +83,7 @@ class _Core:
             particular: Vector = (self._graph.zero,) * len(self._names)
             null = [tuple(self._graph.one if i == j else self._graph.zero for j in self._names) for i in self._names]
             measure = self._graph.one
-            if not self._elimination.lengths().is_one:
+            if self._elimination.lengths():
                 guards.append(self._tested(measure, measure, 1))
         elif self._size <= MOST_MINORS and internal <= 1:
             particular, null, guard, measure = self._by_minors(internal)
@@ -142,12 +142,17 @@ class _Core:
         return self._tested(denominator, scale, degree), denominator / scale
 
     def _tested(self, denominator: Scalar, scale: Scalar, degree: int) -> Guard:
-        """The guard of the core, to which pivots belong, and with twists for rates the coordinates' own determinant."""
-        turns = self._mechanics.twist_determinant * self._elimination.lengths()
+        """The guard of the core, to which pivots belong, and with twists for rates the coordinates' own determinant.
+
+        Each pivot is a direction of its own: several legs may be nearly stretched without any of them being so.
+        """
+        lengths = self._elimination.lengths()
+        turns = self._mechanics.twist_determinant * self._graph.product(lengths)
         bound = magnitude(self._graph, [turns])[0]
+        directions = len(lengths) + (denominator.constant is None)
         for _ in range(degree):
             denominator, scale = denominator * turns, scale * bound
-        return Guard(Status.ACTUATION_RANK, denominator, degree, (self._regularity(),), scale)
+        return Guard(Status.ACTUATION_RANK, denominator, degree, (self._regularity(),), scale, max(1, directions))
 
     def _scale(self, minors: Scalar) -> Scalar:
         """The sum of absolute terms, in which terms of minors that cancel in sign are equal, with factors taken out."""
@@ -163,7 +168,7 @@ class _Core:
         """The solution of a square core; its determinant is measured by the lengths of its rows."""
         graph = self._graph
         # off the constraints legs that are bodies may well be parallel inside the ranges of their coordinates
-        solution = by_rows(graph, self._core, self._right, everywhere=not self._elimination.lengths().is_one)
+        solution = by_rows(graph, self._core, self._right, everywhere=bool(self._elimination.lengths()))
         measured = self._tested(graph.product(solution.squares), graph.product(solution.lengths), 2)
         return solution.values, [], measured
 
@@ -190,7 +195,7 @@ class _Core:
         """
         graph = self._graph
         # what was solved by tested pivots is no column of the core any more
-        if not self._elimination.lengths().is_one or self._mechanics.twist_determinant.constant is None:
+        if self._elimination.lengths() or self._mechanics.twist_determinant.constant is None:
             rows = self._elimination.multipliers_alone or self._mechanics.coordinate_rows
             return HouseholderSpace(graph, rows, len(rows[0])).volume
         whole = [
