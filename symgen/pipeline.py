@@ -167,10 +167,10 @@ def explain(
     except TooLargeError as large:
         return f"closed forms are left out: {large}"
     text = overview(report) if quantity is None else quantity_text(report, quantity)
-    told = dict.fromkeys(("inverse_dynamics", *(forms or ())) if quantity is None else (quantity,))
-    compared = ((name, _compared(draft, name)) for name in told)
+    names = dict.fromkeys(("inverse_dynamics", *(forms or ())) if quantity is None else (quantity,))
+    compared = ((name, _compared(draft, name)) for name in names)
     parts = [text, *(forms_text(name, choice) for name, choice in compared if choice is not None)]
-    notices = [*draft.notes, *(notice.message for notice in _replaced(draft, None if quantity is None else told))]
+    notices = [*draft.notes, *(notice.message for notice in _replaced(draft, None if quantity is None else names))]
     return "\n".join([*parts, *(f"\n{notice}" for notice in notices)])
 
 
@@ -258,10 +258,10 @@ def _failing_forms(draft: Draft) -> tuple[tuple[str, str], ...]:
     they fail."""
     derivations = draft.derivations
     form, methods = derivations.form, derivations.methods
-    told = list(_forms(derivations, ()))
+    remarks = list(_forms(derivations, ()))
     if form is not None and methods is not None and form.verdict.admitted:
         others = methods.failing() or form.failed
-        told += ((f"form {name} of u", f"{why}; it is made if asked for (--form {name})") for name, why in others)
+        remarks += ((f"form {name} of u", f"{why}; it is made if asked for (--form {name})") for name, why in others)
     # articulated inertias are taken only where G is definite, and then no form fails
     moving = [choice.quantity for choice in derivations.choices if choice.form not in ("", BY_FRAMES)]
     if moving:
@@ -269,8 +269,8 @@ def _failing_forms(draft: Draft) -> tuple[tuple[str, str], ...]:
 
         for name, why in failing_motions(derivations.mechanics):
             asked = " ".join(f"--form {quantity}={name}" for quantity in moving)
-            told.append((f"form {name} of {' and '.join(moving)}", f"{why}; it is made if asked for ({asked})"))
-    return tuple(told)
+            remarks.append((f"form {name} of {' and '.join(moving)}", f"{why}; it is made if asked for ({asked})"))
+    return tuple(remarks)
 
 
 def _reporting(model: Model, measured: bool) -> Background[ReportFiles]:
@@ -388,8 +388,8 @@ def _notices(draft: Draft, options: Options, certificate: Certificate | None) ->
     unverified = () if certificate is None else certificate.notes
     ways = (*_replaced(draft), *_short(draft), *dense_motions(draft, options))
     recorded = draft.notes if options.as_recorded else ()
-    told = (*absent, *ways, *_size(draft, options), *idle, *map(Notice, (*unverified, *recorded)))
-    return (*_renamed(draft.model), *told)
+    notices = (*absent, *ways, *_size(draft, options), *idle, *map(Notice, (*unverified, *recorded)))
+    return (*_renamed(draft.model), *notices)
 
 
 def _renamed(model: Model) -> tuple[Notice, ...]:

@@ -77,7 +77,7 @@ def _grouped(terms: Sequence[_Term], numbers: bool) -> list[_Group]:
                 if (numbers or factor.constant is None) and len(term.factors) > 1:
                     holders.setdefault(factor, []).append(place)
         shared = [(_common([left[place].factors for place in places], numbers), places) for places in holders.values()]
-        common, places = max(shared, key=lambda found: len(found[0]) * (len(found[1]) - 1), default=((), []))
+        common, places = max(shared, key=lambda group: len(group[0]) * (len(group[1]) - 1), default=((), []))
         if len(places) < 2:
             break
         chosen = [left.pop(place) for place in places]
