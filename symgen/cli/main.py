@@ -189,7 +189,7 @@ def _explain(arguments: list[str]) -> int:
     check_present([given.model])
 
     def explain() -> int:
-        from symgen.pipeline import explain
+        from symgen.generation.explain import explain
 
         progress = Progress(given.model.stem, quiet=not sys.stderr.isatty())
         text = explain(given.model, given.quantity, progress, chosen_forms(given.forms), given.out)
