@@ -26,8 +26,8 @@ def sources_of(draft: Draft, options: Options) -> dict[str, str]:
         made = backend(name)
         for program in made.programs(draft.programs, options.scalars):
             kind = f" in {program.scalar}" if made.of_each_scalar else ""
-            for emit in each(f"{made.language}{kind}", made.variants):
-                sources |= emit(draft.model, program)
+            for variant in each(f"{made.language}{kind}", made.variants):
+                sources |= variant.emit(draft.model, program)
     return sources
 
 
