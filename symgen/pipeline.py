@@ -9,7 +9,7 @@ python-flint only.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Container, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, nullcontext
 from dataclasses import replace
 from pathlib import Path
@@ -17,40 +17,29 @@ from typing import TYPE_CHECKING
 
 from symgen.backends.literals import LiteralRangeError
 from symgen.backends.operations import count_operations
-from symgen.diagnostics import ModelError, Notice
-from symgen.generation.dense_motion import dense_motions
+from symgen.diagnostics import ModelError
 from symgen.generation.draft import Draft, draft_of
+from symgen.generation.facts import facts, invalid_forms
 from symgen.generation.files import backend_of, files_of, sources_of, verified
+from symgen.generation.notices import notices
 from symgen.generation.refusals import beyond_range, no_states
-from symgen.generation.results import FORMS, LargestError, Options, Result, Summary, WrongUseError
-from symgen.ir.kernel import Kernel, Program, Scalar
-from symgen.ir.wide_functions import works_with_pairs
-from symgen.methods.forward_dynamics.motions import BY_FRAMES
-from symgen.methods.selection import MethodChoice
-from symgen.model.expressions.names import did_you_mean
+from symgen.generation.requested import requested_outputs
+from symgen.generation.results import LargestError, Options, Result, Summary
+from symgen.ir.kernel import Program, Scalar
 from symgen.model.load import load_model
 from symgen.model.model import Model
-from symgen.quantities.catalogue import BY_NAME
-from symgen.quantities.everything import OF_ALL
-from symgen.quantities.finish import short_of_inputs
-from symgen.quantities.select import Selection
 from symgen.runtime.activity import working
 from symgen.runtime.garbage import let_go_and_keep
 
 if TYPE_CHECKING:
     from symgen.generation.fallback import Fallback
-    from symgen.report.facts import Facts, ReportFiles
+    from symgen.report.facts import ReportFiles
     from symgen.report.proof import ProofFacts
     from symgen.report.targets import TargetCore
     from symgen.runtime.background import Background, Receive
     from symgen.verify.certificate import Certificate
     from symgen.verify.expected import Expected
 
-# Measured on a chain of 16 links: 6336 operations in 45.6 kB with the single precision of a Cortex-M4, gcc -O2.
-BYTES_AN_OPERATION = 7
-# What a step of `backends/c/steps.py` takes in its table.
-BYTES_A_STEP = 14
-LARGEST_CODE = 64_000
 # Scalars, at half a kilobyte each: derivations of fewer leave little behind.
 LARGE_GRAPH = 100_000
 # Statements of all kernels in all scalar types: trying them is nothing beside writing and compiling their C.
@@ -68,7 +57,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
     """
     progress("reading the model")
     model = load_model(path)
-    outputs = _outputs(model, options)
+    outputs = requested_outputs(model, options)
     draft: Draft | None = None
     expected: Expected | None = None
     fallback: Fallback | None = None
@@ -89,7 +78,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
                     if not draft.program.kernels:
                         return _result(draft, options, {}, replace(tried, left_out=draft.left_out))
             if reporting is not None:
-                reporting.send(_facts(draft))
+                reporting.send(facts(draft))
             progress("writing")
             with _literals_in_range(path):
                 sources = sources_of(draft, options)
@@ -136,70 +125,6 @@ def _finished(
     return replace(result, files={**result.files, **report.files}, notices=(*result.notices, *report.notices))
 
 
-def explain(
-    path: Path,
-    quantity: str | None,
-    progress: Progress,
-    forms: Mapping[str, str] | None = None,
-    out: Path | None = None,
-) -> str:
-    """Structure and closed forms as text for the terminal; of one quantity when it is named.
-
-    `forms` are those whose validity is told, by quantity.  Kernels are those of OUT/<model>, where a run has verified
-    some.
-    """
-    from symgen.closedform.algebra.limits import TooLargeError
-    from symgen.generation.explain import forms_text, overview, quantity_text
-    from symgen.report.gather import gather
-
-    if quantity is not None and quantity not in BY_NAME:
-        raise _unknown_quantity(quantity)
-    progress("reading the model")
-    model = load_model(path)
-    if quantity is not None:
-        model = replace(model, outputs=(*model.outputs, quantity))
-    progress("deriving")
-    from symgen.generation.recorded import as_recorded
-
-    draft = as_recorded(model, ("all",), Options(scalars=("float64",), forms=forms or {}, measured=out))
-    progress("closed forms")
-    try:
-        report = gather(model, _facts(draft))
-    except TooLargeError as large:
-        return f"closed forms are left out: {large}"
-    text = overview(report) if quantity is None else quantity_text(report, quantity)
-    told = dict.fromkeys(("inverse_dynamics", *(forms or ())) if quantity is None else (quantity,))
-    compared = ((name, _compared(draft, name)) for name in told)
-    parts = [text, *(forms_text(name, choice) for name, choice in compared if choice is not None)]
-    notices = [*draft.notes, *(notice.message for notice in _replaced(draft, None if quantity is None else told))]
-    return "\n".join([*parts, *(f"\n{notice}" for notice in notices)])
-
-
-def _compared(draft: Draft, quantity: str) -> MethodChoice | None:
-    """What is known of the forms of a quantity; of the one asked for alone, where one was asked for."""
-    derivations = draft.derivations
-    if quantity == "inverse_dynamics":
-        return derivations.form
-    taken = {choice.quantity: choice.form for choice in derivations.choices}
-    named = dict(derivations.named)
-    if quantity in named or quantity not in FORMS or quantity not in taken:
-        return named.get(quantity)
-    methods = derivations.methods
-    return None if methods is None else methods.compared(quantity, taken[quantity])
-
-
-def _outputs(model: Model, options: Options) -> tuple[str, ...]:
-    outputs = options.outputs or model.outputs
-    if unknown := [name for name in outputs if name != "all" and name not in BY_NAME]:
-        raise _unknown_quantity(unknown[0])
-    return outputs
-
-
-def _unknown_quantity(name: str) -> WrongUseError:
-    remedy = did_you_mean(name, [*BY_NAME], "symgen explain MODEL.yaml lists those of a model")
-    return WrongUseError(f"unknown quantity {name!r}; {remedy}")
-
-
 def _derive(model: Model, outputs: tuple[str, ...], options: Options) -> Draft:
     if not options.as_recorded or options.measured is None:
         return draft_of(model, outputs, options)
@@ -244,56 +169,12 @@ def _verified(
     return replace(found[0], left_out=draft.left_out), found[1]
 
 
-def _facts(draft: Draft) -> Facts:
-    from symgen.report.facts import Facts
-
-    operations = {kernel.name: count_operations(kernel.statements) for kernel in draft.program.kernels}
-    decisions = tuple((decision.what, decision.why) for decision in draft.structure.decisions)
-    derivations = draft.derivations
-    rejected = ((f"form {r.way} of {r.quantity}", f"verification rejects it: {r.why}") for r in derivations.rejected)
-    return Facts(operations, (*decisions, *derivations.absent, *rejected, *_failing_forms(draft)))
-
-
-def _failing_forms(draft: Draft) -> tuple[tuple[str, str], ...]:
-    """Where what is generated is not valid if a form was asked for, and which forms are left to be asked for and where
-    they fail."""
-    derivations = draft.derivations
-    form, methods = derivations.form, derivations.methods
-    told = list(_forms(derivations, ()))
-    if form is not None and methods is not None and form.verdict.admitted:
-        others = methods.failing() or form.failed
-        told += ((f"form {name} of u", f"{why}; it is made if asked for (--form {name})") for name, why in others)
-    # articulated inertias are taken only where G is definite, and then no form fails
-    moving = [choice.quantity for choice in derivations.choices if choice.form not in ("", BY_FRAMES)]
-    if moving:
-        from symgen.methods.forward_dynamics.motions import failing_motions
-
-        for name, why in failing_motions(derivations.mechanics):
-            asked = " ".join(f"--form {quantity}={name}" for quantity in moving)
-            told.append((f"form {name} of {' and '.join(moving)}", f"{why}; it is made if asked for ({asked})"))
-    return tuple(told)
-
-
 def _reporting(model: Model, measured: bool) -> Background[ReportFiles]:
     from symgen.backends import render
     from symgen.runtime.background import Background
 
     render.load()
     return Background(lambda receive: _report(model, receive, measured))
-
-
-def _forms(derivations: Selection, failed: tuple[tuple[str, str], ...]) -> tuple[tuple[str, str], ...]:
-    """Whether forms that were asked for are not valid at every regular state; if not, those of u that `failed`."""
-    form = derivations.form
-    asked = ((("u", form),) if form is not None else ()) + derivations.named
-    return (
-        *(
-            (f"validity of {quantity} at every regular state", f"form {one.way}: {one.verdict.explanation}")
-            for quantity, one in asked
-            if not one.verdict.admitted
-        ),
-        *((f"form {name} of u", why) for name, why in failed if form is not None and form.verdict.admitted),
-    )
 
 
 def _targets(model: Model, files: dict[str, str | bytes], options: Options) -> tuple[TargetCore, ...]:
@@ -325,7 +206,7 @@ def _result(
         model=draft.model,
         files=files,
         summary=_summary(draft, certificate),
-        notices=(*draft.model.notices, *_notices(draft, options, certificate)),
+        notices=(*draft.model.notices, *notices(draft, options, certificate)),
         certificate=None if certificate is None else certificate.to_json(),
         failures=() if certificate is None else certificate.failures,
         left_out=draft.left_out,
@@ -342,7 +223,7 @@ def _summary(draft: Draft, certificate: Certificate | None) -> Summary:
         m=generic.m,
         skipped=(
             *((decision.what, decision.why) for decision in draft.structure.decisions),
-            *_forms(draft.derivations, () if form is None else form.failed),
+            *invalid_forms(draft.derivations, () if form is None else form.failed),
         ),
         operations=tuple((k.name, count_operations(k.statements).total) for k in draft.program.kernels),
     )
@@ -353,71 +234,3 @@ def _summary(draft: Draft, certificate: Certificate | None) -> Summary:
     worst = [certificate.worst(target) for target in certificate.targets]
     errors = tuple(LargestError(w.target, w.quantity, w.largest, FACTOR) for w in worst)
     return replace(summary, errors=errors)
-
-
-def _size(draft: Draft, options: Options) -> tuple[Notice, ...]:
-    """How much machine code the C takes, where small targets do not hold it: all but steps of tables is written out."""
-    sizes = {kernel.name: _bytes(kernel) for kernel in draft.program.kernels}
-    size = sum(sizes.values())
-    if size <= LARGEST_CODE or "c" not in options.parts:
-        return ()
-    each = ", ".join(f"{name} {round(count / 1000)} kB" for name, count in sizes.items())
-    return (
-        Notice(
-            f"the C takes about {round(size / 1000)} kB of machine code on a Cortex-M4 ({each}); where that is too "
-            "much, name fewer with --outputs"
-        ),
-    )
-
-
-def _bytes(kernel: Kernel) -> int:
-    if works_with_pairs(kernel):
-        return BYTES_A_STEP * len(kernel.statements)
-    return BYTES_AN_OPERATION * count_operations(kernel.statements).total
-
-
-def _notices(draft: Draft, options: Options, certificate: Certificate | None) -> tuple[Notice, ...]:
-    """Quantities asked for by name that this model does not have, and what could not be verified."""
-    asked = options.outputs or draft.model.outputs
-    left_out = {one.quantity for one in draft.left_out}
-    known = [(n, why) for n, why in draft.derivations.absent if n in asked and n not in left_out]
-    absent = [Notice(f"{n} is not generated: {why}") for n, why in known]
-    of_all = ((n, why) for n, why in draft.derivations.absent if why.startswith(OF_ALL))
-    absent += [Notice(f"{n}: {why}") for n, why in of_all]
-    kernels = {kernel.name for kernel in draft.program.kernels}
-    idle = [Notice(f"--form {n}={form}: {n} is not generated") for n, form in options.forms.items() if n not in kernels]
-    unverified = () if certificate is None else certificate.notes
-    ways = (*_replaced(draft), *_short(draft), *dense_motions(draft, options))
-    recorded = draft.notes if options.as_recorded else ()
-    told = (*absent, *ways, *_size(draft, options), *idle, *map(Notice, (*unverified, *recorded)))
-    return (*_renamed(draft.model), *told)
-
-
-def _renamed(model: Model) -> tuple[Notice, ...]:
-    """That files and functions are not called as the model."""
-    if model.c_name == model.name:
-        return ()
-    why = f"`{model.name}` clashes with a header, a library, a macro or what another model's files are called"
-    return (Notice(f"its files and functions are called {model.c_name}: {why}"),)
-
-
-def _replaced(draft: Draft, quantities: Container[str] | None = None) -> tuple[Notice, ...]:
-    """The quantities (None: all) that take another way than the cheapest, because verification rejected that."""
-    found = []
-    left_out = {one.quantity for one in draft.left_out}
-    for choice in draft.derivations.choices:
-        if choice.quantity in left_out or (quantities is not None and choice.quantity not in quantities):
-            continue
-        tried = [f"{r.way} ({r.why})" for r in draft.derivations.rejected if r.quantity == choice.quantity]
-        if tried:
-            others = ", ".join(tried)
-            way = choice.way + choice.digits
-            found.append(Notice(f"{choice.quantity} takes {way}: verification speaks against {others}"))
-    return tuple(found)
-
-
-def _short(draft: Draft) -> tuple[Notice, ...]:
-    """That u cannot produce every motion."""
-    generic = draft.derivations.generic
-    asked = any(kernel.name == "inverse_dynamics" for kernel in draft.program.kernels)
-    return (Notice(f"inverse_dynamics: {short_of_inputs(generic)}"),) if asked and not generic.full_actuation else ()

@@ -15,7 +15,7 @@ from typing import TextIO
 
 from symgen.diagnostics import Notice
 from symgen.generation.results import Summary
-from symgen.runtime.activity import told
+from symgen.runtime.activity import described
 from symgen.runtime.clock import Clock
 
 _ERROR_NOTE = "  * in units of what rounding the inputs and the result does to it"
@@ -41,7 +41,7 @@ class Progress:
         self._live = self._stream.isatty()
         self._stage = self._message = ""
         self._began = 0.0
-        self._telling = False  # a signal must not print into a line that is being printed
+        self._printing = False  # a signal must not print into a line that is being printed
         self._clock = Clock(self._tick)
 
     def __call__(self, message: str) -> None:
@@ -57,9 +57,9 @@ class Progress:
             self._began = time.monotonic()
         self._stage, self._message = stage, message
         if self._live:
-            self._tell(message)
+            self._print(message)
         elif new:
-            self._tell(stage)
+            self._print(stage)
         self._clock.start(anew=self._live or new)
 
     def done(self) -> None:
@@ -69,13 +69,13 @@ class Progress:
             print(_CLEAR_LINE, end="", file=self._stream, flush=True)
 
     def _tick(self) -> None:
-        """Tells what a stage is at that has not told anything for a while."""
-        if not self._telling:
+        """Prints what a stage is at that has not printed anything for a while."""
+        if not self._printing:
             spent = f"{time.monotonic() - self._began:.0f} s"
-            self._tell(", ".join(word for word in (self._message, told(), spent) if word))
+            self._print(", ".join(word for word in (self._message, described(), spent) if word))
 
-    def _tell(self, message: str) -> None:
-        self._telling = True
+    def _print(self, message: str) -> None:
+        self._printing = True
         line = f"{self._label}: {message} ..."
         try:
             if self._live:
@@ -84,7 +84,7 @@ class Progress:
             else:
                 print(line, file=self._stream, flush=True)
         finally:
-            self._telling = False
+            self._printing = False
 
 
 def _width(terminal: TextIO) -> int:
@@ -96,7 +96,7 @@ def _width(terminal: TextIO) -> int:
 
 
 def summary_table(name: str, summary: Summary, width: int | None = None) -> str:
-    """Sizes, largest errors, operations by quantity, and what the scene does not need; in so many columns if told."""
+    """Sizes, largest errors, operations by quantity, and what the scene does not need; in so many columns if given."""
     sizes = f"n = {summary.n}, r = {summary.r}, δ = {summary.delta}, m = {summary.m}"
     sections = [f"{name}   {sizes}"]
     if summary.operations:

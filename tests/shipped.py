@@ -51,8 +51,8 @@ def sources(name: str) -> dict[str, str]:
     files: dict[str, str] = {}
     for made in map(backend, USUAL):
         for program in made.programs(programs(name), SCALARS):
-            for emit in made.variants:
-                files |= emit(model(name), program)
+            for variant in made.variants:
+                files |= variant.emit(model(name), program)
     return files
 
 

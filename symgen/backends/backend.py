@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping
 from importlib import import_module
 from typing import TypeAlias
 
+from symgen.backends.scalars import SUFFIX
 from symgen.ir.kernel import Program, Scalar
 from symgen.model.model import Model
 from symgen.records import dataclass
@@ -21,20 +22,36 @@ Emit: TypeAlias = Callable[[Model, Program], dict[str, str]]
 
 
 @dataclass(frozen=True, slots=True)
+class Variant:
+    """What prints some files of a program, or none where it has no kernel for them.
+
+    `ending` stands in their names behind that of the model; the kernels for one state, which come first, have none.
+    """
+
+    emit: Emit
+    ending: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class Backend:
     """One language; `language` is what progress calls it.
 
-    Each of `variants` prints some files of a program, by paths under the folder `name`, or none where it has no kernel
-    for them.  They are made of the programs of `scalars`, as far as these are asked for, or of the one program there is
-    for `None`, in float64.  `verified_as` names the backend whose files are run for its own: another one where the
-    same kernels are judged by those.
+    Each of `variants` prints a file for each of `extensions`, by `paths`.  They are made of the program of each scalar
+    type that is asked for, or of the one in float64 alone.  `verified_as` names the backend whose files are run for its
+    own: another one where the same kernels are judged by those.
     """
 
     name: str
     language: str
-    variants: tuple[Emit, ...]
+    variants: tuple[Variant, ...]
+    extensions: tuple[str, ...]
     verified_as: str
     of_each_scalar: bool = True
+
+    def paths(self, model: Model, scalar: Scalar, ending: str = "") -> tuple[str, ...]:
+        """Where the files of a variant are, under the folder of a model, in the order of extensions."""
+        stem = f"{model.c_name}{ending}{SUFFIX[scalar]}"
+        return tuple(f"{self.name}/{stem}{extension}" for extension in self.extensions)
 
     def programs(self, programs: Mapping[Scalar, Program], scalars: tuple[Scalar, ...]) -> list[Program]:
         """Those that files are made of."""

@@ -106,11 +106,11 @@ def _ended(ending: KeyboardInterrupt | EndedError) -> int:
     if isinstance(ending, EndedError):
         word, code = ending.meaning, ending.number
     folders = ", ".join(map(str, changed_folders()))
-    told = "earlier output is unchanged"
+    state = "earlier output is unchanged"
     if folders:
-        told = f"new files are in {folders}, each complete; all else is unchanged"
+        state = f"new files are in {folders}, each complete; all else is unchanged"
     with suppress(OSError):  # the terminal may be gone
-        print(f"\n{word}; {told}", file=sys.stderr, flush=True)
+        print(f"\n{word}; {state}", file=sys.stderr, flush=True)
     return code
 
 
@@ -189,7 +189,7 @@ def _explain(arguments: list[str]) -> int:
     check_present([given.model])
 
     def explain() -> int:
-        from symgen.pipeline import explain
+        from symgen.generation.explain import explain
 
         progress = Progress(given.model.stem, quiet=not sys.stderr.isatty())
         text = explain(given.model, given.quantity, progress, chosen_forms(given.forms), given.out)
@@ -252,17 +252,17 @@ def _each_model(models: Sequence[Path], options: Options, quiet: bool, finish: C
         if result.failures:
             print(f"{path}: verification failed, nothing is written", file=sys.stderr)
             print(*(f"  {failure}" for failure in result.failures), sep="\n", file=sys.stderr)
-            _tell_left_out(path, result)
+            _print_left_out(path, result)
             return MODEL_WRONG
         code = finish(result)
-        _tell_left_out(path, result)
+        _print_left_out(path, result)
         return MODEL_WRONG if result.left_out else code
 
     check_present(models)
     return max([guarded(partial(one, path)) for path in models])
 
 
-def _tell_left_out(path: Path, result: Result) -> None:
+def _print_left_out(path: Path, result: Result) -> None:
     for one in result.left_out:
         types = " and ".join(one.scalars)
         print(f"{path}: {one.quantity} is left out in {types}: verification rejects every way of it", file=sys.stderr)
@@ -270,8 +270,8 @@ def _tell_left_out(path: Path, result: Result) -> None:
 
 
 def _write_files(result: Result, out: Path, quiet: bool) -> int:
-    tell = _unheard if quiet else _heard
-    written = write_files(out / result.model.name, result.files, tell)
+    notify = _unheard if quiet else _heard
+    written = write_files(out / result.model.name, result.files, notify)
     if not quiet:
         print(summary_table(result.model.name, result.summary, terminal_width(sys.stdout)))
         print("written:", *(f"  {path}" for path in written), "", sep="\n")

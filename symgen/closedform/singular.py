@@ -56,25 +56,25 @@ def derive_singular_sets(model: Model, exact: Exact, speller: Speller) -> tuple[
     return tuple(found)
 
 
-def _collect(model: Model, exact: Exact, speller: Speller, found: list[SingularSet]) -> None:
+def _collect(model: Model, exact: Exact, speller: Speller, sets: list[SingularSet]) -> None:
     if model.constraints:
         minors = [v for one in exact.minor_sets for v in one.values.values()]
         contents = [one.content for one in exact.minor_sets]
         content = contents[0] if len(contents) == 1 else exact.ring.one
-        found.append(
+        sets.append(
             _common_zeros(exact, speller, "constraint", "constraint_jacobian", minors, content, "the rank of B drops")
         )
     if model.inputs and exact.structure.degree_of_actuation == exact.delta:
         deltas = [v for one in exact.actuations for v in one.determinants.values()]
         text = "the degree of actuation drops"
         quantity = "projected_control_pseudoinverse"
-        found.append(_common_zeros(exact, speller, "input", quantity, deltas, exact.ring.one, text))
+        sets.append(_common_zeros(exact, speller, "input", quantity, deltas, exact.ring.one, text))
     if model.independent_velocities:
         complement = exact.complement(model.independent_velocities)
         if complement is not None:
             bottom = common_denominator(exact.ring, [e for row in complement for e in row])
             text = "the chosen velocities become dependent (a property of the choice, not of the mechanism)"
-            found.append(
+            sets.append(
                 _common_zeros(exact, speller, "parameter", "orthogonal_complement", [bottom], exact.ring.one, text)
             )
 

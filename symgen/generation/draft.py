@@ -42,8 +42,8 @@ class Draft:
     def notes(self) -> tuple[str, ...]:
         """What is to be told of a draft that is not verified again: its notice, and what was left out before."""
         left_out = self.derivations.left_out
-        told = (f"{name} is left out in {' and '.join(types)}: {REJECTED} in every way" for name, types in left_out)
-        return (*((self.notice,) if self.notice else ()), *told)
+        notices = (f"{name} is left out in {' and '.join(types)}: {REJECTED} in every way" for name, types in left_out)
+        return (*((self.notice,) if self.notice else ()), *notices)
 
     @property
     def program(self) -> Program:

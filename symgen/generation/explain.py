@@ -1,79 +1,66 @@
-"""What `symgen explain` prints: the structure of a system, and its closed forms as plain text."""
+"""`symgen explain`: structure and closed forms of a model, with the ways that are valid, as text for the terminal."""
 
 from __future__ import annotations
 
-import shutil
-import textwrap
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
 
+from symgen.closedform.algebra.limits import TooLargeError
+from symgen.generation.draft import Draft
+from symgen.generation.explain_text import forms_text, overview, quantity_text
+from symgen.generation.facts import facts
+from symgen.generation.notices import replaced
+from symgen.generation.recorded import as_recorded
+from symgen.generation.requested import unknown_quantity
+from symgen.generation.results import FORMS, Options
 from symgen.methods.selection import MethodChoice
-from symgen.report.content import ReportInput
-from symgen.report.terminal import render_text_math
-
-WIDEST = 120
-
-
-def overview(report: ReportInput) -> str:
-    """Sizes, freedom, actuation, what is skipped, singular sets, integrability, published formulas, closed forms."""
-    model, structure = report.model, report.structure
-    lines = [
-        f"{model.name}: {model.description}".rstrip(": "),
-        "",
-        f"n = {model.n} coordinates, r = {model.r} constraints of rank {structure.constraint_rank}, "
-        f"m = {model.m} inputs",
-        f"δ_loc = {structure.local_freedom}, δ_diff = {structure.differential_freedom}, "
-        f"degree of actuation {structure.degree_of_actuation}: {structure.actuation}",
-    ]
-    lines += _section("not needed", [f"{what}: {why}" for what, why in report.skipped])
-    lines += _section("integrability", [f"{row.row}: {row.verdict}; {row.explanation}" for row in report.integrability])
-    lines += _section("singular sets", _singular(report))
-    lines += _section(
-        "published equations",
-        [f"{model.published[v.position].equation}: {v.verdict}. {v.proof}" for v in report.verdicts],
-    )
-    printed = [name for name, form in report.forms.items() if form.matrix is not None]
-    lines += _section("closed forms (name one to see it)", [", ".join(printed)])
-    return "\n".join(lines)
+from symgen.model.load import load_model
+from symgen.quantities.catalogue import BY_NAME
+from symgen.report.gather import gather
 
 
-def quantity_text(report: ReportInput, quantity: str) -> str:
-    """One quantity: its closed form with intermediates, or why there is none, and what its kernel costs."""
-    lines: list[str] = []
-    form = report.forms.get(quantity)
-    width = min(WIDEST, shutil.get_terminal_size((100, 24)).columns)
-    if form is None or form.matrix is None:
-        note = form.note if form is not None else "the closed form of this quantity is not printed"
-        lines.append(f"{quantity}: {note}")
-    else:
-        lines.append(render_text_math(form.matrix, report.model, quantity, width))
-        if form.intermediates:
-            lines += ["", "with"]
-            lines += [render_text_math(value, report.model, str(name), width) for name, value in form.intermediates]
-        if form.note:
-            lines += ["", *textwrap.wrap(form.note, width)]
-    if (counts := report.operation_counts.get(quantity)) is not None:
-        parts = ", ".join(f"{number} {kind}" for kind, number in counts.items() if number)
-        lines += ["", f"kernel: {parts or 'no operations'}"]
-    return "\n".join(lines)
+def explain(
+    path: Path,
+    quantity: str | None,
+    progress: Callable[[str], None],
+    forms: Mapping[str, str] | None = None,
+    out: Path | None = None,
+) -> str:
+    """Structure and closed forms as text for the terminal; of one quantity when it is named.
+
+    `forms` are those whose validity is reported, by quantity.  Kernels are those of OUT/<model>, where a run has
+    verified some.
+    """
+    if quantity is not None and quantity not in BY_NAME:
+        raise unknown_quantity(quantity)
+    progress("reading the model")
+    model = load_model(path)
+    if quantity is not None:
+        model = replace(model, outputs=(*model.outputs, quantity))
+    progress("deriving")
+    draft = as_recorded(model, ("all",), Options(scalars=("float64",), forms=forms or {}, measured=out))
+    progress("closed forms")
+    try:
+        report = gather(model, facts(draft))
+    except TooLargeError as large:
+        return f"closed forms are left out: {large}"
+    text = overview(report) if quantity is None else quantity_text(report, quantity)
+    names = dict.fromkeys(("inverse_dynamics", *(forms or ())) if quantity is None else (quantity,))
+    compared = ((name, _compared(draft, name)) for name in names)
+    parts = [text, *(forms_text(name, choice) for name, choice in compared if choice is not None)]
+    notices = [*draft.notes, *(notice.message for notice in replaced(draft, None if quantity is None else names))]
+    return "\n".join([*parts, *(f"\n{notice}" for notice in notices)])
 
 
-def forms_text(quantity: str, form: MethodChoice) -> str:
-    """The forms of a quantity: which is taken, what each costs by count, and why it is valid or where it is not."""
-    entries = [f"{name} ({weight}){', taken' * (name == form.way)}: {remark}" for name, weight, remark in form.others]
-    option = "--form" if quantity == "inverse_dynamics" else f"--form {quantity}=NAME"
-    return "\n".join(_section(f"forms of {quantity} (counted cost; choose one with {option})", entries))
-
-
-def _singular(report: ReportInput) -> list[str]:
-    lines = []
-    for found in report.singular_sets:
-        where = ", ".join(render_text_math(zero, report.model) for zero in found.vanishing)
-        place = f"{where} = 0" if where else "nowhere" if found.decided else "not worked out"
-        lines.append(f"{found.kind} singularity of {found.quantity}: {place} ({found.explanation})")
-    return lines
-
-
-def _section(title: str, entries: list[str]) -> list[str]:
-    if not entries:
-        return []
-    wrapped = [line for entry in entries for line in textwrap.wrap(entry, WIDEST - 4, subsequent_indent="    ")]
-    return ["", f"{title}:", *(f"  {line}" for line in wrapped)]
+def _compared(draft: Draft, quantity: str) -> MethodChoice | None:
+    """What is known of the forms of a quantity; of the one asked for alone, where one was asked for."""
+    derivations = draft.derivations
+    if quantity == "inverse_dynamics":
+        return derivations.form
+    taken = {choice.quantity: choice.form for choice in derivations.choices}
+    named = dict(derivations.named)
+    if quantity in named or quantity not in FORMS or quantity not in taken:
+        return named.get(quantity)
+    methods = derivations.methods
+    return None if methods is None else methods.compared(quantity, taken[quantity])

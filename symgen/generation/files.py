@@ -11,23 +11,26 @@ from symgen.generation.results import Options
 from symgen.registered import BACKENDS
 from symgen.runtime.activity import each, working
 
+# Parts whose files hold those of a backend.
+HOLDS = {"package": "c"}
+
 
 def verified(options: Options) -> tuple[str, ...]:
-    """The backends whose files are run: those that are asked for, or what stands for them."""
-    run = {backend(name).verified_as for name in options.parts if name in BACKENDS}
+    """The backends whose files are run: those that are asked for, alone or in a package, or what stands for them."""
+    run = {backend(name).verified_as for name in _printed(options)}
     return tuple(name for name in BACKENDS if name in run)
 
 
 def sources_of(draft: Draft, options: Options) -> dict[str, str]:
-    """What the backends make: those that are asked for, those that are run, and C for a package of it."""
-    needed = {*options.parts, *verified(options), *(("c",) if "package" in options.parts else ())}
+    """What the backends make: those that are asked for, alone or in a package, and those that are run."""
+    needed = {*_printed(options), *verified(options)}
     sources: dict[str, str] = {}
     for name in (name for name in BACKENDS if name in needed):
         made = backend(name)
         for program in made.programs(draft.programs, options.scalars):
             kind = f" in {program.scalar}" if made.of_each_scalar else ""
-            for emit in each(f"{made.language}{kind}", made.variants):
-                sources |= emit(draft.model, program)
+            for variant in each(f"{made.language}{kind}", made.variants):
+                sources |= variant.emit(draft.model, program)
     return sources
 
 
@@ -49,6 +52,11 @@ def files_of(draft: Draft, options: Options, sources: Mapping[str, str]) -> dict
             files |= emit_proofs(draft.model, programs)
     files["derivation.json"] = derivation_json(draft.model, draft.derivations, draft.structure, draft.program)
     return files
+
+
+def _printed(options: Options) -> set[str]:
+    """The backends whose files are asked for, alone or in a package."""
+    return {HOLDS.get(part, part) for part in options.parts}.intersection(BACKENDS)
 
 
 def backend_of(path: str) -> str:

@@ -60,34 +60,34 @@ def as_recorded(model: Model, outputs: Sequence[str], options: Options) -> Draft
     try:
         record = _read(file, model)
     except _UnusableError as why:
-        told = f"{file} {why}: kernels are those that derivation chooses (`symgen` verifies them and writes it)"
-        return replace(draft, notice=told)
+        notice = f"{file} {why}: kernels are those that derivation chooses (`symgen` verifies them and writes it)"
+        return replace(draft, notice=notice)
     return _with_record(draft, record, options.forms)
 
 
 def _read(file: Path, model: Model) -> _Record:
     try:
-        found = json.loads(file.read_bytes())
+        content = json.loads(file.read_bytes())
     except OSError as error:
         raise _UnusableError("is missing") from error
     except ValueError as error:
         raise _UnusableError("is damaged") from error
     try:
-        if found["model_sha256"] != model.text_hash:
+        if content["model_sha256"] != model.text_hash:
             raise _UnusableError("is of another text of the model")
-        if found["symgen"] != __version__:
-            raise _UnusableError(f"is of symgen {found['symgen']}, this is {__version__}")
-        return _record(found)
+        if content["symgen"] != __version__:
+            raise _UnusableError(f"is of symgen {content['symgen']}, this is {__version__}")
+        return _record(content)
     except (KeyError, TypeError, AttributeError) as error:
         raise _UnusableError("is damaged") from error
 
 
-def _record(found: Mapping[str, Any]) -> _Record:
-    kernels = found["kernels"].items()
+def _record(content: Mapping[str, Any]) -> _Record:
+    kernels = content["kernels"].items()
     return _Record(
-        tuple(Rejection(str(r["quantity"]), str(r["way"]), str(r["why"])) for r in found.get("rejected", ())),
+        tuple(Rejection(str(r["quantity"]), str(r["way"]), str(r["why"])) for r in content.get("rejected", ())),
         {name: _Taken(str(one["way"]), tuple(one.get("twice_the_digits", ()))) for name, one in kernels},
-        {str(one["quantity"]): tuple(one["scalars"]) for one in found.get("left_out", ())},
+        {str(one["quantity"]): tuple(one["scalars"]) for one in content.get("left_out", ())},
     )
 
 

@@ -30,8 +30,8 @@ def multipliers_alone(rows: Sequence[Mapping[int, Scalar]], safe: Callable[[Scal
     return tuple(tuple(row.get(j, zero) for row in left) for j in names)
 
 
-def as_rates_feel(graph: Graph, moments: Sequence[Mapping[int, Scalar]], turning: Rows[Scalar]) -> list[Coefficients]:
-    """Three rows of moments as the rates of angles feel them that turn a body by w = `turning` a'."""
+def along_rates(graph: Graph, moments: Sequence[Mapping[int, Scalar]], turning: Rows[Scalar]) -> list[Coefficients]:
+    """Three rows of moments along the rates a' of angles that turn a body by w = `turning` a'."""
     names = sorted({j for row in moments for j in row})
     found = []
     for column in transposed(turning):

@@ -140,16 +140,16 @@ def _is_multiple(column: Vector, first: Vector, factor: Fraction) -> bool:
     return all(y is x * factor for x, y in zip(first, column, strict=True))
 
 
-def constant_part(found: Sequence[Family], n: int) -> tuple[Across, ...]:
+def constant_part(families: Sequence[Family], n: int) -> tuple[Across, ...]:
     """Orthogonal vectors that complete the families to a basis, so that both together have a determinant above 0."""
     vectors = [
         Across(family.members[:count], family.factors[:count])
-        for family in found
+        for family in families
         for count in range(2, len(family.members) + 1)
     ]
-    members = {j for family in found for j in family.members}
+    members = {j for family in families for j in family.members}
     vectors += [Across((j,), (Fraction(1),)) for j in range(n) if j not in members]
-    if vectors and _is_turned_over([*(family.entries for family in found), *(vector.entries for vector in vectors)]):
+    if vectors and _is_turned_over([*(family.entries for family in families), *(vector.entries for vector in vectors)]):
         vectors[-1] = Across(vectors[-1].members, vectors[-1].factors, -1)
     return tuple(vectors)
 
@@ -170,9 +170,9 @@ def _is_turned_over(vectors: Sequence[dict[int, Fraction]]) -> bool:
     return turned
 
 
-def folded(row: Vector, found: Sequence[Family]) -> Vector:
+def folded(row: Vector, families: Sequence[Family]) -> Vector:
     """A row of B along the families: one entry each, |c| times that of the first member."""
-    return tuple(row[family.members[0]] * _length(row[0].graph, family) for family in found)
+    return tuple(row[family.members[0]] * _length(row[0].graph, family) for family in families)
 
 
 def _length(graph: Graph, vector: Family | Across) -> Scalar:
@@ -188,14 +188,14 @@ class FamilySpace(HouseholderSpace):
     """
 
     def __init__(
-        self, graph: Graph, rows: Matrix, n: int, rank: int, found: Sequence[Family], locked: Sequence[int] = ()
+        self, graph: Graph, rows: Matrix, n: int, rank: int, families: Sequence[Family], locked: Sequence[int] = ()
     ) -> None:
         self.graph, self.rows, self.n, self.rank, self.locked = graph, rows, n, rank, locked
         self.delta = n - rank
-        self._families = found
-        self._constant = constant_part(found, n)
-        own = tuple(folded(row, found) for row in rows)
-        self._own = reflected(graph, own, len(found), rank, locked=locked)
+        self._families = families
+        self._constant = constant_part(families, n)
+        own = tuple(folded(row, families) for row in rows)
+        self._own = reflected(graph, own, len(families), rank, locked=locked)
         self.reflections = self._own.reflections
 
     @cached_property

@@ -195,7 +195,7 @@ def _kernel(mechanics: System, derived: Quantity, limits: _Limits, apart: bool =
     # what only a failure looks at must not decide which angles a regular state evaluates
     causes = list(_causes(tests))
     image |= zip(causes, share_angles(mechanics.graph, causes, arguments), strict=True)
-    tests = [_told(mechanics.graph, test, image) for test in tests]
+    tests = [_with_causes(mechanics.graph, test, image) for test in tests]
     computed = [argument for argument in arguments if angles_of([argument])]
     plain = [argument for argument in arguments if argument not in computed]
     blocks = [writer.angle_block(plain), Block(tuple(writer.pairs(plain, order)), ())]
@@ -242,7 +242,7 @@ def _causes(tests: Sequence[Test]) -> list[Node]:
     return [node for test in tests for cause in test.first for node in (cause.size, cause.limit, *_causes([cause]))]
 
 
-def _told(graph: Graph, test: Test, image: dict[Node, Node]) -> Test:
+def _with_causes(graph: Graph, test: Test, image: dict[Node, Node]) -> Test:
     """The test with causes as they are where it fails; what takes the place of a size is its own image."""
     if not test.vanishes or not test.first:
         return test

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from symgen.records import dataclass
+from symgen.symbolic.angle_forms import angle_form
 from symgen.symbolic.matrix import Matrix, Vector, flatten
-from symgen.symbolic.scalar import Graph
 from symgen.symbolic.traverse import topological
 
 
@@ -54,13 +54,13 @@ class AbsoluteAngles:
         return tuple(result)
 
 
-def absolute_angles(graph: Graph, q: Vector, constraint_jacobian: Matrix) -> AbsoluteAngles:
+def absolute_angles(q: Vector, constraint_jacobian: Matrix) -> AbsoluteAngles:
     """The coordinates that occur in the angles of B only together with another one, which becomes their parent.
 
     Of several the one that occurs in the fewest angles besides is taken: the neighbour in a chain of links.
     """
     forms = {
-        node.args[0].serial: graph.angle_form(node.args[0])
+        node.args[0].serial: angle_form(node.args[0])
         for node in topological(flatten(constraint_jacobian))
         if node.op in ("sin", "cos")
     }

@@ -113,7 +113,7 @@ def _only_held(mechanics: System, body: FreeBody) -> bool:
     moved = {model.coordinates[j].name for j in body.coordinates}
     whole = coordinates | {leaf for three in leaves.values() for leaf in three}
 
-    def feels(expression: Expression, symbols: Iterable[Scalar]) -> bool:
+    def depends_on(expression: Expression, symbols: Iterable[Scalar]) -> bool:
         return not reached([translate(graph, expression, names)]).isdisjoint(symbols)
 
     driven = [
@@ -131,8 +131,8 @@ def _only_held(mechanics: System, body: FreeBody) -> bool:
     held = [row.expression for row in model.constraints if row.kind == "geometric"]
     return (
         moved.isdisjoint(driven)
-        and not any(feels(expression, whole) for expression in works)
-        and not any(feels(expression, coordinates) for expression in held)
+        and not any(depends_on(expression, whole) for expression in works)
+        and not any(depends_on(expression, coordinates) for expression in held)
     )
 
 

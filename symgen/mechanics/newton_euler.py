@@ -4,9 +4,7 @@ Outwards: angular velocity, angular acceleration and acceleration of each origin
 frame passes to its parent.  A frame's coordinates get the power of that wrench on their own relative motion; no energy
 is formed or differentiated (Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 5.3; Luh, Walker, Paul 1980).
 
-Lumped, the bodies of a frame are one, given by mass, first moment and inertia about the frame's origin; the mass of a
-frame that turns about a point of its parent is put there as a point mass, and a rotor on a fixed axis is part of what
-it turns (base parameters: Khalil and Dombre, Modeling, Identification and Control of Robots, 2002, ch. 9).
+Lumped (lumps.py), the bodies of a frame are one.
 """
 
 from __future__ import annotations
@@ -16,8 +14,9 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from symgen.mechanics.bodies import Bodies, Vector3
+from symgen.mechanics.lumps import Lump, lumped_bodies
 from symgen.model.kinematics.triples import Rows, applied, cross, inner, plus, transposed, triple
-from symgen.model.mechanism import WORLD, Body, Frame, RotorInertia
+from symgen.model.mechanism import WORLD, Body, Frame
 from symgen.symbolic.calculus import derivative_along, gradient
 from symgen.symbolic.matrix import Vector
 from symgen.symbolic.scalar import Scalar
@@ -55,15 +54,6 @@ class JointMotions:
     added: Mapping[str, FrameMotion]
     turning: Mapping[str, FrameMotion]
     wrenches: Mapping[str, Wrench]  # what turning so takes of the bodies
-
-
-@dataclass(frozen=True)
-class Lump:
-    """Mass, first moment and inertia tensor about a frame's origin, in its axes."""
-
-    mass: Scalar
-    first: Vector3
-    tensor: tuple[Vector3, Vector3, Vector3]
 
 
 def newton_euler(
@@ -159,7 +149,7 @@ class _Recursion:
         rotors = list(self.bodies.mechanism.rotor_inertias)
         working = {f.name: self.motions[f.name] if f.name in twists else self._working(f.name) for f in frames}
         if lumped:
-            lumps, rotors = self._lumps([frame.name for frame in frames])
+            lumps, rotors = lumped_bodies(self.bodies, [frame.name for frame in frames])
             wrenches = {name: self._inertial_about_origin(lump, working[name]) for name, lump in lumps.items()}
         else:
             wrenches = self.wrenches(frames, working)
@@ -285,54 +275,6 @@ class _Recursion:
         moment = plus(_turning_moment(lump.tensor, motion), self._cross(lump.first, motion.linear))
         return Wrench(plus(applied(motion.field, lump.first), (x, y, z)), moment)
 
-    def _lumps(self, frames: Sequence[str]) -> tuple[dict[str, Lump], list[RotorInertia]]:
-        """What each frame carries, and the rotors that are not part of it."""
-        zero, space = self.graph.zero, self.kinematics.space
-        lumps = {name: Lump(zero, self.none, (self.none, self.none, self.none)) for name in frames}
-        for body in self.bodies.mechanism.bodies:
-            if body.frame != WORLD:
-                mass, com = self.bodies.scalars.value(body.mass), space.values(body.com)
-                about_centre = _with_tensor(lumps[body.frame], self.bodies.inertia(body.name))
-                lumps[body.frame] = _with_point(about_centre, mass, com)
-        for name in reversed(frames):
-            joint, parent = self.kinematics.joint(name), self.kinematics.frames[name].parent
-            if parent != WORLD and all(rate.is_zero for rate in joint.place_rate):
-                lumps[parent] = _with_point(lumps[parent], lumps[name].mass, joint.place)
-                lumps[name] = replace(lumps[name], mass=zero)
-        rotors = []
-        for rotor in self.bodies.mechanism.rotor_inertias:
-            held = self._turned_alone_by(rotor.coordinate, frames)
-            if held is None:
-                rotors.append(rotor)
-            else:
-                name, axis = held
-                inertia = self.bodies.scalars.value(rotor.inertia)
-                rows = [tuple(inertia if i == j == axis else zero for j in range(3)) for i in range(3)]
-                lumps[name] = _with_tensor(lumps[name], (triple(rows[0]), triple(rows[1]), triple(rows[2])))
-        return lumps, rotors
-
-    def _turned_alone_by(self, coordinate: str, frames: Sequence[str]) -> tuple[str, int] | None:
-        """The frame, and its main axis, that turns by this coordinate alone about a fixed place of the world."""
-        rate = self.bodies.names[f"{coordinate}_dot"]
-        for name in frames:
-            joint = self.kinematics.joint(name)
-            turning = [k for k, x in enumerate(joint.turning) if not x.is_zero]
-            if self.kinematics.frames[name].parent not in self._still(frames) or len(turning) != 1:
-                continue
-            if joint.turning[turning[0]] is rate and all(x.is_zero for x in joint.place_rate):
-                return name, turning[0]
-        return None
-
-    def _still(self, frames: Sequence[str]) -> set[str]:
-        """The world, and the frames that do not move."""
-        still = {WORLD}
-        for name in frames:
-            joint = self.kinematics.joint(name)
-            fixed = all(x.is_zero for x in (*joint.turning, *joint.place_rate))
-            if fixed and self.kinematics.frames[name].parent in still:
-                still.add(name)
-        return still
-
     def _rates(self, rates: Vector3) -> Vector3:
         x, y, z = derivative_along(self.graph, rates, self.direction)
         return x, y, z
@@ -383,20 +325,6 @@ def _turning_moment(tensor: Rows[Scalar], motion: FrameMotion) -> Vector3:
         i_yy * b + (i_xx - i_zz) * (x * z) + i_xy * u_zy - i_yz * u_xy + i_xz * (z * z - x * x),
         i_zz * c + (i_yy - i_xx) * (x * y) + i_yz * u_xz - i_xz * u_yz + i_xy * (x * x - y * y),
     )
-
-
-def _with_point(lump: Lump, mass: Scalar, at: Vector3) -> Lump:
-    """With a point mass: m (|c|^2 1 - c c^T) about the origin."""
-    x, y, z = at
-    mx, my, mz = first = (mass * x, mass * y, mass * z)
-    xx, yy, zz, xy, xz, yz = mx * x, my * y, mz * z, mx * y, mx * z, my * z
-    rows = ((yy + zz, -xy, -xz), (-xy, xx + zz, -yz), (-xz, -yz, xx + yy))
-    return _with_tensor(Lump(lump.mass + mass, plus(lump.first, first), lump.tensor), rows)
-
-
-def _with_tensor(lump: Lump, tensor: tuple[Vector3, Vector3, Vector3]) -> Lump:
-    x, y, z = (plus(a, b) for a, b in zip(lump.tensor, tensor, strict=True))
-    return replace(lump, tensor=(x, y, z))
 
 
 def _negative(vector: Vector3) -> Vector3:

@@ -11,6 +11,7 @@ from symgen.mechanics.system import System
 from symgen.model.expressions.names import counted
 from symgen.model.model import ConstraintRow
 from symgen.records import dataclass
+from symgen.symbolic.angle_forms import angle_form
 from symgen.symbolic.angles import angles_of, share_angles
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.matrix import flatten
@@ -199,7 +200,7 @@ def _shared_work(mechanics: System) -> Iterator[Decision]:
     evaluated = set(angles_of(share_angles(mechanics.graph, parts)))
     derived = [angle for angle in angles_of(parts) if angle not in evaluated]
     if derived:
-        names = _some([_sum_of(mechanics, angle) for angle in derived])
+        names = _some([_sum_of(angle) for angle in derived])
         why = "by addition from those of their parts, where these are needed"
         yield Decision(f"sine and cosine of {names}", why)
     fixed = mechanics.factoring.fixed
@@ -241,10 +242,10 @@ def _moving(mechanics: System, entries: Sequence[Scalar]) -> list[Scalar]:
     return [entry for entry in entries if any(node in coordinates for node in topological([entry]))]
 
 
-def _sum_of(mechanics: System, angle: Scalar) -> str:
+def _sum_of(angle: Scalar) -> str:
     """An angle as the sum of its leaves: `theta + phi`."""
     text = ""
-    for leaf, count in sorted(mechanics.graph.angle_form(angle).items(), key=lambda term: term[0].serial):
+    for leaf, count in sorted(angle_form(angle).items(), key=lambda term: term[0].serial):
         name = str(leaf.payload) if leaf.op == "symbol" else "(...)"
         size = name if abs(count) == 1 else f"{abs(count)}*{name}"
         text += (f" {'-' if count < 0 else '+'} " if text else "-" if count < 0 else "") + size

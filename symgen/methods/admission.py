@@ -12,7 +12,7 @@ from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.transplant import transplanted
 from symgen.validity.formula import formula
 from symgen.validity.proof import Proof
-from symgen.validity.resolution import stands_out
+from symgen.validity.resolution import distinguishable
 from symgen.validity.search import STARTS, ZeroSearch
 
 if TYPE_CHECKING:
@@ -122,7 +122,7 @@ class OfInputs:
         """Whether it is valid at every regular state, in single precision too."""
         found = verdict(candidate, self.measures(workspace, candidate), first_only)
         guards = candidate.derived.guards
-        if found.admitted and guards and not stands_out(guards, workspace.generic.n, workspace.points):
+        if found.admitted and guards and not distinguishable(guards, workspace.generic.n, workspace.points):
             return replace(found, lost=True)
         return found
 

@@ -84,18 +84,18 @@ def recover(directory: Path) -> str:
     Returns what to tell of it, or nothing.
     """
     staging = directory / STAGING
-    told = ""
+    notice = ""
     for name, meaning in ((BACK, "the earlier files are back"), (FORWARD, "its files are all in place now")):
         switch = _read(staging / name)
         if switch is not None:
             _carry_out(directory, switch)
-            told = f"{directory}: an earlier run was ended while it wrote; {meaning}"
+            notice = f"{directory}: an earlier run was ended while it wrote; {meaning}"
             break
     _remove(staging)
     for former in directory.glob(_FORMER):
         if former.is_dir() and all(_STAGED.fullmatch(name) for name in os.listdir(former)):
             _remove(former)
-    return told
+    return notice
 
 
 def _carry_out(directory: Path, switch: Switch) -> None:

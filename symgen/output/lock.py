@@ -23,14 +23,14 @@ class LockedError(OSError):
 
 
 @contextmanager
-def folder_lock(directory: Path, tell: Callable[[str], None], longest: float = LONGEST_WAIT) -> Iterator[None]:
+def folder_lock(directory: Path, notify: Callable[[str], None], longest: float = LONGEST_WAIT) -> Iterator[None]:
     """Holds the lock of an existing folder; raises LockedError where another run does not give it back.
 
     A folder that cannot be written, or a disk that knows no locks, is used as it is: writing will tell what is wrong.
     """
     file: int | None = None
     try:
-        file = _acquired(directory / LOCK, tell, longest)
+        file = _acquired(directory / LOCK, notify, longest)
     except LockedError:
         raise
     except OSError:
@@ -44,9 +44,9 @@ def folder_lock(directory: Path, tell: Callable[[str], None], longest: float = L
             os.close(file)
 
 
-def _acquired(path: Path, tell: Callable[[str], None], longest: float) -> int:
+def _acquired(path: Path, notify: Callable[[str], None], longest: float) -> int:
     """The open, locked file at `path`: another that was removed while this run waited for it locks nothing."""
-    began, told = time.monotonic(), False
+    began, notified = time.monotonic(), False
     while True:
         file = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
         try:
@@ -61,9 +61,9 @@ def _acquired(path: Path, tell: Callable[[str], None], longest: float) -> int:
                     remedy = f"wait for it or end it, or delete {path.name} if no symgen runs"
                     message = f"another run of symgen{holder} has been writing here for {longest:g} s: {remedy}"
                     raise LockedError(errno.EAGAIN, message, str(path.parent))
-                if waited > PATIENCE and not told:
-                    told = True
-                    tell(f"{path.parent}: waiting for another run of symgen{holder} that writes here")
+                if waited > PATIENCE and not notified:
+                    notified = True
+                    notify(f"{path.parent}: waiting for another run of symgen{holder} that writes here")
                 time.sleep(_PAUSE)
         except BaseException:
             os.close(file)

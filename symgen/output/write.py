@@ -24,10 +24,10 @@ MEASURED = (
 )
 _HELD_SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 _DERIVED = "derivation.json"
-_MOST_TOLD = 5
+_MOST_LISTED = 5
 _changed: list[Path] = []
 
-Tell = Callable[[str], None]
+Notify = Callable[[str], None]
 
 
 class ForeignFileError(OSError):
@@ -53,7 +53,7 @@ def _complain(message: str) -> None:
     print(message, file=sys.stderr)
 
 
-def write_files(directory: Path, files: Mapping[str, str | bytes], tell: Tell = _complain) -> tuple[Path, ...]:
+def write_files(directory: Path, files: Mapping[str, str | bytes], notify: Notify = _complain) -> tuple[Path, ...]:
     """Puts the files (POSIX paths relative to `directory`, named after its model) on disk and returns their paths.
 
     Everything is staged first; then the files change places with interrupts held back. A failure leaves the folder as
@@ -64,9 +64,9 @@ def write_files(directory: Path, files: Mapping[str, str | bytes], tell: Tell = 
     """
     contents = {_checked(path): _bytes(content) for path, content in files.items()}
     directory.mkdir(parents=True, exist_ok=True)
-    with folder_lock(directory, tell):
+    with folder_lock(directory, notify):
         if done := recover(directory):
-            tell(done)
+            notify(done)
         known = _known(directory, contents)
         stale = _stale(directory, contents, known)
         removed = [path for path in stale if checksum_of(_read(directory / path) or b"") == known[path]]
@@ -76,22 +76,22 @@ def write_files(directory: Path, files: Mapping[str, str | bytes], tell: Tell = 
             contents[FILES] = manifest_text(directory.name, made).encode()
         _replace(directory, contents, removed)
         if others := _others(directory, contents, made):
-            more = f" and {len(others) - _MOST_TOLD} more" if len(others) > _MOST_TOLD else ""
-            shown = ", ".join(others[:_MOST_TOLD]) + more
-            tell(f"{directory}: notice: not made by symgen, or changed since, and left as they are: {shown}")
+            more = f" and {len(others) - _MOST_LISTED} more" if len(others) > _MOST_LISTED else ""
+            shown = ", ".join(others[:_MOST_LISTED]) + more
+            notify(f"{directory}: notice: not made by symgen, or changed since, and left as they are: {shown}")
     return tuple(directory / path for path in contents if path != FILES)
 
 
-def compare(directory: Path, files: Mapping[str, str | bytes], tell: Tell = _complain) -> tuple[str, ...]:
+def compare(directory: Path, files: Mapping[str, str | bytes], notify: Notify = _complain) -> tuple[str, ...]:
     """Differences between the disk and `files`, in content and in the set of files that symgen made.
 
     Measured files do not count.
     """
     expected = {_checked(path): _bytes(content) for path, content in files.items() if not is_measured(path)}
     differences = []
-    with folder_lock(directory, tell) if directory.is_dir() else nullcontext():
+    with folder_lock(directory, notify) if directory.is_dir() else nullcontext():
         if done := recover(directory):
-            tell(done)
+            notify(done)
         for path, content in expected.items():
             found = _read(directory / path)
             if found is None:
@@ -103,16 +103,16 @@ def compare(directory: Path, files: Mapping[str, str | bytes], tell: Tell = _com
     return tuple(sorted(differences))
 
 
-def recover_folders(out: Path, tell: Tell = _complain) -> None:
+def recover_folders(out: Path, notify: Notify = _complain) -> None:
     """Finishes what killed runs left in the folders of `out`."""
     try:
         pending = [folder for folder in out.iterdir() if is_pending(folder)]
     except OSError:
         return
     for folder in pending:
-        with folder_lock(folder, tell):
+        with folder_lock(folder, notify):
             if done := recover(folder):
-                tell(done)
+                notify(done)
 
 
 def _keeps_a_list(directory: Path, contents: Collection[str]) -> bool:
@@ -219,8 +219,8 @@ def _read(path: Path) -> bytes | None:
         return None
 
 
-def _first_difference(found: bytes, expected: bytes) -> str:
-    for number, (old, new) in enumerate(zip(found.splitlines(), expected.splitlines(), strict=False), start=1):
+def _first_difference(present: bytes, expected: bytes) -> str:
+    for number, (old, new) in enumerate(zip(present.splitlines(), expected.splitlines(), strict=False), start=1):
         if old != new:
             return f" from line {number}"
     return " in length"

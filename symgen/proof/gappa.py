@@ -105,8 +105,8 @@ def _sum_errors(kernel: Kernel, bounds: Mapping[str, Interval]) -> dict[str, Fra
     return found
 
 
-def _error_of(operand: Operand, found: Mapping[str, Fraction]) -> Fraction | None:
-    return Fraction(0) if isinstance(operand, Literal) else found.get(operand.name)
+def _error_of(operand: Operand, errors: Mapping[str, Fraction]) -> Fraction | None:
+    return Fraction(0) if isinstance(operand, Literal) else errors.get(operand.name)
 
 
 def _measurement(model: Model, program: Program, kernel: Kernel) -> ErrorView:

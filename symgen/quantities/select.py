@@ -108,16 +108,16 @@ def derive_quantities(
     candidates = Candidates(mechanics, methods, everything, [name for name in present if name not in forms])
     made: dict[str, Quantity] = {}
     choices: dict[str, Choice] = {}
-    told: dict[str, MethodChoice] = {}
+    compared: dict[str, MethodChoice] = {}
     for name in each("ways to", present, str):
         if name == INPUTS or name in forms:
             method = forms.get(name, AUTO)
             found = methods.choose(name, method)
             if isinstance(found, str):
                 raise NoSuchFormError(name, method, found)
-            one, told[name] = found
+            one, compared[name] = found
             made[name] = derived_on(mechanics.graph, one)
-            choices[name] = Choice(name, one.way, told[name].costs)
+            choices[name] = Choice(name, one.way, compared[name].costs)
             continue
         chosen = candidates.cheapest(BY_NAME[name])
         if chosen is None:
@@ -134,6 +134,6 @@ def derive_quantities(
     quantities = tuple(finished(mechanics, generic, derived) for derived in named_so)
     if forms.get(INPUTS, AUTO) == AUTO:
         quantities = tuple(with_alike_bodies(model, derived) for derived in quantities)
-    form = told.pop(INPUTS, None)
-    named = tuple(told.items())
+    form = compared.pop(INPUTS, None)
+    named = tuple(compared.items())
     return Selection(mechanics, generic, quantities, tuple(choices.values()), tuple(absent), form, named, methods)

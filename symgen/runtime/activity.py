@@ -13,7 +13,7 @@ from typing import TypeVar
 
 Item = TypeVar("Item")
 # A share of the work that is too small to foresee the rest from, and the seconds from which the rest is worth telling.
-LEAST_SHARE, WORTH_TELLING = 0.02, 2.0
+LEAST_SHARE, WORTH_SHOWING = 0.02, 2.0
 
 
 class Work:
@@ -59,7 +59,7 @@ def each(what: str, items: Sequence[Item], named: Callable[[Item], str] = lambda
             work.done += share
 
 
-def told() -> str:
+def described() -> str:
     """What the run is at, from the outside inwards, and how long the innermost counted work will take yet."""
     now = time.monotonic()
     words = []
@@ -67,7 +67,7 @@ def told() -> str:
     for work in tuple(_works):
         words += [" ".join(word for word in (work.what, work.part) if word)]
         left = work.left(now) if work.left(now) is not None else left
-    if left is not None and left >= WORTH_TELLING:
+    if left is not None and left >= WORTH_SHOWING:
         words.append(f"about {_rounded(left)} s more")
     return ", ".join(word for word in words if word)
 

@@ -25,15 +25,15 @@ _pipe: int | None = None
 
 def watch(group: int) -> None:
     """The process group is killed should this process end without `forget`."""
-    _tell(f"+ {group}\n")
+    _send(f"+ {group}\n")
 
 
 def forget(group: int) -> None:
     """The process group has ended."""
-    _tell(f"- {group}\n")
+    _send(f"- {group}\n")
 
 
-def _tell(line: str) -> None:
+def _send(line: str) -> None:
     global _pipe
     if os.name != "posix":
         return

@@ -110,11 +110,11 @@ def run(command: Sequence[str], limit: float, folder: Path | None = None) -> sub
     # files, not pipes: what a tool leaves running in the background holds no reader
     with TemporaryFile() as output, TemporaryFile() as complaints:
         code = ended(start(command, folder, output, complaints), limit)
-        told = []
+        texts = []
         for file in (output, complaints):
             file.seek(0)
-            told.append(file.read().decode("utf-8", errors="replace"))
-    return CompletedProcess(list(command), code, *told)
+            texts.append(file.read().decode("utf-8", errors="replace"))
+    return CompletedProcess(list(command), code, *texts)
 
 
 def stop(process: subprocess.Popen[bytes]) -> None:

@@ -82,8 +82,8 @@ def run_simulate(path: Path, out: Path, request: Request, quiet: bool, progress:
     progress("")
     written = write_files(out / model.name, files)
     if not quiet:
-        told = [*_summary(model, motion), _checked(verified), "written:"]
-        print(*told, *(f"  {file}" for file in written), "", sep="\n")
+        lines = [*_summary(model, motion), _checked(verified), "written:"]
+        print(*lines, *(f"  {file}" for file in written), "", sep="\n")
     if motion.stopped is not None:
         print(f"{path}: stopped {motion.stopped}", file=sys.stderr)
         return 1

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from symgen.model.kinematics.fixed_angles import sine_of_steps
+from symgen.symbolic.angle_forms import angle_form
 from symgen.symbolic.identity import same_values
 from symgen.symbolic.scalar import PI, Graph, Scalar
 from symgen.symbolic.traverse import reached, topological
@@ -25,10 +26,10 @@ def share_angles(graph: Graph, outputs: Sequence[Scalar], evaluated: Sequence[Sc
     needed = [angle for angle in angles_of(outputs) if angle not in evaluated]
     kept = _Kept()
     for angle in evaluated:
-        kept.add(angle, graph.angle_form(angle))
+        kept.add(angle, angle_form(angle))
     image: dict[Scalar, Scalar] = {}
     for angle in needed:
-        form = graph.angle_form(angle)
+        form = angle_form(angle)
         turned = kept.as_turned(graph, form)
         if turned is not None:
             _turn(graph, image, angle, *turned)
@@ -59,7 +60,7 @@ def angles_of(outputs: Sequence[Scalar]) -> list[Scalar]:
     graph = next(iter(arguments)).graph if arguments else None
     if graph is None:
         return []
-    forms = {argument: graph.angle_form(argument) for argument in arguments}
+    forms = {argument: angle_form(argument) for argument in arguments}
     return sorted(arguments, key=lambda a: (len(forms[a]), sum(map(abs, forms[a].values())), a.serial))
 
 

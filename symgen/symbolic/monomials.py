@@ -144,18 +144,18 @@ class Monomials:
                 _put(work, rest + 2 * self._partner(squares[key]), -value)
         return work
 
-    def _first(self, found: int) -> Code:
+    def _first(self, marked: int) -> Code:
         """The square of the first atom, in the order of atoms, among fields whose highest bit is set."""
-        if not found & (found - 1):
-            return 2 << (found.bit_length() - BITS)
-        return 2 * min(self._fields(found), key=lambda unit: self._atoms[unit.bit_length() // BITS])
+        if not marked & (marked - 1):
+            return 2 << (marked.bit_length() - BITS)
+        return 2 * min(self._fields(marked), key=lambda unit: self._atoms[unit.bit_length() // BITS])
 
-    def _fields(self, found: int) -> Iterator[Code]:
+    def _fields(self, marked: int) -> Iterator[Code]:
         """The units of the fields whose highest bit is set."""
-        while found:
-            top = found.bit_length()
+        while marked:
+            top = marked.bit_length()
             yield 1 << (top - BITS)
-            found ^= 1 << (top - 1)
+            marked ^= 1 << (top - 1)
 
 
 def _whole(terms: Terms) -> tuple[list[tuple[Code, int]], int]:

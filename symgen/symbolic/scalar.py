@@ -10,11 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from fractions import Fraction
-from math import isqrt
 from typing import TYPE_CHECKING, TypeAlias
 
 from symgen.runtime.effort import SCALAR, spend
-from symgen.symbolic.fingerprint import PRIME, angle_pair, combine, leaf_pair, opaque, residue
+from symgen.symbolic.angle_forms import Angles
+from symgen.symbolic.fingerprint import PRIME, combine, opaque, residue
+from symgen.symbolic.functions import expanded, simplified
 from symgen.symbolic.products import Products
 
 if TYPE_CHECKING:
@@ -111,10 +112,7 @@ class Graph:
         self.points: dict[int, ExactValues] = {}
         self._by_value: dict[int, Scalar] = {}
         self._stand_ins = 0
-        self._angles: dict[int, tuple[int, int]] = {}
-        # by arguments of sines and cosines: whether the sign is pulled out, and the angle that is left
-        self._turns: dict[Scalar, tuple[bool, Scalar]] = {}
-        self._pairs: dict[Scalar, tuple[int, int]] = {}
+        self._angles = Angles(self)
         self.zero = self.const(0)
         self.one = self.const(1)
         self.const(2)
@@ -159,22 +157,12 @@ class Graph:
         elif op == "symbol":
             node.value = opaque("symbol", payload)
         elif op in ("sin", "cos"):
-            pair = self._pairs.get(args[0])
-            if pair is None:
-                pair = self._pairs[args[0]] = self._pair(args[0])
-            node.value = pair[op == "sin"]
+            node.value = self._angles.residues(args[0])[op == "sin"]
         elif len(args) == 2:
             node.value = combine(op, (args[0].value, args[1].value), payload)
         else:
             node.value = combine(op, [a.value for a in args], payload)
         return node
-
-    def _pair(self, angle: Scalar) -> tuple[int, int]:
-        form = {leaf.value: count for leaf, count in self.angle_form(angle).items()}
-        for leaf in form:
-            if leaf not in self._angles:
-                self._angles[leaf] = leaf_pair(leaf)
-        return angle_pair(form, self._angles)
 
     def at(self, serial: int) -> Scalar:
         """The scalar with a serial number."""
@@ -199,8 +187,7 @@ class Graph:
                 kept.append((key, node))
         self._nodes.update(reversed(kept))
         self._by_value = {value: node for value, node in self._by_value.items() if stays(node)}
-        self._turns = {angle: turn for angle, turn in self._turns.items() if stays(angle) and stays(turn[1])}
-        self._pairs = {angle: pair for angle, pair in self._pairs.items() if stays(angle)}
+        self._angles.forget(stays)
         self.points.clear()
         self.products.forget(stays)
         for serial in range(first, len(self._serials)):
@@ -213,9 +200,10 @@ class Graph:
 
         A graph and its scalars hold each other: nobody else would let go of what derivations leave behind.
         """
-        for known in (self._nodes, self._constants, self._serials, self._by_value, self._turns, self._pairs):
+        for known in (self._nodes, self._constants, self._serials, self._by_value):
             known.clear()
         self.points.clear()
+        self._angles.forget(lambda _: False)
         self.products.forget(lambda _: False)
 
     def lift(self, value: Number) -> Scalar:
@@ -253,21 +241,6 @@ class Graph:
         key = ("raw", op, args, payload)
         node = self._nodes.get(key)
         return self._new(key, op, args, payload) if node is None else node
-
-    def over(self, node: Scalar, args: tuple[Scalar, ...]) -> Scalar:
-        """The operation of a scalar over other arguments, their signs taken out; the scalar itself over its own."""
-        if args == node.args:
-            return node
-        if node.op == "mul" and any(a.op == "neg" for a in args):
-            # as twins: x (-y) and -(x y) are found to be opposite
-            negative = sum(a.op == "neg" for a in args) == 1
-            product = self.raw("mul", tuple(a.args[0] if a.op == "neg" else a for a in args))
-            return self.raw("neg", (product,)) if negative else product
-        if node.op in ("add", "sub") and args[1].op == "neg":
-            return self.raw("sub" if node.op == "add" else "add", (args[0], args[1].args[0]))
-        if node.op == "add" and args[0].op == "neg":
-            return self.raw("sub", (args[1], args[0].args[0]))
-        return self.raw(node.op, args, node.payload)
 
     def sum(self, terms: Iterable[Scalar]) -> Scalar:
         """Left-to-right sum; 0 for no terms."""
@@ -398,21 +371,8 @@ class Graph:
 
     def power(self, base: Scalar, exponent: Fraction) -> Scalar:
         """base ** exponent: products and square roots where they serve."""
-        if exponent < 0:
-            return self.div(self.one, self.power(base, -exponent))
-        if exponent.denominator == 1:
-            result, square, count = self.one, base, exponent.numerator
-            while count:
-                if count & 1:
-                    result = self.mul(result, square)
-                count >>= 1
-                if count:
-                    square = self.mul(square, square)
-            return result
-        if exponent.denominator == 2:
-            whole = exponent.numerator // 2
-            return self.mul(self.power(base, Fraction(whole)), self.function("sqrt", (base,)))
-        return self._node("pow", (base,), exponent)
+        product = expanded(self, base, exponent)
+        return self._node("pow", (base,), exponent) if product is None else product
 
     def function(self, name: str, args: tuple[Scalar, ...]) -> Scalar:
         """One of the functions of the expression language, or abs, copysign, ratio_or_zero, min, max, rounded."""
@@ -420,27 +380,8 @@ class Graph:
             return self.trig(name, args[0])
         if name == "rounded":
             return self.rounded(args[0])
-        first = args[0]
-        if name == "sqrt":
-            if (value := first.constant) is not None and value >= 0:
-                top, bottom = isqrt(value.numerator), isqrt(value.denominator)
-                if top * top == value.numerator and bottom * bottom == value.denominator:
-                    return self.const(Fraction(top, bottom))
-            if first.op == "mul" and first.args[0] is first.args[1]:
-                return self.function("abs", (first.args[0],))
-        if name == "abs":
-            if first.op in ("neg", "abs"):
-                return self.function("abs", first.args)
-            if first.op == "sqrt" or (first.op == "mul" and first.args[0] is first.args[1]):
-                return first
-            if (value := first.constant) is not None:
-                return self.const(abs(value))
-        if name == "ratio_or_zero":
-            if first.is_zero or args[1].is_zero:
-                return self.zero
-            if args[1].constant is not None:
-                return self.div(first, args[1])
-        return self._node(name, args)
+        simpler = simplified(self, name, args)
+        return self._node(name, args) if simpler is None else simpler
 
     def rounded(self, a: Scalar) -> Scalar:
         """The number that is computed for a, of which nothing else is known: what it lacks of a can be worked out."""
@@ -448,57 +389,8 @@ class Graph:
 
     def trig(self, name: str, argument: Scalar) -> Scalar:
         """Sine or cosine, keyed by the integer combination of leaves in its argument; its sign is pulled out."""
-        turn = self._turns.get(argument)
-        if turn is None:
-            turn = self._turns[argument] = self._turn(self.angle_form(argument))
-        negative, angle = turn
+        negative, angle = self._angles.upright(argument)
         if angle.is_zero:
             return self.zero if name == "sin" else self.one
         value = self._node(name, (angle,))
         return self.neg(value) if negative and name == "sin" else value
-
-    def _turn(self, form: dict[Scalar, int]) -> tuple[bool, Scalar]:
-        """Whether the first leaf counts negative, and the sum of the leaves in their order with all signs turned so."""
-        leaves = sorted(form, key=lambda leaf: leaf.serial)
-        negative = bool(leaves) and form[leaves[0]] < 0
-        total = self.zero
-        for leaf in leaves:
-            term = self.mul(self.const(abs(form[leaf])), leaf)
-            total = self.add(total, term) if (form[leaf] > 0) != negative else self.sub(total, term)
-        return negative, total
-
-    def angle_form(self, a: Scalar) -> dict[Scalar, int]:
-        """`a` as an integer combination of leaves (coordinates, or whatever is not a sum), without zeros.
-
-        Leaves stand in the order in which they are met; each sum is looked at once, however often it is used.
-        """
-        weights: dict[Scalar, tuple[tuple[Scalar, int], ...]] = {}
-        stack = [a]
-        while stack:
-            node = stack.pop()
-            if node not in weights:
-                weights[node] = terms = _terms(node)
-                stack += [term for term, _ in reversed(terms)]
-        counts = dict.fromkeys(weights, 0)
-        counts[a] = 1
-        for node in sorted(weights, key=_serial, reverse=True):  # what a sum is made of is older than the sum
-            for term, factor in weights[node]:
-                counts[term] += factor * counts[node]
-        return {node: count for node, count in counts.items() if count and not weights[node] and not node.is_zero}
-
-
-def _serial(node: Scalar) -> int:
-    return node.serial
-
-
-def _terms(node: Scalar) -> tuple[tuple[Scalar, int], ...]:
-    """What a node adds up, each with a whole factor; nothing for leaves."""
-    if node.op == "add":
-        return (node.args[0], 1), (node.args[1], 1)
-    if node.op == "sub":
-        return (node.args[0], 1), (node.args[1], -1)
-    if node.op == "neg":
-        return ((node.args[0], -1),)
-    if node.op == "mul" and (k := node.args[0].constant) is not None and k.denominator == 1:
-        return ((node.args[1], k.numerator),)
-    return ()

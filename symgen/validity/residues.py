@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
+from symgen.symbolic.angle_forms import angle_form
 from symgen.symbolic.fingerprint import PRIME, angle_pair, combine, leaf_pair, opaque, residue
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import topological
@@ -54,7 +55,7 @@ class Residues:
             return residue(node.constant)
         if node.op in ("sin", "cos"):
             counts: dict[int, int] = {}
-            for leaf, count in node.graph.angle_form(node.args[0]).items():
+            for leaf, count in angle_form(node.args[0]).items():
                 key = self._value(changed, leaf)
                 counts[key] = counts.get(key, 0) + count
             for key in counts:

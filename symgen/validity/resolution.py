@@ -1,4 +1,4 @@
-"""Whether a form's denominators stand out of their own terms at ordinary states.
+"""Whether a form's denominators are distinguishable from the rounding of their own terms at ordinary states.
 
 A kernel compares a denominator with the sum of its absolute terms (guards.py).  Where many turns in space follow each
 other the terms cancel so far that the sum says nothing: single precision would refuse every state.
@@ -18,7 +18,7 @@ from symgen.symbolic.transplant import transplanted
 MARGIN = 10
 
 
-def stands_out(guards: Sequence[Guard], n: int, points: Sequence[Mapping[str, float]]) -> bool:
+def distinguishable(guards: Sequence[Guard], n: int, points: Sequence[Mapping[str, float]]) -> bool:
     """Whether each denominator passes its test in float32 at one of the configurations, by a factor of ten."""
     if not guards or not points:
         return True

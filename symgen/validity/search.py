@@ -43,7 +43,7 @@ Point = dict[str, Precise]
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class RegularZero:
     """A regular state at which a scalar vanishes: coordinates and parameters."""
 
     point: tuple[tuple[str, float], ...]
@@ -72,7 +72,7 @@ class ZeroSearch:
         inputs = [entry for column in mechanics.inputs for entry in column]
         self._rows = PreciseEvaluator([*flatten(mechanics.constraint_jacobian), *inputs])
 
-    def zero_of(self, scalar: Scalar) -> Found | None:
+    def zero_of(self, scalar: Scalar) -> RegularZero | None:
         """A regular state at which the scalar vanishes, or None if no start led to one.
 
         Of loops that share no coordinate with the scalar, nor with others that do, none is closed before there is a
@@ -92,7 +92,7 @@ class ZeroSearch:
             left = [k for k in left if k not in near]
         return [residual for k, residual in enumerate(self._residuals) if k not in left]
 
-    def _zero_of(self, scalar: Scalar, residuals: Sequence[Scalar]) -> Found | None:
+    def _zero_of(self, scalar: Scalar, residuals: Sequence[Scalar]) -> RegularZero | None:
         with precision():
             terms = squares(scalar)
             if len(terms) > MOST_TERMS:
@@ -109,7 +109,7 @@ class ZeroSearch:
                 found = None if near is None else self._descend(evaluator, *near, names, len(residuals))
                 if found is not None and self._regular(found):
                     shown = [*self._angles, *names]
-                    return Found(tuple((name, float(found[name])) for name in self._box if name in shown))
+                    return RegularZero(tuple((name, float(found[name])) for name in self._box if name in shown))
             return None
 
     def _start(self, source: random.Random, inner: bool) -> Point:

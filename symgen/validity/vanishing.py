@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Collection, Iterator, Sequence
 from itertools import combinations
 
+from symgen.symbolic.angle_forms import angle_form
 from symgen.symbolic.fingerprint import PRIME
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import topological
@@ -83,7 +84,7 @@ def _vanishes(user: Scalar, node: Scalar, gone: set[Scalar]) -> bool:
 
 def _angle(sine: Scalar) -> dict[int, int]:
     """The angle of a sine, as whole multiples of leaves given by their fingerprints."""
-    return {leaf.value: count for leaf, count in sine.graph.angle_form(sine.args[0]).items()}
+    return {leaf.value: count for leaf, count in angle_form(sine.args[0]).items()}
 
 
 def _sum(a: dict[int, int], b: dict[int, int], sign: int) -> dict[int, int]:

@@ -97,11 +97,11 @@ def find_compiler() -> Compiler | None:
     for command in (os.environ.get("CC", "").split(), ["cc"], ["gcc"]):
         if command and shutil.which(command[0]):
             try:
-                told = run([*command, "--version"], LONGEST_ANSWER)
+                answer = run([*command, "--version"], LONGEST_ANSWER)
             except ToolError as error:
                 raise CompilationError(f"{error}; {REMEDY}") from error
-            lines = told.stdout.splitlines() if told.returncode == 0 else []
-            gnu = "Free Software Foundation" in told.stdout
+            lines = answer.stdout.splitlines() if answer.returncode == 0 else []
+            gnu = "Free Software Foundation" in answer.stdout
             return Compiler(tuple(command), (lines or ["unknown"])[0], gnu)
     return None
 

@@ -30,10 +30,10 @@ def defects(
 ) -> Iterator[tuple[str, str, float]]:
     """Each law the results can be tested on at one state, the quantity it judges, and its defect over its bound."""
 
-    def found() -> list[tuple[str, str, float]]:
+    def evaluated() -> list[tuple[str, str, float]]:
         return list(_defects(reference.evaluation(sample.state), sample.admissible, expected, results))
 
-    yield from reference.regular(found, BITS)
+    yield from reference.regular(evaluated, BITS)
 
 
 def _defects(

@@ -51,7 +51,7 @@ def modes(reference: Reference) -> tuple[tuple[float, ...], ...]:
         literals = [float(x) for x in reference.literals()]
     places = () if reference.model.assembly is None else reference.model.assembly.places
     with np.errstate(all="ignore"):
-        found = _Modes(reference, parameters, literals).found([place.q for place in places])
+        found = _Modes(reference, parameters, literals).kept([place.q for place in places])
     return tuple(tuple(map(float, q)) for q in found)
 
 
@@ -66,12 +66,12 @@ class _Modes:
         reach = [1.0 if c.has_range or c.is_angle else REACH for c in coordinates]
         self._low = np.array([float(c.range[0]) * r for c, r in zip(coordinates, reach, strict=True)])
         self._high = np.array([float(c.range[1]) * r for c, r in zip(coordinates, reach, strict=True)])
-        self._told = np.array([c.has_range for c in coordinates])
+        self._has_range = np.array([c.has_range for c in coordinates])
         self._widths = np.where(self._angles, 1.0, (self._high - self._low) / 2)
         operations = (1 + ROUNDS) * (system.geometry_replay.operations + 1)
         self._steps = max(FEWEST_STEPS, min(DAMPED_STEPS, EFFORT // operations))
 
-    def found(self, places: Sequence[Sequence[float]]) -> Lanes:
+    def kept(self, places: Sequence[Sequence[float]]) -> Lanes:
         """Those kept, the one first that lies first among the places."""
         known = np.array([list(q) for q in places]).reshape(len(places), self._system.n)
         drawn = self._closed(np.array([self._anywhere() for _ in range(STARTS)]))
@@ -82,7 +82,7 @@ class _Modes:
         return known
 
     def _anywhere(self) -> list[float]:
-        pairs = zip(self._low, self._high, self._angles & ~self._told, strict=True)
+        pairs = zip(self._low, self._high, self._angles & ~self._has_range, strict=True)
         return [self._dice.uniform(-pi, pi) if whole else self._dice.uniform(low, high) for low, high, whole in pairs]
 
     def _reflected(self, q: Lanes) -> list[float]:
@@ -105,7 +105,7 @@ class _Modes:
         back = np.where(self._angles, q - 2 * pi * np.round((q - self._middle) / (2 * pi)), q)
         q = np.where(self._loops.shut(back, p, CLOSED)[:, None], back, q)
         slack = 0.01 * (self._high - self._low)
-        inside = ((q >= self._low - slack) & (q <= self._high + slack) | ~self._told & self._angles).all(axis=1)
+        inside = ((q >= self._low - slack) & (q <= self._high + slack) | ~self._has_range & self._angles).all(axis=1)
         good = inside & self._loops.shut(q, p, CLOSED)
         for part, blocks in zip(self._parts, matrices(self._system, self._parts, self._loops, q, p), strict=True):
             good &= is_regular(part, *blocks, other_branches=False)
@@ -113,7 +113,7 @@ class _Modes:
 
     @property
     def _middle(self) -> Lanes:
-        return np.where(self._told, (self._low + self._high) / 2, 0.0)
+        return np.where(self._has_range, (self._low + self._high) / 2, 0.0)
 
     def _apart(self, q: Lanes) -> Lanes:
         """At most so many as are kept, each as far as possible from those before it."""

@@ -33,7 +33,7 @@ OFF = (1.0, 5.0)
 # the machine too: inputs that hold its heaviest body hide what rounding does to light ones that nothing else moves.
 LITTLE = (1.0, 4.0)
 # In how many samples that is looked at, and how large these forces are beside inputs.
-LOOKED_AT, FELT = 8, 0.1
+LOOKED_AT, LEAST_SHARE = 8, 0.1
 # A step of differences along the rates, in radians and metres a unit of time.
 DIFFERENCE = 1e-5
 
@@ -202,12 +202,12 @@ class Surroundings:
 
 
 def _driven_by_itself(reference: Reference, state: State) -> bool:
-    """Whether the potential's force along the motion is felt beside the inputs."""
+    """Whether the potential's force along the motion counts beside the inputs."""
     try:
         (force,) = values_at(reference, state, ["projected_potential_force"]).values()
     except ReferenceValueError:
         return False
-    return hypot(*force) > FELT * max(map(abs, state.u), default=0.0)
+    return hypot(*force) > LEAST_SHARE * max(map(abs, state.u), default=0.0)
 
 
 def _finite(values: Lanes) -> Lanes:

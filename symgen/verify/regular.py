@@ -69,7 +69,7 @@ class _Sizes:
 
 
 class RegularStateSearch:
-    """The search for `count` regular states of a model, the same for the same seed; `told` says what it met."""
+    """The search for `count` regular states of a model, the same for the same seed; `explanation` says what it met."""
 
     def __init__(
         self, reference: Reference, count: int, seed: int, modes: Sequence[Sequence[float]] = ()
@@ -107,7 +107,7 @@ class RegularStateSearch:
                 start = self._step(last)
             else:
                 start = point
-            found = self._found(start, parameters)
+            found = self._reached_from(start, parameters)
             if found is not None:
                 last = found[0]
                 inside = last if found[2] else inside
@@ -119,7 +119,7 @@ class RegularStateSearch:
         """A state that was found is none: some quantity has no value there."""
         self._ends[VALUE] += 1
 
-    def told(self) -> str:
+    def explanation(self) -> str:
         """What became of the others, as the end of a sentence."""
         if not self._ends:
             return ""
@@ -149,7 +149,7 @@ class RegularStateSearch:
                 )
             # other lengths may leave no room to move
             parameters = self._parameters(vary=index % 2 > 0)
-            found = self._found(self._shifted(here, parameters, reach), parameters)
+            found = self._reached_from(self._shifted(here, parameters, reach), parameters)
             if found is None:
                 reach /= 2
                 continue
@@ -159,7 +159,7 @@ class RegularStateSearch:
                 reach /= 2
             yield found[1:]
 
-    def _found(self, start: Sequence[Any], exact: Sequence[Any]) -> tuple[list[Any], Regular, bool] | None:
+    def _reached_from(self, start: Sequence[Any], exact: Sequence[Any]) -> tuple[list[Any], Regular, bool] | None:
         """The point of V that a start leads to, the state there, and whether it lies in the ranges.
 
         Where parts of the system lead elsewhere these are started anew while the others stay: that all of many
@@ -367,8 +367,8 @@ def values_at(reference: Reference, state: State, names: Sequence[str]) -> dict[
     return _values(reference.matrices(state, names, SAMPLING_BITS))
 
 
-def _values(found: Mapping[str, Any]) -> dict[str, tuple[float, ...]]:
-    return {name: (_rates if name in PROJECTED else floats)(matrix) for name, matrix in found.items()}
+def _values(matrices: Mapping[str, Any]) -> dict[str, tuple[float, ...]]:
+    return {name: (_rates if name in PROJECTED else floats)(matrix) for name, matrix in matrices.items()}
 
 
 def settled(values: Sequence[Any], ranges: Sequence[tuple[Any, Any]]) -> list[float]:

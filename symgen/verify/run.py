@@ -8,11 +8,13 @@ import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 import flint
 
 import symgen
+from symgen.backends.backend import backend
+from symgen.backends.c import batch, given_sines, prepared
 from symgen.backends.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.model.model import Model
@@ -168,22 +170,20 @@ def _same(made: Results, others: Results) -> bool:
 def generated_sources(model: Model, files: Mapping[str, str | bytes]) -> tuple[dict[Scalar, CSource], str | None]:
     """C sources by scalar type, and the Python source, among the files of a model (paths relative to its folder)."""
     texts = {path: content if isinstance(content, str) else content.decode() for path, content in files.items()}
-    stem = model.c_name
-    c_sources = {
-        scalar: CSource(
-            stem + suffix,
-            texts[f"c/{stem}{suffix}.h"],
-            texts[f"c/{stem}{suffix}.c"],
-            tuple(
-                (path.removeprefix("c/"), text)
-                for path, text in texts.items()
-                if path.startswith(tuple(f"c/{stem}_{kind}{suffix}." for kind in ("batch", "prepared", "sc")))
-            ),
-        )
-        for scalar, suffix in SUFFIX.items()
-        if f"c/{stem}{suffix}.c" in texts
-    }
-    return c_sources, texts.get(f"python/{stem}.py")
+    made = backend("c")
+    c_sources = {}
+    for scalar in SUFFIX:
+        plain, *others = (made.paths(model, scalar, variant.ending) for variant in made.variants)
+        if all(path in texts for path in plain):
+            header, source = (texts[path] for path in plain)
+            companions = ((_name(path), texts[path]) for paths in others for path in paths if path in texts)
+            c_sources[scalar] = CSource(PurePosixPath(plain[0]).stem, header, source, tuple(companions))
+    (module,) = backend("python").paths(model, "float64")
+    return c_sources, texts.get(module)
+
+
+def _name(path: str) -> str:
+    return PurePosixPath(path).name
 
 
 @contextmanager
@@ -231,13 +231,12 @@ def _run_c(
         results[target] = (scalar, outcomes)
         companions = dict(sources[scalar].companions)
         given = library, model.c_name, kernels, scalar, samples[scalar], outcomes
-        stem, suffix = model.c_name, SUFFIX[scalar]
         others = {}
-        if f"{stem}_batch{suffix}.h" in companions:
+        if companions.get(_header(model, scalar, batch.ENDING)) is not None:
             others["batch"] = run_batch(*given)
-        if (header := companions.get(f"{stem}_prepared{suffix}.h")) is not None:
+        if (header := companions.get(_header(model, scalar, prepared.ENDING))) is not None:
             others["prepared"] = run_prepared(*given, header)
-        if (header := companions.get(f"{stem}_sc{suffix}.h")) is not None:
+        if (header := companions.get(_header(model, scalar, given_sines.ENDING))) is not None:
             made = run_given_trig(library, model, kernels, scalar, samples[scalar], header)
             others["sines given"] = made, []
         for kind, (made, differing) in others.items():
@@ -245,6 +244,11 @@ def _run_c(
             if made:
                 results[f"{target} {kind}"] = (scalar, made)
     return results, faults
+
+
+def _header(model: Model, scalar: Scalar, ending: str) -> str:
+    """What the header of a variant is called."""
+    return _name(backend("c").paths(model, scalar, ending)[0])
 
 
 def _run_python(
@@ -281,13 +285,16 @@ def _versions(compiler: Compiler | None) -> tuple[tuple[str, str], ...]:
 def _hashes(model: Model, c_sources: Mapping[Scalar, CSource], python_source: str | None) -> Iterator[tuple[str, str]]:
     """SHA-256 of the model's text and of every text that was run."""
     yield "model", model.text_hash
-    for source in c_sources.values():
-        yield f"c/{source.stem}.h", _hash(source.header)
-        yield f"c/{source.stem}.c", _hash(source.source)
+    made = backend("c")
+    for scalar, source in c_sources.items():
+        header, body = made.paths(model, scalar)
+        yield header, _hash(source.header)
+        yield body, _hash(source.source)
         for name, text in source.companions:
-            yield f"c/{name}", _hash(text)
+            yield f"{made.name}/{name}", _hash(text)
     if python_source is not None:
-        yield f"python/{model.c_name}.py", _hash(python_source)
+        (module,) = backend("python").paths(model, "float64")
+        yield module, _hash(python_source)
 
 
 def _hash(text: str) -> str:

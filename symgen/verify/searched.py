@@ -40,7 +40,7 @@ class WorstStateSearch:
 
     def __init__(self, expected: Expected) -> None:
         self._expected = expected
-        self._found: defaultdict[str, list[Sample]] = defaultdict(list)
+        self._states: defaultdict[str, list[Sample]] = defaultdict(list)
         self._values: dict[tuple[str, int, Scalar], Expectation | None] = {}
 
     def look(self, kernel: Kernel) -> None:
@@ -54,15 +54,15 @@ class WorstStateSearch:
             self._settling.sample(states.state(place), bool(states.admissible[place]), quantity) for place in doubtful
         )
         for sample in islice((sample for sample in tried if sample is not None), JUDGED):
-            if sample not in self._found[quantity]:
-                self._found[quantity].append(sample)
+            if sample not in self._states[quantity]:
+                self._states[quantity].append(sample)
 
     def largest(self, kernel: Kernel, sincos: Function | None, scalar: Scalar) -> float:
         """The largest error with status 0, in units of d + eps |y*|, at the states that were found for its quantity.
 
         They are those of every way that was looked at.
         """
-        states = [rounded(sample, scalar).state for sample in self._found[kernel.name]]
+        states = [rounded(sample, scalar).state for sample in self._states[kernel.name]]
         worst = 0.0
         for place, made in enumerate(outcomes(kernel, sincos, scalar, states)):
             if made.valid and (expected := self._expectation(kernel.name, place, scalar)) is not None:
@@ -73,7 +73,7 @@ class WorstStateSearch:
         """None where there is no value once the state is rounded."""
         key = quantity, place, scalar
         if key not in self._values:
-            state = rounded(self._found[quantity][place], scalar).state
+            state = rounded(self._states[quantity][place], scalar).state
             try:
                 made = expectations(self._expected.reference, state, [quantity], scalar, f"{scalar} searched {place}")
                 self._values[key] = made[quantity]

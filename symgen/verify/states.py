@@ -91,8 +91,8 @@ def sample_states(
     if len(found) < FEWEST_STATES:
         raise VerificationError(
             f"{reference.model.name}: only {len(found)} regular configurations on the constraint manifold were found "
-            f"({FEWEST_STATES} are needed){search.told()}; give a start under `configuration` and the ranges of the "
-            "coordinates"
+            f"({FEWEST_STATES} are needed){search.explanation()}; give a start under `configuration` and the ranges of "
+            "the coordinates"
         )
     return tuple(found)
 

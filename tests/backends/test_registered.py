@@ -48,9 +48,13 @@ def test_has_the_modules_of_the_protocol(name: str) -> None:
 @pytest.mark.parametrize("name", BACKENDS)
 def test_prints_its_files_into_its_folder_and_can_be_asked_for(name: str) -> None:
     made = backend(name)
-    texts = [emit(handmade.model(), handmade.program()) for emit in made.variants]
-    assert texts[0]
-    assert all(path.startswith(f"{name}/") for files in texts for path in files)
+    model, program = handmade.model(), handmade.program()
+    texts = {variant.ending: variant.emit(model, program) for variant in made.variants}
+    assert len(texts) == len(made.variants)
+    assert texts[""]
+    assert all(path.startswith(f"{name}/") for files in texts.values() for path in files)
+    for ending, files in texts.items():
+        assert not files or tuple(files) == made.paths(model, program.scalar, ending)
     assert parts(name) == (name,)
 
 

@@ -12,7 +12,7 @@ import time
 import pytest
 
 from symgen.runtime import activity, clock
-from symgen.runtime.activity import each, told, working
+from symgen.runtime.activity import described, each, working
 from symgen.terminal import Progress
 
 
@@ -131,20 +131,20 @@ def at(monkeypatch: pytest.MonkeyPatch) -> list[float]:
 def test_the_rest_is_foreseen_from_the_share_of_the_work_that_is_done(at: list[float]) -> None:
     seen = []
     for name in each("shortening", ["short", "long", "last"], str, sizes=[10, 30, 60]):
-        seen.append(told())
+        seen.append(described())
         at[0] += {"short": 2.0, "long": 6.0, "last": 12.0}[name]
     assert seen == ["shortening short", "shortening long, about 20 s more", "shortening last, about 10 s more"]
-    assert told() == ""
+    assert described() == ""
 
 
 def test_what_work_usually_takes_is_told_until_it_has_taken_that(at: list[float]) -> None:
     with working("verifying"), working("compiling 20 MB of C", seconds=10):
-        assert told() == "verifying, compiling 20 MB of C, about 10 s more"
+        assert described() == "verifying, compiling 20 MB of C, about 10 s more"
         at[0] = 5.0
-        assert told() == "verifying, compiling 20 MB of C, about 5 s more"
+        assert described() == "verifying, compiling 20 MB of C, about 5 s more"
         at[0] = 11.0
-        assert told() == "verifying, compiling 20 MB of C"
-    assert told() == ""
+        assert described() == "verifying, compiling 20 MB of C"
+    assert described() == ""
 
 
 def test_a_step_that_fails_is_over() -> None:
@@ -155,4 +155,4 @@ def test_a_step_that_fails_is_over() -> None:
 
     with pytest.raises(ZeroDivisionError):
         fails()
-    assert told() == ""
+    assert described() == ""

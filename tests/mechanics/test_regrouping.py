@@ -10,6 +10,7 @@ from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.passes.factoring import Factoring
 from symgen.symbolic.passes.grouping import grouped
 from symgen.symbolic.passes.quotients import with_quotients
+from symgen.symbolic.passes.rebuilt import rebuilt
 from symgen.symbolic.passes.sum_factors import MOST_TERMS, with_common_factors
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import cost, topological
@@ -74,7 +75,7 @@ def test_signs_of_operands_are_taken_out(graph: Graph, sign: int) -> None:
     a, b, c, *_ = symbols(graph)
     left, right = (-x if sign >> k & 1 else x for k, x in enumerate((a, b)))
     node = graph.raw(["add", "sub", "mul"][sign % 3], (c, a))
-    found = graph.over(node, (left, right))
+    found = rebuilt(graph, node, (left, right))
     assert values([found]) == values([graph.raw(node.op, (left, right))])
     assert cost([found]).signs <= cost([left, right]).signs
 

@@ -21,7 +21,7 @@ from symgen.methods.method import INPUTS, Candidate
 from symgen.methods.selection import Methods
 from symgen.model.configurations.mechanics import default_values
 from symgen.model.load import load_model
-from symgen.validity.resolution import stands_out
+from symgen.validity.resolution import distinguishable
 from symgen.verify.reference.reference import Reference, State
 
 M = np.array([[80.81722, 2.31941332208709], [2.31941332208709, 0.29784188199686]])
@@ -98,7 +98,7 @@ def test_forms_that_float32_would_refuse_everywhere_are_told_apart() -> None:
     methods, points = Methods(mechanics.model, genericity(mechanics)), configurations(mechanics, 2)
     made = {name: methods.candidate(INPUTS, name) for name in ("elimination", "minor", "nullspace")}
     standing = {
-        name: stands_out(one.derived.guards, mechanics.n, points)
+        name: distinguishable(one.derived.guards, mechanics.n, points)
         for name, one in made.items()
         if isinstance(one, Candidate)
     }

@@ -6,12 +6,19 @@ import json
 import subprocess
 import xml.dom.minidom
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 import yaml
-from shipped import SCALARS, model, programs, sources
+from shipped import ROOT, SCALARS, model, programs, sources
 
+from symgen.backends.backend import Variant
+from symgen.backends.c import backend
+from symgen.backends.c.plain import emit_c
+from symgen.cli.main import main
+from symgen.ir.kernel import Program
+from symgen.model.model import Model
 from symgen.package.files import FLAGS, emit_package
 
 NAME = "skate"
@@ -122,3 +129,37 @@ def test_the_readme_speaks_the_names_of_the_model(package: Path) -> None:
         assert f"| {name} |" in text
     assert "skate_inverse_dynamics(q, qd, qdd, &p, u)" in text
     assert "SKATE_ANGLE_RANGE" in text
+
+
+def made(out: Path, parts: str) -> int:
+    few = ("--outputs", "inverse_dynamics", "--scalar", "float64", "--states", "8", "--quiet")
+    return main([str(ROOT / f"models/{NAME}.yaml"), "--only", parts, *few, "--out", str(out)])
+
+
+@pytest.mark.toolchain
+def test_a_package_alone_is_verified_as_its_c_is(tool: Callable[[str], str], tmp_path: Path) -> None:
+    tool("cc")
+    certificates = []
+    for parts in ("c", "package"):
+        assert made(tmp_path / parts, parts) == 0
+        certificates.append(json.loads((tmp_path / parts / NAME / "certificate.json").read_text()))
+    assert certificates[0] == certificates[1]
+    assert certificates[1]["passed"]
+    assert {record["target"] for record in certificates[1]["errors"]} >= {"C float64"}
+    assert not (tmp_path / "package" / NAME / "c").exists()
+
+
+@pytest.mark.toolchain
+def test_a_package_of_wrong_c_is_not_written(
+    tool: Callable[[str], str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    tool("cc")
+
+    def wrong(model: Model, program: Program) -> dict[str, str]:
+        return {path: text.replace(" - ", " + ") for path, text in emit_c(model, program).items()}
+
+    variants = Variant(wrong), *backend.BACKEND.variants[1:]
+    monkeypatch.setattr(backend, "BACKEND", replace(backend.BACKEND, variants=variants))
+    assert made(tmp_path, "package") == 1
+    assert "inverse_dynamics is left out in float64" in capsys.readouterr().err
+    assert not list(tmp_path.rglob("*.h"))

@@ -14,6 +14,7 @@ import pytest
 from linkages import row_of_four_bars
 from shipped import ROOT
 
+from symgen.backends.backend import Variant
 from symgen.backends.c import backend
 from symgen.backends.c.plain import emit_c
 from symgen.cli.main import main
@@ -104,7 +105,8 @@ def test_kernels_that_verification_rejects_are_not_integrated(
     def wrong(model: Model, program: Program) -> dict[str, str]:
         return {path: text.replace(" - ", " + ") for path, text in emit_c(model, program).items()}
 
-    monkeypatch.setattr(backend, "BACKEND", replace(backend.BACKEND, variants=(wrong, *backend.BACKEND.variants[1:])))
+    variants = Variant(wrong), *backend.BACKEND.variants[1:]
+    monkeypatch.setattr(backend, "BACKEND", replace(backend.BACKEND, variants=variants))
     assert run(str(MODELS / "skate.yaml"), "--duration", "0.1", "--out", str(out)) == 1
     told = capsys.readouterr().err
     assert "skate.yaml: not simulated: verification rejects what would be integrated" in told

@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from symgen import pipeline
+from symgen.backends.backend import Variant
 from symgen.backends.c import backend
 from symgen.backends.c.plain import emit_c
 from symgen.diagnostics import ModelError
@@ -68,7 +69,8 @@ def written(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         made.append(program.scalar)
         return emit_c(model, program)
 
-    monkeypatch.setattr(backend, "BACKEND", replace(backend.BACKEND, variants=(noted, *backend.BACKEND.variants[1:])))
+    variants = Variant(noted), *backend.BACKEND.variants[1:]
+    monkeypatch.setattr(backend, "BACKEND", replace(backend.BACKEND, variants=variants))
     return made
 
 

@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from symgen.backends.array_api.module import emit_array_api
-from symgen.backends.backend import Backend
+from symgen.backends.backend import Backend, Variant
 
-BACKEND = Backend("array_api", "array API", (emit_array_api,), "python")
+BACKEND = Backend("array_api", "array API", (Variant(emit_array_api),), (".py",), "python")

@@ -32,7 +32,7 @@ _OWN_NAMES = frozenset({"count", "stride", "status", "start", "length", "k", "i"
 _OWN_NAMES |= {"flag", "flags", "bits", "code", "refused", "rest", "y"}
 
 
-_ENDING = "_batch"
+ENDING = "_batch"
 _ABOUT = """Kernels of {plain}.h for many states: compile {plain_batch}.c and {plain}.c.
 
 Component i of state k is at [i*stride + k] of each array, stride >= count. A state that has no valid result gets
@@ -85,10 +85,10 @@ def emit_c_batch(model: Model, program: Program) -> dict[str, str]:
     if not kernels:
         return {}
     plain = model.c_name + SUFFIX[program.scalar]
-    stem = f"{model.c_name}{_ENDING}{SUFFIX[program.scalar]}"
+    stem = f"{model.c_name}{ENDING}{SUFFIX[program.scalar]}"
     pair, ratio, params = (struct_name(model, program, kind) for kind in ("sincos", "ratio", "params"))
     inline = f"{macro_name(stem)}_INLINE"
-    own = {function_name(model, program, kernel, tail) for kernel in program.kernels for tail in ("", _ENDING)}
+    own = {function_name(model, program, kernel, tail) for kernel in program.kernels for tail in ("", ENDING)}
     own |= {pair, ratio, inline, guard(stem), params, *_OWN_NAMES}
     own |= {status_name(model, status) for status in Status}
     own |= {f"{argument.name}_one" for kernel in kernels for argument in kernel.arguments}
@@ -117,7 +117,7 @@ def emit_c_batch(model: Model, program: Program) -> dict[str, str]:
     )
     about = tuple(_ABOUT.format(plain=plain, plain_batch=stem).splitlines())
     shown = tuple(FunctionView(one.comment, one.prototype, ()) for one in functions)
-    header = file_view(model, few, _ENDING, about, shown)
+    header = file_view(model, few, ENDING, about, shown)
     return files(replace(header, includes=(*header.includes, "<stddef.h>")), view, "c/batch.c.jinja")
 
 
@@ -145,7 +145,7 @@ def _function(model: Model, program: Program, kernel: Kernel, names: Names, priv
     body += [f"result[{k}][k] = {printer.operand(operand)};" for k, operand in enumerate(flat.outputs)]
     return BatchView(
         comment=c_comment_lines(f"{meaning(kernel)}; {output} has {len(kernel.outputs)} rows"),
-        prototype=f"size_t {function_name(model, program, kernel, _ENDING)}({', '.join(given)})",
+        prototype=f"size_t {function_name(model, program, kernel, ENDING)}({', '.join(given)})",
         single=function_name(model, program, kernel),
         arguments=arguments,
         rows=rows,

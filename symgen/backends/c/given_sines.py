@@ -14,7 +14,7 @@ from symgen.ir.given_trig import GivenTrig, given_trig
 from symgen.ir.kernel import Program
 from symgen.model.model import Model
 
-_ENDING = "_sc"
+ENDING = "_sc"
 _ABOUT = (
     "Kernels of {header} that take sines and cosines from the caller: from an encoder, a table, or computed once",
     "for several kernels. The angles behind them may be of any size. Coordinates that enter elsewhere are read from q.",
@@ -28,13 +28,13 @@ def emit_c_sc(model: Model, program: Program) -> dict[str, str]:
         return {}
     kernels = tuple(one.kernel for one in made)
     struct, params = (struct_name(model, program, kind) for kind in ("trig", "params"))
-    names = variant_names(model, program, kernels, _ENDING, {"sc", struct})
+    names = variant_names(model, program, kernels, ENDING, {"sc", struct})
     given = {"sc": f"const {struct} *sc", "p": f"const {params} *p"}
-    functions = (kernel_function(model, program, k, names, meaning(k), given, _ENDING) for k in kernels)
+    functions = (kernel_function(model, program, k, names, meaning(k), given, ENDING) for k in kernels)
     view = file_view(
         model,
         replace(program, kernels=kernels),
-        _ENDING,
+        ENDING,
         tuple(line.format(header=f"{model.c_name}{SUFFIX[program.scalar]}.h") for line in _ABOUT),
         tuple(functions),
         StructView(struct, _members(model, made)),

@@ -17,7 +17,7 @@ from symgen.ir.split import names_in, names_of_blocks
 from symgen.naming import macro_name
 from symgen.records import dataclass
 
-_LANE, _GIVEN, _FOUND = "lane", "given", "found"
+_LANE, _GIVEN, _RESULTS = "lane", "given", "found"
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class Loop:
     last: int
     statements: tuple[Statement, ...]
     given: tuple[tuple[Operand, ...], ...]
-    found: tuple[tuple[str, ...], ...]
+    results: tuple[tuple[str, ...], ...]
 
 
 def lane_loops(kernel: Kernel, scalar: Scalar) -> dict[int, Loop]:
@@ -57,23 +57,23 @@ def each_name(name: str, suffix: str) -> str:
 def lane_names(program: Program) -> set[str]:
     """Names that the loops of the kernels need inside of functions."""
     most = max((len(kernel.alike) for kernel in program.kernels), default=0)
-    return {f"{name}_{k}" for name in (_GIVEN, _FOUND) for k in range(1, most + 1)} | ({_LANE} if most else set())
+    return {f"{name}_{k}" for name in (_GIVEN, _RESULTS) for k in range(1, most + 1)} | ({_LANE} if most else set())
 
 
 def loop_lines(loop: Loop, printer: CStatements, macro: str) -> tuple[str, ...]:
     """The arrays and the loop."""
     kind, lanes = C_TYPE[printer.scalar], len(loop.given[0])
-    given, found = f"{_GIVEN}_{loop.number}", f"{_FOUND}_{loop.number}"
+    given, found = f"{_GIVEN}_{loop.number}", f"{_RESULTS}_{loop.number}"
     own = {place(k): f"{given}[{k}][{_LANE}]" for k in range(len(loop.given))}
     inner = replace(printer, names={**printer.names, **own})
     rows = (", ".join(map(printer.operand, row)) for row in loop.given)
-    results = (f"{found}[{k}][{_LANE}] = {printer.names[row[0]]};" for k, row in enumerate(loop.found))
+    results = (f"{found}[{k}][{_LANE}] = {printer.names[row[0]]};" for k, row in enumerate(loop.results))
     body = (*(line for statement in loop.statements for line in inner.statement(statement)), *results)
     return (
         f"const {kind} {given}[{len(loop.given)}][{lanes}] = {{",
         *(f"    {{{row}}}," for row in rows),
         "};",
-        f"{kind} {found}[{len(loop.found)}][{lanes}];",
+        f"{kind} {found}[{len(loop.results)}][{lanes}];",
         macro,
         f"for (int {_LANE} = 0; {_LANE} < {lanes}; ++{_LANE}) {{",
         *(f"    {line}" for line in body),
@@ -84,8 +84,8 @@ def loop_lines(loop: Loop, printer: CStatements, macro: str) -> tuple[str, ...]:
 def results_of(loop: Loop, scalar: Scalar, names: Mapping[str, str]) -> dict[str, str]:
     """The declarations of what others need of the results, by local."""
     return {
-        target: f"const {C_TYPE[scalar]} {names[target]} = {_FOUND}_{loop.number}[{k}][{lane}];"
-        for k, row in enumerate(loop.found)
+        target: f"const {C_TYPE[scalar]} {names[target]} = {_RESULTS}_{loop.number}[{k}][{lane}];"
+        for k, row in enumerate(loop.results)
         for lane, target in enumerate(row)
     }
 

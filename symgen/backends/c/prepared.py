@@ -17,7 +17,7 @@ from symgen.ir.kernel import Block, Kernel, Program
 from symgen.ir.prepare import Prepared, prepare
 from symgen.model.model import Model
 
-_ENDING = "_prepared"
+ENDING = "_prepared"
 _ABOUT = (
     "Kernels of {header} with the work that depends on parameters done once: call the first function for each",
     "set of parameters and hand its result to the others. Same results, bit for bit; same statuses.",
@@ -32,7 +32,7 @@ def emit_c_prepared(model: Model, program: Program) -> dict[str, str]:
     struct, params, make = (struct_name(model, program, kind) for kind in ("prepared", "params", "prepare"))
     once = Kernel("prepare", (), prepared.loads, (Block(prepared.statements, ()),), prepared.values, ())
     kernels = (*prepared.kernels, once)
-    names = variant_names(model, program, kernels, _ENDING, {"prepared", struct, params, make})
+    names = variant_names(model, program, kernels, ENDING, {"prepared", struct, params, make})
     values = {f"value[{k}]": f"value[{k}]" for k in range(len(prepared.values))}
     before = {kernel.name: count_operations(kernel.statements).total for kernel in program.kernels}
     placed, given = replace(names, members=names.members | values), {"p": f"const {struct} *p"}
@@ -40,13 +40,13 @@ def emit_c_prepared(model: Model, program: Program) -> dict[str, str]:
     def function(kernel: Kernel) -> FunctionView:
         now = count_operations(kernel.statements).total
         about = f"{meaning(kernel)}; {now} operations instead of {before[kernel.name]}"
-        return kernel_function(model, program, kernel, placed, about, given, _ENDING)
+        return kernel_function(model, program, kernel, placed, about, given, ENDING)
 
     made = FunctionView((), f"{struct} {make}(const {params} *p)", _lines(model, program, prepared, names, struct))
     view = file_view(
         model,
         replace(program, kernels=prepared.kernels),
-        _ENDING,
+        ENDING,
         tuple(line.format(header=f"{model.c_name}{SUFFIX[program.scalar]}.h") for line in _ABOUT),
         (made, *map(function, prepared.kernels)),
         StructView(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symgen.backends.backend import Backend
+from symgen.backends.backend import Backend, Variant
 from symgen.backends.python.module import emit_python
 
-BACKEND = Backend("python", "Python", (emit_python,), "python", of_each_scalar=False)
+BACKEND = Backend("python", "Python", (Variant(emit_python),), (".py",), "python", of_each_scalar=False)

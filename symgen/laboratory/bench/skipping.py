@@ -188,7 +188,7 @@ def _of_axes(model: Model, generic: Genericity) -> Kept:
 
     def weight(steps: Callable[[System], Elimination]) -> int | None:
         mechanics = System(model)
-        change = absolute_angles(mechanics.graph, mechanics.q, mechanics.constraint_jacobian)
+        change = absolute_angles(mechanics.q, mechanics.constraint_jacobian)
         seen = mechanics if change.is_identity else System(model, mechanics, change)
         form = elimination_form(seen, generic, steps)
         return None if form is None else counted_cost(form.derived.outputs)

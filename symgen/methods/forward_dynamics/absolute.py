@@ -21,7 +21,7 @@ from symgen.symbolic.scalar import Graph, Scalar
 def in_absolute_angles(model: Model) -> System | None:
     """The system in absolute angles on a graph of its own; None where no angle is relative to another."""
     mechanics = System(model)
-    change = absolute_angles(mechanics.graph, mechanics.q, mechanics.constraint_jacobian)
+    change = absolute_angles(mechanics.q, mechanics.constraint_jacobian)
     return None if change.is_identity else System(model, mechanics, change)
 
 

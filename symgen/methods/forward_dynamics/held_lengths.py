@@ -53,13 +53,13 @@ class HeldLengths:
         found = []
         for joint, i, slope in zip(self.joints, self.rows, self.slopes, strict=True):
             force = mechanics.given_along(dict(zip(joint.parts, joint.values, strict=True)))
-            felt = {k: joint.along_length([rows[k][j] for j in joint.parts]) for k in self.others(len(rows))}
-            found.append((i, force, {k: x for k, x in felt.items() if not x.is_zero}, slope))
+            couplings = {k: joint.along_length([rows[k][j] for j in joint.parts]) for k in self.others(len(rows))}
+            found.append((i, force, {k: x for k, x in couplings.items() if not x.is_zero}, slope))
 
         def completed(given: Vector) -> Vector:
             values = list(given)
-            for i, force, felt, slope in found:
-                taken = self.graph.sum(x * given[k] for k, x in felt.items())
+            for i, force, couplings, slope in found:
+                taken = self.graph.sum(x * given[k] for k, x in couplings.items())
                 values[i] = (force - taken) / slope
             return tuple(values)
 
@@ -143,7 +143,7 @@ class LengthsApart:
         self._graph, self._factor, self._held, self._count = problem.graph, factor, held, problem.r
         self._others = held.others(problem.r)
         self._places = [joint.length for joint in held.joints]
-        self._felt = {i: [columns[i][j] for j in self._places] for i in self._others}
+        self._couplings = {i: [columns[i][j] for j in self._places] for i in self._others}
         along = [self._without_lengths(columns[i]) for i in self._others]
         self._rest = Elimination(_Rest(problem, self._others), factor, along, rank - len(held.rows))
 
@@ -159,14 +159,14 @@ class LengthsApart:
         graph, held = self._graph, self._held
         # the rates of the lengths are known
         rates = [-bias[i] / slope for i, slope in zip(held.rows, held.slopes, strict=True)]
-        rest = tuple(bias[i] + dot(graph, self._felt[i], rates) for i in self._others)
+        rest = tuple(bias[i] + dot(graph, self._couplings[i], rates) for i in self._others)
         x, multipliers = self._rest.by_columns(self._without_lengths(force), rest, refining)
         known = dict(zip(self._places, rates, strict=True))
         pairs = enumerate(zip(x, self._rest.weights, strict=True))
         weighted = tuple(known.get(j, entry * w) for j, (entry, w) in pairs)
         found = dict(zip(self._others, multipliers, strict=True))
         for k, (i, j, slope) in enumerate(zip(held.rows, self._places, held.slopes, strict=True)):
-            taken = dot(graph, [self._felt[other][k] for other in self._others], multipliers)
+            taken = dot(graph, [self._couplings[other][k] for other in self._others], multipliers)
             found[i] = (force[j] - taken) / slope
         return (raised or self._factor.raised)(weighted), tuple(found[i] for i in range(self._count))
 

@@ -170,10 +170,10 @@ def cost_factor(name: str, mechanics: System) -> Fraction:
     return 1 - MINOR_WORTH * (name == "minor" and not one_unit(mechanics))
 
 
-def _singular(mechanics: System, found: Indefinite) -> Singular:
+def _singular(mechanics: System, indefinite: Indefinite) -> Singular:
     """In words: the pivot of G is the inertia a coordinate has when those before it are free."""
-    coordinate = mechanics.model.coordinates[found.coordinate].name
+    coordinate = mechanics.model.coordinates[indefinite.coordinate].name
     pivot = f"the pivot of {coordinate} in G"
-    if not found.pivot.is_zero:
-        pivot += f", {formula(found.pivot)}"
-    return Singular(pivot, tuple((name, round(value, DECIMALS)) for name, value in found.state))
+    if not indefinite.pivot.is_zero:
+        pivot += f", {formula(indefinite.pivot)}"
+    return Singular(pivot, tuple((name, round(value, DECIMALS)) for name, value in indefinite.state))

@@ -19,7 +19,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from symgen.linear_algebra.balance import as_rates_feel, multipliers_alone
+from symgen.linear_algebra.balance import along_rates, multipliers_alone
 from symgen.linear_algebra.null_spaces import LONGEST_PRODUCT
 from symgen.mechanics.system import System
 from symgen.symbolic.content import divided, usual_number
@@ -315,8 +315,8 @@ class Elimination:
             places = [k for moment in moments for k, row in enumerate(rows) if row is moment]
             if len(places) < len(moments):
                 return ()
-            felt = as_rates_feel(self._graph, [left[k] for k in places], turning)
-            for k, row in zip(places, felt, strict=True):
+            turned = along_rates(self._graph, [left[k] for k in places], turning)
+            for k, row in zip(places, turned, strict=True):
                 left[k] = row
         return multipliers_alone(left, self._safe, self._graph.zero)
 

@@ -305,7 +305,7 @@ def _in_absolute_angles(mechanics: System) -> System:
     """The system in absolute angles, where it has relative ones and its rates are those of the coordinates."""
     if not mechanics.twist_determinant.is_one:
         return mechanics
-    change = absolute_angles(mechanics.graph, mechanics.q, mechanics.constraint_jacobian)
+    change = absolute_angles(mechanics.q, mechanics.constraint_jacobian)
     return mechanics if change.is_identity else System(mechanics.model, mechanics, change, mechanics.lumped)
 
 

@@ -29,20 +29,20 @@ def read_frames(scope: Scope, tree: MappingNode, joints: tuple[Frame, ...]) -> t
     return parents_first(scope, found)
 
 
-def parents_first(scope: Scope, found: dict[str, Frame]) -> tuple[Frame, ...]:
+def parents_first(scope: Scope, frames: dict[str, Frame]) -> tuple[Frame, ...]:
     """The frames in an order in which each one's parent stands before it; circles are mistakes, and cut open."""
     ordered: dict[str, Frame] = {}
-    for name in found:
+    for name in frames:
         line: list[str] = []
-        while name in found and name not in ordered:
+        while name in frames and name not in ordered:
             if name in line:
                 circle = [*line[line.index(name) :], name]
-                _report_circle(scope, found, circle)
-                found[circle[0]] = replace(found[circle[0]], parent=WORLD)
+                _report_circle(scope, frames, circle)
+                frames[circle[0]] = replace(frames[circle[0]], parent=WORLD)
                 break
             line.append(name)
-            name = found[name].parent
-        ordered |= {one: found[one] for one in reversed(line) if one not in ordered}
+            name = frames[name].parent
+        ordered |= {one: frames[one] for one in reversed(line) if one not in ordered}
     return tuple(ordered.values())
 
 
@@ -139,8 +139,8 @@ def _frame(scope: Scope, key: ScalarNode, node: Node) -> Frame:
     return Frame(key.value, parent, translation or NO_VECTOR, rotation, description_of(node), key.span)
 
 
-def _report_circle(scope: Scope, found: dict[str, Frame], circle: list[str]) -> None:
+def _report_circle(scope: Scope, frames: dict[str, Frame], circle: list[str]) -> None:
     way = " -> ".join(circle)
     message = f"the frame `{circle[0]}` hangs on itself: {way}"
     remedy = "every frame descends from `world`; take a parent out and close the loop under `loops`"
-    scope.wrong(message, remedy, found[circle[0]].span)
+    scope.wrong(message, remedy, frames[circle[0]].span)

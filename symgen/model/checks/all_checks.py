@@ -63,10 +63,10 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
         numbers = parameters_that_count(mechanics)
         if numbers:
             before_numbers, model = model, with_numbers(model, numbers, mechanics.defaults)
-            _add(scope, _told_of_numbers(before_numbers, model))
+            _add(scope, _notices_of_numbers(before_numbers, model))
             written = mechanics = _mechanics(model)
-        rows, told = check_empty_rows(mechanics)
-        _add(scope, told)
+        rows, reports = check_empty_rows(mechanics)
+        _add(scope, reports)
         model = replace(model, constraints=rows)
         mechanics = mechanics.having(mechanics.defaults, rows)
     massive = model.mechanism.has_mass and (kinetic is not None or tree.get("kinetic_energy") is None)
@@ -80,7 +80,7 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
             if model.allocation is not None:
                 _add(scope, check_redundancy(mechanics, found, model.inputs, model.allocation))
             found = replace(found, tied=tied_parameters(written, mechanics, found))
-            _add(scope, _told_of_tied(model, found.tied))
+            _add(scope, _notices_of_tied(model, found.tied))
             return replace(model, assembly=found)
     return model
 
@@ -96,7 +96,7 @@ def _mechanics(model: Model) -> NumericSystem:
     )
 
 
-def _told_of_numbers(before: Model, model: Model) -> Iterator[Notice]:
+def _notices_of_numbers(before: Model, model: Model) -> Iterator[Notice]:
     """Parameters that kernels cannot be given at run time."""
     for name, value in model.taken:
         (parameter,) = (p for p in before.parameters if p.name == name)
@@ -108,7 +108,7 @@ def _told_of_numbers(before: Model, model: Model) -> Iterator[Notice]:
         )
 
 
-def _told_of_tied(model: Model, tied: Iterable[str]) -> Iterator[Notice]:
+def _notices_of_tied(model: Model, tied: Iterable[str]) -> Iterator[Notice]:
     """The ranges of parameters that cannot have any value but one."""
     these = [parameter for parameter in model.parameters if parameter.name in tied and parameter.range is not None]
     if these:
@@ -131,12 +131,12 @@ def notice_empty_outputs(scope: Scope, tree: MappingNode, model: Model) -> None:
 
 def notice_efforts(scope: Scope, model: Model) -> None:
     """Effort limits of a robot, and what keeps inputs within them where that is known."""
-    told = scope.efforts
-    if told is None or (model.allocation is not None and model.allocation.limits):
+    notice = scope.efforts
+    if notice is None or (model.allocation is not None and model.allocation.limits):
         return
     if model.assembly is not None and _shares_once(model, model.assembly):
-        told = Notice(f"{told.message}: `limits` under `allocation` can", told.span)
-    scope.notices.append(told)
+        notice = Notice(f"{notice.message}: `limits` under `allocation` can", notice.span)
+    scope.notices.append(notice)
 
 
 def _shares_once(model: Model, assembly: Assembly) -> bool:
@@ -145,8 +145,8 @@ def _shares_once(model: Model, assembly: Assembly) -> bool:
     return assembly.ranks.actuation == delta == model.m - 1 and assembly.ranks.constraints == model.r
 
 
-def _add(scope: Scope, found: Iterable[Mistake | Notice]) -> None:
-    for one in found:
+def _add(scope: Scope, reports: Iterable[Mistake | Notice]) -> None:
+    for one in reports:
         if isinstance(one, Mistake):
             scope.mistakes.append(one)
         else:

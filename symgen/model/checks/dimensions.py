@@ -278,8 +278,8 @@ def _declared(tree: MappingNode, mistakes: list[Mistake]) -> dict[str, Unit]:
     return units
 
 
-def _clash(what: str, found: Unit, other: str, expected: Unit, expression: Expression) -> Mistake:
+def _clash(what: str, unit: Unit, other: str, expected: Unit, expression: Expression) -> Mistake:
     span: Span | None = expression.span
-    scale_only = found.exponents == expected.exponents
-    message = f"{what} is in {found}, {other} in {expected}"
+    scale_only = unit.exponents == expected.exponents
+    message = f"{what} is in {unit}, {other} in {expected}"
     return Mistake(message, _SAME_UNIT if scale_only else _CHECK_TERMS, span)

@@ -113,14 +113,14 @@ def check_empty_rows(mechanics: NumericSystem) -> tuple[tuple[ConstraintRow, ...
     if not empty:
         return rows, []
     others = [_Rows(mechanics.having(values)) for values in _draws(mechanics, set(), OTHERS)]
-    told: list[Mistake | Notice] = []
+    reports: list[Mistake | Notice] = []
     idle: dict[Span | None, list[str]] = {}
     fitting: dict[Span | None, list[str]] = {}
     taken = list(rows)
     for i in empty:
         row = rows[i]
         if not usual.holds(i):
-            told.append(
+            reports.append(
                 Mistake(
                     f"the constraint `{row.name}` does not depend on the configuration: it demands "
                     f"{usual.value(i):.6g} = 0",
@@ -132,8 +132,8 @@ def check_empty_rows(mechanics: NumericSystem) -> tuple[tuple[ConstraintRow, ...
             taken[i] = replace(row, expression=ZERO)
             group = idle if all(other.holds(i) for other in others) else fitting
             group.setdefault(row.span, []).append(row.name)
-    told += [Notice(_says_nothing(names, rows), span) for span, names in idle.items()]
-    told += [
+    reports += [Notice(_says_nothing(names, rows), span) for span, names in idle.items()]
+    reports += [
         Notice(
             f"{_the_constraints(names)} {'does' if len(names) == 1 else 'do'} not depend on the configuration: what "
             "is demanded of parameters holds for their default values, and nothing is said about motion",
@@ -141,7 +141,7 @@ def check_empty_rows(mechanics: NumericSystem) -> tuple[tuple[ConstraintRow, ...
         )
         for span, names in fitting.items()
     ]
-    return tuple(taken), told
+    return tuple(taken), reports
 
 
 def _stays_open(mechanics: NumericSystem, together: Sequence[int]) -> bool:

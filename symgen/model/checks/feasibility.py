@@ -28,16 +28,16 @@ FAR = 0.5  # rad, or of half a range, that a declared start is moved by
 
 def check_motion(
     mechanics: NumericSystem,
-    found: Assembly | Open | None,
+    assembly: Assembly | Open | None,
     independent: tuple[str, ...],
     declared: Mapping[str, float],
     spans: dict[str, Span | None],
 ) -> Iterator[Mistake | Notice]:
     """What is wrong with the mechanism as a whole; `declared` is its start, `spans` are places to point at."""
-    if not isinstance(found, Assembly):
-        yield _no_configuration(mechanics, found, spans["geometric"])
+    if not isinstance(assembly, Assembly):
+        yield _no_configuration(mechanics, assembly, spans["geometric"])
         return
-    n, rank = len(mechanics.coordinates), found.ranks.constraints
+    n, rank = len(mechanics.coordinates), assembly.ranks.constraints
     if rank == n:
         against = f"{counted(n, 'coordinate')} under {counted(rank, 'independent constraint')}"
         yield Mistake(
@@ -46,43 +46,43 @@ def check_motion(
             spans["constraints"],
         )
         return
-    if not found.regular:
-        rows = shown_names(mechanics.constraints[i].name for i in found.losing)
-        lost = f"there {rows} {'lose' if len(found.losing) > 1 else 'loses'} rank, and " if found.losing else ""
+    if not assembly.regular:
+        rows = shown_names(mechanics.constraints[i].name for i in assembly.losing)
+        lost = f"there {rows} {'lose' if len(assembly.losing) > 1 else 'loses'} rank, and " if assembly.losing else ""
         yield Mistake(
-            f"only singular configurations were found, such as {_shown(mechanics, found.places[0])}: {lost}beside "
+            f"only singular configurations were found, such as {_shown(mechanics, assembly.places[0])}: {lost}beside "
             f"it the constraints that hold there have another rank than {rank}",
             "check lengths: what closes in a singular pose alone cannot move; give a regular one under "
             "`configuration`; write rows whose gradients do not vanish where they hold, no squares",
             spans["geometric"],
         )
         return
-    regular = [(list(place.q), mechanics.jacobian(place.q)) for place in found.places[:SAMPLES]]
-    places = [q for q, _ in regular] + _further(mechanics, found)
+    regular = [(list(place.q), mechanics.jacobian(place.q)) for place in assembly.places[:SAMPLES]]
+    places = [q for q, _ in regular] + _further(mechanics, assembly)
     yield from check_masses(mechanics, places, spans["kinetic_energy"])
-    yield from _held(mechanics, found, spans["constraints"])
-    yield from _far_start(mechanics, found, declared, spans["configuration"])
-    yield from _other_branches(mechanics, found, spans["configuration"])
+    yield from _held(mechanics, assembly, spans["constraints"])
+    yield from _far_start(mechanics, assembly, declared, spans["configuration"])
+    yield from _other_branches(mechanics, assembly, spans["configuration"])
     if independent:
         yield from _check_independent(mechanics, regular, independent, n - rank, spans["independent_velocities"])
 
 
-def _further(mechanics: NumericSystem, found: Assembly) -> list[list[float]]:
+def _further(mechanics: NumericSystem, assembly: Assembly) -> list[list[float]]:
     """More configurations for bodies of which only the sum may have a positive energy."""
     if not mechanics.unsound:
         return []
     anywhere = [] if mechanics.geometric else [q for q, _ in mechanics.anywhere(FURTHER)]
-    return [*(list(place.q) for place in found.places[SAMPLES:]), *anywhere]
+    return [*(list(place.q) for place in assembly.places[SAMPLES:]), *anywhere]
 
 
-def _no_configuration(mechanics: NumericSystem, found: Open | None, span: Span | None) -> Mistake:
+def _no_configuration(mechanics: NumericSystem, nearest: Open | None, span: Span | None) -> Mistake:
     """The mistake at the row that stays open widest."""
     message = "no configuration was found that satisfies all geometric constraints"
     remedy = "check signs and lengths, or give a start near the assembled mechanism under `configuration`"
-    if found is None:
+    if nearest is None:
         return Mistake(message, remedy, span)
-    row = mechanics.geometric[found.row]
-    gap = f"`{row.name}` stays at {found.value:.3g}{_as_a_length(mechanics, row.expression, found.value)}"
+    row = mechanics.geometric[nearest.row]
+    gap = f"`{row.name}` stays at {nearest.value:.3g}{_as_a_length(mechanics, row.expression, nearest.value)}"
     return Mistake(f"{message}; {gap} in the nearest one", remedy, row.span or span)
 
 
@@ -100,13 +100,13 @@ def _as_a_length(mechanics: NumericSystem, row: Expression, value: float) -> str
 
 
 def _far_start(
-    mechanics: NumericSystem, found: Assembly, declared: Mapping[str, float], span: Span | None
+    mechanics: NumericSystem, assembly: Assembly, declared: Mapping[str, float], span: Span | None
 ) -> Iterator[Notice]:
     """That the declared start is far from closing: what it leads to may be another assembly than the one meant."""
-    if found.start is not None or not mechanics.geometric:
+    if assembly.start is not None or not mechanics.geometric:
         return
     # the start may lie on a branch on which the inputs span less
-    moved = min((_moved(mechanics, place, declared) for place in (found.places[0], *found.others)), key=len)
+    moved = min((_moved(mechanics, place, declared) for place in (assembly.places[0], *assembly.others)), key=len)
     if moved:
         listed = ", ".join(f"{name} = {value:.3g} in place of {given:.3g}" for name, given, value in moved[:MOST_SHOWN])
         more = ", ..." if len(moved) > MOST_SHOWN else ""
@@ -130,17 +130,17 @@ def _width(coordinate: Coordinate) -> float:
     return float(coordinate.range[1] - coordinate.range[0]) / 2
 
 
-def _other_branches(mechanics: NumericSystem, found: Assembly, span: Span | None) -> Iterator[Notice]:
+def _other_branches(mechanics: NumericSystem, assembly: Assembly, span: Span | None) -> Iterator[Notice]:
     """That the start is singular, and that there are branches on which kernels give a status."""
-    n, meant = len(mechanics.coordinates), found.ranks
-    if found.start is not None:
+    n, meant = len(mechanics.coordinates), assembly.ranks
+    if assembly.start is not None:
         begin = "the start leads" if span is not None else "the middles of the ranges lead"
         yield Notice(
-            f"{begin} to a singular configuration ({_shown(mechanics, found.start)}): ranks are those of others; a "
+            f"{begin} to a singular configuration ({_shown(mechanics, assembly.start)}): ranks are those of others; a "
             "regular one under `configuration` says which branch is meant",
             span,
         )
-    for place in found.others:
+    for place in assembly.others:
         ranks = place.ranks
         if ranks.constraints == meant.constraints:
             spans = f"the inputs span {ranks.actuation} of {n - ranks.constraints} directions, here {meant.actuation}"
@@ -160,9 +160,9 @@ def _shown(mechanics: NumericSystem, place: Place) -> str:
     return ", ".join(shown) + (", ..." if len(place.q) > MOST_SHOWN else "")
 
 
-def _held(mechanics: NumericSystem, found: Assembly, span: Span | None) -> Iterator[Notice]:
+def _held(mechanics: NumericSystem, assembly: Assembly, span: Span | None) -> Iterator[Notice]:
     """Coordinates that no admissible motion changes: more often an axis that is not parallel than what was meant."""
-    places = [(mechanics.coordinates[i].name, found.places[0].q[i]) for i in found.held]
+    places = [(mechanics.coordinates[i].name, assembly.places[0].q[i]) for i in assembly.held]
     if places:
         names = shown_names(name for name, _ in places)
         listed = ", ".join(f"{name} = {value:.4g}" for name, value in places[:MOST_SHOWN])

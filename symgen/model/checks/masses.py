@@ -47,11 +47,11 @@ def check_masses(
     mechanics: NumericSystem, places: Sequence[list[float]], span: Span | None
 ) -> Iterator[Mistake | Notice]:
     """G must be positive definite along the constraints; across them it may be anything, which is told."""
-    told = list(_Masses(mechanics, places, IN_FLOATS).told(span))
-    if any(isinstance(one, Mistake) for one in told):
+    reports = list(_Masses(mechanics, places, IN_FLOATS).reports(span))
+    if any(isinstance(one, Mistake) for one in reports):
         many = mechanics.within(precise())
-        told = list(_Masses(many, [_closed(many, q) for q in places], IN_MANY_DIGITS).told(span))
-    yield from told
+        reports = list(_Masses(many, [_closed(many, q) for q in places], IN_MANY_DIGITS).reports(span))
+    yield from reports
 
 
 class _Masses:
@@ -62,7 +62,7 @@ class _Masses:
         self._places = [(q, mechanics.jacobian(q)) for q in places]
         self._usual = self._usual_mass()
 
-    def told(self, span: Span | None) -> Iterator[Mistake | Notice]:
+    def reports(self, span: Span | None) -> Iterator[Mistake | Notice]:
         """The mistake that energies are negative or missing, or what is special."""
         mechanics = self._mechanics
         definite_somewhere = negative_across = False
@@ -141,9 +141,9 @@ class _Masses:
     def _without_mass(self, jacobian: Rows, mass: Rows) -> set[str]:
         """The coordinates that take part in an admissible motion of no mass."""
         negligible = [[self._limits.energy * x for x in row] for row in self._usual]
-        felt = [row for row in _above(mass, negligible) if any(row)]
+        massive = [row for row in _above(mass, negligible) if any(row)]
         for relative in self._limits.rows:
-            motions = null_space([*jacobian, *felt], len(mass), relative)
+            motions = null_space([*jacobian, *massive], len(mass), relative)
             if motions:
                 found = self._mechanics.coordinates
                 return {c.name for i, c in enumerate(found) if any(abs(motion[i]) > HELD for motion in motions)}

@@ -19,19 +19,19 @@ SAME, NOISE = 1e-6, 1e-9
 REST = 1e-11  # of a row that takes no part, which is what rounding leaves in y
 
 
-def tied_parameters(written: NumericSystem, counted: NumericSystem, found: Assembly) -> tuple[str, ...]:
+def tied_parameters(written: NumericSystem, counted: NumericSystem, assembly: Assembly) -> tuple[str, ...]:
     """Their names; `written` has the rows as they stand, `counted` those that hold nothing as 0 = 0."""
     rows = counted.geometric
-    if found.ranks.geometric == len(rows):
+    if assembly.ranks.geometric == len(rows):
         return ()
-    q = found.places[0].q
+    q = assembly.places[0].q
     jacobian = counted.jacobian(q)[: len(rows)]
     units = [1 / (max(map(abs, row), default=0.0) or 1.0) for row in jacobian]
     columns = [[unit * row[j] for unit, row in zip(units, jacobian, strict=True)] for j in range(len(q))]
     most = max((abs(entry) for column in columns for entry in column), default=0.0)
     telling = [column for column in columns if max(map(abs, column)) > NOISE * most]
     still = null_space(telling, len(rows), SAME)
-    if len(still) != len(rows) - found.ranks.geometric:
+    if len(still) != len(rows) - assembly.ranks.geometric:
         return ()
     before = written.residuals(q, range(len(rows)))[0]
 

@@ -100,14 +100,14 @@ class _Search:
         lacking = null_space(telling, r, SINGULAR)
         return tuple(i for i in range(r) if any(abs(vector[i]) > SHARE for vector in lacking))
 
-    def _units_of(self, found: Assembly) -> tuple[int, ...]:
+    def _units_of(self, assembly: Assembly) -> tuple[int, ...]:
         """The units of rows; one for those that depend on each other, whose smallest multipliers are meant."""
         r = len(self._mechanics.constraints)
-        evaluated = self._rows(found.places[0].q)
-        if found.ranks.constraints == r or evaluated is None or not any(self._units):
+        evaluated = self._rows(assembly.places[0].q)
+        if assembly.ranks.constraints == r or evaluated is None or not any(self._units):
             return self._units
         rows = self._scales.scaled(evaluated)[:r]
-        least = found.ranks.constraints
+        least = assembly.ranks.constraints
         spare = [i for i in range(r) if clear_rank(rows[:i] + rows[i + 1 :], NEGLIGIBLE) != least - 1]
         own = [self._units[i] for i in spare if self._units[i]]
         shared = max(own, key=abs) if len({unit > 0 for unit in own}) == 1 else 0
@@ -188,14 +188,14 @@ class _Search:
             if found == FREE_POINTS:
                 return
 
-    def _guesses(self, found: Sequence[tuple[float, ...]]) -> Iterator[tuple[list[float], tuple[int, ...]]]:
+    def _guesses(self, places: Sequence[tuple[float, ...]]) -> Iterator[tuple[list[float], tuple[int, ...]]]:
         """Starts, and coordinates that are held: the declared start, then in turn near it (or what was found first),
         with coordinates moved that inputs act on, in the ranges, and over the whole circle."""
         begin = self._begin()
         yield begin, ()
         driven = self._driven(begin)
         for number in range(1, MOST_STARTS):
-            centre = found[0] if found else begin
+            centre = places[0] if places else begin
             match number % 4:
                 case 1:
                     reach = 0.3 if number % 8 == 1 else 1.0
@@ -332,11 +332,11 @@ class _Search:
         off = max(abs(a - b) / w for a, b, w in zip(closed.q, moved, self._widths, strict=True))
         return off <= STRAIGHT * step and self._ranks(closed.q) == place.ranks
 
-    def _held(self, found: Assembly) -> tuple[int, ...]:
+    def _held(self, assembly: Assembly) -> tuple[int, ...]:
         """Coordinates that no admissible motion changes: along the branch of the declared start, else on any."""
-        meant = bool(self._start) and found.start is None
-        places = self._along(found.places[0]) if meant else [*found.places, *found.others]
-        if len(places) < ENOUGH_HELD or not found.ranks.constraints:
+        meant = bool(self._start) and assembly.start is None
+        places = self._along(assembly.places[0]) if meant else [*assembly.places, *assembly.others]
+        if len(places) < ENOUGH_HELD or not assembly.ranks.constraints:
             return ()
         held = set(range(self._n))
         r = len(self._mechanics.constraints)

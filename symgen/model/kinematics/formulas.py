@@ -70,10 +70,10 @@ class Formulas:
         Derivatives of definitions have names of their own, so that they stay short however definitions nest.
         """
 
-        def of(found: str) -> Expression:
-            if found in self._known:
-                return self._slopes[found, name]
-            return ONE if found == name else ZERO
+        def of(symbol: str) -> Expression:
+            if symbol in self._known:
+                return self._slopes[symbol, name]
+            return ONE if symbol == name else ZERO
 
         for one in nested:
             if (one, name) not in self._slopes:

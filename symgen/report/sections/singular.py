@@ -21,34 +21,34 @@ LARGEST = 1500
 def singular(context: Context) -> Section:
     """Where ranks drop."""
     blocks: list[Block] = []
-    for found in context.input.singular_sets:
-        blocks += _one(context, found)
+    for locus in context.input.singular_sets:
+        blocks += _one(context, locus)
     if not blocks:
         blocks.append(paragraph("Without constraints, inputs and chosen velocities no rank can drop."))
     return Section(say("Singular configurations"), tuple(blocks))
 
 
-def _one(context: Context, found: SingularSet) -> list[Block]:
-    if found.decided and not found.vanishing:
-        return [paragraph(_nowhere(found.kind), *_slots(found))]
-    if not found.vanishing:
-        return [paragraph(OPENING[found.kind] + "; {}.", *_slots(found), found.explanation.rstrip("."))]
-    equations = tuple(Row((context.layout.expression(value), Relation("="), ZERO)) for value in found.vanishing)
-    if found.decided:
-        return [paragraph(OPENING[found.kind] + "; this happens where", *_slots(found)), displayed(equations)]
+def _one(context: Context, locus: SingularSet) -> list[Block]:
+    if locus.decided and not locus.vanishing:
+        return [paragraph(_nowhere(locus.kind), *_slots(locus))]
+    if not locus.vanishing:
+        return [paragraph(OPENING[locus.kind] + "; {}.", *_slots(locus), locus.explanation.rstrip("."))]
+    equations = tuple(Row((context.layout.expression(value), Relation("="), ZERO)) for value in locus.vanishing)
+    if locus.decided:
+        return [paragraph(OPENING[locus.kind] + "; this happens where", *_slots(locus)), displayed(equations)]
     nodes = sum(size(line) for line in equations)
     if nodes > LARGEST:
         many = f"; these are the common zeros of {len(equations)} expressions with {nodes} symbols, not printed."
-        return [paragraph(OPENING[found.kind] + many, *_slots(found))]
+        return [paragraph(OPENING[locus.kind] + many, *_slots(locus))]
     opening = paragraph(
-        OPENING[found.kind] + "; this happens where all of these expressions vanish at once:", *_slots(found)
+        OPENING[locus.kind] + "; this happens where all of these expressions vanish at once:", *_slots(locus)
     )
     return [opening, displayed(tuple(packed(equations)))]
 
 
-def _slots(found: SingularSet) -> list[Slot]:
-    symbol = SYMBOLS[found.quantity]
-    if found.kind != "constraint":
+def _slots(locus: SingularSet) -> list[Slot]:
+    symbol = SYMBOLS[locus.quantity]
+    if locus.kind != "constraint":
         return [symbol]
     return [SYMBOLS["constraint_jacobian"], SYMBOLS["nullspace_projector"]]
 

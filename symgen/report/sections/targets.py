@@ -21,8 +21,8 @@ def targets(context: Context) -> tuple[Section, ...]:
         return ()
     blocks: list[Block] = [paragraph("{}", INTRO)]
     for core in context.input.targets:
-        told = f"{core.name}: {core.same_bits} builds (compiler, level, scalar type) gave the same bits as the host."
-        blocks += [paragraph("{}", told), _table(core)]
+        text = f"{core.name}: {core.same_bits} builds (compiler, level, scalar type) gave the same bits as the host."
+        blocks += [paragraph("{}", text), _table(core)]
     return (Section(say("Microcontrollers"), tuple(blocks)),)
 
 
@@ -39,5 +39,5 @@ def _table(core: TargetCore) -> Table:
 
 
 def _range(row: TargetRow) -> str:
-    told = str(row.most) if row.fewest == row.most else f"{row.fewest}–{row.most}"
-    return told if row.level == FAST else f"{told} ({row.level})"
+    text = str(row.most) if row.fewest == row.most else f"{row.fewest}–{row.most}"
+    return text if row.level == FAST else f"{text} ({row.level})"

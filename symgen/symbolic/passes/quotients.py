@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from symgen.symbolic.passes.rebuilt import rebuilt
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import topological, uses_of
 
@@ -18,7 +19,7 @@ def with_quotients(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
     image: dict[Scalar, Scalar] = {}
     for node in order:
         args = tuple(map(image.__getitem__, node.args))
-        image[node] = graph.over(node, args)
+        image[node] = rebuilt(graph, node, args)
         if node.op == "mul":
             for a, inverse in (node.args, node.args[::-1]):
                 if inverse in inverses and uses[inverse] == 1:

@@ -11,6 +11,7 @@ from collections.abc import Collection, Mapping, Sequence
 from heapq import heapify, heappop, heappush
 from typing import TypeAlias
 
+from symgen.symbolic.passes.rebuilt import rebuilt
 from symgen.symbolic.passes.terms import Term, product_of, sum_of, terms_of
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import reached, topological, uses_of
@@ -59,7 +60,7 @@ class _Sharing:
             terms = self._terms.get(node)
             if terms is None or node in self._long or not any(part in pairs for _, part in terms):
                 args = tuple(map(image.__getitem__, node.args))
-                image[node] = self._graph.over(node, args)
+                image[node] = rebuilt(self._graph, node, args)
             else:
                 image[node] = self._built(terms, pairs, image, made)
         return [image[output] for output in self._outputs]

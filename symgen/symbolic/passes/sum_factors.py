@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
 
 from symgen.records import dataclass
+from symgen.symbolic.passes.rebuilt import rebuilt
 from symgen.symbolic.passes.terms import MOST_TERMS, SUMS, product_of, sum_of, terms_of, without_opposites
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import topological, uses_of
@@ -46,7 +47,7 @@ def with_common_factors(
     image: dict[Scalar, Scalar] = {}
     for node in order:
         args = tuple(map(image.__getitem__, node.args))
-        image[node] = graph.over(node, args)
+        image[node] = rebuilt(graph, node, args)
         if node.op in SUMS and (node not in inside or uses[node] > 1):
             plain = terms_of(node, inside)
             kept = without_opposites(plain, uses) if len(plain) <= MOST_TERMS else plain
@@ -77,7 +78,7 @@ def _grouped(terms: Sequence[_Term], numbers: bool) -> list[_Group]:
                 if (numbers or factor.constant is None) and len(term.factors) > 1:
                     holders.setdefault(factor, []).append(place)
         shared = [(_common([left[place].factors for place in places], numbers), places) for places in holders.values()]
-        common, places = max(shared, key=lambda found: len(found[0]) * (len(found[1]) - 1), default=((), []))
+        common, places = max(shared, key=lambda group: len(group[0]) * (len(group[1]) - 1), default=((), []))
         if len(places) < 2:
             break
         chosen = [left.pop(place) for place in places]

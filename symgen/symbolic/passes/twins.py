@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from symgen.symbolic.passes.rebuilt import rebuilt
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import topological
 
@@ -16,6 +17,6 @@ def without_twins(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
     image: dict[Scalar, Scalar] = {}
     first: dict[tuple[str, tuple[Scalar, ...], object], Scalar] = {}
     for node in order:
-        same = graph.over(node, tuple(map(image.__getitem__, node.args)))
+        same = rebuilt(graph, node, tuple(map(image.__getitem__, node.args)))
         image[node] = first.setdefault((same.op, same.args, same.payload), same)
     return [image[output] for output in outputs]

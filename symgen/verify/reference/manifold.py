@@ -53,10 +53,10 @@ def generic_ranks(system: System) -> Ranks | None:
     to rounding only show it as a gap of 16.
     """
     with precision(RANK_BITS):
-        return _found_ranks(system, rounded=False) or _found_ranks(system, rounded=True)
+        return _sampled_ranks(system, rounded=False) or _sampled_ranks(system, rounded=True)
 
 
-def _found_ranks(system: System, rounded: bool) -> Ranks | None:
+def _sampled_ranks(system: System, rounded: bool) -> Ranks | None:
     parameters = default_parameters(system.model)
     literals = literal_values(system.literals)
     generator = random.Random("ranks")

@@ -111,11 +111,11 @@ class MatrixRates:
         frames = Frames(self._model.mechanism, places.algebra, places.polynomial)
         algebra = Taylor(tape, 1, 1)
 
-        def found(name: str) -> Polynomial:
+        def polynomial_of(name: str) -> Polynomial:
             value = frames.component(name)
             return self._about_velocity(value) if component(name).is_rate else _to_first_order(value)
 
-        energy = translation(self._model, self._literals, algebra, moving, found).polynomial(
+        energy = translation(self._model, self._literals, algebra, moving, polynomial_of).polynomial(
             self._model.kinetic_energy
         )
         return replay_of(tape, [energy.get(((j,), (i,)), tape.zero) for i in range(n) for j in range(n)])
@@ -151,11 +151,11 @@ class MatrixRates:
         return self._beside(j) | self._on_line(j), {}
 
     def _translation(self, algebra: Taylor, moving: Moving) -> Translation:
-        def found(name: str) -> Polynomial:
+        def polynomial_of(name: str) -> Polynomial:
             value = self._frames.component(name)
             return {monomial: register for monomial, register in value.items() if algebra.keeps(*monomial)}
 
-        return translation(self._model, self._literals, algebra, moving, found)
+        return translation(self._model, self._literals, algebra, moving, polynomial_of)
 
     def _about_velocity(self, rate: Polynomial) -> Polynomial:
         """A rate that is linear in those of the coordinates, about their values v."""

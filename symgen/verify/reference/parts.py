@@ -37,7 +37,7 @@ def parts(
     """
     leader = list(range(n))
 
-    def found(j: int) -> int:
+    def root(j: int) -> int:
         while leader[j] != j:
             leader[j] = leader[leader[j]]
             j = leader[j]
@@ -46,14 +46,14 @@ def parts(
     kinds = [[sorted(these) for these in kind] for kind in (rows, inputs, bodies)]
     for these in (*(these for kind in kinds for these in kind), *pairs):
         for j in these[1:]:
-            first, second = sorted((found(these[0]), found(j)))
+            first, second = sorted((root(these[0]), root(j)))
             leader[second] = first
     members: dict[int, list[list[int]]] = {}
     for j in range(n):
-        members.setdefault(found(j), [[], [], [], []])[0].append(j)
+        members.setdefault(root(j), [[], [], [], []])[0].append(j)
     for place, kind in enumerate(kinds, start=1):
         for number, these in enumerate(kind):
-            members.setdefault(found(these[0]) if these else 0, [[], [], [], []])[place].append(number)
+            members.setdefault(root(these[0]) if these else 0, [[], [], [], []])[place].append(number)
     return tuple(Part(*map(tuple, these)) for _, these in sorted(members.items()))
 
 

@@ -109,20 +109,20 @@ class Reference:
         `literals` replace the values of the model's literals.
         """
 
-        def found() -> dict[str, Any]:
+        def evaluated() -> dict[str, Any]:
             evaluation = self.evaluation(state, literals)
             return {name: QUANTITIES[name](evaluation) for name in quantities}
 
-        return self.regular(found, bits)
+        return self.regular(evaluated, bits)
 
     def measured(self, state: State, quantities: Sequence[str], bits: int) -> tuple[dict[str, Any], list[Any]]:
         """Like `matrices`, and both measures of each part of the system, as balls."""
 
-        def found() -> tuple[dict[str, Any], list[Any]]:
+        def evaluated() -> tuple[dict[str, Any], list[Any]]:
             evaluation = self.evaluation(state)
             return {name: QUANTITIES[name](evaluation) for name in quantities}, measures_of_parts(evaluation)
 
-        return self.regular(found, bits)
+        return self.regular(evaluated, bits)
 
     def regular(self, work: Callable[[], Result], bits: int) -> Result:
         """What `work` makes of evaluations at a working precision, or at a greater one where that tells no rank.

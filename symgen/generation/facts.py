@@ -1,0 +1,58 @@
+"""What a draft states beside its kernels: operations, what is skipped and why, where forms are not valid."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symgen.backends.operations import count_operations
+from symgen.generation.draft import Draft
+from symgen.methods.forward_dynamics.motions import BY_FRAMES
+from symgen.quantities.select import Selection
+
+if TYPE_CHECKING:
+    from symgen.report.facts import Facts
+
+
+def facts(draft: Draft) -> Facts:
+    """What the report and `symgen explain` are given of a draft."""
+    from symgen.report.facts import Facts
+
+    operations = {kernel.name: count_operations(kernel.statements) for kernel in draft.program.kernels}
+    decisions = tuple((decision.what, decision.why) for decision in draft.structure.decisions)
+    derivations = draft.derivations
+    rejected = ((f"form {r.way} of {r.quantity}", f"verification rejects it: {r.why}") for r in derivations.rejected)
+    return Facts(operations, (*decisions, *derivations.absent, *rejected, *_failing_forms(draft)))
+
+
+def _failing_forms(draft: Draft) -> tuple[tuple[str, str], ...]:
+    """Where what is generated is not valid if a form was asked for, and which forms are left to be asked for and where
+    they fail."""
+    derivations = draft.derivations
+    form, methods = derivations.form, derivations.methods
+    remarks = list(invalid_forms(derivations, ()))
+    if form is not None and methods is not None and form.verdict.admitted:
+        others = methods.failing() or form.failed
+        remarks += ((f"form {name} of u", f"{why}; it is made if asked for (--form {name})") for name, why in others)
+    # articulated inertias are taken only where G is definite, and then no form fails
+    moving = [choice.quantity for choice in derivations.choices if choice.form not in ("", BY_FRAMES)]
+    if moving:
+        from symgen.methods.forward_dynamics.motions import failing_motions
+
+        for name, why in failing_motions(derivations.mechanics):
+            asked = " ".join(f"--form {quantity}={name}" for quantity in moving)
+            remarks.append((f"form {name} of {' and '.join(moving)}", f"{why}; it is made if asked for ({asked})"))
+    return tuple(remarks)
+
+
+def invalid_forms(derivations: Selection, failed: tuple[tuple[str, str], ...]) -> tuple[tuple[str, str], ...]:
+    """Whether forms that were asked for are not valid at every regular state; if not, those of u that `failed`."""
+    form = derivations.form
+    asked = ((("u", form),) if form is not None else ()) + derivations.named
+    return (
+        *(
+            (f"validity of {quantity} at every regular state", f"form {one.way}: {one.verdict.explanation}")
+            for quantity, one in asked
+            if not one.verdict.admitted
+        ),
+        *((f"form {name} of u", why) for name, why in failed if form is not None and form.verdict.admitted),
+    )
