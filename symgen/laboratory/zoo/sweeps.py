@@ -1,0 +1,146 @@
+"""The rule of statuses on draws: states led towards singular sets, masses and lengths far apart, both scalar types.
+
+Status 0 means that a result is within the tolerance, a status that rows, inputs or masses are near a drop of rank.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from symgen.laboratory.zoo.approach import KINDS, Approach
+from symgen.laboratory.zoo.describe import Description
+from symgen.laboratory.zoo.dice import Dice
+from symgen.laboratory.zoo.expressions import NotReadError
+from symgen.laboratory.zoo.generated import targets
+from symgen.laboratory.zoo.kkt import Ranks
+from symgen.laboratory.zoo.states import State, Walker
+from symgen.laboratory.zoo.witness import ALLOWED, Comparison, Witness
+
+# regular states that are led on, and how many of them are looked at in a decade
+STARTS, PER_DECADE = 4, 2
+EXPONENTS = (-9, -6, -3, 3, 6, 9)
+SCALED = "parameters"
+# what rounding the inputs does is worked out more often than for regular states before a result is called wrong
+PERTURBATIONS = 64
+STATUSES = {1: "not finite", 2: "constraint rank", 3: "actuation rank", 4: "angle range", 5: "mass rank"}
+BEYOND, UNEXPLAINED, UNKNOWN, ANSWERED = "beyond", "unexplained", "no truth", "answered"
+
+
+@dataclass(frozen=True)
+class Led:
+    """A state, in words where it was led, and the generic ranks of its system."""
+
+    kind: str
+    where: str
+    state: State
+    ranks: Ranks
+
+
+@dataclass(frozen=True)
+class Violation:
+    """A result of status 0 beyond the tolerance, in units of d + eps |y*|, or a status at a clear state."""
+
+    kind: str
+    where: str
+    target: str
+    quantity: str
+    comparison: Comparison
+    state: State
+
+    @property
+    def text(self) -> str:
+        """In a line."""
+        found, at = self.comparison, f"{self.target}, {self.quantity}, {self.where}"
+        if found.status:
+            return f"{at}: {STATUSES[found.status]} although clear to {found.clear:.1e}"
+        return f"{at}: {ALLOWED * found.units:.3g} units, relative error {found.relative:.1e}, clear {found.clear:.1e}"
+
+
+@dataclass(frozen=True)
+class Swept:
+    """What was counted of a draw by kind, scalar type and outcome, and what violates the rule."""
+
+    counts: Mapping[tuple[str, str, str], int]
+    violations: tuple[Violation, ...] = ()
+
+    def of(self, *outcomes: str) -> int:
+        """How often these outcomes were met."""
+        return sum(count for (_, _, outcome), count in self.counts.items() if outcome in outcomes)
+
+
+def sweep(description: Description, folder: Path) -> Swept:
+    """What was generated of a description, at all states that are led on; a text that is not read counts nothing."""
+    try:
+        witness = Witness(description.text, description.start, description.text, description.files)
+    except NotReadError:
+        return Swept({})
+    members = witness.opened(folder)
+    defaults = witness.defaults()
+    walker = witness.walker()
+    starts, ranks = walker.states(defaults, STARTS)
+    scaled = [name for name in members if name in witness.shaping and defaults[name]]
+    near = _towards(walker, defaults, starts, ranks, description.text)
+    far = _scaled(walker, defaults, starts, ranks, scaled)
+    return compared(witness, folder, str(description.blocks["model"]), [*near, *far])
+
+
+def compared(witness: Witness, folder: Path, model: str, led: Iterable[Led]) -> Swept:
+    """The generated C of both types at given states."""
+    called = [target for target in targets(folder, model) if target.name != "Python"]
+    counts: Counter[tuple[str, str, str]] = Counter()
+    violations = []
+    for one in led:
+        for target in called:
+            for quantity in target.quantities:
+                found = witness.compare(target, quantity, one.state, one.ranks, PERTURBATIONS)
+                for outcome in _outcomes(found):
+                    counts[one.kind, target.scalar, outcome] += 1
+                    if found is not None and outcome in (BEYOND, UNEXPLAINED):
+                        violations.append(Violation(one.kind, one.where, target.name, quantity, found, one.state))
+    return Swept(dict(counts), tuple(violations))
+
+
+def _outcomes(found: Comparison | None) -> Iterator[str]:
+    if found is None:
+        yield UNKNOWN
+    elif found.status:
+        yield STATUSES[found.status]
+        if found.certain:
+            yield UNEXPLAINED
+    else:
+        yield ANSWERED
+        if not found.units <= 1:
+            yield BEYOND
+
+
+def _towards(
+    walker: Walker, parameters: Mapping[str, float], starts: Sequence[State], ranks: Ranks, seed: object
+) -> Iterator[Led]:
+    """Towards where rows, inputs and masses lose rank, from each start, down to where that leads."""
+    approach = Approach(walker, parameters, ranks)
+    for kind in KINDS:
+        seen: Counter[int] = Counter()
+        for number, start in enumerate(starts):
+            for decade, q in approach.towards(kind, start.q, Dice("approach", seed, kind, number)):
+                seen[decade] += 1
+                if seen[decade] <= PER_DECADE:
+                    nearest = walker.refined(q, parameters)
+                    state = walker.state(nearest, parameters, ranks.constraints)
+                    yield Led(kind, f"{kind} at 1e-{decade}", state, ranks)
+
+
+def _scaled(
+    walker: Walker, parameters: Mapping[str, float], starts: Sequence[State], ranks: Ranks, names: Sequence[str]
+) -> Iterator[Led]:
+    """Each of these parameters far from its value, at a regular state where the loops still close."""
+    for start in starts[:1]:
+        for name in names:
+            for exponent in EXPONENTS:
+                far = {**parameters, name: parameters[name] * 10.0**exponent}
+                q = walker.closed(start.q, far)
+                if q is not None:
+                    state = walker.state(walker.refined(q, far), far, ranks.constraints)
+                    yield Led(SCALED, f"{name} times 1e{exponent}", state, ranks)
