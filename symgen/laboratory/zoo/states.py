@@ -81,7 +81,7 @@ class Walker:
             free = self._free(here, parameters)
             step = free @ np.array([self._dice.uniform(-1, 1) for _ in range(free.shape[1])])
             there = self.closed(here + 0.6 * step, parameters)
-            if there is not None and np.abs(there - first).max() < FURTHEST and self.inside(there):
+            if there is not None and np.abs(there - first).max() < FURTHEST and self._inside(there):
                 points.append(there)
                 here = there
             else:
@@ -129,8 +129,7 @@ class Walker:
     def _aside(self, count: int) -> Any:
         return np.array([self._dice.uniform(-0.3, 0.3) for _ in range(count)])
 
-    def inside(self, q: Any) -> bool:
-        """Whether a configuration lies in the ranges of the file."""
+    def _inside(self, q: Any) -> bool:
         for name, value in zip(self._system.coordinates, q, strict=True):
             if name in self._ranges:
                 lower, upper = (self._number(text) for text in self._ranges[name])

@@ -17,10 +17,12 @@ from symgen.laboratory.zoo.expressions import NotReadError
 from symgen.laboratory.zoo.generated import targets
 from symgen.laboratory.zoo.kkt import Ranks
 from symgen.laboratory.zoo.states import State, Walker
-from symgen.laboratory.zoo.witness import ALLOWED, Comparison, Witness
+from symgen.laboratory.zoo.witness import ALLOWED, CERTAIN, Comparison, Witness
 
 # regular states that are led on, and how many of them are looked at in a decade
-STARTS, PER_DECADE = 4, 2
+STARTS, PER_DECADE = 3, 2
+# configurations that are scattered for starts, and how many of them are taken
+SCATTERED, NEAREST = 60, 3
 EXPONENTS = (-9, -6, -3, 3, 6, 9)
 SCALED = "parameters"
 # what rounding the inputs does is worked out more often than for regular states before a result is called wrong
@@ -31,12 +33,13 @@ BEYOND, UNEXPLAINED, UNKNOWN, ANSWERED = "beyond", "unexplained", "no truth", "a
 
 @dataclass(frozen=True)
 class Led:
-    """A state, in words where it was led, and the generic ranks of its system."""
+    """A state, in words where it was led, the generic ranks of its system, and how far what was led is from a drop."""
 
     kind: str
     where: str
     state: State
     ranks: Ranks
+    distance: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -96,19 +99,19 @@ def compared(witness: Witness, folder: Path, model: str, led: Iterable[Led]) -> 
         for target in called:
             for quantity in target.quantities:
                 found = witness.compare(target, quantity, one.state, one.ranks, PERTURBATIONS)
-                for outcome in _outcomes(found):
+                for outcome in _outcomes(found, one.distance > CERTAIN[target.scalar]):
                     counts[one.kind, target.scalar, outcome] += 1
                     if found is not None and outcome in (BEYOND, UNEXPLAINED):
                         violations.append(Violation(one.kind, one.where, target.name, quantity, found, one.state))
     return Swept(dict(counts), tuple(violations))
 
 
-def _outcomes(found: Comparison | None) -> Iterator[str]:
+def _outcomes(found: Comparison | None, far: bool) -> Iterator[str]:
     if found is None:
         yield UNKNOWN
     elif found.status:
         yield STATUSES[found.status]
-        if found.certain:
+        if found.certain and far:
             yield UNEXPLAINED
     else:
         yield ANSWERED
@@ -119,17 +122,22 @@ def _outcomes(found: Comparison | None) -> Iterator[str]:
 def _towards(
     walker: Walker, parameters: Mapping[str, float], starts: Sequence[State], ranks: Ranks, seed: object
 ) -> Iterator[Led]:
-    """Towards where rows, inputs and masses lose rank, from each start, down to where that leads."""
-    approach = Approach(walker, parameters, ranks)
+    """Towards where rows, inputs and masses lose rank, from each start, down to where that leads.
+
+    Starts are regular states, and of many configurations those from which the way is shortest.
+    """
+    if not starts:
+        return
+    approach = Approach(walker, parameters, ranks, walker.points(parameters, SCATTERED))
     for kind in KINDS:
         seen: Counter[int] = Counter()
-        for number, start in enumerate(starts):
-            for decade, q in approach.towards(kind, start.q, Dice("approach", seed, kind, number)):
+        for number, start in enumerate([*(state.q for state in starts), *approach.nearest(kind, NEAREST)]):
+            for decade, q in approach.towards(kind, start, Dice("approach", seed, kind, number)):
                 seen[decade] += 1
                 if seen[decade] <= PER_DECADE:
                     nearest = walker.refined(q, parameters)
                     state = walker.state(nearest, parameters, ranks.constraints)
-                    yield Led(kind, f"{kind} at 1e-{decade}", state, ranks)
+                    yield Led(kind, f"{kind} at 1e-{decade}", state, ranks, approach.distance(kind, state.q) or 0.0)
 
 
 def _scaled(
