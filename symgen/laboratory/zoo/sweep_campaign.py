@@ -49,7 +49,7 @@ class SweepRecord:
     def line(self) -> str:
         """About the draw, for a terminal."""
         swept = self.swept
-        told = self.ending
+        told = f"{self.ending}, not swept"
         if self.counts:
             answered, unknown = swept.of(ANSWERED), swept.of(UNKNOWN)
             statuses = ", ".join(f"{swept.of(name)} {name}" for name in STATUSES.values() if swept.of(name))
