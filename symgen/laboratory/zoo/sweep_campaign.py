@@ -81,11 +81,10 @@ def table(records: Sequence[SweepRecord]) -> str:
     for record in records:
         total.update(record.swept.counts)
     columns = [ANSWERED, *STATUSES.values(), UNKNOWN, BEYOND, UNEXPLAINED]
-    wide = max(map(len, columns))
     lines = [f"{sum(bool(record.counts) for record in records)} of {len(records)} draws swept"]
-    lines.append(" " * 20 + "".join(f"{column:>{wide + 2}}" for column in columns))
+    lines.append(" " * 20 + "".join(f"  {column:>7}" for column in columns))
     for kind in (*KINDS, SCALED):
         for scalar in ("float64", "float32"):
-            row = "".join(f"{total[kind, scalar, column]:>{wide + 2}}" for column in columns)
+            row = "".join(f"  {total[kind, scalar, column]:>{max(7, len(column))}}" for column in columns)
             lines.append(f"{kind:<11}{scalar:<9}{row}")
     return "\n".join(lines)

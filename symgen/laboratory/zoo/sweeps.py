@@ -27,6 +27,8 @@ EXPONENTS = (-9, -6, -3, 3, 6, 9)
 SCALED = "parameters"
 # what rounding the inputs does is worked out more often than for regular states before a result is called wrong
 PERTURBATIONS = 64
+# where a unit of error is as much of the truth, one rounding of the inputs leaves nothing to compare with
+VAGUE = 0.1
 STATUSES = {1: "not finite", 2: "constraint rank", 3: "actuation rank", 4: "angle range", 5: "mass rank"}
 ANGLE_RANGE = 4
 # angles up to twice this have sines in every kernel: sums of two are beyond it
@@ -119,6 +121,8 @@ def _outcomes(found: Comparison | None, far: bool) -> Iterator[str]:
         yield STATUSES[found.status]
         if found.certain and far:
             yield UNEXPLAINED
+    elif not found.units <= 1 and found.relative > VAGUE * ALLOWED * found.units:
+        yield UNKNOWN
     else:
         yield ANSWERED
         if not found.units <= 1:
