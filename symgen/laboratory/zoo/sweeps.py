@@ -107,6 +107,8 @@ def compared(witness: Witness, folder: Path, model: str, led: Iterable[Led]) -> 
                 far = one.distance > CERTAIN[target.scalar]
                 if found is not None and found.status == ANGLE_RANGE:
                     far = max(map(abs, one.state.q)) < ANGLES[target.scalar]
+                elif far and found is not None and found.certain:
+                    far = witness.unit(quantity, one.state, one.ranks, target.scalar) < VAGUE
                 for outcome in _outcomes(found, far):
                     counts[one.kind, target.scalar, outcome] += 1
                     if found is not None and outcome in (BEYOND, UNEXPLAINED):

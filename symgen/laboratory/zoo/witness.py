@@ -220,6 +220,20 @@ class Witness:
         apart = _norm([a - b for a, b in zip(answer.value, exact, strict=True)])
         return Comparison(0, units, apart / (_norm(exact) or 1.0), truth.clear, False)
 
+    def unit(self, quantity: str, state: State, ranks: Ranks, scalar: str) -> float:
+        """The most that roundings of the inputs change a result, as a share of it; infinite where there is none."""
+        given = State(*(rounded(part, scalar) for part in (state.q, state.qd, state.qdd, state.u, state.parameters)))
+        dice, moved = Dice("perturbations", self._seed), 0.0
+        with precision():
+            truth = self._truth(quantity, given, ranks)
+            if truth is None:
+                return math.inf
+            for _ in range(PERTURBATIONS):
+                other = self._truth(quantity, given, ranks, (dice, EPS[scalar]))
+                moved = max(moved, math.inf if other is None else _distance(other.value, truth.value))
+            size = _norm([float(x.mid()) for x in truth.value])
+        return moved / size if size else 0.0 if not moved else math.inf
+
     def _units(
         self, answer: Answer, truth: Truth, quantity: str, state: State, ranks: Ranks, eps: float,
         most: int = PERTURBATIONS,
