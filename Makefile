@@ -9,7 +9,7 @@ CAMPAIGN_FILES := $(CAMPAIGN:%=models/%.yaml)
 MODELS := $(wildcard models/*.yaml)
 MECHANISMS := $(filter-out $(CAMPAIGN_FILES),$(MODELS))
 
-.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms generation stress skipping passes trig zoo zoo-case docs api lock robots
+.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms generation stress skipping passes trig zoo zoo-case zoo-sweeps docs api lock robots
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -86,6 +86,11 @@ zoo: $(VENV)/installed
 # A failing draw made small and kept as a test: make zoo-case ZOO_SEED=3 ZOO_FIRST=14 CASE=name
 zoo-case: $(VENV)/installed
 	$(BIN)/python -m symgen.laboratory.zoo --seed $(ZOO_SEED) --first $(ZOO_FIRST) --store tests/zoo/cases/$(CASE).yaml --out build/zoo
+
+# The rule of statuses on random systems: led towards their singular sets, masses and lengths up to 1e9 apart.
+zoo-sweeps: $(VENV)/installed
+	$(BIN)/python -m symgen.laboratory.zoo --sweeps --seed $(ZOO_SEED) --first $(ZOO_FIRST) --draws $(ZOO_DRAWS) \
+	    --seconds $(ZOO_SECONDS) --out build/zoo-sweeps
 
 # What each part of the structure analysis is worth in operations: docs/skipping.md.
 skipping: $(VENV)/installed

@@ -343,7 +343,7 @@ configuration: {a_0: 0, a_1: 0, a_2: 0, b: 0}
     for start, expected in (({}, 0), ({"a_0": 0.7, "a_1": 0.7, "a_2": 0.7, "b": -0.7}, 3)):
         witness = Witness(text, start)
         walker = Walker(witness._system, witness._evaluate, witness._start, Dice("states", 0))
-        found, ranks = walker.states(witness._defaults(), 5)
+        found, ranks = walker.states(witness.defaults(), 5)
         assert (len(found), ranks.constraints) == (5 if expected else 0, expected)
 
 
@@ -357,7 +357,7 @@ outputs: [forward_dynamics]
 """
     witness = Witness(text, {"a": 0.7})
     walker = Walker(witness._system, witness._evaluate, witness._start, Dice("states", 0))
-    found, ranks = walker.states(witness._defaults(), 4)
+    found, ranks = walker.states(witness.defaults(), 4)
     with precision():
         for state in found:
             truth = witness._truth("forward_dynamics", state, ranks)

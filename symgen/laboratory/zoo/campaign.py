@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from itertools import islice
 from multiprocessing import get_context
 from pathlib import Path
+from typing import TypeVar
 
 from symgen.laboratory.zoo.cases import case_of
 from symgen.laboratory.zoo.describe import Description
@@ -23,6 +24,7 @@ from symgen.laboratory.zoo.verdict import FAILED, REFUSED, Verdict, verdict_of, 
 from symgen.laboratory.zoo.witness import check
 
 Tell = Callable[[str], None]
+Told = TypeVar("Told")
 
 
 @dataclass(frozen=True)
@@ -89,16 +91,26 @@ def one_draw(campaign: Campaign, index: int) -> tuple[Record, str]:
     return record, f"{record.seed}:{index} {record.family}: {' '.join(told.split())}"
 
 
-def run_campaign(campaign: Campaign, indices: Iterable[int], seconds: float, jobs: int, tell: Tell) -> Iterator[Record]:
-    """Draws until they or the seconds (0: no limit) are used up, `jobs` at a time, in the order in which they end."""
+def run_campaign(
+    one: Callable[[Campaign, int], tuple[Told, str]],
+    campaign: Campaign,
+    indices: Iterable[int],
+    seconds: float,
+    jobs: int,
+    tell: Tell,
+) -> Iterator[Told]:
+    """Draws until they or the seconds (0: no limit) are used up, `jobs` at a time, in the order in which they end.
+
+    `one` makes a record and a line of one of them.
+    """
     began = time.monotonic()
     waiting = iter(indices)
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-        running: set[Future[tuple[Record, str]]] = set()
+        running: set[Future[tuple[Told, str]]] = set()
         while True:
             late = bool(seconds) and time.monotonic() - began > seconds
             for index in islice(waiting, 0 if late else jobs - len(running)):
-                running.add(pool.submit(one_draw, campaign, index))
+                running.add(pool.submit(one, campaign, index))
             if not running:
                 return
             done, running = wait(running, return_when=FIRST_COMPLETED)

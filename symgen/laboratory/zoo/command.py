@@ -8,12 +8,13 @@ import time
 from collections import Counter
 from pathlib import Path
 
-from symgen.laboratory.zoo.campaign import Campaign, judge, run_campaign, shrunk, usual_jobs
+from symgen.laboratory.zoo.campaign import Campaign, judge, one_draw, run_campaign, shrunk, usual_jobs
 from symgen.laboratory.zoo.cases import case_of, read_case
 from symgen.laboratory.zoo.describe import Description, read_description
 from symgen.laboratory.zoo.families import FAMILIES, draw
 from symgen.laboratory.zoo.features import ALL, features
 from symgen.laboratory.zoo.records import read_records, summary, write_record
+from symgen.laboratory.zoo.sweep_campaign import one_sweep, table
 
 # how many runs a failing draw is made small in, unless another number is given
 RUNS = 80
@@ -37,6 +38,9 @@ def main() -> int:
         "--store", type=Path, metavar="CASE", help="make the first draw, or the file, small and keep it"
     )
     parser.add_argument("--sum", type=Path, nargs="*", help="sum up the records of earlier chunks and run nothing")
+    parser.add_argument(
+        "--sweeps", action="store_true", help="the rule of statuses beside singular sets and with far apart parameters"
+    )
     given = parser.parse_args()
     if given.show:
         print(draw(given.seed, given.first, given.family).text, end="")
@@ -57,14 +61,26 @@ def main() -> int:
     path.unlink(missing_ok=True)
     campaign = Campaign(given.seed, given.out, given.family, given.shrink)
     indices = range(given.first, given.first + given.draws)
+    if given.sweeps:
+        return _sweep(campaign, indices, path, given)
     began = time.monotonic()
     records = []
-    for record in run_campaign(campaign, indices, given.seconds, given.jobs, _tell):
+    for record in run_campaign(one_draw, campaign, indices, given.seconds, given.jobs, _tell):
         write_record(path, record)
         records.append(record)
     print(summary(records))
     print(f"  {60 * len(records) / (time.monotonic() - began):.1f} draws a minute")
     return int(any(record.failed for record in records))
+
+
+def _sweep(campaign: Campaign, indices: range, path: Path, given: argparse.Namespace) -> int:
+    """Sweeps the draws and prints the totals; 1 where one of them violates the rule of statuses."""
+    records = []
+    for record in run_campaign(one_sweep, campaign, indices, given.seconds, given.jobs, _tell):
+        write_record(path, record)
+        records.append(record)
+    print(table(records))
+    return int(any(record.violations for record in records))
 
 
 def _one(description: Description, name: str, given: argparse.Namespace) -> int:

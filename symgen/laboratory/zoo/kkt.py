@@ -18,6 +18,7 @@ from symgen.laboratory.zoo.linear import (
     determinant,
     inner,
     least,
+    size,
     solve,
     times,
     transposed,
@@ -97,6 +98,29 @@ def split(at: Numbers, rank: int, one: Any) -> Split:
     return Split(held, complement(held, at.n, one), pivots)
 
 
+def _along(at: Numbers, parts: Split) -> tuple[Matrix, list[float]]:
+    """The inputs along the free directions, and their lengths in all: less is left of them where they lose rank."""
+    columns = transposed(at.control, len(at.control[0]))
+    return [times(columns, direction) for direction in parts.free], [size(column) for column in columns]
+
+
+def distances(at: Numbers, ranks: Ranks, one: Any) -> dict[str, float]:
+    """What tells how far rows, inputs and masses are from a drop of rank, 0 to 1, of those that there are."""
+    parts = split(at, ranks.constraints, one)
+    found = {"rows": _smallest(parts.pivots, ranks.constraints)} if ranks.constraints else {}
+    if ranks.actuation:
+        projected, whole = _along(at, parts)
+        columns = transposed(projected, len(whole))
+        found["inputs"] = _smallest(basis(columns, ranks.actuation, whole)[1], ranks.actuation)
+    if parts.free:
+        found["masses"] = _smallest(_scaled_pivots(_inside(at, parts)), len(parts.free))
+    return found
+
+
+def _smallest(pivots: Sequence[float], rank: int) -> float:
+    return min(pivots) if len(pivots) == rank else 0.0
+
+
 def inverse_dynamics(
     at: Numbers,
     parts: Split,
@@ -110,10 +134,11 @@ def inverse_dynamics(
     if near is not None:
         load = [x - y for x, y in zip(load, times(at.control, near), strict=True)]
     m = len(at.control[0])
-    projected = [times(transposed(at.control, m), direction) for direction in parts.free]
+    projected, whole = _along(at, parts)
     if weights is not None:
         projected = [[x / weight**0.5 for x, weight in zip(row, weights, strict=True)] for row in projected]
-    u, pivots = least(projected, times(parts.free, load), m, rank)
+        whole = [length / float(weight) ** 0.5 for length, weight in zip(whole, weights, strict=True)]
+    u, pivots = least(projected, times(parts.free, load), m, rank, whole)
     if weights is not None:
         u = [x / weight**0.5 for x, weight in zip(u, weights, strict=True)]
     if near is not None:
@@ -143,8 +168,7 @@ def motion(at: Numbers, parts: Split, u: Vector) -> tuple[Vector, Vector, list[f
         shares = solve(gram, [-x for x in times(transposed(along, len(parts.held)), at.drift)])
         particular = [inner(shares, column) for column in transposed(parts.held, at.n)]
     rest = [f - g for f, g in zip(push, times(at.mass, particular), strict=True)]
-    moved = [times(at.mass, direction) for direction in parts.free]
-    inside = [[inner(x, direction) for direction in parts.free] for x in moved]
+    inside = _inside(at, parts)
     pivots = _scaled_pivots(inside)
     if pivots and pivots[-1] < 1e-25:
         return [], [], pivots
@@ -155,6 +179,12 @@ def motion(at: Numbers, parts: Split, u: Vector) -> tuple[Vector, Vector, list[f
     forces = [f - g for f, g in zip(push, times(at.mass, accelerations), strict=True)]
     multipliers = times(along, solve(gram, times(parts.held, forces))) if parts.held else [0 * x for x in at.drift]
     return accelerations, multipliers, pivots
+
+
+def _inside(at: Numbers, parts: Split) -> Matrix:
+    """The masses along the free directions."""
+    moved = [times(at.mass, direction) for direction in parts.free]
+    return [[inner(x, direction) for direction in parts.free] for x in moved]
 
 
 def _scaled_pivots(a: Matrix) -> list[float]:

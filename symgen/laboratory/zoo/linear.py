@@ -32,14 +32,18 @@ def size(a: Sequence[Any]) -> float:
     return float(inner(a, a)) ** 0.5 if a else 0.0
 
 
-def basis(vectors: Sequence[Sequence[Any]], rank: int) -> tuple[Matrix, list[float]]:
+def basis(
+    vectors: Sequence[Sequence[Any]], rank: int, whole: Sequence[float] | None = None
+) -> tuple[Matrix, list[float]]:
     """Orthonormal vectors that span the `rank` leading ones, and what share of its length each had left when taken.
 
     The most that is left is taken, times the share that this is: by shares alone what rounding leaves of a vector that
-    is 0 would count as much as any, by lengths alone what it leaves of a long one that depends on others.
+    is 0 would count as much as any, by lengths alone what it leaves of a long one that depends on others. `whole` are
+    the lengths of vectors of which only a part is given.
     """
-    lengths = [length for vector in vectors if (length := size(vector)) > NOTHING]
-    left = [list(vector) for vector in vectors if size(vector) > NOTHING]
+    sizes = [size(vector) for vector in vectors]
+    lengths = [length for length, rest in zip(whole or sizes, sizes, strict=True) if rest > NOTHING]
+    left = [list(vector) for vector, rest in zip(vectors, sizes, strict=True) if rest > NOTHING]
     taken: Matrix = []
     pivots: list[float] = []
     while len(taken) < rank and left:
@@ -122,11 +126,13 @@ def determinant(a: Sequence[Sequence[Any]]) -> Any:
     return value
 
 
-def least(a: Sequence[Sequence[Any]], b: Sequence[Any], columns: int, rank: int) -> tuple[Vector, list[float]]:
+def least(
+    a: Sequence[Sequence[Any]], b: Sequence[Any], columns: int, rank: int, whole: Sequence[float] | None = None
+) -> tuple[Vector, list[float]]:
     """Of all x with the least |a x - b| the smallest, a being of this rank; and what `basis` says of its columns."""
     if not rank or not columns:
         return [0] * columns, []
-    span, pivots = basis(transposed(a, columns), rank)
+    span, pivots = basis(transposed(a, columns), rank, whole)
     inside = [[inner(direction, column) for column in transposed(a, columns)] for direction in span]
     gram = [[inner(x, y) for y in inside] for x in inside]
     weights = solve(gram, times(span, b))

@@ -7,9 +7,12 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from symgen.laboratory.zoo.verdict import VERIFIED
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 
 @dataclass(frozen=True)
@@ -32,8 +35,8 @@ class Record:
         return bool(self.kind)
 
 
-def write_record(path: Path, record: Record) -> None:
-    """Adds a line."""
+def write_record(path: Path, record: DataclassInstance) -> None:
+    """Adds a line, of any record."""
     with path.open("a", encoding="utf-8") as lines:
         lines.write(json.dumps(asdict(record)) + "\n")
 

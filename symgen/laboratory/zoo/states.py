@@ -57,22 +57,22 @@ class Walker:
         if self._stuck(points, parameters):
             return [], Ranks(0, 0)
         ranks = Ranks(
-            max((self._rank(self._numbers(q, parameters)) for q in points), default=0),
-            max((self._reached(self._numbers(q, parameters)) for q in points), default=0),
+            max((self._rank(self.numbers(q, parameters)) for q in points), default=0),
+            max((self._reached(self.numbers(q, parameters)) for q in points), default=0),
         )
         found = []
         for q in points:
-            at = self._numbers(q, parameters)
+            at = self.numbers(q, parameters)
             if self._rank(at, REGULAR) == ranks.constraints and self._reached(at, REGULAR) == ranks.actuation:
-                nearest = self._refined(q, parameters)
-                found.append(self._state(nearest, self._numbers(nearest, parameters), parameters))
+                nearest = self.refined(q, parameters)
+                found.append(self.state(nearest, parameters))
             if len(found) == count:
                 break
         return found, ranks
 
     def points(self, parameters: Mapping[str, float], count: int) -> list[Any]:
         """Configurations on V: the start, then steps along V, back to the start where a walk leaves its ranges."""
-        here = self._closed(self._start, parameters)
+        here = self.closed(self._start, parameters)
         if here is None:
             return []
         first = here
@@ -80,7 +80,7 @@ class Walker:
         for _ in range(count):
             free = self._free(here, parameters)
             step = free @ np.array([self._dice.uniform(-1, 1) for _ in range(free.shape[1])])
-            there = self._closed(here + 0.6 * step, parameters)
+            there = self.closed(here + 0.6 * step, parameters)
             if there is not None and np.abs(there - first).max() < FURTHEST and self._inside(there):
                 points.append(there)
                 here = there
@@ -97,7 +97,7 @@ class Walker:
             return False
         q = points[0]
         here, *beside = (
-            np.linalg.norm(np.array(self._numbers(place, parameters).rows, dtype=float).reshape(-1, len(q)), axis=1)
+            np.linalg.norm(np.array(self.numbers(place, parameters).rows, dtype=float).reshape(-1, len(q)), axis=1)
             for place in (q, q + 0.3, q - 0.2)
         )
         return bool((here < DEPENDENT * np.max(beside, axis=0)).any())
@@ -107,19 +107,19 @@ class Walker:
 
         Rows count in the lengths that they have beside V: one whose gradient vanishes on V is none.
         """
-        beside = [self._numbers(q + self._aside(len(q)), parameters).rows for _ in range(3)]
+        beside = [self.numbers(q + self._aside(len(q)), parameters).rows for _ in range(3)]
         usual = np.linalg.norm(np.array(beside, dtype=float), axis=2).max(axis=0)
         usual[usual <= NOTHING] = 1
 
         def directions(place: Any) -> Any:
-            rows = np.array(self._numbers(place, parameters).rows, dtype=float) / usual[:, None]
+            rows = np.array(self.numbers(place, parameters).rows, dtype=float) / usual[:, None]
             values, free = np.linalg.svd(rows)[1:]
             return free[int((values > DEPENDENT * values.max(initial=0.0)).sum()) :].T
 
         free = directions(q)
         for _ in range(3):
             step = free @ np.array([self._dice.uniform(-1, 1) for _ in range(free.shape[1])])
-            there = self._closed(q + SHORT * step, parameters)
+            there = self.closed(q + SHORT * step, parameters)
             if there is None or np.abs(there - q - SHORT * step).max() > STRAY * SHORT**2:
                 return False
             if directions(there).shape != free.shape:
@@ -140,13 +140,14 @@ class Walker:
     def _number(self, text: str) -> float:
         return float(self._system.tape.evaluate([self._system.read(text)], {}, self._floats)[0])
 
-    def _numbers(self, q: Any, parameters: Mapping[str, float], qd: Any = None) -> Numbers:
+    def numbers(self, q: Any, parameters: Mapping[str, float], qd: Any = None) -> Numbers:
+        """The equations of motion in floats."""
         rates = qd if qd is not None else [0.0] * len(q)
         values = {**parameters, **dict(zip(self._system.coordinates, map(float, q), strict=True))}
         values |= dict(zip(self._system.rate_names, map(float, rates), strict=True))
         return self._evaluate(values, self._floats)
 
-    def _closed(self, q: Any, parameters: Mapping[str, float]) -> Any:
+    def closed(self, q: Any, parameters: Mapping[str, float]) -> Any:
         """The nearest configuration that satisfies the geometric rows, to the last digits; None where there is none."""
         geometric = sum(row.geometric for row in self._system.rows)
         if not geometric:
@@ -154,7 +155,7 @@ class Walker:
         best, stalled = math.inf, 0
         for _ in range(STEPS):
             try:
-                at = self._numbers(q, parameters)
+                at = self.numbers(q, parameters)
             except (ValueError, OverflowError, ZeroDivisionError):
                 return None
             rows: Any = np.array(at.rows[:geometric])
@@ -172,7 +173,7 @@ class Walker:
             q = q - np.linalg.pinv(steep, rcond=SAME) @ (residual / lengths)
         return q if best < CLOSED else None
 
-    def _refined(self, q: Any, parameters: Mapping[str, float]) -> Any:
+    def refined(self, q: Any, parameters: Mapping[str, float]) -> Any:
         """The float nearest to a configuration that satisfies the rows to 30 digits.
 
         Where rows depend on each other nothing is defined off V but by rounding.
@@ -182,7 +183,7 @@ class Walker:
             return q
         number = self._balls.number
         names = self._system.coordinates
-        rank = rank_of(normalized(np.array(self._numbers(q, parameters).rows[:geometric])), SAME)
+        rank = rank_of(normalized(np.array(self.numbers(q, parameters).rows[:geometric])), SAME)
         with precision():
             fixed = {name: number(Fraction(value)) for name, value in parameters.items()}
             fixed |= dict.fromkeys(self._system.rate_names, number(Fraction(0)))
@@ -194,7 +195,7 @@ class Walker:
             return np.array([float(x) for x in exact])
 
     def _free(self, q: Any, parameters: Mapping[str, float]) -> Any:
-        at = self._numbers(q, parameters)
+        at = self.numbers(q, parameters)
         return null_space(at)
 
     @staticmethod
@@ -212,16 +213,25 @@ class Walker:
         control[:, idle], lengths[idle] = 0, 1
         return rank_of((null_space(at).T @ (control / lengths)).T, threshold, absolute=True)
 
-    def _state(self, q: Any, at: Numbers, parameters: Mapping[str, float]) -> State:
-        free = null_space(at)
+    def state(self, q: Any, parameters: Mapping[str, float], rank: int | None = None) -> State:
+        """A state with admissible rates and accelerations at a configuration, `rank` being that of the rows."""
+        free = null_space(self.numbers(q, parameters), rank)
         spread = [self._dice.uniform(-1.5, 1.5) for _ in range(free.shape[1])]
         qd = free @ np.array(spread)
-        moving = self._numbers(q, parameters, qd)
+        moving = self.numbers(q, parameters, qd)
         qdd = free @ np.array([self._dice.uniform(-4, 4) for _ in range(free.shape[1])])
         if moving.drift:
-            qdd = qdd - np.linalg.pinv(np.array(moving.rows), rcond=SAME) @ np.array(moving.drift)
+            qdd = qdd - self._inverse(moving.rows, rank) @ np.array(moving.drift)
         u = [self._dice.uniform(-8, 8) for _ in self._system.inputs]
         return State(*(tuple(map(float, part)) for part in (q, qd, qdd, u, parameters.values())))
+
+    @staticmethod
+    def _inverse(rows: Any, rank: int | None) -> Any:
+        """The pseudoinverse of the rows, of as many directions as their rank where that is known."""
+        if rank is None:
+            return np.linalg.pinv(np.array(rows), rcond=SAME)
+        left, values, right = np.linalg.svd(np.array(rows), full_matrices=False)
+        return right[:rank].T @ (left[:, :rank] / values[:rank]).T
 
 
 def normalized(rows: Any) -> Any:
@@ -230,13 +240,14 @@ def normalized(rows: Any) -> Any:
     return rows[lengths > NOTHING] / lengths[lengths > NOTHING, None]
 
 
-def null_space(at: Numbers) -> Any:
-    """Orthonormal columns that span the velocities which the constraints allow."""
+def null_space(at: Numbers, rank: int | None = None) -> Any:
+    """Orthonormal columns that span the velocities which the constraints allow, of this rank where it is known."""
     rows: Any = normalized(np.array(at.rows, dtype=float).reshape(-1, at.n))
     if not rows.size:
         return np.eye(at.n)
     values, directions = np.linalg.svd(rows)[1:]
-    free = directions[int((values > SAME * values.max()).sum()) :].T
+    held = int((values > SAME * values.max()).sum()) if rank is None else rank
+    free = directions[held:].T
     # a coordinate that cannot move stands still: float32 has no squares of what rounding leaves of its rate
     return np.where(np.abs(free) > NOTHING, free, 0.0)
 

@@ -64,6 +64,20 @@ class Truth:
     clear: float
 
 
+@dataclass(frozen=True)
+class Comparison:
+    """One result beside the truth: a status, or the error in units of what is allowed and relative to the truth.
+
+    `clear` is how well the state determines the result; where that is `certain` there is no reason for the status.
+    """
+
+    status: int
+    units: float
+    relative: float
+    clear: float
+    certain: bool
+
+
 class Witness:
     """A model file read by the zoo alone."""
 
@@ -91,19 +105,14 @@ class Witness:
     def check(self, folder: Path, count: int = STATES) -> Checked:
         """Everything generated in a folder; nothing is compared where no state is found."""
         blocks = self._system.blocks
-        defaults = self._defaults()
-        walker = Walker(self._system, self._evaluate, self._start, Dice("states", self._seed))
-        found, ranks = walker.states(defaults, count)
+        defaults = self.defaults()
+        found, ranks = self.walker().states(defaults, count)
         findings: list[Finding] = []
         other = disagreement(self._given, defaults, Dice("Pinocchio", self._seed), self._files)
         if other is not None and other > SAME:
             findings.append(Finding("witness: Pinocchio", f"the witness and Pinocchio differ by {other:.1e}"))
         largest = 0.0
-        numbers = self._told(folder).get("parameters_as_numbers", ())
-        members = [name for name in (*self._system.parameters, *self._allocation()) if name not in numbers]
-        self._runtime = [name in members for name in (*self._system.parameters, *self._allocation())]
-        self._rows = self._rows_of(folder)
-        self._spanned = int(self._told(folder)["sizes"]["alpha"])
+        members = self.opened(folder)
         for target in targets(folder, blocks["model"]):
             if members and len(target.parameters) != len(members):
                 told = f"{target.name}: parameters {target.parameters} where {members} are due"
@@ -120,7 +129,29 @@ class Witness:
                     break
         return Checked(len(found), largest, tuple(findings))
 
-    def _defaults(self) -> dict[str, float]:
+    def opened(self, folder: Path) -> list[str]:
+        """The parameters of what was generated in a folder, which is compared from now on."""
+        told = self._told(folder)
+        numbers = told.get("parameters_as_numbers", ())
+        members = [name for name in (*self._system.parameters, *self._allocation()) if name not in numbers]
+        self._runtime = [name in members for name in (*self._system.parameters, *self._allocation())]
+        self._rows = self._rows_of(folder)
+        self._spanned = int(told["sizes"]["alpha"])
+        return members
+
+    def walker(self) -> Walker:
+        """What finds states of the system, from the configuration that was drawn."""
+        return Walker(self._system, self._evaluate, self._start, Dice("states", self._seed))
+
+    @property
+    def shaping(self) -> frozenset[str]:
+        """The parameters on which masses or constraints depend: masses, inertias, lengths, ratios."""
+        nodes = [node for matrix in (self._equations.mass, self._equations.rows) for row in matrix for node in row]
+        reached = self._system.tape.reached([*nodes, *self._equations.residual])
+        return frozenset(str(node.payload) for node in reached if node.op == "symbol") & set(self._system.parameters)
+
+    def defaults(self) -> dict[str, float]:
+        """The values of the parameters in the file, of those of the allocation too."""
         values: dict[str, float] = {}
         with precision():
             exact: dict[str, Any] = {}
@@ -151,33 +182,62 @@ class Witness:
 
     def _compared(self, target: Target, quantity: str, state: State, ranks: Ranks) -> tuple[float, Finding | None]:
         """The error of one result in units of what is allowed, and what is wrong with it."""
+        found = self.compare(target, quantity, state, ranks)
+        if found is None:
+            return 0.0, None
+        where = f"{target.name}, {quantity}"
+        if found.status:
+            told = f"{where}: status {found.status} at a regular state ({found.clear:.1e})"
+            return 0.0, Finding("witness: status", told) if found.certain else None
+        if found.units <= 1:
+            return found.units, None
+        told = (
+            f"{where}: {ALLOWED * found.units:.3g} units at a state, {ALLOWED:g} are allowed "
+            f"(relative error {found.relative:.1e})"
+        )
+        return found.units, Finding("witness: number", told)
+
+    def compare(
+        self, target: Target, quantity: str, state: State, ranks: Ranks, most: int = PERTURBATIONS
+    ) -> Comparison | None:
+        """One result beside the truth, None where there is no truth; `most` perturbations tell what is allowed."""
         scalar = target.scalar
         given = State(*(rounded(part, scalar) for part in (state.q, state.qd, state.qdd, state.u, state.parameters)))
         with precision():
             truth = self._truth(quantity, given, ranks)
             if truth is None:
-                return 0.0, None
+                return None
             members = tuple(x for x, used in zip(given.parameters, self._runtime, strict=True) if used)
             answer = target.call(quantity, replace(given, parameters=members), len(truth.value))
-            where = f"{target.name}, {quantity}"
             exact = [float(x.mid()) for x in truth.value]
             if answer.status:
                 certain = truth.clear > CERTAIN[scalar] and all(abs(x) < LARGEST[scalar] for x in exact)
                 if quantity == "inverse_dynamics" and ranks.actuation < self._spanned:
                     # the branch that was drawn is told to be one on which inputs lose rank
                     certain = answer.status != ACTUATION_RANK
-                told = f"{where}: status {answer.status} at a regular state ({truth.clear:.1e})"
-                return 0.0, Finding("witness: status", told) if certain else None
-            units = self._units(answer, truth, quantity, given, ranks, EPS[scalar])
-        if units <= 1:
-            return units, None
-        relative = _norm([a - b for a, b in zip(answer.value, exact, strict=True)]) / (_norm(exact) or 1.0)
-        told = (
-            f"{where}: {ALLOWED * units:.3g} units at a state, {ALLOWED:g} are allowed (relative error {relative:.1e})"
-        )
-        return units, Finding("witness: number", told)
+                return Comparison(answer.status, 0.0, 0.0, truth.clear, certain)
+            units = self._units(answer, truth, quantity, given, ranks, EPS[scalar], most)
+        apart = _norm([a - b for a, b in zip(answer.value, exact, strict=True)])
+        return Comparison(0, units, apart / (_norm(exact) or 1.0), truth.clear, False)
 
-    def _units(self, answer: Answer, truth: Truth, quantity: str, state: State, ranks: Ranks, eps: float) -> float:
+    def unit(self, quantity: str, state: State, ranks: Ranks, scalar: str) -> float:
+        """The most that roundings of the inputs change a result, as a share of it; infinite where there is none."""
+        given = State(*(rounded(part, scalar) for part in (state.q, state.qd, state.qdd, state.u, state.parameters)))
+        dice, moved = Dice("perturbations", self._seed), 0.0
+        with precision():
+            truth = self._truth(quantity, given, ranks)
+            if truth is None:
+                return math.inf
+            for _ in range(PERTURBATIONS):
+                other = self._truth(quantity, given, ranks, (dice, EPS[scalar]))
+                moved = max(moved, math.inf if other is None else _distance(other.value, truth.value))
+            size = _norm([float(x.mid()) for x in truth.value])
+        return moved / size if size else 0.0 if not moved else math.inf
+
+    def _units(
+        self, answer: Answer, truth: Truth, quantity: str, state: State, ranks: Ranks, eps: float,
+        most: int = PERTURBATIONS,
+    ) -> float:  # fmt: skip
         """The error over what is allowed; what rounding the inputs does is worked out only where it is needed."""
         if not all(map(math.isfinite, answer.value)) or len(answer.value) != len(truth.value):
             return math.inf
@@ -185,7 +245,7 @@ class Witness:
         size = _norm([float(x.mid()) for x in truth.value])
         moved = 0.0
         dice = Dice("perturbations", self._seed)
-        for _ in range(PERTURBATIONS + 1):
+        for _ in range(most + 1):
             if error <= ALLOWED * (moved + eps * size):
                 break
             other = self._truth(quantity, state, ranks, (dice, eps))
@@ -217,6 +277,8 @@ class Witness:
         at = self._evaluate(values, self._balls, literals)
         one = number(Fraction(1))
         parts = split(at, ranks.constraints, one)
+        if len(parts.held) < ranks.constraints:
+            return None
         if quantity == "inverse_dynamics":
             return self._inputs(at, parts, [ball(x) for x in state.qdd], ranks, values)
         u = [ball(x) for x in state.u]
@@ -230,7 +292,7 @@ class Witness:
 
     def _inputs(
         self, at: Any, parts: Split, accelerations: list[Any], ranks: Ranks, values: Mapping[str, Any]
-    ) -> Truth:
+    ) -> Truth | None:
         """u, as the model's allocation says."""
         one = self._balls.number(Fraction(1))
         inputs = self._system.inputs
@@ -238,6 +300,8 @@ class Witness:
         weights = [values.get(f"weight_{name}", one) for name in inputs] if "weights" in block else None
         near = preloads(inputs, block, values, one * 0)
         u, pivots = inverse_dynamics(at, parts, accelerations, ranks.actuation, weights, near)
+        if len(pivots) < ranks.actuation:
+            return None
         u = directed(at, u, inputs, block, values, one)
         # where the inputs reach nothing, u is a plain 0
         u = [x + 0 * one for x in u]

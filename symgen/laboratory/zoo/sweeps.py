@@ -1,0 +1,166 @@
+"""The rule of statuses on draws: states led towards singular sets, masses and lengths far apart, both scalar types.
+
+Status 0 means that a result is within the tolerance, a status that rows, inputs or masses are near a drop of rank.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from symgen.laboratory.zoo.approach import KINDS, Approach
+from symgen.laboratory.zoo.describe import Description
+from symgen.laboratory.zoo.dice import Dice
+from symgen.laboratory.zoo.expressions import NotReadError
+from symgen.laboratory.zoo.generated import targets
+from symgen.laboratory.zoo.kkt import Ranks
+from symgen.laboratory.zoo.states import State, Walker
+from symgen.laboratory.zoo.witness import ALLOWED, CERTAIN, Comparison, Witness
+
+# regular states that are led on, and how many of them are looked at in a decade
+STARTS, PER_DECADE = 3, 2
+# configurations that are scattered for starts, and how many of them are taken
+SCATTERED, NEAREST = 60, 3
+EXPONENTS = (-9, -6, -3, 3, 6, 9)
+SCALED = "parameters"
+# what rounding the inputs does is worked out more often than for regular states before a result is called wrong
+PERTURBATIONS = 64
+# where a unit of error is as much of the truth, one rounding of the inputs leaves nothing to compare with
+VAGUE = 0.1
+STATUSES = {1: "not finite", 2: "constraint rank", 3: "actuation rank", 4: "angle range", 5: "mass rank"}
+ANGLE_RANGE = 4
+# angles up to twice this have sines in every kernel: sums of two are beyond it
+ANGLES = {"float64": 5e4, "float32": 50.0}
+BEYOND, UNEXPLAINED, UNKNOWN, ANSWERED = "beyond", "unexplained", "no truth", "answered"
+
+
+@dataclass(frozen=True)
+class Led:
+    """A state, in words where it was led, the generic ranks of its system, and how far what was led is from a drop."""
+
+    kind: str
+    where: str
+    state: State
+    ranks: Ranks
+    distance: float = 1.0
+
+
+@dataclass(frozen=True)
+class Violation:
+    """A result of status 0 beyond the tolerance, in units of d + eps |y*|, or a status at a clear state."""
+
+    kind: str
+    where: str
+    target: str
+    quantity: str
+    comparison: Comparison
+    state: State
+
+    @property
+    def text(self) -> str:
+        """In a line."""
+        found, at = self.comparison, f"{self.target}, {self.quantity}, {self.where}"
+        if found.status:
+            return f"{at}: {STATUSES[found.status]} although clear to {found.clear:.1e}"
+        return f"{at}: {ALLOWED * found.units:.3g} units, relative error {found.relative:.1e}, clear {found.clear:.1e}"
+
+
+@dataclass(frozen=True)
+class Swept:
+    """What was counted of a draw by kind, scalar type and outcome, and what violates the rule."""
+
+    counts: Mapping[tuple[str, str, str], int]
+    violations: tuple[Violation, ...] = ()
+
+    def of(self, *outcomes: str) -> int:
+        """How often these outcomes were met."""
+        return sum(count for (_, _, outcome), count in self.counts.items() if outcome in outcomes)
+
+
+def sweep(description: Description, folder: Path) -> Swept:
+    """What was generated of a description, at all states that are led on; a text that is not read counts nothing."""
+    try:
+        witness = Witness(description.text, description.start, description.text, description.files)
+    except NotReadError:
+        return Swept({})
+    members = witness.opened(folder)
+    defaults = witness.defaults()
+    walker = witness.walker()
+    starts, ranks = walker.states(defaults, STARTS)
+    scaled = [name for name in members if name in witness.shaping and defaults[name]]
+    near = _towards(walker, defaults, starts, ranks, description.text)
+    far = _scaled(walker, defaults, starts, ranks, scaled)
+    return compared(witness, folder, str(description.blocks["model"]), [*near, *far])
+
+
+def compared(witness: Witness, folder: Path, model: str, led: Iterable[Led]) -> Swept:
+    """The generated C of both types at given states."""
+    called = [target for target in targets(folder, model) if target.name != "Python"]
+    counts: Counter[tuple[str, str, str]] = Counter()
+    violations = []
+    for one in led:
+        for target in called:
+            for quantity in target.quantities:
+                found = witness.compare(target, quantity, one.state, one.ranks, PERTURBATIONS)
+                far = one.distance > CERTAIN[target.scalar]
+                if found is not None and found.status == ANGLE_RANGE:
+                    far = max(map(abs, one.state.q)) < ANGLES[target.scalar]
+                elif far and found is not None and found.certain:
+                    far = witness.unit(quantity, one.state, one.ranks, target.scalar) < VAGUE
+                for outcome in _outcomes(found, far):
+                    counts[one.kind, target.scalar, outcome] += 1
+                    if found is not None and outcome in (BEYOND, UNEXPLAINED):
+                        violations.append(Violation(one.kind, one.where, target.name, quantity, found, one.state))
+    return Swept(dict(counts), tuple(violations))
+
+
+def _outcomes(found: Comparison | None, far: bool) -> Iterator[str]:
+    if found is None:
+        yield UNKNOWN
+    elif found.status:
+        yield STATUSES[found.status]
+        if found.certain and far:
+            yield UNEXPLAINED
+    elif not found.units <= 1 and found.relative > VAGUE * ALLOWED * found.units:
+        yield UNKNOWN
+    else:
+        yield ANSWERED
+        if not found.units <= 1:
+            yield BEYOND
+
+
+def _towards(
+    walker: Walker, parameters: Mapping[str, float], starts: Sequence[State], ranks: Ranks, seed: object
+) -> Iterator[Led]:
+    """Towards where rows, inputs and masses lose rank, from each start, down to where that leads.
+
+    Starts are regular states, and of many configurations those from which the way is shortest.
+    """
+    if not starts:
+        return
+    approach = Approach(walker, parameters, ranks, walker.points(parameters, SCATTERED))
+    for kind in KINDS:
+        seen: Counter[int] = Counter()
+        for number, start in enumerate([*(state.q for state in starts), *approach.nearest(kind, NEAREST)]):
+            for decade, q in approach.towards(kind, start, Dice("approach", seed, kind, number)):
+                seen[decade] += 1
+                if seen[decade] <= PER_DECADE:
+                    nearest = walker.refined(q, parameters)
+                    state = walker.state(nearest, parameters, ranks.constraints)
+                    yield Led(kind, f"{kind} at 1e-{decade}", state, ranks, approach.distance(kind, state.q) or 0.0)
+
+
+def _scaled(
+    walker: Walker, parameters: Mapping[str, float], starts: Sequence[State], ranks: Ranks, names: Sequence[str]
+) -> Iterator[Led]:
+    """Each of these parameters far from its value, at a regular state where the loops still close."""
+    for start in starts[:1]:
+        for name in names:
+            for exponent in EXPONENTS:
+                far = {**parameters, name: parameters[name] * 10.0**exponent}
+                q = walker.closed(start.q, far)
+                if q is not None:
+                    state = walker.state(walker.refined(q, far), far, ranks.constraints)
+                    yield Led(SCALED, f"{name} times 1e{exponent}", state, ranks)

@@ -1,0 +1,201 @@
+"""Sweeps of draws: states reach what is singular, and what violates the rule of statuses is counted."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from symgen.laboratory.zoo import sweeps
+from symgen.laboratory.zoo.approach import Approach
+from symgen.laboratory.zoo.campaign import Campaign
+from symgen.laboratory.zoo.describe import read_description
+from symgen.laboratory.zoo.dice import Dice
+from symgen.laboratory.zoo.generated import Answer, Target
+from symgen.laboratory.zoo.kkt import Ranks
+from symgen.laboratory.zoo.states import State, rounded
+from symgen.laboratory.zoo.sweep_campaign import one_sweep, record_of, table, write_violations
+from symgen.laboratory.zoo.sweeps import ANSWERED, BEYOND, UNEXPLAINED, UNKNOWN, Led, compared, sweep
+from symgen.laboratory.zoo.witness import Comparison, Witness
+
+FOUR_BAR = """
+model: four_bar
+joints:
+  crank: {type: revolute, axis: z, coordinate: a}
+  coupler: {type: revolute, axis: z, parent: crank, at: [0.3, 0, 0], coordinate: b}
+  rocker: {type: revolute, axis: z, at: [0.8, 0.6, 0], coordinate: c}
+bodies:
+  crank: {mass: 1, com: [0.15, 0, 0], inertia: {zz: 0.1}}
+  coupler: {mass: 2, com: [0.45, 0, 0], inertia: {zz: 0.1}}
+  rocker: {mass: 1, com: [0.3, 0, 0], inertia: {zz: 0.1}}
+points: {end: {frame: coupler, at: [1.1, 0, 0]}, tip: {frame: rocker, at: [0.4, 0, 0]}}
+loops: {pin: {type: point, between: [end, tip]}}
+inputs: {u: {joint: a}}
+configuration: {a: 1.5, b: -1.1, c: 1.4}
+"""
+# the angle of the base
+BASE = math.atan2(0.6, 0.8)
+
+
+def led_on(text: str, kind: str) -> tuple[dict[int, np.ndarray], Approach]:
+    """The nearest decades that a walk from regular states reaches, with their configurations."""
+    witness = Witness(text)
+    walker, defaults = witness.walker(), witness.defaults()
+    starts, ranks = walker.states(defaults, 3)
+    approach = Approach(walker, defaults, ranks, walker.points(defaults, 40))
+    reached = {
+        decade: q
+        for start in (*(state.q for state in starts), *approach.nearest(kind, 3))
+        for decade, q in approach.towards(kind, start, Dice("approach"))
+    }
+    return reached, approach
+
+
+def test_a_four_bar_reaches_its_flat_pose() -> None:
+    """Crank and coupler are 1.4 long together, as base and rocker are: rows lose rank where all lie along the base."""
+    reached, approach = led_on(FOUR_BAR, "rows")
+    assert set(range(1, 7)) <= set(reached)
+    for decade, q in reached.items():
+        assert math.floor(-math.log10(approach.distance("rows", q) or 1)) == decade
+    deepest = reached[max(reached)]
+    assert np.abs(np.sin(deepest - BASE * np.array([1, 0, 1]))).max() < 1e-4
+
+
+def test_a_crank_reaches_its_dead_point() -> None:
+    """The input of the rocker moves nothing where crank and coupler lie along one line."""
+    text = FOUR_BAR.replace("at: [0.3, 0, 0]", "at: [0.25, 0, 0]").replace("joint: a}", "joint: c}")
+    reached, _ = led_on(text, "inputs")
+    assert set(range(1, 12)) <= set(reached)
+    assert abs(math.sin(reached[max(reached)][1])) < 1e-9
+
+
+def test_a_row_vanishes_where_a_parallelogram_is_flat() -> None:
+    """Its directions do not: rows of length 1 keep their rank there."""
+    text = """
+model: parallelogram
+coordinates: {a: {unit: rad}, b: {unit: rad}, c: {unit: rad}}
+kinetic_energy: a_dot**2 + b_dot**2 + c_dot**2
+constraints: {geometric: {x: cos(a) + 2*cos(c) - 2 - cos(b), y: sin(a) + 2*sin(c) - sin(b)}}
+configuration: {a: 0.8, b: 0.8, c: 0}
+"""
+    reached, approach = led_on(text, "lengths")
+    deepest = reached[max(reached)]
+    assert max(reached) >= 6
+    assert abs(math.sin(deepest[0])) < 1e-5
+    assert (approach.distance("rows", deepest) or 0) > 0.1
+
+
+def test_inertias_are_no_singular_set() -> None:
+    reached, _ = led_on(FOUR_BAR, "masses")
+    assert set(reached) == {0}
+
+
+SLIDE = """model: slide
+coordinates: {x: {unit: m}}
+parameters: {m: 3, k: 2}
+kinetic_energy: m/2*x_dot**2
+potential_energy: k/2*x**2
+inputs: {u: {acts_on: {x: 1}}}
+outputs: [inverse_dynamics]
+configuration: {x: 0.4}
+"""
+
+
+def kernel(scalar: str, change: Callable[[State, float], Answer]) -> Target:
+    """u of the slide, as `change` has it."""
+
+    def call(_quantity: str, state: State, _count: int) -> Answer:
+        m, k = state.parameters
+        exact = m * state.qdd[0] + k * state.q[0]
+        return change(state, rounded((exact,), scalar)[0])
+
+    return Target(f"C {scalar}", scalar, ("inverse_dynamics",), ("m", "k"), call)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """What a run tells of the slide."""
+    told = {"sizes": {"alpha": 1, "r": 0}, "blocks": []}
+    (tmp_path / "derivation.json").write_text(json.dumps(told), encoding="utf-8")
+    return tmp_path
+
+
+def swept(folder: Path, monkeypatch: pytest.MonkeyPatch, change: Callable[[State, float], Answer]) -> sweeps.Swept:
+    """The sweep of a kernel of the slide."""
+    both = [kernel(scalar, change) for scalar in ("float64", "float32")]
+    monkeypatch.setattr(sweeps, "targets", lambda *_: both)
+    return sweep(read_description(SLIDE, {"x": 0.4}), folder)
+
+
+def test_an_honest_kernel_violates_nothing(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = swept(folder, monkeypatch, lambda _, u: Answer(0, (u,)))
+    assert found.violations == ()
+    # m is scaled, k is neither a mass nor a length
+    assert found.counts["parameters", "float32", ANSWERED] == len(sweeps.EXPONENTS)
+    assert found.counts["inputs", "float64", ANSWERED] > 0
+
+
+def test_an_error_with_status_0_is_found(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def wrong(state: State, u: float) -> Answer:
+        return Answer(0, (u * (1 + (1e-4 if state.parameters[0] > 1e6 else 0)),))
+
+    found = swept(folder, monkeypatch, wrong)
+    assert {(one.kind, one.where, one.target) for one in found.violations} == {
+        ("parameters", f"m times 1e{exponent}", f"C {scalar}")
+        for exponent in (6, 9)
+        for scalar in ("float64", "float32")
+    }
+    assert found.of(BEYOND) == 4
+    assert "units, relative error 1.0e-04" in found.violations[0].text
+    write_violations(folder / "violations.json", found)
+    (first, *_) = json.loads((folder / "violations.json").read_text())
+    assert first["state"]["parameters"][0] == 3e6
+
+
+def test_a_status_at_a_clear_state_is_counted(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = swept(folder, monkeypatch, lambda at, u: Answer(5 * (at.parameters[0] < 1e-5), (u,)))
+    assert found.of(UNEXPLAINED) == found.of("mass rank") == 4
+    assert "mass rank although clear" in found.violations[0].text
+
+
+def test_a_status_beside_a_singular_set_is_not(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    witness = Witness(SLIDE)
+    witness.opened(folder)
+    monkeypatch.setattr(sweeps, "targets", lambda *_: [kernel("float64", lambda *_: Answer(2, ()))])
+    state = State((0.4,), (0.1,), (0.2,), (1.0,), (3.0, 2.0))
+    for distance, unexplained in ((1.0, 1), (1e-6, 0)):
+        found = compared(witness, folder, "slide", [Led("lengths", "beside", state, Ranks(0, 1), distance)])
+        assert found.of("constraint rank") == 1
+        assert found.of(UNEXPLAINED) == unexplained
+
+
+@pytest.mark.parametrize(
+    ("units", "relative", "outcome"),
+    [(2.0, 3e4, [UNKNOWN]), (2.0, 1e-9, [ANSWERED, BEYOND]), (1e9, 3e4, [ANSWERED, BEYOND]), (0.5, 3e4, [ANSWERED])],
+)
+def test_what_one_rounding_changes_altogether_has_no_truth(units: float, relative: float, outcome: list[str]) -> None:
+    assert list(sweeps._outcomes(Comparison(0, units, relative, 1e-12, False), True)) == outcome
+
+
+def test_records_are_told_and_summed_up(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = swept(folder, monkeypatch, lambda _, u: Answer(0, (u * 1.1,)))
+    record = record_of(7, 3, "slides", "verified", found)
+    assert record.line.startswith("7:3 slides: ")
+    assert f"{found.of(BEYOND)} beyond the tolerance, 0 statuses unexplained" in record.line
+    told = table([record, record_of(7, 4, "slides", "refused", sweeps.Swept({}))])
+    assert told.startswith("1 of 2 draws swept")
+    (row,) = (line.split() for line in told.splitlines() if line.startswith("parameters float64"))
+    assert row[2:] == ["6", "0", "0", "0", "0", "0", "0", "6", "0"]
+
+
+@pytest.mark.slow
+def test_a_draw_is_swept(tmp_path: Path) -> None:
+    record, line = one_sweep(Campaign(2001, tmp_path), 22)
+    assert record.violations == ()
+    assert record.swept.of(ANSWERED) > 100
+    assert "0 beyond the tolerance" in line
+    assert not (tmp_path / "2001_22").exists()
