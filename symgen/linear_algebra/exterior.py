@@ -18,7 +18,7 @@ from symgen.symbolic.scalar import Graph, Scalar
 
 Multivector: TypeAlias = dict[int, Scalar]
 
-# Longer determinants are not multiplied out.
+# Operations of a determinant beyond which it is not multiplied out.
 LONGEST_DETERMINANT = 200
 # Products of a family of determinants beyond which equations are solved by reflections: as for nine dense directions.
 LARGEST_FAMILY = 4096

@@ -27,7 +27,7 @@ from symgen.symbolic.matrix import Matrix, Vector, dot
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import cost
 
-# Right-hand sides longer than this are turned as they stand: multiplied out, they would not get shorter.
+# Operations of a right-hand side up to which it is multiplied out when turned: a longer one would not get shorter.
 LONGEST_TURNED = 200
 
 

@@ -14,7 +14,7 @@ from symgen.mechanics.system import System
 from symgen.methods.system import MethodInput
 from symgen.symbolic.matrix import Matrix
 
-# A root and a division for each reflection are the least that `householder` adds to its data.
+# Counted cost that each reflection adds to the data of `householder` at least: a root and a division.
 REFLECTION = 12
 
 
