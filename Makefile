@@ -9,7 +9,7 @@ CAMPAIGN_FILES := $(CAMPAIGN:%=models/%.yaml)
 MODELS := $(wildcard models/*.yaml)
 MECHANISMS := $(filter-out $(CAMPAIGN_FILES),$(MODELS))
 
-.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms generation stress skipping passes trig zoo zoo-case zoo-sweeps docs api lock robots
+.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms generation stress skipping passes constants trig zoo zoo-case zoo-sweeps docs api lock robots
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -99,6 +99,10 @@ skipping: $(VENV)/installed
 # What each rewriting pass is worth in operations, with models drawn for it too: docs/passes.md.
 passes: $(VENV)/installed
 	$(BIN)/python tools/passes_page.py $(MODELS)
+
+# What half and twice of each tuned constant changes: docs/constants.md, half an hour.
+constants: $(VENV)/installed
+	nice $(BIN)/python tools/constants_page.py $(MODELS)
 
 # Every kernel of every model under libFuzzer and the sanitizers, a minute each: raw bits in, see proof/*_fuzz.c.
 FUZZ_SECONDS ?= 60

@@ -12,7 +12,7 @@ from symgen.closedform.algebra.minors import left_inverse_terms, permutation_sig
 from symgen.closedform.algebra.quotient import polynomial
 from symgen.closedform.exact import Exact
 from symgen.closedform.spelling import Speller
-from symgen.closedform.structured import LONGEST_LOAD, MOST_MINORS, Naming, Structured, label, name_minors
+from symgen.closedform.structured import LONGEST_LOAD, MOST_NAMED_MINORS, Naming, Structured, label, name_minors
 from symgen.model.model import Allocation
 
 Named = list[tuple[Symbol, Expr]]
@@ -36,7 +36,7 @@ def structured_allocation(exact: Exact, speller: Speller, taken: frozenset[str],
         inputs = _directed(exact, naming, allocation, inputs, total, parts)
     used = set().union(*(e.free_symbols for e in inputs), *(meaning.free_symbols for _, meaning in parts))
     first = [(symbol, speller.polynomial(value)) for symbol, value in naming.elements.items() if symbol in used]
-    if len(first) > MOST_MINORS:
+    if len(first) > MOST_NAMED_MINORS:
         raise TooLargeError(f"{len(first)} minors")
     loads = [(symbol, meaning) for symbol, meaning in forces if symbol in used]
     return Structured(ImmutableDenseMatrix(inputs), (*loads, *first, *parts))

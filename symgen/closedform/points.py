@@ -21,8 +21,11 @@ from symgen.model.model import Model
 
 DIGITS = 40
 RANK_THRESHOLD = mpf(10) ** -18
+# Newton steps towards a point on the constraints.
 MOST_STEPS = 60
-FARTHEST = 1e6  # times where a search starts
+# Times the size of its start beyond which a search has lost its way.
+FARTHEST = 1e6
+# What the damping of a Newton step never falls below.
 LEAST_DAMPING = 1e-25
 
 

@@ -24,7 +24,7 @@ LONGEST_SQUARES = 600
 MOST_PRODUCTS = 20 * LONGEST_SQUARES
 """More products of terms than this are not formed to see how many terms they leave."""
 
-MOST_MINORS = 30
+MOST_NAMED_MINORS = 30
 """More named minors than this are not listed."""
 
 LONGEST_MINORS = 10_000
@@ -89,7 +89,7 @@ def structured_projector(exact: Exact, speller: Speller, taken: frozenset[str]) 
     Raises TooLargeError when there are too many minors to list.
     """
     count = sum(len(minors.values) for minors in exact.minor_sets)
-    if count > MOST_MINORS:
+    if count > MOST_NAMED_MINORS:
         raise TooLargeError(f"{count} minors")
     naming = Naming(speller, taken)
     phis = name_minors(exact, naming)
@@ -194,7 +194,7 @@ def _finish(entries: Sequence[Sequence[Expr]], naming: Naming, sums: Iterable[tu
     last = tuple(sums)
     used = set(matrix.free_symbols).union(*(meaning.free_symbols for _, meaning in last))
     first = [(symbol, value) for symbol, value in naming.elements.items() if symbol in used]
-    if len(first) > MOST_MINORS:
+    if len(first) > MOST_NAMED_MINORS:
         raise TooLargeError(f"{len(first)} minors")
     named = [(symbol, naming.speller.polynomial(value)) for symbol, value in first]
     length = sum(1 for _, meaning in named for _ in preorder_traversal(meaning))

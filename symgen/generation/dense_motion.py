@@ -11,7 +11,7 @@ from symgen.methods.forward_dynamics.motions import BY_FRAMES
 from symgen.methods.method import MOTIONS
 from symgen.quantities.candidates import ARTICULATED
 
-# Operations of q_ddot or of lambda.
+# Operations of q_ddot or of lambda beyond which a notice tells why it is long.
 LONG_MOTION = 3000
 
 

@@ -37,11 +37,12 @@ from symgen.verify.tolerance import FACTOR
 TOO_LONG = "not tried: it takes many times as long to derive"
 # Of the error that is allowed; what way a quantity takes is decided at a few dozen states.
 MARGIN = FACTOR / 2
-# What keeping a margin may cost, in operations.
+# Share of operations more that keeping a margin may cost.
 MARGIN_WORTH = Fraction(1, 2)
-# Ways that are tried once more with twice the digits, and what the longest one counts.
+# Ways that are tried once more with twice the digits.
 WIDENED = 3
-LONGEST = 40_000
+# Counted cost of the longest of them.
+LONGEST_WIDENED = 40_000
 Kernels: TypeAlias = Mapping[Scalar, Kernel]
 
 
@@ -248,7 +249,7 @@ class Fallback:
         scalars = tuple(draft.kernels(quantity))
         passing = [one for one in self._passing[quantity] if "float32" in scalars and one.scalars == ("float64",)]
         passing.sort(key=lambda one: (one.largest > MARGIN, one.way.cost))
-        for one in islice((one for one in passing if one.way.cost <= LONGEST), WIDENED):
+        for one in islice((one for one in passing if one.way.cost <= LONGEST_WIDENED), WIDENED):
             yield self._widened_way(draft, one.way, scalars, ("float32",), expected)
         # those among them that are beyond what is allowed in float64 where they are worst
         inaccurate = sorted(self._inaccurate.pop(quantity, ()), key=lambda way: way.cost)
@@ -258,7 +259,7 @@ class Fallback:
             return
         shortest: dict[str, Alternative] = {}
         for way in inaccurate:
-            if way.cost <= LONGEST:
+            if way.cost <= LONGEST_WIDENED:
                 shortest.setdefault(way.choice.way, way)
         for way in islice(shortest.values(), WIDENED):
             yield self._widened_way(draft, way, scalars, scalars, expected)

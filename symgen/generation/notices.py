@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 BYTES_AN_OPERATION = 7
 # What a step of `backends/c/steps.py` takes in its table.
 BYTES_A_STEP = 14
+# Bytes of machine code beyond which a notice tells of them.
 LARGEST_CODE = 64_000
 
 

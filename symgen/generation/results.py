@@ -22,6 +22,7 @@ _BESIDE = ("report", "package", "proof")
 # What can be made, and what is made as a rule.
 ALL_PARTS = (*BACKENDS, *_BESIDE)
 PARTS = (*USUAL, *_BESIDE)
+# States at which a run verifies, unless told otherwise.
 DEFAULT_STATES = 64
 AUTO = "auto"
 # By quantity, the methods that may be asked for.

@@ -23,8 +23,8 @@ from symgen.ir.split import names_in, names_of_check
 
 # Registers of a scalar each in x86-64; 32-bit ARM has as many of float64.  One is needed to compute in.
 REGISTERS = 16
-# Longer kernels keep their order: looking for another takes longer than it saves.
-LONGEST = 1000
+# Statements beyond which a kernel keeps its order: looking for another takes longer than it saves.
+LONGEST_REORDERED = 1000
 # The blocks of angles and of their pairs, which stay at the head.
 _HEAD = 2
 _ANYWHERE = frozenset({"add", "sub", "mul", "neg", "abs", "copysign", "min", "max", "ratio_or_zero"})
@@ -54,7 +54,7 @@ def _is_ordered(kernel: Kernel) -> bool:
     late = any(s.operation == "sincos" for block in kernel.blocks[_HEAD:] for s in block.statements)
     # without tests nothing waits across one: compilers find orders of their own, and from the written one better ones
     tested = any(block.checks for block in kernel.blocks[_HEAD:])
-    return tested and not late and REGISTERS < len(kernel.statements) <= LONGEST
+    return tested and not late and REGISTERS < len(kernel.statements) <= LONGEST_REORDERED
 
 
 class _Body:

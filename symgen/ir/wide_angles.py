@@ -14,7 +14,7 @@ from dataclasses import replace
 from symgen.ir.kernel import Block, Kernel, Literal, Local, Operand, Statement, Status
 from symgen.records import dataclass
 
-# Of so many angles a sum is made anew; each is a turn of six operations on pairs.
+# Angles of which a sum is made anew; each is a turn of six operations on pairs.
 MOST_PARTS = 12
 
 

@@ -17,7 +17,7 @@ from symgen.linear_algebra.null_spaces import HouseholderSpace, InputEquations, 
 from symgen.symbolic.matrix import Matrix, Vector, identity, transpose
 from symgen.symbolic.scalar import Graph, Scalar
 
-# A block with more minors than this is reflected.
+# Minors of a block beyond which it is reflected.
 BLOCK_MINOR_LIMIT = 60
 
 

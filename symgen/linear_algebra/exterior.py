@@ -14,12 +14,11 @@ from itertools import combinations
 from typing import TypeAlias
 
 from symgen.symbolic.matrix import Matrix, Vector
+from symgen.symbolic.passes.factoring import LONGEST_CANCELLED
 from symgen.symbolic.scalar import Graph, Scalar
 
 Multivector: TypeAlias = dict[int, Scalar]
 
-# Longer determinants are not multiplied out.
-LONGEST_DETERMINANT = 200
 # Products of a family of determinants beyond which equations are solved by reflections: as for nine dense directions.
 LARGEST_FAMILY = 4096
 
@@ -203,7 +202,7 @@ class ActuationForms:
 
         What vanishes at a singularity is a factor then, not a difference of products that do not vanish.
         """
-        if not self.single or self.determinant().size > LONGEST_DETERMINANT:
+        if not self.single or self.determinant().size > LONGEST_CANCELLED:
             return self
         other = ActuationForms(self.rows, self.inputs, self.degree, self.weights)
         other.products = [[{(1 << self.rows.n) - 1: cancel(self.determinant())}]]

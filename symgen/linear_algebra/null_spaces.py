@@ -17,9 +17,9 @@ from symgen.linear_algebra.guards import Guard, beside_lengths
 from symgen.symbolic.matrix import Matrix, Vector, dot, identity, matvec, subtract_vectors, transpose
 from symgen.symbolic.scalar import Graph, Scalar
 
-# Minors are built only while their number stays small; beyond, Householder reflections are cheaper anyway.
+# Minors of B up to which a null space is built from them; beyond, Householder reflections are cheaper anyway.
 MINOR_LIMIT = 300
-# Up to this many squared pivots are multiplied as they are.
+# Squared pivots up to which they are multiplied as they are.
 LONGEST_PRODUCT = 6
 # Of the squared lengths of all rows together, what one of them is taken for at least: 1e-6 of their length.
 VANISHING = Fraction(1, 2**40)

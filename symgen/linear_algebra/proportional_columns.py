@@ -23,9 +23,12 @@ from symgen.symbolic.matrix import Matrix, Vector, identity, transpose
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import reached
 
-POINTS = 2
-# What rounding may leave of a ratio, and the largest denominator of one.
-ROUNDING, LARGEST_DENOMINATOR = 1e-9, 10_000
+# Points at which two columns are compared.
+POINTS_OF_RATIOS = 2
+# What rounding may leave of a ratio.
+ROUNDING_OF_RATIOS = 1e-9
+# The largest denominator of a ratio.
+LARGEST_DENOMINATOR = 10_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +123,8 @@ def _values(columns: Sequence[Vector]) -> list[list[list[float]]]:
         return []
     names = [str(node.payload) for node in reached(flat) if node.op == "symbol"]
     evaluate, r = Evaluator(flat), len(columns[0])
-    at = [evaluate({name: random.Random(f"{k} {name}").uniform(0.1, 0.9) for name in names}) for k in range(POINTS)]
+    points = range(POINTS_OF_RATIOS)
+    at = [evaluate({name: random.Random(f"{k} {name}").uniform(0.1, 0.9) for name in names}) for k in points]
     return [[list(found[j * r : (j + 1) * r]) for found in at] for j in range(len(columns))]
 
 
@@ -131,7 +135,7 @@ def _factor(one: list[list[float]], other: list[list[float]], place: int) -> Fra
     factor = Fraction(ratio).limit_denominator(LARGEST_DENOMINATOR)
     for a, b in zip(one, other, strict=True):
         size = max(map(abs, b))
-        if not all(abs(y - float(factor) * x) <= ROUNDING * size for x, y in zip(a, b, strict=True)):
+        if not all(abs(y - float(factor) * x) <= ROUNDING_OF_RATIOS * size for x, y in zip(a, b, strict=True)):
             return None
     return factor or None
 

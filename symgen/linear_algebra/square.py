@@ -16,8 +16,8 @@ from symgen.records import dataclass
 from symgen.symbolic.matrix import Matrix, Vector, dot
 from symgen.symbolic.scalar import Graph, Scalar
 
-# As many rows as this are solved by minors.
-LAST = 3
+# Rows up to which a square system is solved by minors.
+LARGEST_SQUARE_BY_MINORS = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +87,7 @@ class _Reflection:
 
 
 def by_rows(graph: Graph, matrix: Matrix, right: Vector, everywhere: bool = False) -> Solution:
-    """The solution of a square system with more than `LAST` rows.
+    """The solution of a square system with more than `LARGEST_SQUARE_BY_MINORS` rows.
 
     With `everywhere` rows that depend on each other exactly divide by 0 in nothing but the last determinant.
     """
@@ -95,7 +95,7 @@ def by_rows(graph: Graph, matrix: Matrix, right: Vector, everywhere: bool = Fals
     left = {i: list(row) for i, row in enumerate(matrix)}
     columns, turned = list(range(size)), list[_Reflection]()
     values, lengths = dict[int, Scalar](), list[Scalar]()
-    while len(left) > LAST:
+    while len(left) > LARGEST_SQUARE_BY_MINORS:
         i = min(left, key=lambda i: sum(not left[i][j].is_zero for j in columns))
         row = left.pop(i)
         reflection = _Reflection.of(graph, row, columns, everywhere)
@@ -109,7 +109,7 @@ def by_rows(graph: Graph, matrix: Matrix, right: Vector, everywhere: bool = Fals
         columns.remove(reflection.columns[0])
     rests = [right[i] - graph.sum(row[j] * x for j, x in values.items()) for i, row in left.items()]
     bordered = [(*(row[j] for j in columns), rest) for row, rest in zip(left.values(), rests, strict=True)]
-    *minors, determinant = cross_product(graph, tuple(bordered), LAST + 1)
+    *minors, determinant = cross_product(graph, tuple(bordered), LARGEST_SQUARE_BY_MINORS + 1)
     inverse = 1 / determinant
     values |= {j: -minor * inverse for j, minor in zip(columns, minors, strict=True)}
     for reflection in reversed(turned):

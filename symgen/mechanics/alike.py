@@ -26,11 +26,11 @@ from symgen.symbolic.traverse import cost
 _MOTION = ("w_x", "w_y", "w_z", "dw_x", "dw_y", "dw_z", "a_x", "a_y", "a_z")
 _INERTIA = ("m", "c_x", "c_y", "c_z", "I_xx", "I_yy", "I_zz", "I_xy", "I_xz", "I_yz")
 _RESULTS = ("N_x", "N_y", "N_z", "F_x", "F_y", "F_z")
-# Bodies of which more of that is known to vanish have much less to compute than the function.
+# Entries known to vanish up to which a body takes the function: with more it has much less to compute.
 MOST_KNOWN = 2
 # Bodies computed side by side.
 TOGETHER = 2
-# Operations more that two lanes are worth.
+# Share of operations more that two bodies side by side are worth.
 LANES_WORTH = Fraction(1, 8)
 
 

@@ -19,7 +19,8 @@ from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.translate import translate
 
-POINTS = 6
+# Configurations at which ranks and zeros are looked at, unless a caller says how many.
+USUAL_CONFIGURATIONS = 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +91,7 @@ def assembly_of(model: Model) -> Assembly:
     return found
 
 
-def configurations(mechanics: System, count: int = POINTS) -> list[dict[str, float]]:
+def configurations(mechanics: System, count: int = USUAL_CONFIGURATIONS) -> list[dict[str, float]]:
     """Configurations on V with the generic ranks, parameters included; where the declared start leads is the first."""
     parameters = parameter_values(mechanics)
     names = [c.name for c in mechanics.model.coordinates]

@@ -18,6 +18,7 @@ from symgen.symbolic.matrix import flatten
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import topological
 
+# Names that a reason lists; of more it tells how many.
 MOST_NAMES = 4
 # A mass matrix with more entries is not formed to be looked through: u does without it.
 MOST_ENTRIES = 100

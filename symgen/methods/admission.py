@@ -13,13 +13,14 @@ from symgen.symbolic.transplant import transplanted
 from symgen.validity.formula import formula
 from symgen.validity.proof import Proof
 from symgen.validity.resolution import distinguishable
-from symgen.validity.search import STARTS, ZeroSearch
+from symgen.validity.search import SEARCH_STARTS, ZeroSearch
 
 if TYPE_CHECKING:
     from symgen.methods.method import Candidate
     from symgen.methods.workspace import Workspace
 
-DECIMALS = 6  # of a state in a message
+# Decimals of a state in a message.
+DECIMALS = 6
 LOST = "a denominator is a small difference of large terms, which single precision takes for zero at regular states"
 FAILS = "this form is singular where"
 
@@ -65,7 +66,7 @@ class Verdict:
         if self.proved:
             parts.append(f"{self.proved} proved to vanish only where a rank drops")
         if self.searched:
-            parts.append(f"{self.searched} searched for other zeros from {STARTS} starts without finding one")
+            parts.append(f"{self.searched} searched for other zeros from {SEARCH_STARTS} starts without finding one")
         return f"denominators and pivots: {', '.join(parts)}" if parts else "nothing is divided by"
 
 

@@ -15,6 +15,7 @@ from typing import TypeAlias
 from symgen.mechanics.genericity import Genericity, genericity
 from symgen.mechanics.system import System
 from symgen.methods.admission import FAILS, Verdict
+from symgen.methods.forward_dynamics.minor_motion import CANCELLATION_WORTH
 from symgen.methods.graphs import derived_on
 from symgen.methods.method import INPUTS, Candidate, solved_for_u
 from symgen.methods.quantity import Quantity
@@ -25,12 +26,11 @@ from symgen.model.model import Model
 from symgen.records import dataclass
 from symgen.symbolic.scalar import Scalar
 
-# Longer outputs are not multiplied out; multiplied out, terms that vanish have cancelled exactly, which is worth a few
-# operations more where minors were summed.
+# Operations of outputs up to which they are multiplied out.
 FACTORING_LIMIT = 450
-CANCELLATION_WORTH = Fraction(1, 4)
+# Share of operations more than the best way up to which the minor form is multiplied out to compete with it.
 FACTORING_GAIN = Fraction(1, 3)
-# Methods that are not taken and count more than this are not derived only to say where they fail.
+# Operations beyond which a method that is not taken is not derived only to say where it fails.
 LONGEST_EXAMINED = 600
 AUTO = "auto"
 Weight: TypeAlias = Fraction | int | tuple[bool, Fraction]

@@ -15,8 +15,9 @@ from symgen.model.model import Model
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost
 
-# Parameters are regrouped where that takes a twentieth off: they are computed at each call.
+# Share of operations that regrouping parameters has to take off: they are computed at each call.
 LUMPING_GAIN = Fraction(1, 20)
+# Configurations at which denominators are looked at.
 RESOLVED_AT = 2
 
 

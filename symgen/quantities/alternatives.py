@@ -25,8 +25,9 @@ from symgen.records import dataclass
 from symgen.runtime.effort import TooLongError, at_most, worth_trying
 from symgen.symbolic.traverse import cost, reached
 
-# Scalars of a way beyond which numbers are grouped in what is taken only: that is most of the work there.
-LONG = 6_000
+# Scalars of a way beyond which numbers are grouped only in what is taken: that is most of the work there.
+LONG_WAY = 6_000
+# How many times other ways are offered: valid ones, then those of last resort.
 TIERS = 2
 
 
@@ -122,7 +123,7 @@ class Alternatives:
         """A quantity as it is scheduled, on a graph that holds nothing else any more."""
         made = complete(mechanics, self._generic, derived)
         found = Alternative(choice, mechanics, made, known, grouped=False)
-        if len(reached(scalars(made))) > LONG:
+        if len(reached(scalars(made))) > LONG_WAY:
             forget_others(mechanics, (made,))
             return found
         return grouped(found)

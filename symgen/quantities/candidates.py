@@ -13,13 +13,13 @@ from symgen.mechanics.system import System
 from symgen.methods.admission import Verdict
 from symgen.methods.derivation import Derivation
 from symgen.methods.forward_dynamics.absolute import brought_back, in_absolute_angles
-from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA
+from symgen.methods.forward_dynamics.minor_motion import CANCELLATION_WORTH, LARGEST_DELTA
 from symgen.methods.forward_dynamics.motion import Motion
 from symgen.methods.forward_dynamics.motions import BY_FRAMES, cost_factor, motions_alone, motions_along
 from symgen.methods.graphs import moved
 from symgen.methods.method import MOTIONS, Candidate
 from symgen.methods.quantity import scalars
-from symgen.methods.selection import CANCELLATION_WORTH, FACTORING_LIMIT, Methods, cheapest
+from symgen.methods.selection import FACTORING_LIMIT, Methods, cheapest
 from symgen.methods.spaces import derivations
 from symgen.methods.system import MethodInput
 from symgen.model.model import Model

@@ -14,14 +14,17 @@ from typing import TypeVar
 from symgen.runtime.effort import SCALAR, TooLongError, at_most, done, worth_trying
 
 MAIN = ("inverse_dynamics", "forward_dynamics", "multipliers")
-# Of all quantities together, as counted cost: what takes a minute to print, to compile and to verify.
-OPERATIONS = 100_000
-# Of one quantity along a way that loses digits: with twice as many it takes some twenty times as long.  Accelerations
-# and multipliers may take more of that than the others.
-WIDE_OPERATIONS, WIDE_MAIN_OPERATIONS = 4_000, 10_000
-# Scalars that are made along one way to one quantity before the others are tried, and for all quantities together.
-FIRST_SCALARS, SCALARS = 150_000, 800_000
-# What is asked for and takes longer along all ways is tried once more with so many times the scalars.
+# Counted cost of all quantities together: what takes a minute to print, to compile and to verify.
+OPERATIONS_OF_ALL = 100_000
+# Counted cost of one quantity along a way that loses digits: with twice as many it takes some twenty times as long.
+WIDE_OPERATIONS = 4_000
+# The same for accelerations and multipliers, which may take more of that than the others.
+WIDE_MAIN_OPERATIONS = 10_000
+# Scalars that are made along one way to one quantity before the others are tried.
+SCALARS_OF_A_WAY = 150_000
+# Scalars that are made along all ways for all quantities together.
+SCALARS_OF_ALL = 800_000
+# Times the scalars with which what is asked for, and takes longer along all ways, is tried once more.
 GROWTH = 8
 Made = TypeVar("Made")
 OF_ALL = "`all` leaves it out"
@@ -33,7 +36,7 @@ class Everything:
 
     def __init__(self, outputs: Sequence[str], forms: Mapping[str, str]) -> None:
         self._asked = asked_for(outputs, forms)
-        self._left = SCALAR * SCALARS
+        self._left = SCALAR * SCALARS_OF_ALL
 
     def derived(
         self, quantity: str, ways: Mapping[str, Callable[[], Made]], at_hand: int | None = None
@@ -44,7 +47,7 @@ class Everything:
         """
         if at_hand is not None:
             return self._within(ways, worth_trying(at_hand))
-        first = SCALAR * FIRST_SCALARS
+        first = SCALAR * SCALARS_OF_A_WAY
         if quantity not in self._asked:
             before = done()
             found = self._within(ways, min(first, self._left))
@@ -67,7 +70,7 @@ class Everything:
         """The longest of the quantities that are not asked for, without which the rest is short enough."""
         total, without = sum(costs.values()), list[str]()
         for name in sorted(costs, key=lambda name: -costs[name]):
-            if total > OPERATIONS and name not in self._asked:
+            if total > OPERATIONS_OF_ALL and name not in self._asked:
                 without.append(name)
                 total -= costs[name]
         return without
@@ -93,5 +96,6 @@ def too_wide(operations: int) -> str:
 
 def too_long(operations: int = 0) -> str:
     """Why `all` leaves a quantity out; `operations` are those it takes, where it was derived."""
-    takes = f"{operations} operations, where all take at most {OPERATIONS} together" if operations else "long to derive"
+    most = f"all take at most {OPERATIONS_OF_ALL} together"
+    takes = f"{operations} operations, where {most}" if operations else "long to derive"
     return f"{OF_ALL}, as it takes {takes}; {REMEDY}"

@@ -9,7 +9,7 @@ from fractions import Fraction
 from symgen.symbolic.identity import same_values
 from symgen.symbolic.scalar import Graph, Scalar
 
-# Sums nested deeper than this are taken as they stand.
+# Sums nested in each other up to which a common number is looked for; deeper ones are taken as they stand.
 DEEPEST = 12
 
 

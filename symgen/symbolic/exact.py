@@ -31,7 +31,8 @@ Value: TypeAlias = Element | None
 # A constant that is written with pi is m / WHOLE + n pi / WHOLE + ... with whole m and n.
 WHOLE = 12 * 10**12
 # Denominators of models are smaller than this, those of constants with pi larger.
-LONGEST = 10**30
+LARGEST_MODEL_DENOMINATOR = 10**30
+# Powers of pi up to which the denominator of a constant is looked through for them.
 MOST_DEGREE = 6
 
 
@@ -49,7 +50,7 @@ def half_turns(value: Fraction) -> Fraction | None:
     None where that is not to be seen.
     """
     turns = Fraction(0)
-    while value.denominator > LONGEST:
+    while value.denominator > LARGEST_MODEL_DENOMINATOR:
         # what divides no power of ten belongs to fractions such as 22/7
         rest = value.denominator
         for factor in (2, 5):
@@ -61,7 +62,7 @@ def half_turns(value: Fraction) -> Fraction | None:
         # modulo the denominator of pi nothing is left but its highest power
         count = scaled.numerator * pow(PI.numerator, -degree, PI.denominator) % PI.denominator
         count = count - PI.denominator if 2 * count > PI.denominator else count
-        if scaled.denominator != 1 or abs(count) > LONGEST or not count:
+        if scaled.denominator != 1 or abs(count) > LARGEST_MODEL_DENOMINATOR or not count:
             return None
         value -= Fraction(count, whole) * PI**degree
         turns += Fraction(count, whole) if degree == 1 else 0

@@ -16,16 +16,17 @@ from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import reached
 
 # What rounding may leave of a 0 among numbers about 1; more than that is worth no exact value.
-ROUNDING = 1e-6
-POINTS = 2
+ROUNDING_OF_ZEROS = 1e-6
+# Points at which what may be 0 has to vanish before exact values decide.
+POINTS_OF_ZEROS = 2
 
 
 def without_hidden_zeros(scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
     """The scalars, 0 in place of those that are 0 at every point."""
     hidden = [scalar for scalar in dict.fromkeys(scalars) if scalar.constant is None]
-    for seed in range(POINTS):
+    for seed in range(POINTS_OF_ZEROS):
         values = zip(hidden, _floats(hidden, seed), strict=True) if hidden else ()
-        hidden = [scalar for scalar, value in values if abs(value) <= ROUNDING]
+        hidden = [scalar for scalar, value in values if abs(value) <= ROUNDING_OF_ZEROS]
     if not hidden:
         return tuple(scalars)
     exact = ExactValues(signs=False)(hidden)

@@ -15,7 +15,7 @@ from symgen.symbolic.exact import ExactValues, Value
 from symgen.symbolic.scalar import Scalar
 
 # Points at which signs are right, half of them by chance.
-POINTS = 12
+POINTS_OF_SIGNS = 12
 
 
 class _Thoroughly:
@@ -49,7 +49,7 @@ def same_values(
         if (one.value != other.value or _Thoroughly.on) and one is not other
     ]
     differ = [pair for pair in differ if (value := _value(pair[0], 0)) is None or value != _value(pair[1], 0)]
-    for seed in range(1, 1 + POINTS if differ else 1):
+    for seed in range(1, 1 + POINTS_OF_SIGNS if differ else 1):
         changed = [(one, other) for one, other in differ if _changed(one, other, seed)]
         if squares_roots:
             changed = [(one, other) for one, other in changed if not _point(other, seed).any_root_in([other])]

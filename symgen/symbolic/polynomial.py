@@ -17,9 +17,10 @@ from symgen.symbolic.scalar import Graph, Scalar
 
 Polynomial: TypeAlias = dict[Monomial, Coefficient]
 
-# Outputs beyond these are left as they are: nothing becomes shorter by multiplying out a long sum of long products.
-MOST_TERMS = 120
-MOST_OPERATIONS = 4000
+# Terms of an output that is multiplied out: nothing becomes shorter by multiplying out a long sum of long products.
+MOST_EXPANDED_TERMS = 120
+# Operations of an output that is multiplied out.
+MOST_EXPANDED_OPERATIONS = 4000
 
 
 class _TooLongError(Exception):
@@ -49,7 +50,7 @@ class Multiplier:
         known = self._known.get(node)
         if known is None:
             known = self._known[node] = self._expanded(node)
-        if len(known[0]) > MOST_TERMS or known[1] > LARGEST_POWER:
+        if len(known[0]) > MOST_EXPANDED_TERMS or known[1] > LARGEST_POWER:
             raise _TooLongError
         return known
 
@@ -81,7 +82,7 @@ class Multiplier:
 
     def _times(self, a: tuple[Terms, int], b: tuple[Terms, int]) -> tuple[Terms, int]:
         power = a[1] + b[1]
-        if len(a[0]) * len(b[0]) > 8 * MOST_TERMS or power > LARGEST_POWER:
+        if len(a[0]) * len(b[0]) > 8 * MOST_EXPANDED_TERMS or power > LARGEST_POWER:
             raise _TooLongError
         return self._monomials.product(a[0], b[0]), power
 
@@ -169,6 +170,6 @@ def refactored(
     """Each output multiplied out and factored again; the output itself where that would be too long."""
     result = []
     for output in outputs:
-        terms = multiplier.polynomial(output) if output.size <= MOST_OPERATIONS else None
+        terms = multiplier.polynomial(output) if output.size <= MOST_EXPANDED_OPERATIONS else None
         result.append(output if terms is None else factored(graph, terms, first))
     return result

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 # Whole coefficients are integers: their arithmetic is many times faster than that of fractions.
 Monomial: TypeAlias = "tuple[int | Fraction, dict[Scalar, int]]"
 
-# Products of more factors than this are not taken apart.
+# Factors of a product up to which it is taken apart.
 MOST_FACTORS = 12
 
 

@@ -27,6 +27,7 @@ Number: TypeAlias = "Scalar | int | Fraction"
 PI = Fraction(31415926535897932384626433832795028841971693993751058209749445923078164, 10**70)
 
 
+# Operations of a scalar up to which its text is written out.
 LONGEST_TEXT = 500
 
 

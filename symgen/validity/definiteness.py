@@ -26,10 +26,12 @@ from symgen.symbolic.traverse import topological
 from symgen.validity.precise import PreciseEvaluator, UndefinedError, precise
 
 SEED = 15
-STARTS = 4
+# Configurations from which the smallest pivot is driven down.
+PIVOT_STARTS = 4
 # Configurations that tell how large an entry gets.
 LOOKED_AT = 32
-HALVINGS = 11
+# Lengths of a step that are tried on the way to the smallest pivot, each half of the one before.
+STEP_HALVINGS = 11
 # Between what inertias of one machine differ by and what is left of a pivot that vanishes after the last halving.
 SMALLEST = 1e-4
 # A step counts that makes the smallest pivot, 1 at most, smaller by this: less is rounding.
@@ -129,13 +131,13 @@ def smallest(mechanics: System, pivots: Sequence[Scalar]) -> tuple[float, dict[s
 
     source = random.Random(SEED)
     best, place, index = math.inf, known, 0
-    for start in range(STARTS):
+    for start in range(PIVOT_STARTS):
         point = known | {
             name: source.uniform(*limits) if start or name not in known else known[name]
             for name, limits in ranges.items()
         }
         least, _ = measure(point)
-        for halving in range(1, HALVINGS):
+        for halving in range(1, STEP_HALVINGS):
             for name, (low, high) in ranges.items():
                 for step in (-1, 1):
                     moved = min(high, max(low, point[name] + step * (high - low) * 0.5**halving))

@@ -15,8 +15,8 @@ from symgen.linear_algebra.exterior import unit, wedge_all
 from symgen.symbolic.matrix import Matrix, Vector
 from symgen.symbolic.scalar import Graph, Scalar
 
-# More minors of B are not listed.
-MOST_MINORS = 600
+# Minors of B up to which those that inputs drive are listed.
+MOST_LISTED_MINORS = 600
 
 
 def driven_minors(graph: Graph, rows: Matrix, inputs: Sequence[Vector], n: int) -> tuple[Scalar, int] | None:
@@ -32,7 +32,7 @@ def driven_minors(graph: Graph, rows: Matrix, inputs: Sequence[Vector], n: int) 
         drives[places[0]] += 1
     r = len(rows)
     passive = [j for j in range(n) if not drives[j]]
-    if not r or len(passive) > r or comb(n, r) > MOST_MINORS:
+    if not r or len(passive) > r or comb(n, r) > MOST_LISTED_MINORS:
         return None
     minors = wedge_all(unit(graph), rows)
     total, choices = graph.zero, 0

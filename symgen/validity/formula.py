@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from symgen.symbolic.scalar import Scalar
 
-LONGEST = 160  # operations written out
+# Operations of a scalar up to which a message writes it out.
+LONGEST_FORMULA = 160
 
 
 def formula(node: Scalar) -> str:
     """The scalar written out, or what it is where that would fill the screen."""
-    if node.size > LONGEST:
+    if node.size > LONGEST_FORMULA:
         return f"a pivot of {node.size} operations"
     return _text(node, 0)
 

@@ -13,6 +13,7 @@ from symgen.symbolic.fingerprint import PRIME, angle_pair, combine, leaf_pair, o
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import topological
 
+# Powers of two that a doubled parameter may multiply a quotient by, and their inverses.
 HIGHEST_POWER = 16
 POWERS_OF_TWO = {pow(2, k, PRIME): k for k in range(-HIGHEST_POWER, HIGHEST_POWER + 1)}
 MOVED = ""  # the assignment in which every coordinate differs; no parameter has this name

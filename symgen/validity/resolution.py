@@ -14,8 +14,8 @@ from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.scalar import Graph
 from symgen.symbolic.transplant import transplanted
 
-# keeps ordinary states away from the threshold
-MARGIN = 10
+# Times the threshold that a denominator exceeds at ordinary states.
+THRESHOLD_MARGIN = 10
 
 
 def distinguishable(guards: Sequence[Guard], n: int, points: Sequence[Mapping[str, float]]) -> bool:
@@ -35,5 +35,5 @@ def distinguishable(guards: Sequence[Guard], n: int, points: Sequence[Mapping[st
         values = evaluate(point)
         pairs = zip(values[: len(guards)], values[len(guards) :], strict=True)
         largest = [max(most, abs(d) / size if size else 1.0) for most, (d, size) in zip(largest, pairs, strict=True)]
-    least = [float(MARGIN**guard.degree * guard.threshold(n, UNIT_ROUNDOFF["float32"])) for guard in guards]
+    least = [float(THRESHOLD_MARGIN**guard.degree * guard.threshold(n, UNIT_ROUNDOFF["float32"])) for guard in guards]
     return all(most > low for most, low in zip(largest, least, strict=True))

@@ -29,15 +29,26 @@ from symgen.validity.floats import FloatGradients
 from symgen.validity.precise import Precise, PreciseEvaluator, UndefinedError, precise, precision
 
 SEED = 20120731
-STARTS = 12
-STEPS = 40
-# A way on which so many steps in turn come closer by less than this share leads to no zero: towards one, even where
-# slopes vanish too, each step takes away more.
-STALLED, STALLED_STEPS = 0.9, 8
-MOST_TERMS = 12  # of a sum of squares that are driven to 0 one by one
-VANISHED = 1e-12  # of the scalar's usual size, and of the constraint residuals
-NEAR, FINISHED = 1e-8, 1e-14  # the same in double precision: where 40 digits go on, and where no step gains any more
-REGULAR = 1e-4  # of the largest pivot of a matrix with rows that usually have length 1
+# Points from which a search for zeros starts.
+SEARCH_STARTS = 12
+# Newton steps of a search from one start.
+SEARCH_STEPS = 40
+# Steps in turn that may come closer by less than STALLED allows: a way on which there are more leads to no zero, as
+# towards one, even where slopes vanish too, each step takes away more.
+STALLED_STEPS = 8
+# What of its distance such a step leaves at least.
+STALLED = 0.9
+# Terms of a sum of squares that are driven to 0 one by one.
+MOST_DRIVEN_SQUARES = 12
+# Share of its usual size up to which a scalar has vanished; the same of constraint residuals.
+VANISHED = 1e-12
+# Share of its usual size below which a scalar in double precision goes on in 40 digits.
+NEAR = 1e-8
+# The same where no step in double precision gains any more.
+FINISHED = 1e-14
+# Share of the largest pivot that is no drop of rank, for a matrix with rows that usually have length 1.
+REGULAR = 1e-4
+# Points that tell how long rows of [B; M^T] usually are.
 LENGTH_POINTS = 4
 Point = dict[str, Precise]
 
@@ -95,7 +106,7 @@ class ZeroSearch:
     def _zero_of(self, scalar: Scalar, residuals: Sequence[Scalar]) -> RegularZero | None:
         with precision():
             terms = squares(scalar)
-            if len(terms) > MOST_TERMS:
+            if len(terms) > MOST_DRIVEN_SQUARES:
                 terms = [scalar]
             reached = symbols([scalar, *residuals])
             names = [name for name in self._box if name in reached]
@@ -103,8 +114,8 @@ class ZeroSearch:
             floats = FloatGradients([*residuals, *terms], names)
             source = random.Random(SEED)
             sizes: list[float] = []
-            for start in range(STARTS):
-                point = self._start(source, inner=start < STARTS // 2)
+            for start in range(SEARCH_STARTS):
+                point = self._start(source, inner=start < SEARCH_STARTS // 2)
                 near = self._approach(floats, point, names, sizes, len(residuals))
                 found = None if near is None else self._descend(evaluator, *near, names, len(residuals))
                 if found is not None and self._regular(found):
@@ -136,7 +147,7 @@ class ZeroSearch:
         limits = [(float(lower), float(upper)) for lower, upper in (self._box[name] for name in names)]
         damping, size = 1e-3, max(abs(v) * w for v, w in zip(values, weights, strict=True))
         slow = 0
-        for _ in range(STEPS):
+        for _ in range(SEARCH_STEPS):
             if size <= FINISHED:
                 break
             if slow == STALLED_STEPS:
@@ -181,7 +192,7 @@ class ZeroSearch:
             return None
         weights = [1.0] * rows + [1 / usual] * (len(values) - rows)
         size = _size(values, weights)
-        for _ in range(STEPS):
+        for _ in range(SEARCH_STEPS):
             if size <= VANISHED:
                 return point
             trial = self._step(point, names, values, slopes, weights, damping)

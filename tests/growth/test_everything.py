@@ -22,7 +22,7 @@ def test_the_longest_are_left_out_where_all_together_are_too_long(monkeypatch: p
     whole = derive_quantities(MODEL, ("all",))
     costs = {choice.quantity: dict(choice.costs)[choice.way] for choice in whole.choices}
     most = sum(costs.values()) // 2
-    monkeypatch.setattr(everything, "OPERATIONS", most)
+    monkeypatch.setattr(everything, "OPERATIONS_OF_ALL", most)
     short = derive_quantities(MODEL, ("all",))
     left_out = {name: why for name, why in short.absent if why.startswith(OF_ALL)}
     kept = {choice.quantity for choice in short.choices}
@@ -37,7 +37,7 @@ def test_the_longest_are_left_out_where_all_together_are_too_long(monkeypatch: p
 
 
 def test_what_takes_too_long_to_derive_is_given_up_unless_it_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(everything, "FIRST_SCALARS", 20)
+    monkeypatch.setattr(everything, "SCALARS_OF_A_WAY", 20)
     monkeypatch.setattr(everything, "GROWTH", 2)
     short = derive_quantities(MODEL, ("all",))
     left_out = {name for name, why in short.absent if why.startswith(OF_ALL)}
@@ -49,7 +49,7 @@ def test_what_takes_too_long_to_derive_is_given_up_unless_it_is_named(monkeypatc
 
 
 def test_what_all_leaves_out_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(everything, "OPERATIONS", 1000)
+    monkeypatch.setattr(everything, "OPERATIONS_OF_ALL", 1000)
     path = tmp_path / "row.yaml"
     path.write_text(TEXT)
     result = generate(path, Options(outputs=("all",), parts=("c",), verify=False), lambda _: None)

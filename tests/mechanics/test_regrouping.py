@@ -11,7 +11,8 @@ from symgen.symbolic.passes.factoring import Factoring
 from symgen.symbolic.passes.grouping import grouped
 from symgen.symbolic.passes.quotients import with_quotients
 from symgen.symbolic.passes.rebuilt import rebuilt
-from symgen.symbolic.passes.sum_factors import MOST_TERMS, with_common_factors
+from symgen.symbolic.passes.sum_factors import with_common_factors
+from symgen.symbolic.passes.terms import MOST_FACTORED_TERMS
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import cost, topological
 
@@ -105,7 +106,7 @@ def test_products_that_are_needed_elsewhere_stay(graph: Graph) -> None:
 
 def test_sums_beyond_the_limit_stay(graph: Graph) -> None:
     f = graph.symbol("f")
-    terms = [graph.symbol(f"s{k}") * f for k in range(MOST_TERMS + 1)]
+    terms = [graph.symbol(f"s{k}") * f for k in range(MOST_FACTORED_TERMS + 1)]
     assert with_common_factors(graph, [graph.sum(terms)]) == [graph.sum(terms)]
     (shorter,) = with_common_factors(graph, [graph.sum(terms[:-1])])
     assert multiplications([shorter]) == 1

@@ -20,7 +20,7 @@ def left_behind(graph: Graph, x: Scalar, y: Scalar) -> Scalar:
 
 
 def test_what_is_needed_stays_and_the_rest_goes(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(forgets, "WORTH", 10)
+    monkeypatch.setattr(forgets, "FEWEST_FORGOTTEN", 10)
     graph = Graph()
     x, y = graph.symbol("x"), graph.symbol("y")
     before = x + y
@@ -50,7 +50,7 @@ def test_little_is_kept_as_it_is() -> None:
 
 
 def test_products_of_what_went_are_taken_apart_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(forgets, "WORTH", 1)
+    monkeypatch.setattr(forgets, "FEWEST_FORGOTTEN", 1)
     graph = Graph()
     x, y = graph.symbol("x"), graph.symbol("y")
     s, c = graph.trig("sin", x), graph.trig("cos", x)

@@ -260,7 +260,7 @@ def test_a_loss_that_no_state_of_the_verification_meets_is_searched_for(
 def test_a_long_way_has_its_numbers_grouped_once_its_worst_states_speak_for_it(
     yoke: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(alternatives, "LONG", 0)
+    monkeypatch.setattr(alternatives, "LONG_WAY", 0)
     monkeypatch.setattr(fallback, "WIDENED", 0)
     regrouped: list[str] = []
 
@@ -377,7 +377,7 @@ def test_float64_stays_where_float32_alone_is_rejected(
 ) -> None:
     spoil_choice(monkeypatch, refusing_float32)
     spoil_named(monkeypatch, refusing_float32)
-    monkeypatch.setattr(fallback, "LONGEST", 20)
+    monkeypatch.setattr(fallback, "LONGEST_WIDENED", 20)
     common = [str(yoke), "--out", str(tmp_path / "out"), "--states", "8", "--quiet"]
     assert cli.main(common) == 1
     told = capsys.readouterr().err
@@ -459,7 +459,7 @@ def test_more_digits_in_float32_alone_take_nothing_from_more_in_both(
 def test_kernels_that_are_too_long_stay_as_they_are(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     spoil_choice(monkeypatch, losing_digits)
     spoil_named(monkeypatch, losing_digits)
-    monkeypatch.setattr(fallback, "LONGEST", 20)
+    monkeypatch.setattr(fallback, "LONGEST_WIDENED", 20)
     assert [one.quantity for one in made(yoke).left_out] == ["multipliers"]
 
 

@@ -20,7 +20,7 @@ from symgen.closedform.algebra.used import Monomial, Used
 
 # A polynomial of more terms, once homogeneous, is factored as an ordinary one only: its length doubles with every angle
 # that a monomial lacks.
-MOST_TERMS = 3_000
+MOST_HOMOGENEOUS_TERMS = 3_000
 
 
 # The terms of one degree parity in every pair (s_i, c_i), by the powers of s_i^2 + c_i^2 that each lacks.
@@ -149,7 +149,7 @@ def factorise(ring: TrigRing, p: PolyElement) -> tuple[PolyElement, tuple[tuple[
     ring.work.spend(len(p) * ring.polys.ngens)
     whole = Used(ring, [p])
     classes = _classes(whole, p)
-    if any(_homogeneous_terms(parts) > MOST_TERMS for parts in classes):
+    if any(_homogeneous_terms(parts) > MOST_HOMOGENEOUS_TERMS for parts in classes):
         images = [(whole, whole.image(p))]
     elif len(classes) == 1:
         images = [(whole, _raised(whole, classes[0]))]

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from statistics import fmean
 from unittest.mock import patch
 
 from symgen.laboratory.bench.skipping import counted_cost, table_line
-from symgen.methods.quantity import scalars
+from symgen.methods.quantity import Quantity, scalars
 from symgen.model.model import Model
 from symgen.quantities.select import derive_quantities
 from symgen.symbolic.passes import grouping
@@ -50,8 +50,12 @@ def _left_out(gone: grouping.Pass) -> Iterator[None]:
 
 
 def _costs(model: Model, outputs: Sequence[str]) -> dict[str, int]:
-    made = derive_quantities(model, outputs)
-    return {one.name: counted_cost(scalars(one)) for one in made.quantities if one.outputs}
+    return costs(derive_quantities(model, outputs).quantities)
+
+
+def costs(quantities: Iterable[Quantity]) -> dict[str, int]:
+    """Counted cost by quantity."""
+    return {one.name: counted_cost(scalars(one)) for one in quantities if one.outputs}
 
 
 def page(shipped: Sequence[Counted], drawn: Sequence[Counted]) -> str:

@@ -24,6 +24,7 @@ from symgen.symbolic.matrix import Matrix, Vector, dot, identity, matvec
 from symgen.symbolic.scalar import Graph, Scalar
 
 Projection: TypeAlias = Callable[[Vector], Vector]
+# Choices of inputs up to which the printed form is made of them.
 MOST_PARTITIONS = 20
 
 

@@ -22,7 +22,9 @@ from symgen.methods.method import Method
 from symgen.symbolic.matrix import Vector, matvec, subtract_vectors
 from symgen.validity.definiteness import positive_definite
 
-MOST_MINORS = 70
+# Minors of as many columns as give the most, up to which they are taken although the null space is not built from
+# them.
+MOST_MINORS_OF_ANY_RANK = 70
 
 
 def _few_directions(generic: Genericity) -> bool:
@@ -31,7 +33,7 @@ def _few_directions(generic: Genericity) -> bool:
 
 def _few_minors(generic: Genericity) -> bool:
     """Whether minors of the rows are at hand although the null space is not built from them."""
-    return comb(generic.n, generic.n // 2) <= MOST_MINORS
+    return comb(generic.n, generic.n // 2) <= MOST_MINORS_OF_ANY_RANK
 
 
 def _no_minors(generic: Genericity) -> str | None:

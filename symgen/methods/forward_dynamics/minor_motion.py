@@ -12,6 +12,7 @@ positive definite on ker B.
 
 from __future__ import annotations
 
+from fractions import Fraction
 from functools import cached_property
 
 from symgen.ir.kernel import Status
@@ -23,9 +24,10 @@ from symgen.symbolic.matrix import Matrix, Vector, dot, identity, matmul, matvec
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost
 
+# Degrees of freedom up to which accelerations are written by minors.
 LARGEST_DELTA = 2
-# Multiplied out, what vanishes has cancelled exactly: worth this share of operations more.
-CANCELLATION_WORTH = 1.25
+# Share of operations more that is worth multiplying minors out: what vanishes has cancelled exactly.
+CANCELLATION_WORTH = Fraction(1, 4)
 
 
 class MinorMotion:
@@ -143,7 +145,7 @@ def minor_motion(problem: Problem) -> MinorMotion:
     """By minors, with p and D multiplied out where that costs little: inertias that vanish have cancelled exactly."""
     plain, expanded = (MinorMotion(problem, expanded) for expanded in (False, True))
     weights = [cost((*way.motion.accelerations, *way.motion.multipliers)).weight for way in (plain, expanded)]
-    return expanded if weights[1] <= CANCELLATION_WORTH * weights[0] else plain
+    return expanded if weights[1] <= (1 + CANCELLATION_WORTH) * weights[0] else plain
 
 
 def _top(a: Multivector, b: Multivector, n: int, zero: Scalar) -> Scalar:

@@ -24,11 +24,9 @@ from symgen.linear_algebra.null_spaces import LONGEST_PRODUCT
 from symgen.mechanics.system import System
 from symgen.symbolic.content import divided, usual_number
 from symgen.symbolic.matrix import Matrix, Vector, dot
+from symgen.symbolic.passes.factoring import LONGEST_CANCELLED
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import cost
-
-# Right-hand sides longer than this are turned as they stand: multiplied out, they would not get shorter.
-LONGEST_TURNED = 200
 
 
 @dataclass(slots=True, eq=False)
@@ -228,7 +226,7 @@ class Elimination:
         """(f first + g second, f second - g first)."""
         zero = self._graph.zero
         rights = [first.right * f + second.right * g, second.right * f - first.right * g]
-        shorter = [self._mechanics.factoring.cancelled(x) if x.size <= LONGEST_TURNED else x for x in rights]
+        shorter = [self._mechanics.factoring.cancelled(x) if x.size <= LONGEST_CANCELLED else x for x in rights]
         along, across = Row({}, shorter[0]), Row({}, shorter[1])
         for name in sorted({*first.coefficients, *second.coefficients}):
             a, b = first.coefficients.get(name, zero), second.coefficients.get(name, zero)
@@ -237,7 +235,7 @@ class Elimination:
         return along, across
 
     def _put(self, row: Row, name: int, value: Scalar) -> None:
-        if value.size <= LONGEST_TURNED:
+        if value.size <= LONGEST_CANCELLED:
             value = self._mechanics.factoring.cancelled(value)
         if value.is_zero:
             row.coefficients.pop(name, None)
@@ -286,7 +284,7 @@ class Elimination:
             for name, coefficient in row.coefficients.items():
                 row.coefficients[name] = products.quotient(coefficient, content)
             right = row.right / divisor
-            row.right = self._mechanics.factoring.cancelled(right) if right.size <= LONGEST_TURNED else right
+            row.right = self._mechanics.factoring.cancelled(right) if right.size <= LONGEST_CANCELLED else right
 
     def _turn_back(self) -> None:
         """Solves rows A x = b with an orthogonal A, all entries of which may vary: x = A^T b."""
@@ -297,7 +295,7 @@ class Elimination:
             if len(names) == len(rows) > 1 and self._is_orthogonal(names, rows):
                 for name in names:
                     value = self._graph.sum(row.coefficients[name] * row.right for row in rows)
-                    value = self._mechanics.factoring.cancelled(value) if value.size <= LONGEST_TURNED else value
+                    value = self._mechanics.factoring.cancelled(value) if value.size <= LONGEST_CANCELLED else value
                     self.core.append(Row({name: self._graph.one}, value))
                 for row in rows:
                     self.core.remove(row)

@@ -13,9 +13,10 @@ from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
 from symgen.methods.system import MethodInput
 from symgen.symbolic.matrix import Matrix
+from symgen.symbolic.traverse import Cost
 
-# A root and a division for each reflection are the least that `householder` adds to its data.
-REFLECTION = 12
+# Counted cost that each reflection adds to the data of `householder` at least: a root and a division.
+REFLECTION = Cost(0, 0, 0, divisions=1, roots=1, angles=0, functions=0).weight
 
 
 def least_of_minors(system: MethodInput) -> int:

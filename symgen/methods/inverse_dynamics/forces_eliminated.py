@@ -33,8 +33,8 @@ from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.transplant import transplanted
 from symgen.symbolic.traverse import cost, substitute
 
-# Cores with more rows are solved by reflections: minors grow faster.
-MOST_MINORS = 3
+# Rows of a core up to which it is solved by minors: with more, these grow faster than reflections.
+LARGEST_CORE_BY_MINORS = 3
 
 
 def elimination_form(
@@ -85,7 +85,7 @@ class _Core:
             measure = self._graph.one
             if self._elimination.lengths():
                 guards.append(self._tested(measure, measure, 1))
-        elif self._size <= MOST_MINORS and internal <= 1:
+        elif self._size <= LARGEST_CORE_BY_MINORS and internal <= 1:
             particular, null, guard, measure = self._by_minors(internal)
             guards.append(guard)
         else:
@@ -109,7 +109,7 @@ class _Core:
 
     def _by_minors(self, internal: int) -> tuple[Vector, list[Vector], Guard, Scalar]:
         """A particular solution, the null vector if there is one, and what small minors make small."""
-        if self._size == len(self._names) == MOST_MINORS:
+        if self._size == len(self._names) == LARGEST_CORE_BY_MINORS:
             return self._bordered()
         graph = self._graph
         forms = ActuationForms(RowForms(graph, (), self._size, 0), transpose(self._core, len(self._names)), self._size)
@@ -202,7 +202,7 @@ class _Core:
             (*column, *effect)
             for column, effect in zip(transpose(self._core, len(self._names)), self._unit_columns(), strict=True)
         ]
-        if len(whole) > MOST_MINORS:
+        if len(whole) > LARGEST_CORE_BY_MINORS:
             return HouseholderSpace(graph, tuple(whole), len(whole[0])).volume
         minors = wedge_all(unit(graph), whole)
         denominator = graph.sum(value * value for value in minors.values())

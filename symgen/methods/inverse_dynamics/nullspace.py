@@ -28,9 +28,10 @@ from symgen.symbolic.matrix import Matrix, Vector, identity, matmul, transpose
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import cost
 
-# Beyond this size the determinants of the rest cost more than reflections.
+# Rows that may be left for determinants: of more these cost more than reflections.
 LARGEST_REST = 4
-MOST_CHOICES = 6
+# Bases of the null space that are tried, and those kept of the ones found.
+MOST_BASES = 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +57,7 @@ def nullspace_form(system: MethodInput, allowed: Callable[[Scalar], bool]) -> Ca
     if reason is not None:
         return reason
     graph, mechanics, generic = system.mechanics.graph, system.mechanics, system.generic
-    choices = list(islice(_bases(system), MOST_CHOICES))
+    choices = list(islice(_bases(system), MOST_BASES))
     if not choices:
         return f"more than {LARGEST_REST} constraint rows are left that no safe step solves"
     basis = next((choice for choice in choices if all(map(allowed, choice.pivots))), choices[0])
@@ -136,7 +137,7 @@ def _kernels(graph: Graph, rest: Rates, rows: list[int], rates: list[int]) -> li
         return [_Kernel(_spread(graph, (cross_product(graph, part, len(rates)),), rates, width), ())]
     found = [_solved(graph, part, chosen) for chosen in combinations(range(len(rates)), len(rows))]
     kernels = [_Kernel(_spread(graph, k.vectors, rates, width), k.pivots) for k in found if k is not None]
-    return sorted(kernels, key=lambda kernel: cost(x for v in kernel.vectors for x in v).weight)[:MOST_CHOICES]
+    return sorted(kernels, key=lambda kernel: cost(x for v in kernel.vectors for x in v).weight)[:MOST_BASES]
 
 
 def _spread(graph: Graph, vectors: Matrix, rates: list[int], width: int) -> Matrix:

@@ -11,6 +11,9 @@ from symgen.symbolic.polynomial import Multiplier, refactored
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import topological
 
+# Operations of a scalar up to which it is multiplied out to see what cancels: a longer one would not get shorter.
+LONGEST_CANCELLED = 200
+
 
 class Factoring:
     """Multiplies scalars out and factors them again; sums of parameters and the sums in `kept` stay whole."""

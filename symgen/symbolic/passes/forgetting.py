@@ -13,8 +13,9 @@ from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import forget_orders
 
 Stays: TypeAlias = Callable[[Scalar], bool]
-# Fewer are kept: they are met again, and looking for those that are needed takes time, too.
-WORTH = 10_000
+# Scalars that are forgotten together at least: fewer are met again, and looking for those that are needed takes time,
+# too.
+FEWEST_FORGOTTEN = 10_000
 # The mark of a graph that nothing is made on yet.
 START = (0, 0)
 
@@ -26,7 +27,7 @@ def forgetting(graph: Graph, mark: tuple[int, int], needed: Iterable[Scalar]) ->
     forgotten is made again where it is met again, with another serial number.
     """
     first = mark[0]
-    if graph.mark()[0] - first < WORTH:
+    if graph.mark()[0] - first < FEWEST_FORGOTTEN:
         return None
     live = set(needed)
     stack = list(live)

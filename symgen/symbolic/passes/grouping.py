@@ -70,7 +70,8 @@ PASSES = (
 # What comes out of sums first decides what is found later, and what cancels exactly.  Outputs of no more scalars begin
 # with each of these, and with none; longer ones with the first.
 BEGINNINGS = (ALL_FACTORS, PARAMETER_FACTORS)
-SHORT = 400
+# Scalars of outputs up to which these begin with each of BEGINNINGS, and with none.
+SHORT_OUTPUTS = 400
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +86,7 @@ def grouped(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> li
     """The outputs after the passes, each taken where it saves operations."""
     improved = _Improvement(graph, factoring)
     start = _weighed(without_twins(graph, outputs))
-    short = len(reached(outputs)) <= SHORT
+    short = len(reached(outputs)) <= SHORT_OUTPUTS
     begun = [improved(start, (one,)) for one in (BEGINNINGS if short else BEGINNINGS[:1])]
     starts = dict.fromkeys((*begun, start) if short else begun)
     best = min((improved(one, PASSES) for one in starts), key=lambda one: one.weight)

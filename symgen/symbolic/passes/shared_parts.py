@@ -18,8 +18,8 @@ from symgen.symbolic.traverse import reached, topological, uses_of
 
 _Pair: TypeAlias = tuple[Term, Term]
 
-# Longer sums and products stay as they are.
-MOST_TERMS = 24
+# Terms of a sum or product up to which it shares parts with others.
+MOST_SHARING_TERMS = 24
 _SUM, _PRODUCT = ("add", "sub"), ("mul",)
 
 
@@ -47,7 +47,7 @@ class _Sharing:
         angles = reached(node for node in self._order if node.op in ("sin", "cos"))
         roots = [node for node in self._order if node.op in ops and node not in inside and node not in angles]
         self._terms = {node: terms_of(node, inside) for node in roots}
-        self._long = {node for node in roots if len(self._terms[node]) > MOST_TERMS}
+        self._long = {node for node in roots if len(self._terms[node]) > MOST_SHARING_TERMS}
 
     def outputs(self) -> list[Scalar]:
         """The outputs rebuilt."""

@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 
 from symgen.records import dataclass
 from symgen.symbolic.passes.rebuilt import rebuilt
-from symgen.symbolic.passes.terms import MOST_TERMS, SUMS, product_of, sum_of, terms_of, without_opposites
+from symgen.symbolic.passes.terms import MOST_FACTORED_TERMS, SUMS, product_of, sum_of, terms_of, without_opposites
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import topological, uses_of
 
@@ -50,7 +50,7 @@ def with_common_factors(
         image[node] = rebuilt(graph, node, args)
         if node.op in SUMS and (node not in inside or uses[node] > 1):
             plain = terms_of(node, inside)
-            kept = without_opposites(plain, uses) if len(plain) <= MOST_TERMS else plain
+            kept = without_opposites(plain, uses) if len(plain) <= MOST_FACTORED_TERMS else plain
             terms = [_Term(sign, term, _factors(term, whole)) for sign, term in kept]
             groups = _grouped(terms, numbers=apart is not None)
             if len(kept) < len(plain) or any(group.common for group in groups):
@@ -69,7 +69,7 @@ def _factors(term: Scalar, whole: Collection[Scalar]) -> tuple[Scalar, ...]:
 
 def _grouped(terms: Sequence[_Term], numbers: bool) -> list[_Group]:
     """The terms in groups, those first that save most products; in the order of their first terms."""
-    left = dict(enumerate(terms)) if len(terms) <= MOST_TERMS else {}
+    left = dict(enumerate(terms)) if len(terms) <= MOST_FACTORED_TERMS else {}
     groups = []
     while left:
         holders: dict[Scalar, list[int]] = {}

@@ -11,8 +11,8 @@ from symgen.symbolic.scalar import Graph, Scalar
 
 Term: TypeAlias = tuple[int, Scalar]
 SUMS = frozenset({"add", "sub"})
-# Longer sums stay as they are.
-MOST_TERMS = 64
+# Terms of a sum up to which common factors are looked for in it.
+MOST_FACTORED_TERMS = 64
 
 
 def terms_of(node: Scalar, inside: Collection[Scalar]) -> list[Term]:
@@ -64,7 +64,7 @@ def _added_up(node: Scalar) -> list[Term]:
     """The terms of a sum and of the sums that it adds up; none for what is no sum."""
     found: list[Term] = []
     stack = [(1, node)] if node.op in SUMS else []
-    while stack and len(found) + len(stack) <= MOST_TERMS:
+    while stack and len(found) + len(stack) <= MOST_FACTORED_TERMS:
         sign, part = stack.pop()
         if part.op in SUMS:
             left, right = part.args

@@ -1,0 +1,82 @@
+"""Limits that keep derivations short: beyond each of them a scalar stays as it stands, up to it it does not."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+
+from symgen.symbolic import content, polynomial
+from symgen.symbolic.content import usual_number
+from symgen.symbolic.passes.shared_parts import MOST_SHARING_TERMS, with_shared_sums
+from symgen.symbolic.polynomial import MOST_EXPANDED_TERMS, Multiplier, refactored
+from symgen.symbolic.products import MOST_FACTORS
+from symgen.symbolic.scalar import Graph, Scalar
+from symgen.validity.driven import MOST_LISTED_MINORS, driven_minors
+
+
+def symbols(graph: Graph, letter: str, count: int) -> list[Scalar]:
+    return [graph.symbol(f"{letter}{k}") for k in range(count)]
+
+
+def test_a_common_number_is_looked_for_down_to_a_depth() -> None:
+    graph = Graph()
+    value = 3 * graph.symbol("x")
+    for k in range(content.DEEPEST - 1):
+        value = value + 3 * graph.symbol(f"y{k}")
+    assert usual_number([value]) == 3
+    assert usual_number([value + 3 * graph.symbol("z")]) == Fraction(1)
+
+
+@pytest.mark.parametrize("more", [0, 1])
+def test_long_products_are_not_taken_apart(more: int) -> None:
+    graph = Graph()
+    factors = symbols(graph, "f", MOST_FACTORS + more)
+    product = factors[0]
+    for factor in factors[1:]:
+        product = product * factor
+    _, powers = graph.products.monomial(product)
+    assert len(powers) == (1 if more else MOST_FACTORS)
+
+
+def test_sums_of_many_terms_are_not_multiplied_out() -> None:
+    graph = Graph()
+    few, many = (graph.sum(symbols(graph, letter, count)) for letter, count in (("a", 10), ("b", 12)))
+    multiplier = Multiplier(graph, lambda _: False)
+    short, long = few * graph.sum(symbols(graph, "c", 12)), many * graph.sum(symbols(graph, "d", 11))
+    assert len(multiplier.polynomial(short) or ()) == 120 == MOST_EXPANDED_TERMS
+    assert multiplier.polynomial(long) is None
+
+
+def test_outputs_of_many_operations_are_not_multiplied_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    graph = Graph()
+    a, b, c = symbols(graph, "x", 3)
+    output = a * b + a * c
+    multiplier = Multiplier(graph, lambda _: False)
+    assert refactored(graph, [output], multiplier, lambda _: False) != [output]
+    monkeypatch.setattr(polynomial, "MOST_EXPANDED_OPERATIONS", output.size - 1)
+    assert refactored(graph, [output], multiplier, lambda _: False) == [output]
+
+
+@pytest.mark.parametrize("more", [0, 1])
+def test_long_sums_share_no_parts(more: int) -> None:
+    graph = Graph()
+    a, b = symbols(graph, "x", 2)
+    outputs = []
+    for letter in "pq":
+        total = a
+        for term in (*symbols(graph, letter, MOST_SHARING_TERMS - 2 + more), b):
+            total = total + term
+        outputs.append(total)
+    assert (with_shared_sums(graph, outputs) == outputs) is bool(more)
+
+
+def test_many_minors_are_not_listed(monkeypatch: pytest.MonkeyPatch) -> None:
+    graph = Graph()
+    n, r = 6, 3
+    rows = tuple(tuple(symbols(graph, f"b{i}_", n)) for i in range(r))
+    inputs = [tuple(graph.one if j == k else graph.zero for j in range(n)) for k in range(n)]
+    assert MOST_LISTED_MINORS > 20
+    assert driven_minors(graph, rows, inputs, n) is not None
+    monkeypatch.setattr("symgen.validity.driven.MOST_LISTED_MINORS", 19)
+    assert driven_minors(graph, rows, inputs, n) is None
