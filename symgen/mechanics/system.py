@@ -62,7 +62,7 @@ class System:
         for definition in model.definitions:
             if definition.name not in self.names:
                 self.names[definition.name] = translate(graph, definition.value, self.names)
-        self.factoring = Factoring(graph, self.parameters)
+        self.factoring = Factoring(graph, self.parameters, self.q)
         self.definitions = {d.name: self.names[d.name] for d in model.definitions}
 
     def apart(self) -> System:

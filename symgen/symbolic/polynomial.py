@@ -1,8 +1,8 @@
 """Scalars multiplied out, reduced by s^2 + c^2 = 1, and factored again: shorter where products were nested by accident.
 
 A polynomial maps monomials over atoms to rational coefficients.  Atoms are symbols, sines and cosines, and whatever is
-neither a sum nor a product; sums of parameters stay whole, because nothing cancels into them.  Exponents may be
-negative: denominators are atoms too.
+neither a sum nor a product; sums of parameters stay whole, because nothing cancels into them, and differences of
+coordinates where nothing cancels between them.  Exponents may be negative: denominators are atoms too.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import TypeAlias
 
+from symgen.symbolic.differences import Differences
 from symgen.symbolic.monomials import LARGEST_POWER, Coefficient, Monomial, Monomials, Terms
 from symgen.symbolic.scalar import Graph, Scalar
 
@@ -28,16 +29,34 @@ class _TooLongError(Exception):
 
 
 class Multiplier:
-    """Multiplies scalars out; `whole` tells which sums are left alone."""
+    """Multiplies scalars out; `whole` tells which sums are left alone, `differences` which may be."""
 
-    def __init__(self, graph: Graph, whole: Callable[[Scalar], bool]) -> None:
+    def __init__(self, graph: Graph, whole: Callable[[Scalar], bool], differences: Differences | None = None) -> None:
         self._graph = graph
         self._whole = whole
+        self._differences = differences
+        # all of it multiplied out, asked where differences were met
+        self._further = None if differences is None else Multiplier(graph, whole)
+        self._met: set[int] = set()
         self._known: dict[Scalar, tuple[Terms, int]] = {}
         self._monomials = Monomials(graph)
 
     def polynomial(self, node: Scalar) -> Polynomial | None:
-        """The scalar as a reduced polynomial, or None where it has too many terms or too high a degree."""
+        """The scalar as a reduced polynomial, or None where it has too many terms or too high a degree.
+
+        What becomes small with products of differences stays a polynomial of these, unless without them no more terms
+        are left.  A single factor multiplied out is as exact as the coordinates are.
+        """
+        found = self._polynomial(node)
+        if self._further is None or not self._met:
+            return found
+        further = self._further.polynomial(node)
+        if found is None or further is None:
+            return further if found is None else found
+        squared = any(sum(power for atom, power in key if power > 0 and atom in self._met) > 1 for key in found)
+        return found if squared and len(found) < len(further) else further
+
+    def _polynomial(self, node: Scalar) -> Polynomial | None:
         try:
             terms, _ = self._expand(node)
         except _TooLongError:
@@ -59,6 +78,10 @@ class Multiplier:
             return ({0: _whole(value)} if value else {}), 0
         if node.op in ("add", "sub") and self._whole(node):
             return {self._monomials.unit(node.serial): 1}, 1
+        if node.op in ("add", "sub") and self._differences is not None and (read := self._differences.read(node)):
+            atom, factor = read
+            self._met.add(atom.serial)
+            return {self._monomials.unit(atom.serial): _whole(factor)}, 1
         match node.op:
             case "add" | "sub":
                 (a, high), (b, other) = self._expand(node.args[0]), self._expand(node.args[1])

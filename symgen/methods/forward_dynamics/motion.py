@@ -68,10 +68,10 @@ class Problem:
         becomes small where a rank drops has to be kept: the square of a small difference, multiplied out, is the
         difference of numbers that are not small.
         """
-        fixed = self._mechanics.factoring.fixed
+        factoring = self._mechanics.factoring
         if kept not in self._multipliers:
-            self._multipliers[kept] = Multiplier(self.graph, lambda node: node in kept)
+            self._multipliers[kept] = factoring.multiplier(lambda node: node in kept)
         shared = share_angles(self.graph, values)
-        found = refactored(self.graph, shared, self._multipliers[kept], fixed)
+        found = refactored(self.graph, shared, self._multipliers[kept], factoring.fixed)
         same_values("multiplying sums of parameters out", shared, found)
         return found

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 from symgen.symbolic.angles import share_angles
+from symgen.symbolic.differences import Differences
 from symgen.symbolic.identity import same_values
 from symgen.symbolic.passes.forgetting import forgetting
 from symgen.symbolic.polynomial import Multiplier, refactored
@@ -16,10 +17,14 @@ LONGEST_CANCELLED = 200
 
 
 class Factoring:
-    """Multiplies scalars out and factors them again; sums of parameters and the sums in `kept` stay whole."""
+    """Multiplies scalars out and factors them again; sums of parameters and the sums in `kept` stay whole.
 
-    def __init__(self, graph: Graph, parameters: Sequence[Scalar]) -> None:
+    Differences of `coordinates` do where that is no longer.
+    """
+
+    def __init__(self, graph: Graph, parameters: Sequence[Scalar], coordinates: Sequence[Scalar] = ()) -> None:
         self.graph = graph
+        self._coordinates = coordinates
         self._fixed: dict[Scalar, bool] = dict.fromkeys(parameters, True)
         self._multipliers: dict[frozenset[Scalar], Multiplier] = {}
 
@@ -41,11 +46,15 @@ class Factoring:
             self._fixed = {node: fixed for node, fixed in self._fixed.items() if stays(node)}
             self._multipliers.clear()
 
+    def multiplier(self, whole: Callable[[Scalar], bool]) -> Multiplier:
+        """One that leaves sums alone as `whole` tells, and differences of coordinates where that is no longer."""
+        return Multiplier(self.graph, whole, Differences(self.graph, self._coordinates, self.fixed))
+
     def shorten(self, outputs: Sequence[Scalar], kept: frozenset[Scalar] = frozenset()) -> tuple[Scalar, ...]:
         """The scalars multiplied out, cancelled and factored where they are not too long."""
         multiplier = self._multipliers.get(kept)
         if multiplier is None:
-            multiplier = Multiplier(self.graph, lambda node: node in kept or self.fixed(node))
+            multiplier = self.multiplier(lambda node: node in kept or self.fixed(node))
             self._multipliers[kept] = multiplier
         shared = share_angles(self.graph, outputs)
         shorter = refactored(self.graph, shared, multiplier, self.fixed)

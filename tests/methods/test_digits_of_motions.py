@@ -1,0 +1,43 @@
+"""q_ddot and lambda keep their digits where lengths are far from those of the model file."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from symgen.lowering.schedule import schedule
+from symgen.methods.method import MOTIONS
+from symgen.model.load import load_text
+from symgen.quantities.select import derive_quantities
+from symgen.verify.lanes import RoundingErrors
+
+# A point on a rod about a place that is no number of binary digits.
+ROD = """model: rod
+coordinates: {x: {unit: m}, y: {unit: m}}
+parameters: {m: {value: 3.3}, squared: {value: 0.2}}
+kinetic_energy: m/2*(x_dot**2 + y_dot**2)
+potential_energy: 9.81*y
+constraints: {geometric: {rod: (x + 1.2)**2 + (y - 0.73)**2 - squared}}
+inputs:
+  u: {acts_on: {x: (5 - x)/sqrt((x - 5)**2 + (y - 5)**2), y: (5 - y)/sqrt((x - 5)**2 + (y - 5)**2)}}
+outputs: [forward_dynamics, multipliers]
+configuration: {x: -0.753, y: 0.73}
+"""
+RADIUS = 1.4e-5
+
+
+def error(text: str, quantity: str, state: dict[str, list[float]]) -> float:
+    """The rounding error of a kernel, estimated in units of d + eps |y|."""
+    selection = derive_quantities(load_text(text, "model.yaml"), [quantity])
+    program = schedule(selection.mechanics, selection.quantities, ("float64",))["float64"]
+    (kernel,) = (one for one in program.kernels if one.name == quantity)
+    (found,) = RoundingErrors(kernel).at({part: np.array([values]) for part, values in state.items()})
+    assert found > 0
+    return float(found)
+
+
+@pytest.mark.parametrize("quantity", MOTIONS)
+def test_squares_of_short_distances_are_not_multiplied_out(quantity: str) -> None:
+    q = [-1.2 + 0.6 * RADIUS, 0.73 - 0.8 * RADIUS]
+    state = {"q": q, "qd": [0.5, 0.4], "u": [4.0], "p": [3.3, RADIUS**2]}
+    assert error(ROD, quantity, state) < 8
