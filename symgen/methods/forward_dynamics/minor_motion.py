@@ -121,7 +121,10 @@ class MinorMotion:
 
     def press(self, force: Vector) -> Vector:
         """(B_G^+)^T f."""
-        joined = wedge(self._weighted, force)
+        return self._pressed(wedge(self._weighted, force))
+
+    def _pressed(self, joined: Multivector) -> Vector:
+        """The same of p ^ f."""
         tops = (_top(joined, rest, self._n, self._graph.zero) * (-1) ** k for k, rest in enumerate(self._rests))
         return tuple(top * self._inverse for top in tops)
 
@@ -138,7 +141,25 @@ class MinorMotion:
         accelerations = tuple(x - y for x, y in zip(self.solve(problem.force), shift, strict=True))
         inertial = matvec(self._graph, problem.mass_matrix, shift)
         loaded = tuple(f + x for f, x in zip(problem.force, inertial, strict=True))
-        return Motion(accelerations, self.press(loaded), self.guards)
+        whole = wedge(self._weighted, loaded)
+        multipliers = self._pressed(whole)
+        if self._expanded:
+            # ranks are tested beside them, and have products in common; what is made first others find in its form
+            tested = [x for guard in self.guards for x in (guard.denominator, guard.scale) if x is not None]
+            cancelled = self._pressed(self._cancelled(whole, inertial))
+            multipliers = min((cancelled, multipliers), key=lambda one: cost((*one, *tested)).weight)
+        return Motion(accelerations, multipliers, self.guards)
+
+    def _cancelled(self, whole: Multivector, inertial: Vector) -> Multivector:
+        """p ^ (f + G y) with p ^ f multiplied out beside p ^ G y where that is shorter.
+
+        A force that presses no row cancels there exactly: in p ^ (f + G y) it takes the digits of what is smaller.
+        """
+        driven, moved = wedge(self._weighted, self._problem.force), wedge(self._weighted, inertial)
+        shorter = self._problem.multiplied_out([*driven.values()], in_either_sign([self._omega]))
+        alone, zero = dict(zip(driven, shorter, strict=True)), self._graph.zero
+        apart = {mask: alone.get(mask, zero) + moved.get(mask, zero) for mask in whole}
+        return {mask: min(apart[mask], whole[mask], key=lambda one: cost((one,)).weight) for mask in whole}
 
 
 def minor_motion(problem: Problem) -> MinorMotion:
