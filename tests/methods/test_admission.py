@@ -182,7 +182,7 @@ def test_ways_that_come_no_closer_are_given_up(monkeypatch: pytest.MonkeyPatch) 
         return found is not None, done() - before
 
     hopeless, far = 2 + angle, work(2 + angle)
-    monkeypatch.setattr(search_module, "STALLED_STEPS", search_module.STEPS)
+    monkeypatch.setattr(search_module, "STALLED_STEPS", search_module.SEARCH_STEPS)
     assert far[0] is work(hopeless)[0] is False
     assert far[1] < 0.6 * work(hopeless)[1]
 
