@@ -22,7 +22,8 @@ class Differences:
         self._coordinates = frozenset(coordinates)
         self._fixed = fixed
         self._terms: dict[Scalar, _Terms | None] = {}
-        self._atoms: dict[tuple[tuple[int, Fraction], ...], Scalar] = {}
+        # by what they hold per unit of their first coordinate: an atom, and how much of that coordinate it holds
+        self._atoms: dict[tuple[tuple[int, Fraction], ...], tuple[Scalar, Fraction]] = {}
 
     def read(self, node: Scalar) -> tuple[Scalar, Fraction] | None:
         """The atom that a sum is a multiple of, and the factor; None for what is no difference."""
@@ -34,20 +35,17 @@ class Differences:
         key = tuple(sorted((part.serial, value / factor) for part, value in terms.items()))
         if key not in self._atoms:
             self._atoms[key] = self._atom(node, terms, factor)
-        return self._atoms[key], factor / self._sign(self._atoms[key], first)
+        atom, share = self._atoms[key]
+        return atom, factor / share
 
-    def _sign(self, atom: Scalar, first: Scalar) -> Fraction:
-        terms = self._linear(atom)
-        assert terms is not None
-        return terms[first]
-
-    def _atom(self, node: Scalar, terms: _Terms, factor: Fraction) -> Scalar:
+    def _atom(self, node: Scalar, terms: _Terms, factor: Fraction) -> tuple[Scalar, Fraction]:
         """The sum as it stands where it is short, so that others have it in common with results."""
         products = [part for part, value in terms.items() if abs(value) != 1 and not part.is_one]
         if abs(factor) == 1 and node.size < len(terms) + len(products):
-            return node
+            return node, factor
         ordered = sorted(terms.items(), key=lambda term: (term[0] not in self._coordinates, term[0].serial))
-        return self._graph.sum(self._graph.const(value / factor) * part for part, value in ordered)
+        total = self._graph.sum(self._graph.const(value / factor) * part for part, value in ordered)
+        return total, Fraction(1)
 
     def _linear(self, node: Scalar) -> _Terms | None:
         """The coefficients of coordinates and fixed scalars, of 1 for numbers; None for what is not linear."""

@@ -48,12 +48,16 @@ class Multiplier:
         are left.  A single factor multiplied out is as exact as the coordinates are.
         """
         found = self._polynomial(node)
-        if self._further is None or not self._met:
+        if self._further is None:
             return found
+        if found is not None:
+            powers = [[power for atom, power in key if atom in self._met] for key in found]
+            if not any(powers):
+                return found
         further = self._further.polynomial(node)
         if found is None or further is None:
             return further if found is None else found
-        squared = any(sum(power for atom, power in key if power > 0 and atom in self._met) > 1 for key in found)
+        squared = any(sum(power for power in each if power > 0) > 1 for each in powers)
         return found if squared and len(found) < len(further) else further
 
     def _polynomial(self, node: Scalar) -> Polynomial | None:

@@ -7,8 +7,8 @@ midpoints count.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager
 from fractions import Fraction
 from typing import Any, TypeAlias
 
@@ -27,14 +27,10 @@ class UndefinedError(Exception):
     """A function has no value here, or no rule in this module."""
 
 
-@contextmanager
-def precision() -> Iterator[None]:
+def precision() -> AbstractContextManager[None]:
     """The working precision, for a while."""
-    before, ctx.prec = ctx.prec, BITS
-    try:
-        yield
-    finally:
-        ctx.prec = before
+    working: AbstractContextManager[None] = ctx.workprec(BITS)
+    return working
 
 
 def precise(value: Fraction | float) -> Precise:

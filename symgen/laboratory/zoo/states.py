@@ -170,7 +170,7 @@ class Walker:
                 break
             steep = rows / lengths[:, None]
             steep[np.linalg.norm(rows, axis=1) <= NOTHING] = 0
-            q = q - np.linalg.pinv(steep, rcond=SAME) @ (residual / lengths)
+            q = q - np.linalg.lstsq(steep, residual / lengths, rcond=SAME)[0]
         return q if best < CLOSED else None
 
     def refined(self, q: Any, parameters: Mapping[str, float]) -> Any:
