@@ -197,10 +197,8 @@ class Witness:
         )
         return found.units, Finding("witness: number", told)
 
-    def compare(
-        self, target: Target, quantity: str, state: State, ranks: Ranks, most: int = PERTURBATIONS
-    ) -> Comparison | None:
-        """One result beside the truth, None where there is no truth; `most` perturbations tell what is allowed."""
+    def compare(self, target: Target, quantity: str, state: State, ranks: Ranks) -> Comparison | None:
+        """One result beside the truth, None where there is no truth."""
         scalar = target.scalar
         given = State(*(rounded(part, scalar) for part in (state.q, state.qd, state.qdd, state.u, state.parameters)))
         with precision():
@@ -216,7 +214,7 @@ class Witness:
                     # the branch that was drawn is told to be one on which inputs lose rank
                     certain = answer.status != ACTUATION_RANK
                 return Comparison(answer.status, 0.0, 0.0, truth.clear, certain)
-            units = self._units(answer, truth, quantity, given, ranks, EPS[scalar], most)
+            units = self._units(answer, truth, quantity, given, ranks, EPS[scalar])
         apart = _norm([a - b for a, b in zip(answer.value, exact, strict=True)])
         return Comparison(0, units, apart / (_norm(exact) or 1.0), truth.clear, False)
 
@@ -234,10 +232,7 @@ class Witness:
             size = _norm([float(x.mid()) for x in truth.value])
         return moved / size if size else 0.0 if not moved else math.inf
 
-    def _units(
-        self, answer: Answer, truth: Truth, quantity: str, state: State, ranks: Ranks, eps: float,
-        most: int = PERTURBATIONS,
-    ) -> float:  # fmt: skip
+    def _units(self, answer: Answer, truth: Truth, quantity: str, state: State, ranks: Ranks, eps: float) -> float:
         """The error over what is allowed; what rounding the inputs does is worked out only where it is needed."""
         if not all(map(math.isfinite, answer.value)) or len(answer.value) != len(truth.value):
             return math.inf
@@ -245,7 +240,7 @@ class Witness:
         size = _norm([float(x.mid()) for x in truth.value])
         moved = 0.0
         dice = Dice("perturbations", self._seed)
-        for _ in range(most + 1):
+        for _ in range(PERTURBATIONS + 1):
             if error <= ALLOWED * (moved + eps * size):
                 break
             other = self._truth(quantity, state, ranks, (dice, eps))
