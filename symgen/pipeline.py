@@ -22,7 +22,7 @@ from symgen.generation.draft import Draft, draft_of
 from symgen.generation.facts import facts, invalid_forms
 from symgen.generation.files import backend_of, files_of, sources_of, verified
 from symgen.generation.notices import notices
-from symgen.generation.refusals import beyond_range, no_states
+from symgen.generation.refusals import beyond_range
 from symgen.generation.requested import requested_outputs
 from symgen.generation.results import LargestError, Options, Result, Summary
 from symgen.ir.kernel import Program, Scalar
@@ -33,6 +33,7 @@ from symgen.runtime.garbage import let_go_and_keep
 
 if TYPE_CHECKING:
     from symgen.generation.fallback import Fallback
+    from symgen.generation.parameter_bounds import ParameterBounds
     from symgen.report.facts import ReportFiles
     from symgen.report.proof import ProofFacts
     from symgen.report.targets import TargetCore
@@ -61,6 +62,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
     draft: Draft | None = None
     expected: Expected | None = None
     fallback: Fallback | None = None
+    bounds: ParameterBounds | None = None
     while True:
         with _reporting(model, options.verify) if "report" in options.parts else nullcontext() as reporting:
             if draft is None:
@@ -77,6 +79,13 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
                     draft, tried = trial.settled(draft)
                     if not draft.program.kernels:
                         return _result(draft, options, {}, replace(tried, left_out=draft.left_out))
+            if options.verify and verified(options):
+                from symgen.generation.parameter_bounds import ParameterBounds
+                from symgen.generation.states import expected_of
+
+                expected = expected or expected_of(path, draft, options.states, progress)
+                bounds = bounds or ParameterBounds(expected)
+                draft = bounds.of(draft)
             if reporting is not None:
                 reporting.send(facts(draft))
             progress("writing")
@@ -84,7 +93,9 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
                 sources = sources_of(draft, options)
             certificate, expected = _verified(draft, sources, options, progress, expected)
             if certificate is not None and expected is None and certificate.faults:
-                raise ModelError(str(path), path.read_text(encoding="utf-8"), (no_states(draft.model, certificate),))
+                from symgen.generation.states import without_states
+
+                raise without_states(path, draft.model, certificate.faults[0].what)
             other = None
             if certificate is not None and expected is not None:
                 from symgen.generation.fallback import Fallback
@@ -164,7 +175,7 @@ def _verified(
     c_sources, python_source = generated_sources(draft.model, run)
     if not c_sources and python_source is None:
         return None, None
-    kernels = {scalar: program.kernels for scalar, program in draft.programs.items()}
+    kernels = {scalar: program.kernels for scalar, program in draft.written.items()}
     found = verify_expecting(draft.model, kernels, c_sources, python_source, options.states, progress, expected)
     return replace(found[0], left_out=draft.left_out), found[1]
 
@@ -210,7 +221,7 @@ def _result(
         certificate=None if certificate is None else certificate.to_json(),
         failures=() if certificate is None else certificate.failures,
         left_out=draft.left_out,
-        programs=draft.programs,
+        programs=draft.written,
     )
 
 

@@ -7,9 +7,11 @@ from collections.abc import Iterator
 from symgen.backends.comments import docstring_lines, indent_of, one_line
 from symgen.backends.locals import Names
 from symgen.backends.operations import count_operations
+from symgen.ir.bounded import Bound, bounds_of
 from symgen.ir.kernel import Kernel, Program, Status
 from symgen.model.model import Allocation, Model, Parameter
 
+BOUNDS_A_LINE = 4
 STATUS_MEANING: dict[Status, str] = {
     Status.OK: "the result is valid",
     Status.NOT_FINITE: "an input that matters, or a result, is not finite",
@@ -17,6 +19,7 @@ STATUS_MEANING: dict[Status, str] = {
     Status.ACTUATION_RANK: "the inputs lose rank at this configuration",
     Status.ANGLE_RANGE: "an angle is beyond the range of the sine and cosine",
     Status.MASS_RANK: "the masses do not determine the acceleration although the constraints keep their rank",
+    Status.PARAMETER_RANGE: "a parameter is so far from its value in the model file that the result would lose digits",
 }
 
 
@@ -62,16 +65,33 @@ def count_lines(program: Program) -> Iterator[str]:
     yield "(changes of sign are not counted)"
 
 
+def bound_lines(program: Program) -> Iterator[str]:
+    """The bounds of parameters beyond which kernels refuse."""
+    found = {kernel.name: [_bound(*one) for one in bounds_of(kernel)] for kernel in program.kernels}
+    if any(found.values()):
+        yield "Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:"
+        for name, bounds in found.items():
+            lines = [bounds[start : start + BOUNDS_A_LINE] for start in range(0, len(bounds), BOUNDS_A_LINE)]
+            yield from (f"  {name}  {', '.join(line)}" for line in lines)
+
+
+def _bound(bound: Bound, signed: bool) -> str:
+    low, high = (None if end is None else f"{float(end):g}" for end in (bound.low, bound.high))
+    name = f"|{bound.parameter}|" if signed else bound.parameter
+    return " <= ".join(part for part in (low, name, high) if part is not None)
+
+
 def module_lines(model: Model, program: Program) -> tuple[str, ...]:
     """What opens the docstring of a module in Python."""
     lines = list(docstring_lines(f"{model.name}: {model.description or 'constrained mechanical system'}"))
     if model.source:
         lines += ["", *docstring_lines(f"Source: {model.source}")]
-    for group in (symbol_lines(model), count_lines(program)):
-        lines.append("")
+    for group in (symbol_lines(model), count_lines(program), bound_lines(program)):
+        wrapped: list[str] = []
         for line in group:
             indent = indent_of(line)
-            lines += [indent + wrapped for wrapped in docstring_lines(line, "    ")] if indent else [line]
+            wrapped += [indent + part for part in docstring_lines(line, "    ")] if indent else [line]
+        lines += ["", *wrapped] if wrapped else []
     return tuple(lines)
 
 

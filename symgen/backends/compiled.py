@@ -51,9 +51,10 @@ def compile_templates(environment: Environment, templates: Path) -> None:
         bucket = cache.get_bucket(environment, name, None, source)
         bucket.code = environment.compile(source, name)
         target = folder / bucket.key
-        staged = target.with_suffix(".new")
+        # several builds may do this at a time, each under names of its own
+        staged = target.with_name(f".{target.name}.{os.getpid()}")
         staged.write_bytes(bucket.bytecode_to_string())
         os.replace(staged, target)
         made.add(target)
-    for path in set(folder.iterdir()) - made:
-        path.unlink()
+    for path in set(folder.glob("[!.]*")) - made:
+        path.unlink(missing_ok=True)

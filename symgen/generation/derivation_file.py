@@ -11,6 +11,7 @@ from typing import Any
 from symgen import __version__
 from symgen.backends.operations import count_operations
 from symgen.backends.quantities import BATCHED
+from symgen.ir.bounded import Bound, bounds_of
 from symgen.ir.given_trig import given_trig
 from symgen.ir.kernel import Kernel, Program
 from symgen.ir.prepare import prepare
@@ -33,6 +34,7 @@ def derivation_json(model: Model, derivations: Selection, structure: Structure, 
             "way": choice.way,
             **({"form": choice.form} if choice.form else {}),
             **({"twice_the_digits": list(choice.wide)} if choice.wide else {}),
+            **({"bounds": bounds} if (bounds := {b.parameter: _ends(b) for b, _ in bounds_of(kernel)}) else {}),
             "counted_cost": dict(choice.costs),
             "operations": _operations(kernel),
             "statuses": sorted({check.status.name for block in kernel.blocks for check in block.checks}),
@@ -80,6 +82,10 @@ def derivation_json(model: Model, derivations: Selection, structure: Structure, 
         "kernels": kernels,
     }
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
+
+
+def _ends(bound: Bound) -> list[float | None]:
+    return [None if end is None else float(end) for end in (bound.low, bound.high)]
 
 
 def _form(form: MethodChoice | None) -> dict[str, Any] | None:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from symgen.generation.results import Options, Trig, WrongUseError
+from symgen.ir.bounded import Bound, bounded
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.ir.library_trig import with_library_trig
 from symgen.lowering.schedule import schedule
 from symgen.mechanics.structure import Structure, analyse
+from symgen.model.checks.signs import nonnegative_parameters, positive_parameters
 from symgen.model.model import Model
 from symgen.quantities.alternatives import Alternative
 from symgen.quantities.select import Choice, NoSuchFormError, Rejection, Selection, derive_quantities
@@ -27,7 +29,8 @@ REJECTED = "verification rejects it"
 class Draft:
     """The derived quantities of a model and their kernels; `left_out` is what verification rejects in every way.
 
-    `notice` says why it does not hold what an earlier verification led to, where that was asked for.
+    `bounds` are those of parameters by quantity, which `written` programs check.  `notice` says why it does not hold
+    what an earlier verification led to, where that was asked for.
     """
 
     model: Model
@@ -37,6 +40,18 @@ class Draft:
     trig: Trig
     left_out: tuple[LeftOut, ...] = ()
     notice: str = ""
+    bounds: Mapping[str, tuple[Bound, ...]] = field(default_factory=dict)
+
+    @property
+    def written(self) -> dict[Scalar, Program]:
+        """The programs as they are written: with the checks of bounds."""
+        positive = positive_parameters(self.model) | nonnegative_parameters(self.model)
+        return {
+            scalar: replace(
+                program, kernels=tuple(bounded(k, self.bounds.get(k.name, ()), positive) for k in program.kernels)
+            )
+            for scalar, program in self.programs.items()
+        }
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -27,7 +27,7 @@ def sources_of(draft: Draft, options: Options) -> dict[str, str]:
     sources: dict[str, str] = {}
     for name in (name for name in BACKENDS if name in needed):
         made = backend(name)
-        for program in made.programs(draft.programs, options.scalars):
+        for program in made.programs(draft.written, options.scalars):
             kind = f" in {program.scalar}" if made.of_each_scalar else ""
             for variant in each(f"{made.language}{kind}", made.variants):
                 sources |= variant.emit(draft.model, program)
@@ -37,7 +37,7 @@ def sources_of(draft: Draft, options: Options) -> dict[str, str]:
 def files_of(draft: Draft, options: Options, sources: Mapping[str, str]) -> dict[str, str | bytes]:
     """The sources as far as they are asked for, and what is made beside them once nothing replaces them any more."""
     files: dict[str, str | bytes] = {}
-    programs = backend("c").programs(draft.programs, options.scalars)
+    programs = backend("c").programs(draft.written, options.scalars)
     files |= {path: text for path, text in sources.items() if backend_of(path) in options.parts}
     if "package" in options.parts:
         from symgen.package.files import emit_package
@@ -50,7 +50,8 @@ def files_of(draft: Draft, options: Options, sources: Mapping[str, str]) -> dict
 
         with working("drivers for proofs"):
             files |= emit_proofs(draft.model, programs)
-    files["derivation.json"] = derivation_json(draft.model, draft.derivations, draft.structure, draft.program)
+    written = draft.written["float64"]
+    files["derivation.json"] = derivation_json(draft.model, draft.derivations, draft.structure, written)
     return files
 
 

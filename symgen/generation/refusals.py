@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from symgen.backends.literals import LiteralRangeError
 from symgen.diagnostics import Mistake
 from symgen.model.model import Model
-
-if TYPE_CHECKING:
-    from symgen.verify.certificate import Certificate
 
 MORE_STATES = "give a start under `configuration` and the ranges of the coordinates"
 
@@ -22,9 +17,9 @@ def beyond_range(error: LiteralRangeError) -> Mistake:
     return Mistake(str(error), remedy)
 
 
-def no_states(model: Model, certificate: Certificate) -> Mistake:
+def no_states(model: Model, why: str) -> Mistake:
     """What verification has no states for, at the first row that they must satisfy."""
-    message, _, remedy = certificate.faults[0].what.partition("; ")
+    message, _, remedy = why.partition("; ")
     spans = [row.span for row in model.constraints if row.kind == "geometric" and row.span is not None]
     place = next((span for span in spans if not span.file), None)
     return Mistake(message.removeprefix(f"{model.name}: "), remedy or MORE_STATES, place)

@@ -103,7 +103,7 @@ class Kernels:
         wanted = tuple(name for name in quantities if name in known)
         draft = as_recorded(model, wanted, Options(scalars=SCALARS, measured=out))
         self.notes = draft.notes
-        self.programs: Mapping[Scalar, Program] = draft.programs
+        self.programs: Mapping[Scalar, Program] = draft.written
         self._ways = tuple(_Way(choice.quantity, choice.way) for choice in draft.derivations.choices)
         self.runner = Runner(model, self.programs, folder)
         self.files, self.names, self.compiler = self.runner.files, self.runner.names, self.runner.compiler

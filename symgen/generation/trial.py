@@ -12,19 +12,15 @@ from dataclasses import replace
 from pathlib import Path
 
 from symgen.backends.literals import decimal_text
-from symgen.diagnostics import ModelError
 from symgen.generation.draft import Draft
 from symgen.generation.fallback import Fallback
 from symgen.generation.files import verified
-from symgen.generation.refusals import no_states
 from symgen.generation.results import Options
+from symgen.generation.states import expected_of
 from symgen.ir.kernel import Literal, Program, Scalar
-from symgen.verify.certificate import Certificate, Fault
+from symgen.verify.certificate import Certificate
 from symgen.verify.compile import find_compiler
-from symgen.verify.expected import Expected
-from symgen.verify.reference.reference import ReferenceValueError
 from symgen.verify.run import blank_certificate
-from symgen.verify.states import VerificationError
 
 
 class Trial:
@@ -43,15 +39,7 @@ class Trial:
         self._progress = progress
         self.fallback = Fallback(options, progress)
         _check_literals(draft.programs)
-        progress("verifying: looking for states")
-        names = dict.fromkeys(kernel.name for program in draft.programs.values() for kernel in program.kernels)
-        try:
-            self.expected = Expected(draft.model, tuple(names), options.states, progress)
-            for scalar in self._scalars:
-                self.expected.values(scalar)
-        except (VerificationError, ReferenceValueError) as fault:
-            found = replace(self._blank, faults=(Fault(str(fault)),))
-            raise ModelError(str(path), path.read_text(encoding="utf-8"), (no_states(draft.model, found),)) from fault
+        self.expected = expected_of(path, draft, options.states, progress, self._scalars)
 
     def settled(self, draft: Draft) -> tuple[Draft, Certificate]:
         """The draft that nothing speaks against any more, and what its trial found."""

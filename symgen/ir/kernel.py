@@ -27,6 +27,7 @@ class Status(IntEnum):
     ACTUATION_RANK = 3
     ANGLE_RANGE = 4
     MASS_RANK = 5
+    PARAMETER_RANGE = 6
 
 
 OperationName: TypeAlias = Choice[

@@ -20,6 +20,7 @@ MEANING = {
     Status.ACTUATION_RANK: "the rank of the projected control matrix drops",
     Status.ANGLE_RANGE: "an angle has left the range of the sine and cosine",
     Status.MASS_RANK: "the accelerations are not determined",
+    Status.PARAMETER_RANGE: "a parameter is too far from its value in the model file",
 }
 
 

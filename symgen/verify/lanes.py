@@ -57,6 +57,11 @@ class RoundingErrors:
         arguments and parameters; what literals of the model add is left out, so that this is more than there is rather
         than less.
         """
+        own, unit = self.with_units(given)
+        return own / unit
+
+    def with_units(self, given: Mapping[str, Lanes]) -> tuple[Lanes, Lanes]:
+        """The errors and their units, both for a roundoff of 1; 0 and infinite where the kernel refuses."""
         count = len(next(iter(given.values())))
         with np.errstate(all="ignore"):
             values, regular = self._values(given, count)
@@ -64,7 +69,7 @@ class RoundingErrors:
             own, inputs = self._shares(values, count)
             unit = np.sqrt(sum(x * x for x in outputs)) + LARGEST * np.sqrt(inputs)
             regular &= np.isfinite(unit) & (unit > 0) & np.isfinite(own)
-        return np.sqrt(np.where(regular, own, 0.0)) / np.where(regular, unit, np.inf)
+        return np.sqrt(np.where(regular, own, 0.0)), np.where(regular, unit, np.inf)
 
     def _put(self, name: str) -> int:
         """The place of what is worked out next; numbers stand before all of it, at negative places."""

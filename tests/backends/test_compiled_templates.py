@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader
@@ -42,3 +45,22 @@ def test_without_compiled_templates_nothing_is_written(tmp_path: Path) -> None:
     (tmp_path / "one.jinja").write_text("one")
     assert _environment(tmp_path).get_template("one.jinja").render() == "one"
     assert [path.name for path in tmp_path.iterdir()] == ["one.jinja"]
+
+
+def test_several_builds_at_a_time(tmp_path: Path) -> None:
+    for number in range(20):
+        (tmp_path / f"t{number}.jinja").write_text(f"{number} {{{{ view }}}}")
+    with ThreadPoolExecutor(4) as pool:
+        builds = [pool.submit(_compile, tmp_path) for _ in range(8)]
+    for build in builds:
+        build.result()
+    assert len(list((tmp_path / FOLDER).iterdir())) == 20
+
+
+def _compile(folder: Path) -> None:
+    command = (
+        "import sys; from pathlib import Path; from jinja2 import Environment, FileSystemLoader;"
+        "from symgen.backends.compiled import compile_templates; folder = Path(sys.argv[1]);"
+        "compile_templates(Environment(loader=FileSystemLoader(folder)), folder)"
+    )
+    subprocess.run([sys.executable, "-c", command, str(folder)], check=True)

@@ -143,6 +143,6 @@ def test_no_mistake_leaves_without_a_remedy(remedy: str) -> None:
 def test_what_ends_a_verification_has_a_remedy(what: str) -> None:
     model = load_text(GOOD, "good.yaml")
     certificate = replace(blank_certificate(model, None, {}, None), faults=(Fault(f"{model.name}: {what}"),))
-    mistake = no_states(model, certificate)
+    mistake = no_states(model, certificate.faults[0].what)
     assert mistake.message == "nothing was found"
     assert mistake.remedy == ("look further" if ";" in what else MORE_STATES)

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from symgen.backends.about import STATUS_MEANING, count_lines, renaming_lines, shape_text, symbol_lines, unit_text
+from symgen.backends.about import (
+    STATUS_MEANING,
+    bound_lines,
+    count_lines,
+    renaming_lines,
+    shape_text,
+    symbol_lines,
+    unit_text,
+)
 from symgen.backends.c.file import StatusView, StructView, file_view, files
 from symgen.backends.c.functions import FunctionView, kernel_function
 from symgen.backends.c.names import c_names, status_name, struct_name
@@ -68,9 +76,9 @@ def _about(model: Model, program: Program, names: Names) -> tuple[str, ...]:
     lines = list(c_comment_lines(f"{model.name}: {model.description or 'constrained mechanical system'} ({kind})"))
     if model.source:
         lines += c_comment_lines(f"Source: {model.source}")
-    for group in (symbol_lines(model), renaming_lines(names), count_lines(program)):
-        lines.append("")
-        lines += [wrapped for line in group for wrapped in _comment_line(line)]
+    for group in (symbol_lines(model), renaming_lines(names), count_lines(program), bound_lines(program)):
+        wrapped = [part for line in group for part in _comment_line(line)]
+        lines += ["", *wrapped] if wrapped else []
     return tuple(lines)
 
 

@@ -85,7 +85,7 @@ def mechanism_benchmark(path: Path, progress: Progress, out: Path | None = None)
     if draft.derivations.left_out:
         raise WrongUseError(f"{path}: nothing to measure: {'; '.join(draft.notes)}")
     form = draft.choice(TASK).way
-    programs = {form: draft.programs}
+    programs = {form: draft.written}
     progress("writing peers")
     found, left_out = mechanism_peers(model, load.states)
     candidates = [*symgen_candidates(model, programs, "float64"), *found]

@@ -45,7 +45,7 @@ def programs_of(
     choice = draft.choice(task.quantity)
     absolute = " in absolute angles" if choice.form and choice.way == ABSOLUTE else ""
     name = (choice.form or choice.way) + absolute + choice.digits
-    found: dict[str, Mapping[Scalar, Program]] = {name: draft.programs}
+    found: dict[str, Mapping[Scalar, Program]] = {name: draft.written}
     for form, (mechanics, quantity) in _forms(model, task.quantity):
         if form not in found:
             programs = schedule(mechanics, [quantity], scalars)

@@ -223,6 +223,8 @@ def _in_thresholds(
 ) -> float:
     """The smallest measure that explains a status, in units of its threshold: at most 1 where there is a reason."""
     small = SMALL * model.n * float(UNIT_ROUNDOFF[scalar])
+    if status == Status.PARAMETER_RANGE:
+        return 0.0  # a bound that derivation.json gives, and nothing else
     if status == Status.ANGLE_RANGE:
         angles = [abs(x) for x, c in zip(state.q, model.coordinates, strict=True) if c.is_angle]
         return 2.0 if max(angles, default=0.0) < ANGLE_LIMITS[scalar] / 2 else 0.0

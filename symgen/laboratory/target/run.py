@@ -102,7 +102,7 @@ class _Bench:
 
     def __init__(self, model: Model, out: Path | None, folder: Path, vectors: Vectors, progress: Progress) -> None:
         draft = as_recorded(model, model.outputs, Options(scalars=SCALARS, measured=out))
-        programs = {scalar: program for scalar, program in draft.programs.items() if program.kernels}
+        programs = {scalar: program for scalar, program in draft.written.items() if program.kernels}
         self.model, self.folder, self.vectors, self.progress = model, folder, vectors, progress
         wide = (f"{one.quantity} works{one.digits.lstrip(',')}" for one in draft.derivations.choices if one.wide)
         self.programs, self.notes = programs, (*draft.notes, *wide)

@@ -27,8 +27,15 @@ EXPONENTS = (-9, -6, -3, 3, 6, 9)
 SCALED = "parameters"
 # where one rounding of the inputs moves as much of the truth, a status needs no other reason
 VAGUE = 0.1
-STATUSES = {1: "not finite", 2: "constraint rank", 3: "actuation rank", 4: "angle range", 5: "mass rank"}
-ANGLE_RANGE = 4
+STATUSES = {
+    1: "not finite",
+    2: "constraint rank",
+    3: "actuation rank",
+    4: "angle range",
+    5: "mass rank",
+    6: "parameter range",
+}
+ANGLE_RANGE, PARAMETER_RANGE = 4, 6
 # angles up to twice this have sines in every kernel: sums of two are beyond it
 ANGLES = {"float64": 5e4, "float32": 50.0}
 BEYOND, UNEXPLAINED, UNKNOWN, ANSWERED = "beyond", "unexplained", "no truth", "answered"
@@ -103,7 +110,9 @@ def compared(witness: Witness, folder: Path, model: str, led: Iterable[Led]) -> 
             for quantity in target.quantities:
                 found = witness.compare(target, quantity, one.state, one.ranks)
                 far = one.distance > CERTAIN[target.scalar]
-                if found is not None and found.status == ANGLE_RANGE:
+                if found is not None and found.status == PARAMETER_RANGE:
+                    far = one.kind != SCALED
+                elif found is not None and found.status == ANGLE_RANGE:
                     far = max(map(abs, one.state.q)) < ANGLES[target.scalar]
                 elif far and found is not None and found.certain:
                     far = witness.unit(quantity, one.state, one.ranks, target.scalar) < VAGUE

@@ -1,0 +1,30 @@
+"""How far parameters may be from the values that a draft is verified at: found for each of its kernels once."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from symgen.generation.draft import Draft
+from symgen.ir.bounded import Bound
+from symgen.ir.kernel import Kernel, Scalar
+from symgen.verify.expected import Expected
+from symgen.verify.far_parameters import FarParameters
+
+
+class ParameterBounds:
+    """The bounds for one model, through all rounds of its verification."""
+
+    def __init__(self, expected: Expected) -> None:
+        self._far = FarParameters(expected)
+        self._known: dict[str, tuple[dict[Scalar, Kernel], tuple[Bound, ...]]] = {}
+
+    def of(self, draft: Draft) -> Draft:
+        """The draft with the bounds of its kernels, the same in all scalar types."""
+        found = {}
+        for name in (kernel.name for kernel in draft.program.kernels):
+            kernels, known = draft.kernels(name), self._known.get(name)
+            if known is None or any(kernel is not known[0].get(scalar) for scalar, kernel in kernels.items()):
+                known = self._known[name] = kernels, self._far.bounds(name, draft.programs)
+            if known[1]:
+                found[name] = known[1]
+        return replace(draft, bounds=found)

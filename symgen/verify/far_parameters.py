@@ -1,0 +1,225 @@
+"""How far each parameter may be from the values it is verified at before a kernel loses digits.
+
+One mass or length a thousand times as large as the others hides what they do, and no method that is taken for its
+speed holds that for every parameter.  At states of the verification with one parameter smaller or larger by up to nine
+powers of ten, rounding errors are estimated, and those of float32 measured beside float64; where they are beyond what
+is allowed, the kernel is bounded in both.  Estimates count more than there is: within a power of ten, the reference has
+to find the loss too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from math import dist, floor, log10
+
+import numpy as np
+
+from symgen.ir.bounded import Bound
+from symgen.ir.interpret import round_literal
+from symgen.ir.kernel import UNIT_ROUNDOFF, Block, Kernel, Literal, Operand, Program, Scalar
+from symgen.ir.wide_functions import works_with_pairs
+from symgen.runtime.activity import working
+from symgen.verify.expected import Expected
+from symgen.verify.interpreted import outcomes
+from symgen.verify.lanes import Lanes, RoundingErrors
+from symgen.verify.loops_in_lanes import Loops
+from symgen.verify.many_states import run_many
+from symgen.verify.reference.reference import ReferenceValueError, State
+from symgen.verify.tolerance import FACTOR, expectations
+
+# Powers of ten, looked at one by one and then in quarters; a bound is given in two digits.
+FURTHEST, NEAREST, DIGITS = 9, 0.25, 2
+# States at which that is looked at, fewer for long kernels: so many numbers are held at a time, and worked out at most.
+STATES, HELD, MOST = 4, 4_000_000, 60_000_000
+# Up to this power the reference judges so many of the worst.
+JUDGED_UP_TO, JUDGED = 1.0, 2
+
+
+@dataclass(frozen=True)
+class _Far:
+    """A row for each state with one parameter far away: which, by how many powers of ten, and all that is given."""
+
+    parameters: Lanes
+    powers: Lanes
+    given: Mapping[str, Lanes]
+
+    def __len__(self) -> int:
+        return len(self.powers)
+
+    def only(self, which: Lanes) -> _Far:
+        """Those that a mask or places name."""
+        given = {name: rows[which] for name, rows in self.given.items()}
+        return _Far(self.parameters[which], self.powers[which], given)
+
+
+class FarParameters:
+    """The states of one verification with parameters far from where they are there."""
+
+    def __init__(self, expected: Expected) -> None:
+        self._reference, self._drawn = expected.reference, expected.drawn
+        self._loops = Loops(expected.reference.system, [float(x) for x in expected.reference.literals()])
+
+    def bounds(self, quantity: str, programs: Mapping[Scalar, Program]) -> tuple[Bound, ...]:
+        """The bounds of the parameters that the kernels of a quantity read; pairs have digits enough in float64."""
+        found = ((scalar, kernel) for scalar, program in programs.items() for kernel in program.kernels)
+        kernels = {scalar: kernel for scalar, kernel in found if kernel.name == quantity}
+        read = sorted(load.index for load in kernels["float64"].loads if load.argument == "p")
+        if works_with_pairs(kernels["float64"]) or not read:
+            return ()
+        with working(f"how far parameters of {quantity} may be"):
+            return tuple(_Bounds(self, kernels, programs).of(read))
+
+    def led(self, read: Lanes, powers: Lanes, states: int) -> _Far:
+        """States with each of these parameters in turn far away, as far as the loops close there."""
+        places = range(min(states, len(self._starts["p"])))
+        which, far, place = (axis.ravel() for axis in np.meshgrid(read, powers, places, indexing="ij"))
+        given = {name: rows[place] for name, rows in self._starts.items()}
+        given["p"][np.arange(len(which)), which] *= 10.0**far
+        steps = np.rint(np.abs(far) / NEAREST).astype(int) - 1
+        configurations, shut = self._closed
+        at = (far > 0).astype(int), steps, which, place
+        given["q"] = configurations[at]
+        return _Far(which, far, given).only(shut[at])
+
+    def bound(self, parameter: int, low: float | None, high: float | None) -> Bound:
+        """A parameter may be by these powers of ten below and above the values that it has in the verification."""
+        declared = self._reference.model.parameters[parameter]
+        sizes = [abs(float(sample.state.parameters[parameter])) for sample in self._drawn]
+        sizes += [abs(float(end)) for end in declared.range or ()]
+        near = None if low is None or not min(sizes) else _in_digits(min(sizes) * 10.0**low, up=True)
+        far = None if high is None else _in_digits(max(sizes) * 10.0**high, up=False)
+        return Bound(declared.name, near, far)
+
+    def is_lost(self, kernel: Kernel, program: Program, far: _Far) -> bool:
+        """Whether the reference finds a state, in seven digits, at which a kernel loses more than is allowed."""
+        for place, given in enumerate(_rounded(far)):
+            state = State(*(tuple(given[name]) for name in ("q", "qd", "qdd", "u", "p")))
+            (found,) = outcomes(kernel, program.sincos, program.scalar, [state])
+            try:
+                made = expectations(self._reference, state, [kernel.name], program.scalar, f"far {place}")[kernel.name]
+            except ReferenceValueError:
+                continue
+            if found.valid and made.in_units(made.distance(found.entries)) > FACTOR:
+                return True
+        return False
+
+    @cached_property
+    def _closed(self) -> tuple[Lanes, Lanes]:
+        """Where the loops close with a parameter further and further away, and whether they do.
+
+        By side, quarter of a power of ten, parameter and state: each step starts where the one before it ended.
+        """
+        starts, steps = self._starts, round(FURTHEST / NEAREST)
+        count, parameters = starts["p"].shape
+        which, place = np.arange(parameters).repeat(count), np.tile(np.arange(count), parameters)
+        configurations = np.empty((2, steps, len(which), starts["q"].shape[1]))
+        shut = np.empty((2, steps, len(which)), dtype=bool)
+        for side, sign in enumerate((-1, 1)):
+            q, closed = starts["q"][place], np.ones(len(which), dtype=bool)
+            for step in range(steps):
+                p = starts["p"][place]
+                p[np.arange(len(which)), which] *= 10.0 ** (sign * NEAREST * (step + 1))
+                with np.errstate(all="ignore"):
+                    q, now = self._loops.newton(q, p)
+                closed &= now.all(axis=1)
+                q = np.where(closed[:, None], q, starts["q"][place])
+                configurations[side, step], shut[side, step] = q, closed
+        shape = 2, steps, parameters, count
+        return configurations.reshape(*shape, -1), shut.reshape(shape)
+
+    @cached_property
+    def _starts(self) -> dict[str, Lanes]:
+        states = [sample.state for sample in self._drawn[:STATES]]
+        parts = {"q": "q", "qd": "qd", "qdd": "qdd", "u": "u", "p": "parameters"}
+        rows = {name: [list(map(float, getattr(state, part))) for state in states] for name, part in parts.items()}
+        return {name: np.array(values).reshape(len(states), -1) for name, values in rows.items()}
+
+
+class _Bounds:
+    """The search for one quantity."""
+
+    def __init__(
+        self, far: FarParameters, kernels: Mapping[Scalar, Kernel], programs: Mapping[Scalar, Program]
+    ) -> None:
+        self._far, self._kernels, self._programs = far, kernels, programs
+        self._errors = RoundingErrors(kernels["float64"])
+        self._size = len(kernels["float64"].statements) + 1
+        if "float32" in kernels:
+            self._exactly = _with_numbers_of_float32(kernels["float32"])
+
+    def of(self, read: Sequence[int]) -> Iterator[Bound]:
+        """Of these parameters, where there are any."""
+        states = max(1, min(STATES, MOST // (self._size * len(read) * 2 * FURTHEST)))
+        decades = [sign * power for sign in (-1, 1) for power in range(1, FURTHEST + 1)]
+        lost = self._lost(self._far.led(read, decades, states))
+        for index in read:
+            low, high = (self._power(lost.only(lost.parameters == index), sign, states) for sign in (-1, 1))
+            if low is not None or high is not None:
+                yield self._far.bound(index, low, high)
+
+    def _power(self, lost: _Far, sign: int, states: int) -> float | None:
+        """The power of ten up to which nothing is lost on one side; None where nothing is."""
+        beyond = np.abs(lost.powers[lost.powers * sign > 0])
+        if not len(beyond):
+            return None
+        last = float(beyond.min())
+        powers = np.arange(last - 1 + NEAREST, last + NEAREST / 2, NEAREST)
+        found = self._lost(self._far.led(lost.parameters[:1], sign * powers, states))
+        for power in powers:
+            worst = found.only(np.abs(found.powers) == power)
+            if len(worst) and (power > JUDGED_UP_TO or self._is_lost(worst.only(slice(JUDGED)))):
+                return sign * max(power - NEAREST, NEAREST)
+        return sign * last
+
+    def _is_lost(self, far: _Far) -> bool:
+        return any(self._far.is_lost(kernel, self._programs[s], far) for s, kernel in self._kernels.items())
+
+    def _lost(self, far: _Far) -> _Far:
+        """What of it seems to lose more than is allowed, the worst first."""
+        held = max(1, HELD // self._size)
+        parts = [far.only(slice(start, start + held)) for start in range(0, len(far), held)]
+        units = np.concatenate([np.zeros(0), *map(self._units, parts)])
+        order = np.argsort(-units, kind="stable")
+        return far.only(order[units[order] > FACTOR])
+
+    def _units(self, far: _Far) -> Lanes:
+        """The larger of what is estimated and of what float32 is off: far from 1, its errors are no longer linear."""
+        own, unit = self._errors.with_units(far.given)
+        if "float32" not in self._kernels:
+            return own / unit
+        given, programs = _rounded(far), self._programs
+        exact = run_many(self._exactly, programs["float64"].sincos, "float64", given)
+        made = run_many(self._kernels["float32"], programs["float32"].sincos, "float32", given)
+        off = [0.0 if status or other else dist(y, z) for (status, y), (other, z) in zip(exact, made, strict=True)]
+        return np.maximum(own / unit, np.array(off) / (float(UNIT_ROUNDOFF["float32"]) * unit))
+
+
+def _rounded(far: _Far) -> list[dict[str, list[float]]]:
+    """Of each state, what is given in single precision."""
+    single = {name: rows.astype(np.float32).tolist() for name, rows in far.given.items()}
+    return [{name: rows[place] for name, rows in single.items()} for place in range(len(far))]
+
+
+def _with_numbers_of_float32(kernel: Kernel) -> Kernel:
+    """The kernel with its literals in single precision: of what it makes of them, float64 gives more digits then."""
+
+    def of(operand: Operand) -> Operand:
+        if isinstance(operand, Literal):
+            return Literal(Fraction(round_literal(operand.value, "float32")))
+        return operand
+
+    def block_of(block: Block) -> Block:
+        statements = (replace(s, operands=tuple(map(of, s.operands))) for s in block.statements)
+        return Block(tuple(statements), tuple(replace(c, value=of(c.value), limit=of(c.limit)) for c in block.checks))
+
+    return replace(kernel, blocks=tuple(map(block_of, kernel.blocks)), outputs=tuple(map(of, kernel.outputs)))
+
+
+def _in_digits(value: float, up: bool) -> Fraction:
+    """A positive number in few digits."""
+    size = Fraction(10) ** (floor(log10(value)) - DIGITS + 1)
+    parts = Fraction(value) / size
+    return size * (-floor(-parts) if up else floor(parts))

@@ -1,0 +1,165 @@
+"""Parameters far from their values: where a kernel loses digits there is a bound, and within it none is lost."""
+
+from __future__ import annotations
+
+import json
+import random
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from symgen.generation.recorded import as_recorded
+from symgen.generation.results import Options
+from symgen.ir.bounded import Bound
+from symgen.ir.kernel import Block, Kernel, Literal, Load, Local, Program, Scalar, Statement, Status
+from symgen.model.load import load_model
+from symgen.pipeline import generate
+from symgen.verify.expected import Expected
+from symgen.verify.far_parameters import FarParameters
+from symgen.verify.interpreted import outcomes
+from symgen.verify.tolerance import FACTOR, expectations
+
+# Three links whose end is stayed to a wall: of two directions the last link takes both where it is heavy.
+CRANE = """
+model: crane
+parameters:
+  l_1: {value: 0.9, unit: m}
+  l_2: {value: 0.7, unit: m}
+  m_1: {value: 2, unit: kg}
+  m_2: {value: 1.5, unit: kg}
+  m_3: {value: 0.4, unit: kg}
+  d: {value: 1.1, unit: m}
+gravity: [0, "-9.81", 0]
+joints:
+  j_1: {type: revolute, axis: z, coordinate: a}
+  j_2: {type: revolute, parent: j_1, at: [l_1, 0, 0], axis: z, coordinate: b}
+  j_3: {type: revolute, parent: j_2, at: [l_2, 0, 0], axis: z, coordinate: c}
+bodies:
+  j_1: {mass: m_1, com: [l_1/2, 0, 0], inertia: {zz: 0.1}}
+  j_2: {mass: m_2, com: [l_2/2, 0, 0], inertia: {zz: 0.05}}
+  j_3: {mass: m_3, com: [0.2, 0.1, 0], inertia: {zz: 0.01}}
+points:
+  hook: {frame: j_3, at: [0.3, 0, 0]}
+  wall: {at: [1.3, 1.2, 0]}
+loops:
+  stay: {type: distance, between: [hook, wall], length: d}
+inputs:
+  u: {joint: a}
+outputs: [forward_dynamics, multipliers]
+configuration: {a: 0.3, b: 0.9, c: -0.4}
+"""
+MASS, MULTIPLIERS = "m_3", "multipliers"
+SCALARS: tuple[Scalar, ...] = ("float64", "float32")
+
+
+@pytest.fixture(scope="module")
+def crane(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("crane") / "crane.yaml"
+    path.write_text(CRANE, encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def expected(crane: Path) -> Expected:
+    return Expected(load_model(crane), (MULTIPLIERS,), 16, lambda _: None)
+
+
+def straight(*statements: Statement) -> Kernel:
+    """A kernel of the first and the third coordinate's rates, a mass and a length."""
+    loads = (Load("a", "qd", 0), Load("c", "qd", 2), Load("m", "p", 4, MASS), Load("d", "p", 5, "d"))
+    return Kernel(MULTIPLIERS, (), loads, (Block(statements, ()),), (Local(statements[-1].targets[0]),), (1,))
+
+
+def bounds_by_name(expected: Expected, kernel: Kernel) -> dict[str, Bound]:
+    programs = {scalar: Program(scalar, None, (kernel,)) for scalar in SCALARS}
+    return {bound.parameter: bound for bound in FarParameters(expected).bounds(kernel.name, programs)}
+
+
+def test_what_hides_the_rest_is_bounded_above(expected: Expected) -> None:
+    """(c d + m a / 1000) - m a / 1000 loses c d when m is large."""
+    small = Statement(("s",), "mul", (Local("m"), Literal(Fraction(1, 1000))))
+    kernel = straight(
+        small,
+        Statement(("ma",), "mul", (Local("s"), Local("a"))),
+        Statement(("cd",), "mul", (Local("c"), Local("d"))),
+        Statement(("sum",), "add", (Local("cd"), Local("ma"))),
+        Statement(("y",), "sub", (Local("sum"), Local("ma"))),
+    )
+    bound = bounds_by_name(expected, kernel)[MASS]
+    assert bound.low is None
+    assert bound.high is not None
+    assert 1e3 < bound.high < 1e6
+
+
+def test_what_is_divided_by_is_bounded_below(expected: Expected) -> None:
+    """(c m + a / (1000 d)) - a / (1000 d) loses c m when d is small."""
+    kernel = straight(
+        Statement(("s",), "mul", (Local("d"), Literal(Fraction(1000)))),
+        Statement(("ad",), "div", (Local("a"), Local("s"))),
+        Statement(("cm",), "mul", (Local("c"), Local("m"))),
+        Statement(("sum",), "add", (Local("cm"), Local("ad"))),
+        Statement(("y",), "sub", (Local("sum"), Local("ad"))),
+    )
+    bound = bounds_by_name(expected, kernel)["d"]
+    assert bound.high is None
+    assert bound.low is not None
+    assert 1e-7 < bound.low < 1e-2
+
+
+def test_what_float32_does_not_hold_is_bounded(expected: Expected) -> None:
+    """m^6 / m^5 where m^6 is no number of float32 any more."""
+    powers = [Statement((f"p{k}",), "mul", (Local(f"p{k - 1}" if k > 2 else "m"), Local("m"))) for k in range(2, 7)]
+    kernel = straight(*powers, Statement(("y",), "div", (Local("p6"), Local("p5"))))
+    bound = bounds_by_name(expected, kernel)[MASS]
+    assert bound.low is not None
+    assert 1e-8 < bound.low < 1e-5
+
+
+def test_what_loses_nothing_has_no_bound(expected: Expected) -> None:
+    kernel = straight(
+        Statement(("cm",), "mul", (Local("c"), Local("m"))), Statement(("y",), "div", (Local("cm"), Local("d")))
+    )
+    assert bounds_by_name(expected, kernel) == {}
+
+
+def test_status_0_means_a_result_within_the_tolerance_however_large_the_mass(crane: Path, expected: Expected) -> None:
+    result = generate(crane, Options(parts=("c",)), lambda _: None)
+    program = result.programs["float64"]
+    kernel = next(one for one in program.kernels if one.name == MULTIPLIERS)
+    place = next(k for k, p in enumerate(result.model.parameters) if p.name == MASS)
+    found = {Status.OK: 0, Status.PARAMETER_RANGE: 0}
+    dice = random.Random("masses")
+    for sample in expected.drawn:
+        parameters = list(map(float, sample.state.parameters))
+        parameters[place] *= 10 ** dice.uniform(-9, 9)
+        state = replace(sample.state, parameters=tuple(parameters))
+        (made,) = outcomes(kernel, program.sincos, "float64", [state])
+        found[Status(made.status)] += 1
+        if not made.status:
+            truth = expectations(expected.reference, state, [MULTIPLIERS], "float64", "far")[MULTIPLIERS]
+            assert truth.in_units(truth.distance(made.entries)) <= FACTOR
+    assert min(found.values()) > 2
+
+
+def test_a_bound_is_recorded_told_and_taken_up_again(crane: Path, tmp_path: Path) -> None:
+    result = generate(crane, Options(), lambda _: None)
+    record = json.loads(result.files["derivation.json"])
+    low, high = record["kernels"][MULTIPLIERS]["bounds"][MASS]
+    assert low is None
+    assert "PARAMETER_RANGE" in record["kernels"][MULTIPLIERS]["statuses"]
+    assert f"{MASS} <= {high:g}" in str(result.files["c/crane.h"])
+    (tmp_path / "crane").mkdir()
+    (tmp_path / "crane" / "derivation.json").write_text(str(result.files["derivation.json"]), encoding="utf-8")
+    again = as_recorded(result.model, result.model.outputs, Options(measured=tmp_path))
+    assert again.written == result.programs
+
+
+def test_a_declared_range_lies_within_the_bounds(tmp_path: Path) -> None:
+    path = tmp_path / "crane.yaml"
+    path.write_text(CRANE.replace("m_3: {value: 0.4, unit: kg}", "m_3: {value: 0.4, unit: kg, range: [0.1, 500]}"))
+    result = generate(path, Options(parts=("c",)), lambda _: None)
+    assert not result.failures
+    bounds = json.loads(result.files["derivation.json"])["kernels"][MULTIPLIERS].get("bounds", {})
+    assert bounds.get(MASS, (None, None))[1] is None or bounds[MASS][1] >= 500
