@@ -45,13 +45,13 @@ class Draft:
     @property
     def written(self) -> dict[Scalar, Program]:
         """The programs as they are written: with the checks of bounds."""
+        names = tuple(parameter.name for parameter in self.model.parameters)
         positive = positive_parameters(self.model) | nonnegative_parameters(self.model)
-        return {
-            scalar: replace(
-                program, kernels=tuple(bounded(k, self.bounds.get(k.name, ()), positive) for k in program.kernels)
-            )
-            for scalar, program in self.programs.items()
-        }
+        made = {}
+        for scalar, program in self.programs.items():
+            kernels = (bounded(k, self.bounds.get(k.name, ()), names, positive) for k in program.kernels)
+            made[scalar] = replace(program, kernels=tuple(kernels))
+        return made
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ from collections.abc import Container, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
-from symgen.ir.kernel import Block, Check, Kernel, Literal, Local, Statement, Status
+from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Statement, Status
 from symgen.ir.split import names_in
 from symgen.records import dataclass
 
@@ -20,15 +20,21 @@ class Bound:
     high: Fraction | None
 
 
-def bounded(kernel: Kernel, bounds: Sequence[Bound], positive: Container[str]) -> Kernel:
-    """The kernel with status PARAMETER_RANGE where one of its parameters, of any sign if not `positive`, is beyond.
+def bounded(kernel: Kernel, bounds: Sequence[Bound], parameters: Sequence[str], positive: Container[str]) -> Kernel:
+    """The kernel with status PARAMETER_RANGE where one of the `parameters`, of any sign if not `positive`, is beyond.
 
-    That is found before anything else: where numbers are so far apart, other statuses may come of rounding alone.
+    That is found before anything else: where numbers are so far apart, other statuses may come of rounding alone.  It
+    may be a parameter that says where the coordinates are and that the kernel itself does not need.
     """
     locals_ = {load.member: load.local for load in kernel.loads if load.argument == "p"}
-    taken = {*locals_.values(), *(target for statement in kernel.statements for target in statement.targets)}
-    blocks = []
+    taken = {load.local for load in kernel.loads}
+    taken.update(target for statement in kernel.statements for target in statement.targets)
+    loads, blocks = list(kernel.loads), []
     for bound in bounds:
+        if bound.parameter not in locals_:
+            locals_[bound.parameter] = _new(bound.parameter, taken)
+            index = parameters.index(bound.parameter)
+            loads.append(Load(locals_[bound.parameter], "p", index, bound.parameter))
         size = Local(locals_[bound.parameter])
         statements: tuple[Statement, ...] = ()
         if bound.parameter not in positive:
@@ -36,7 +42,7 @@ def bounded(kernel: Kernel, bounds: Sequence[Bound], positive: Container[str]) -
             size, statements = Local(name), (Statement((name,), "abs", (size,)),)
         blocks.append(Block(statements, tuple(_checks(size, bound))))
     alike = tuple(tuple(place + len(blocks) for place in places) for places in kernel.alike)
-    return replace(kernel, blocks=(*blocks, *kernel.blocks), alike=alike)
+    return replace(kernel, loads=tuple(loads), blocks=(*blocks, *kernel.blocks), alike=alike)
 
 
 def bounds_of(kernel: Kernel) -> Iterator[tuple[Bound, bool]]:

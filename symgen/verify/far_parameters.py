@@ -63,14 +63,17 @@ class FarParameters:
         self._loops = Loops(expected.reference.system, [float(x) for x in expected.reference.literals()])
 
     def bounds(self, quantity: str, programs: Mapping[Scalar, Program]) -> tuple[Bound, ...]:
-        """The bounds of the parameters that the kernels of a quantity read; pairs have digits enough in float64."""
+        """The bounds for the kernels of a quantity: of parameters that they read, or that say where loops close.
+
+        Pairs have digits enough in float64.
+        """
         found = ((scalar, kernel) for scalar, program in programs.items() for kernel in program.kernels)
         kernels = {scalar: kernel for scalar, kernel in found if kernel.name == quantity}
-        read = sorted(load.index for load in kernels["float64"].loads if load.argument == "p")
+        read = {load.index for load in kernels["float64"].loads if load.argument == "p"} | self._leading
         if works_with_pairs(kernels["float64"]) or not read:
             return ()
         with working(f"how far parameters of {quantity} may be"):
-            return tuple(_Bounds(self, kernels, programs).of(read))
+            return tuple(_Bounds(self, kernels, programs).of(sorted(read)))
 
     def led(self, read: Lanes, powers: Lanes, states: int) -> _Far:
         """States with each of these parameters in turn far away, as far as the loops close there."""
@@ -105,6 +108,13 @@ class FarParameters:
             if found.valid and made.in_units(made.distance(found.entries)) > FACTOR:
                 return True
         return False
+
+    @cached_property
+    def _leading(self) -> frozenset[int]:
+        """The parameters that move configurations."""
+        configurations, shut = self._closed
+        moved = (configurations != self._starts["q"]).any(axis=-1) & shut
+        return frozenset(np.flatnonzero(moved.any(axis=(0, 1, 3))).tolist())
 
     @cached_property
     def _closed(self) -> tuple[Lanes, Lanes]:

@@ -27,6 +27,7 @@ PLAIN = Kernel(
     shape=(1,),
     alike=((1, 2),),
 )
+PARAMETERS = ("mass", "size_of_offset", "reach")
 BOUNDS = (Bound("mass", None, Fraction(40)), Bound("size_of_offset", Fraction(1, 4), Fraction(8)))
 
 
@@ -50,23 +51,29 @@ def status_of(kernel: Kernel, mass: float, offset: float) -> Status:
     ],
 )
 def test_beyond_a_bound_is_a_status(mass: float, offset: float, status: Status) -> None:
-    assert status_of(bounded(PLAIN, BOUNDS, {"mass"}), mass, offset) is status
+    assert status_of(bounded(PLAIN, BOUNDS, PARAMETERS, {"mass"}), mass, offset) is status
 
 
 def test_a_parameter_that_is_positive_is_compared_as_it_is() -> None:
-    made = bounded(PLAIN, BOUNDS, {"mass", "size_of_offset"})
+    made = bounded(PLAIN, BOUNDS, PARAMETERS, {"mass", "size_of_offset"})
     assert not any(block.statements for block in made.blocks[: len(BOUNDS)])
     assert status_of(made, 1.0, -1.0) is Status.PARAMETER_RANGE
 
 
+def test_a_parameter_that_the_kernel_does_not_read() -> None:
+    made = bounded(PLAIN, (Bound("reach", None, Fraction(5)),), PARAMETERS, {"reach"})
+    found = [Interpreter(None, "float64").run(made, {"q": (3.0,)}, (1.0, 1.0, reach))[0] for reach in (5.0, 5.1)]
+    assert found == [Status.OK, Status.PARAMETER_RANGE]
+
+
 def test_bounds_are_read_back() -> None:
-    made = bounded(PLAIN, BOUNDS, {"mass"})
+    made = bounded(PLAIN, BOUNDS, PARAMETERS, {"mass"})
     assert list(bounds_of(made)) == [(BOUNDS[0], False), (BOUNDS[1], True)]
     assert list(bounds_of(PLAIN)) == []
 
 
 def test_blocks_that_are_alike_stay_so() -> None:
-    made = bounded(PLAIN, BOUNDS, {"mass"})
+    made = bounded(PLAIN, BOUNDS, PARAMETERS, {"mass"})
     first, second = (made.blocks[place] for place in made.alike[0])
     assert first == PLAIN.blocks[1]
     assert second == PLAIN.blocks[2]
@@ -75,7 +82,7 @@ def test_blocks_that_are_alike_stay_so() -> None:
 def test_new_names_are_new() -> None:
     loads = (PLAIN.loads[0], PLAIN.loads[1], Load("c", "p", 1, "offset"))
     taken = replace(PLAIN, loads=(*loads, Load("size_of_c", "p", 2, "another")))
-    made = bounded(taken, (Bound("offset", None, Fraction(8)),), ())
+    made = bounded(taken, (Bound("offset", None, Fraction(8)),), (), ())
     names = [target for statement in made.statements for target in statement.targets]
     names += [load.local for load in made.loads]
     assert len(names) == len(set(names))
