@@ -29,8 +29,8 @@ REJECTED = "verification rejects it"
 class Draft:
     """The derived quantities of a model and their kernels; `left_out` is what verification rejects in every way.
 
-    `bounds` are those of parameters by quantity, which `written` programs check.  `notice` says why it does not hold
-    what an earlier verification led to, where that was asked for.
+    `bounds` are those of parameters by type and quantity, which `written` programs check.  `notice` says why it does
+    not hold what an earlier verification led to, where that was asked for.
     """
 
     model: Model
@@ -40,7 +40,7 @@ class Draft:
     trig: Trig
     left_out: tuple[LeftOut, ...] = ()
     notice: str = ""
-    bounds: Mapping[str, tuple[Bound, ...]] = field(default_factory=dict)
+    bounds: Mapping[Scalar, Mapping[str, tuple[Bound, ...]]] = field(default_factory=dict)
 
     @property
     def written(self) -> dict[Scalar, Program]:
@@ -49,7 +49,8 @@ class Draft:
         positive = positive_parameters(self.model) | nonnegative_parameters(self.model)
         made = {}
         for scalar, program in self.programs.items():
-            kernels = (bounded(k, self.bounds.get(k.name, ()), names, positive) for k in program.kernels)
+            bounds = self.bounds.get(scalar, {})
+            kernels = (bounded(kernel, bounds.get(kernel.name, ()), names, positive) for kernel in program.kernels)
             made[scalar] = replace(program, kernels=tuple(kernels))
         return made
 

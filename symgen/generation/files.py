@@ -50,8 +50,7 @@ def files_of(draft: Draft, options: Options, sources: Mapping[str, str]) -> dict
 
         with working("drivers for proofs"):
             files |= emit_proofs(draft.model, programs)
-    written = draft.written["float64"]
-    files["derivation.json"] = derivation_json(draft.model, draft.derivations, draft.structure, written)
+    files["derivation.json"] = derivation_json(draft.model, draft.derivations, draft.structure, draft.written)
     return files
 
 

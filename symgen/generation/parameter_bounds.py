@@ -16,15 +16,16 @@ class ParameterBounds:
 
     def __init__(self, expected: Expected) -> None:
         self._far = FarParameters(expected)
-        self._known: dict[str, tuple[dict[Scalar, Kernel], tuple[Bound, ...]]] = {}
+        self._known: dict[str, tuple[dict[Scalar, Kernel], dict[Scalar, tuple[Bound, ...]]]] = {}
 
     def of(self, draft: Draft) -> Draft:
-        """The draft with the bounds of its kernels, the same in all scalar types."""
-        found = {}
+        """The draft with the bounds of its kernels."""
+        found: dict[Scalar, dict[str, tuple[Bound, ...]]] = {scalar: {} for scalar in draft.programs}
         for name in (kernel.name for kernel in draft.program.kernels):
             kernels, known = draft.kernels(name), self._known.get(name)
             if known is None or any(kernel is not known[0].get(scalar) for scalar, kernel in kernels.items()):
                 known = self._known[name] = kernels, self._far.bounds(name, draft.programs)
-            if known[1]:
-                found[name] = known[1]
+            for scalar, bounds in known[1].items():
+                if bounds:
+                    found[scalar][name] = bounds
         return replace(draft, bounds=found)

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from symgen import __version__
 from symgen.generation.draft import REJECTED, Draft, draft_of
 from symgen.ir.bounded import Bound
+from symgen.ir.kernel import UNIT_ROUNDOFF
 from symgen.quantities.alternatives import Alternatives
 from symgen.quantities.select import Rejection
 from symgen.records import dataclass
@@ -43,7 +44,7 @@ class _Record:
     rejected: tuple[Rejection, ...]
     taken: Mapping[str, _Taken]
     left_out: Mapping[str, tuple[Scalar, ...]]
-    bounds: Mapping[str, tuple[Bound, ...]]
+    bounds: Mapping[Scalar, Mapping[str, tuple[Bound, ...]]]
 
 
 class _UnusableError(Exception):
@@ -91,7 +92,10 @@ def _record(content: Mapping[str, Any]) -> _Record:
         tuple(Rejection(str(r["quantity"]), str(r["way"]), str(r["why"])) for r in content.get("rejected", ())),
         {name: _Taken(str(one["way"]), tuple(one.get("twice_the_digits", ()))) for name, one in kernels},
         {str(one["quantity"]): tuple(one["scalars"]) for one in content.get("left_out", ())},
-        {name: tuple(_bounds(one["bounds"])) for name, one in kernels if "bounds" in one},
+        {
+            scalar: {name: tuple(_bounds(one.get("bounds", {}).get(scalar, {}))) for name, one in kernels}
+            for scalar in UNIT_ROUNDOFF
+        },
     )
 
 
@@ -104,8 +108,11 @@ def _bounds(bounds: Mapping[str, Sequence[float | None]]) -> Iterator[Bound]:
 def _with_record(draft: Draft, record: _Record, asked: Container[str]) -> Draft:
     """The draft with the ways that stand in the record in place of rejected ones, but where a form was `asked` for."""
     present = {choice.quantity for choice in draft.derivations.choices}
-    kept = {name: bounds for name, bounds in record.bounds.items() if name in present and name not in asked}
-    draft = replace(draft, bounds=kept)
+    bounds = {
+        scalar: {name: found for name, found in every.items() if name in present and name not in asked}
+        for scalar, every in record.bounds.items()
+    }
+    draft = replace(draft, bounds=bounds)
     replaced = [name for name in dict.fromkeys(one.quantity for one in record.rejected) if name in present]
     if not replaced:
         return draft

@@ -1,32 +1,29 @@
 """How far each parameter may be from the values it is verified at before a kernel loses digits.
 
 One mass or length a thousand times as large as the others hides what they do, and no method that is taken for its
-speed holds that for every parameter.  At states of the verification with one parameter smaller or larger by up to nine
-powers of ten, rounding errors are estimated, and those of float32 measured beside float64; where they are beyond what
-is allowed, the kernel is bounded in both.  Estimates count more than there is: within a power of ten, the reference has
-to find the loss too.
+speed holds that for every parameter.  States of the verification are looked at with one parameter smaller or larger by
+up to nine powers of ten; where rounding errors are beyond what is allowed, the kernel is bounded.  Estimates count more
+than there is: within a power of ten, the reference has to find the loss too.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from math import dist, floor, log10
+from math import floor, log10
 
 import numpy as np
 
 from symgen.ir.bounded import Bound
-from symgen.ir.interpret import round_literal
-from symgen.ir.kernel import UNIT_ROUNDOFF, Block, Kernel, Literal, Operand, Program, Scalar
+from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.ir.wide_functions import works_with_pairs
 from symgen.runtime.activity import working
 from symgen.verify.expected import Expected
+from symgen.verify.far_errors import Far, FarErrors
 from symgen.verify.interpreted import outcomes
-from symgen.verify.lanes import Lanes, RoundingErrors
+from symgen.verify.lanes import Lanes
 from symgen.verify.loops_in_lanes import Loops
-from symgen.verify.many_states import run_many
 from symgen.verify.reference.reference import ReferenceValueError, State
 from symgen.verify.tolerance import FACTOR, expectations
 
@@ -38,23 +35,6 @@ STATES, HELD, MOST = 4, 4_000_000, 60_000_000
 JUDGED_UP_TO, JUDGED = 1.0, 2
 
 
-@dataclass(frozen=True)
-class _Far:
-    """A row for each state with one parameter far away: which, by how many powers of ten, and all that is given."""
-
-    parameters: Lanes
-    powers: Lanes
-    given: Mapping[str, Lanes]
-
-    def __len__(self) -> int:
-        return len(self.powers)
-
-    def only(self, which: Lanes) -> _Far:
-        """Those that a mask or places name."""
-        given = {name: rows[which] for name, rows in self.given.items()}
-        return _Far(self.parameters[which], self.powers[which], given)
-
-
 class FarParameters:
     """The states of one verification with parameters far from where they are there."""
 
@@ -62,7 +42,7 @@ class FarParameters:
         self._reference, self._drawn = expected.reference, expected.drawn
         self._loops = Loops(expected.reference.system, [float(x) for x in expected.reference.literals()])
 
-    def bounds(self, quantity: str, programs: Mapping[Scalar, Program]) -> tuple[Bound, ...]:
+    def bounds(self, quantity: str, programs: Mapping[Scalar, Program]) -> dict[Scalar, tuple[Bound, ...]]:
         """The bounds for the kernels of a quantity: of parameters that they read, or that say where loops close.
 
         Pairs have digits enough in float64.
@@ -71,11 +51,11 @@ class FarParameters:
         kernels = {scalar: kernel for scalar, kernel in found if kernel.name == quantity}
         read = {load.index for load in kernels["float64"].loads if load.argument == "p"} | self._leading
         if works_with_pairs(kernels["float64"]) or not read:
-            return ()
+            return {}
         with working(f"how far parameters of {quantity} may be"):
-            return tuple(_Bounds(self, kernels, programs).of(sorted(read)))
+            return _Bounds(self, kernels, programs).of(sorted(read))
 
-    def led(self, read: Lanes, powers: Lanes, states: int) -> _Far:
+    def led(self, read: Lanes, powers: Lanes, states: int) -> Far:
         """States with each of these parameters in turn far away, as far as the loops close there."""
         places = range(min(states, len(self._starts["p"])))
         which, far, place = (axis.ravel() for axis in np.meshgrid(read, powers, places, indexing="ij"))
@@ -85,7 +65,7 @@ class FarParameters:
         configurations, shut = self._closed
         at = (far > 0).astype(int), steps, which, place
         given["q"] = configurations[at]
-        return _Far(which, far, given).only(shut[at])
+        return Far(which, far, given).only(shut[at])
 
     def bound(self, parameter: int, low: float | None, high: float | None) -> Bound:
         """A parameter may be by these powers of ten below and above the values that it has in the verification."""
@@ -96,9 +76,9 @@ class FarParameters:
         far = None if high is None else _in_digits(max(sizes) * 10.0**high, up=False)
         return Bound(declared.name, near, far)
 
-    def is_lost(self, kernel: Kernel, program: Program, far: _Far) -> bool:
+    def is_lost(self, kernel: Kernel, program: Program, far: Far) -> bool:
         """Whether the reference finds a state, in seven digits, at which a kernel loses more than is allowed."""
-        for place, given in enumerate(_rounded(far)):
+        for place, given in enumerate(far.rounded):
             state = State(*(tuple(given[name]) for name in ("q", "qd", "qdd", "u", "p")))
             (found,) = outcomes(kernel, program.sincos, program.scalar, [state])
             try:
@@ -155,77 +135,49 @@ class _Bounds:
         self, far: FarParameters, kernels: Mapping[Scalar, Kernel], programs: Mapping[Scalar, Program]
     ) -> None:
         self._far, self._kernels, self._programs = far, kernels, programs
-        self._errors = RoundingErrors(kernels["float64"])
+        self._errors = FarErrors(kernels, programs)
         self._size = len(kernels["float64"].statements) + 1
-        if "float32" in kernels:
-            self._exactly = _with_numbers_of_float32(kernels["float32"])
 
-    def of(self, read: Sequence[int]) -> Iterator[Bound]:
+    def of(self, read: Sequence[int]) -> dict[Scalar, tuple[Bound, ...]]:
         """Of these parameters, where there are any."""
         states = max(1, min(STATES, MOST // (self._size * len(read) * 2 * FURTHEST)))
         decades = [sign * power for sign in (-1, 1) for power in range(1, FURTHEST + 1)]
         lost = self._lost(self._far.led(read, decades, states))
+        return {scalar: tuple(self._of(scalar, read, far, states)) for scalar, far in lost.items()}
+
+    def _of(self, scalar: Scalar, read: Sequence[int], lost: Far, states: int) -> Iterator[Bound]:
         for index in read:
-            low, high = (self._power(lost.only(lost.parameters == index), sign, states) for sign in (-1, 1))
+            own = lost.only(lost.parameters == index)
+            low, high = (self._power(scalar, own, sign, states) for sign in (-1, 1))
             if low is not None or high is not None:
                 yield self._far.bound(index, low, high)
 
-    def _power(self, lost: _Far, sign: int, states: int) -> float | None:
+    def _power(self, scalar: Scalar, lost: Far, sign: int, states: int) -> float | None:
         """The power of ten up to which nothing is lost on one side; None where nothing is."""
         beyond = np.abs(lost.powers[lost.powers * sign > 0])
         if not len(beyond):
             return None
         last = float(beyond.min())
         powers = np.arange(last - 1 + NEAREST, last + NEAREST / 2, NEAREST)
-        found = self._lost(self._far.led(lost.parameters[:1], sign * powers, states))
+        found = self._lost(self._far.led(lost.parameters[:1], sign * powers, states))[scalar]
         for power in powers:
-            worst = found.only(np.abs(found.powers) == power)
-            if len(worst) and (power > JUDGED_UP_TO or self._is_lost(worst.only(slice(JUDGED)))):
+            worst = found.only(np.abs(found.powers) == power).only(slice(JUDGED))
+            if len(worst) and (
+                power > JUDGED_UP_TO or self._far.is_lost(self._kernels[scalar], self._programs[scalar], worst)
+            ):
                 return sign * max(power - NEAREST, NEAREST)
         return sign * last
 
-    def _is_lost(self, far: _Far) -> bool:
-        return any(self._far.is_lost(kernel, self._programs[s], far) for s, kernel in self._kernels.items())
-
-    def _lost(self, far: _Far) -> _Far:
-        """What of it seems to lose more than is allowed, the worst first."""
+    def _lost(self, far: Far) -> dict[Scalar, Far]:
+        """By scalar type, what of it seems to lose more than is allowed, the worst first."""
         held = max(1, HELD // self._size)
-        parts = [far.only(slice(start, start + held)) for start in range(0, len(far), held)]
-        units = np.concatenate([np.zeros(0), *map(self._units, parts)])
-        order = np.argsort(-units, kind="stable")
-        return far.only(order[units[order] > FACTOR])
-
-    def _units(self, far: _Far) -> Lanes:
-        """The larger of what is estimated and of what float32 is off: far from 1, its errors are no longer linear."""
-        own, unit = self._errors.with_units(far.given)
-        if "float32" not in self._kernels:
-            return own / unit
-        given, programs = _rounded(far), self._programs
-        exact = run_many(self._exactly, programs["float64"].sincos, "float64", given)
-        made = run_many(self._kernels["float32"], programs["float32"].sincos, "float32", given)
-        off = [0.0 if status or other else dist(y, z) for (status, y), (other, z) in zip(exact, made, strict=True)]
-        return np.maximum(own / unit, np.array(off) / (float(UNIT_ROUNDOFF["float32"]) * unit))
-
-
-def _rounded(far: _Far) -> list[dict[str, list[float]]]:
-    """Of each state, what is given in single precision."""
-    single = {name: rows.astype(np.float32).tolist() for name, rows in far.given.items()}
-    return [{name: rows[place] for name, rows in single.items()} for place in range(len(far))]
-
-
-def _with_numbers_of_float32(kernel: Kernel) -> Kernel:
-    """The kernel with its literals in single precision: of what it makes of them, float64 gives more digits then."""
-
-    def of(operand: Operand) -> Operand:
-        if isinstance(operand, Literal):
-            return Literal(Fraction(round_literal(operand.value, "float32")))
-        return operand
-
-    def block_of(block: Block) -> Block:
-        statements = (replace(s, operands=tuple(map(of, s.operands))) for s in block.statements)
-        return Block(tuple(statements), tuple(replace(c, value=of(c.value), limit=of(c.limit)) for c in block.checks))
-
-    return replace(kernel, blocks=tuple(map(block_of, kernel.blocks)), outputs=tuple(map(of, kernel.outputs)))
+        parts = [self._errors.units(far.only(slice(start, start + held))) for start in range(0, len(far), held)]
+        found = {}
+        for scalar in self._kernels:
+            units = np.concatenate([np.zeros(0), *(part[scalar] for part in parts)])
+            order = np.argsort(-units, kind="stable")
+            found[scalar] = far.only(order[units[order] > FACTOR])
+        return found
 
 
 def _in_digits(value: float, up: bool) -> Fraction:

@@ -72,9 +72,9 @@ def straight(*statements: Statement) -> Kernel:
     return Kernel(MULTIPLIERS, (), loads, (Block(statements, ()),), (Local(statements[-1].targets[0]),), (1,))
 
 
-def bounds_by_name(expected: Expected, kernel: Kernel) -> dict[str, Bound]:
+def bounds_by_name(expected: Expected, kernel: Kernel, scalar: Scalar = "float64") -> dict[str, Bound]:
     programs = {scalar: Program(scalar, None, (kernel,)) for scalar in SCALARS}
-    return {bound.parameter: bound for bound in FarParameters(expected).bounds(kernel.name, programs)}
+    return {bound.parameter: bound for bound in FarParameters(expected).bounds(kernel.name, programs)[scalar]}
 
 
 def test_what_hides_the_rest_is_bounded_above(expected: Expected) -> None:
@@ -112,9 +112,10 @@ def test_what_float32_does_not_hold_is_bounded(expected: Expected) -> None:
     """m^6 / m^5 where m^6 is no number of float32 any more."""
     powers = [Statement((f"p{k}",), "mul", (Local(f"p{k - 1}" if k > 2 else "m"), Local("m"))) for k in range(2, 7)]
     kernel = straight(*powers, Statement(("y",), "div", (Local("p6"), Local("p5"))))
-    bound = bounds_by_name(expected, kernel)[MASS]
+    bound = bounds_by_name(expected, kernel, "float32")[MASS]
     assert bound.low is not None
     assert 1e-8 < bound.low < 1e-5
+    assert bounds_by_name(expected, kernel, "float64") == {}
 
 
 def test_what_loses_nothing_has_no_bound(expected: Expected) -> None:
@@ -146,7 +147,7 @@ def test_status_0_means_a_result_within_the_tolerance_however_large_the_mass(cra
 def test_a_bound_is_recorded_told_and_taken_up_again(crane: Path, tmp_path: Path) -> None:
     result = generate(crane, Options(), lambda _: None)
     record = json.loads(result.files["derivation.json"])
-    low, high = record["kernels"][MULTIPLIERS]["bounds"][MASS]
+    low, high = record["kernels"][MULTIPLIERS]["bounds"]["float64"][MASS]
     assert low is None
     assert "PARAMETER_RANGE" in record["kernels"][MULTIPLIERS]["statuses"]
     assert f"{MASS} <= {high:g}" in str(result.files["c/crane.h"])
@@ -162,4 +163,5 @@ def test_a_declared_range_lies_within_the_bounds(tmp_path: Path) -> None:
     result = generate(path, Options(parts=("c",)), lambda _: None)
     assert not result.failures
     bounds = json.loads(result.files["derivation.json"])["kernels"][MULTIPLIERS].get("bounds", {})
-    assert bounds.get(MASS, (None, None))[1] is None or bounds[MASS][1] >= 500
+    for found in bounds.values():
+        assert found.get(MASS, (None, None))[1] is None or found[MASS][1] >= 500

@@ -1,0 +1,91 @@
+"""The rounding errors of a quantity where parameters are far from their values, in units of d + eps |y|.
+
+In float64 they are estimated.  In float32 estimates to the first order are not all there is: one digit of three may be
+lost by refinement that no longer converges, or by numbers too small for the type.  There they are measured as well,
+beside the same operations in float64.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import dist, inf
+
+import numpy as np
+
+from symgen.ir.interpret import round_literal
+from symgen.ir.kernel import UNIT_ROUNDOFF, Block, Kernel, Literal, Operand, Program, Scalar
+from symgen.ir.wide_functions import works_with_pairs
+from symgen.verify.lanes import Lanes, RoundingErrors
+from symgen.verify.many_states import run_many
+
+
+@dataclass(frozen=True)
+class Far:
+    """A row for each state with one parameter far away: which, by how many powers of ten, and all that is given."""
+
+    parameters: Lanes
+    powers: Lanes
+    given: Mapping[str, Lanes]
+
+    def __len__(self) -> int:
+        return len(self.powers)
+
+    def only(self, which: Lanes) -> Far:
+        """Those that a mask or places name."""
+        given = {name: rows[which] for name, rows in self.given.items()}
+        return Far(self.parameters[which], self.powers[which], given)
+
+    @property
+    def rounded(self) -> list[dict[str, list[float]]]:
+        """Of each state, what is given in single precision."""
+        single = {name: rows.astype(np.float32).tolist() for name, rows in self.given.items()}
+        return [{name: rows[place] for name, rows in single.items()} for place in range(len(self))]
+
+
+class FarErrors:
+    """Those of the kernels of one quantity, of which that of float64 works with plain numbers."""
+
+    def __init__(self, kernels: Mapping[Scalar, Kernel], programs: Mapping[Scalar, Program]) -> None:
+        self._programs = programs
+        self._estimated = RoundingErrors(kernels["float64"])
+        self._single = kernels.get("float32")
+        if self._single is not None:
+            self._beside = _with_numbers_of_float32(self._single)
+
+    def units(self, far: Far) -> dict[Scalar, Lanes]:
+        """By scalar type, a number for each state; 0 where a kernel refuses with reason."""
+        own, unit = self._estimated.with_units(far.given)
+        found: dict[Scalar, Lanes] = {"float64": own / unit}
+        if self._single is not None:
+            measured = self._measured(self._single, far) / (float(UNIT_ROUNDOFF["float32"]) * unit)
+            plain = not works_with_pairs(self._single)
+            found["float32"] = np.maximum(measured, own / unit) if plain else measured
+        return found
+
+    def _measured(self, kernel: Kernel, far: Far) -> Lanes:
+        """How far float32 is off; infinitely where it refuses what the same operations do in float64."""
+        given, programs = far.rounded, self._programs
+        exact = run_many(self._beside, programs["float64"].sincos, "float64", given)
+        made = run_many(kernel, programs["float32"].sincos, "float32", given)
+        off = [
+            0.0 if refused else inf if status else dist(y, z)
+            for (refused, y), (status, z) in zip(exact, made, strict=True)
+        ]
+        return np.array(off)
+
+
+def _with_numbers_of_float32(kernel: Kernel) -> Kernel:
+    """The kernel with its literals in single precision, so that they make no difference between the types."""
+
+    def of(operand: Operand) -> Operand:
+        if isinstance(operand, Literal):
+            return Literal(Fraction(round_literal(operand.value, "float32")))
+        return operand
+
+    def block_of(block: Block) -> Block:
+        statements = (replace(s, operands=tuple(map(of, s.operands))) for s in block.statements)
+        return Block(tuple(statements), tuple(replace(c, value=of(c.value), limit=of(c.limit)) for c in block.checks))
+
+    return replace(kernel, blocks=tuple(map(block_of, kernel.blocks)), outputs=tuple(map(of, kernel.outputs)))
