@@ -29,6 +29,7 @@ from symgen.verify.tolerance import FACTOR, expectations
 
 # Powers of ten, looked at one by one and then in quarters; a bound is given in two digits.
 FURTHEST, NEAREST, DIGITS = 9, 0.25, 2
+SIDES = (-1, 1)
 # States at which that is looked at, fewer for long kernels: so many numbers are held at a time, and worked out at most.
 STATES, HELD, MOST = 4, 4_000_000, 60_000_000
 # Up to this power the reference judges so many of the worst.
@@ -55,15 +56,15 @@ class FarParameters:
         with working(f"how far parameters of {quantity} may be"):
             return _Bounds(self, kernels, programs).of(sorted(read))
 
-    def led(self, read: Lanes, powers: Lanes, states: int) -> Far:
-        """States with each of these parameters in turn far away, as far as the loops close there."""
+    def led(self, steps: Sequence[tuple[int, float]], states: int) -> Far:
+        """States with one parameter far away, by a power of ten, for each of the steps as far as the loops close."""
         places = range(min(states, len(self._starts["p"])))
-        which, far, place = (axis.ravel() for axis in np.meshgrid(read, powers, places, indexing="ij"))
+        table = [(which, power, place) for which, power in steps for place in places]
+        which, far, place = (np.array(column) for column in zip(*table, strict=True))
         given = {name: rows[place] for name, rows in self._starts.items()}
         given["p"][np.arange(len(which)), which] *= 10.0**far
-        steps = np.rint(np.abs(far) / NEAREST).astype(int) - 1
         configurations, shut = self._closed
-        at = (far > 0).astype(int), steps, which, place
+        at = (far > 0).astype(int), np.rint(np.abs(far) / NEAREST).astype(int) - 1, which, place
         given["q"] = configurations[at]
         return Far(which, far, given).only(shut[at])
 
@@ -141,31 +142,41 @@ class _Bounds:
     def of(self, read: Sequence[int]) -> dict[Scalar, tuple[Bound, ...]]:
         """Of these parameters, where there are any."""
         states = max(1, min(STATES, MOST // (self._size * len(read) * 2 * FURTHEST)))
-        decades = [sign * power for sign in (-1, 1) for power in range(1, FURTHEST + 1)]
-        lost = self._lost(self._far.led(read, decades, states))
-        return {scalar: tuple(self._of(scalar, read, far, states)) for scalar, far in lost.items()}
+        decades = [(index, sign * power) for index in read for sign in SIDES for power in range(1, FURTHEST + 1)]
+        lost = self._lost(self._far.led(decades, states))
+        first = {scalar: _nearest(far) for scalar, far in lost.items()}
+        closer = {
+            (index, sign * (power - 1 + quarter))
+            for found in first.values()
+            for (index, sign), power in found.items()
+            for quarter in np.arange(NEAREST, 1 + NEAREST, NEAREST).tolist()
+        }
+        if not closer:
+            return {scalar: () for scalar in first}
+        lost = self._lost(self._far.led(sorted(closer), states))
+        return {scalar: tuple(self._of(scalar, read, first[scalar], far)) for scalar, far in lost.items()}
 
-    def _of(self, scalar: Scalar, read: Sequence[int], lost: Far, states: int) -> Iterator[Bound]:
+    def _of(
+        self, scalar: Scalar, read: Sequence[int], first: Mapping[tuple[int, int], float], lost: Far
+    ) -> Iterator[Bound]:
         for index in read:
             own = lost.only(lost.parameters == index)
-            low, high = (self._power(scalar, own, sign, states) for sign in (-1, 1))
+            low, high = (
+                self._power(scalar, own.only(own.powers * sign > 0), sign, first[index, sign])
+                if (index, sign) in first
+                else None
+                for sign in SIDES
+            )
             if low is not None or high is not None:
                 yield self._far.bound(index, low, high)
 
-    def _power(self, scalar: Scalar, lost: Far, sign: int, states: int) -> float | None:
-        """The power of ten up to which nothing is lost on one side; None where nothing is."""
-        beyond = np.abs(lost.powers[lost.powers * sign > 0])
-        if not len(beyond):
-            return None
-        last = float(beyond.min())
-        powers = np.arange(last - 1 + NEAREST, last + NEAREST / 2, NEAREST)
-        found = self._lost(self._far.led(lost.parameters[:1], sign * powers, states))[scalar]
+    def _power(self, scalar: Scalar, lost: Far, sign: int, last: float) -> float:
+        """The power of ten up to which nothing is lost on one side, where something is at the `last`."""
+        powers: list[float] = sorted(set(np.abs(lost.powers).tolist()))
         for power in powers:
-            worst = found.only(np.abs(found.powers) == power).only(slice(JUDGED))
-            if len(worst) and (
-                power > JUDGED_UP_TO or self._far.is_lost(self._kernels[scalar], self._programs[scalar], worst)
-            ):
-                return sign * max(power - NEAREST, NEAREST)
+            worst = lost.only(np.abs(lost.powers) == power).only(slice(JUDGED))
+            if power > JUDGED_UP_TO or self._far.is_lost(self._kernels[scalar], self._programs[scalar], worst):
+                return sign * max(min(power, last) - NEAREST, NEAREST)
         return sign * last
 
     def _lost(self, far: Far) -> dict[Scalar, Far]:
@@ -178,6 +189,15 @@ class _Bounds:
             order = np.argsort(-units, kind="stable")
             found[scalar] = far.only(order[units[order] > FACTOR])
         return found
+
+
+def _nearest(far: Far) -> dict[tuple[int, int], float]:
+    """By parameter and side, the nearest power of ten there is."""
+    found: dict[tuple[int, int], float] = {}
+    for index, power in zip(far.parameters.tolist(), far.powers.tolist(), strict=True):
+        side = index, 1 if power > 0 else -1
+        found[side] = min(abs(power), found.get(side, FURTHEST))
+    return found
 
 
 def _in_digits(value: float, up: bool) -> Fraction:
