@@ -152,7 +152,7 @@ class _Bounds:
             for quarter in np.arange(NEAREST, 1 + NEAREST, NEAREST).tolist()
         }
         if not closer:
-            return {scalar: () for scalar in first}
+            return dict.fromkeys(first, ())
         lost = self._lost(self._far.led(sorted(closer), states))
         return {scalar: tuple(self._of(scalar, read, first[scalar], far)) for scalar, far in lost.items()}
 
