@@ -119,9 +119,10 @@ class WeightedGramSchmidt:
 class PivotedGramSchmidt(WeightedGramSchmidt):
     """A = V T where only `rank` columns are independent: V holds those of which most is left beside the ones before.
 
-    The choice is made at each configuration, by products with 0 and 1, by what is left of a column's own length.  What
-    is left of the others is rounding, and dropped.  Solved for are multipliers of the chosen rows, from which the
-    shortest ones of all rows follow (a complete orthogonal decomposition; Golub and Van Loan, 5.4).
+    The choice is made at each configuration, by products with 0 and 1, by what is left of a column times the share that
+    this is of its own length.  What is left of the others is rounding, and dropped.  Solved for are multipliers of the
+    chosen rows, from which the shortest ones of all rows follow (a complete orthogonal decomposition; Golub and Van
+    Loan, 5.4).
     """
 
     def __init__(self, graph: Graph, columns: Sequence[Vector], weights: Sequence[Scalar], rank: int) -> None:
@@ -134,7 +135,8 @@ class PivotedGramSchmidt(WeightedGramSchmidt):
         for _ in range(rank):
             squares = [_squared(graph, column, weights) for column in left]
             ratios = [graph.function("ratio_or_zero", pair) for pair in zip(squares, lengths, strict=True)]
-            choice = longest(graph, ratios)
+            # long rows are known to more digits than short ones that hold the same, beside V most of all
+            choice = longest(graph, [square * ratio for square, ratio in zip(squares, ratios, strict=True)])
             direction = _combined(graph, choice, left)
             weighted = tuple(x * w for x, w in zip(direction, weights, strict=True))
             square = dot(graph, weighted, direction)
