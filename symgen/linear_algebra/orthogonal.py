@@ -61,6 +61,7 @@ class WeightedGramSchmidt:
 
         Components along V are taken out of b one by one, and given back in the opposite order from what is there: what
         rounding has left of them on the way does not stay (Bjorck and Paige, SIAM J. Matrix Anal. Appl. 15, 1994).
+        Exactly nothing is left of them, so that what is there has to be a number of which nothing is known.
         """
         graph, count = self._graph, len(self._directions)
         asked: list[Scalar] = []  # (V^T W y)_k
@@ -71,6 +72,7 @@ class WeightedGramSchmidt:
             along = dot(graph, self._weighted[k], y)
             y = _less(y, along * self._inverses[k], self._directions[k])
             shares.append((along - asked[k]) * self._inverses[k])
+        y = tuple(map(graph.rounded, y))
         for k in reversed(range(count)):
             surplus = dot(graph, self._weighted[k], y) - asked[k]
             y = _less(y, surplus * self._inverses[k], self._directions[k])
