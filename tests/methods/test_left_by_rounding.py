@@ -26,7 +26,7 @@ kinetic_energy: (x_dot**2 + 2*y_dot**2 + heavy*(z_dot**2 + 3*v_dot**2 + 2*w_dot*
 constraints:
   nonholonomic:
 """ + "".join(
-    f"    {name}: {' + '.join(f'{k}*{j}_dot' for k, j in zip(row, 'xyzvw', strict=True))}\n" for name, row in ROWS.items()
+    f"    {name}: {' + '.join(f'{entry}*{entry[-1]}_dot' for entry in row)}\n" for name, row in ROWS.items()
 ) + """inputs: {one: {acts_on: {z: 1}}, two: {acts_on: {v: 1}}, three: {acts_on: {w: 1}}}
 outputs: [forward_dynamics, multipliers]
 """
