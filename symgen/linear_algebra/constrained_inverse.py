@@ -60,7 +60,7 @@ class Cholesky:
     def guards(self) -> tuple[Guard, ...]:
         """The pivots, positive where the matrix is positive definite."""
         pairs = zip(self.pivots, self.scales, strict=True)
-        return tuple(Guard(Status.MASS_RANK, pivot, 1, scale=scale) for pivot, scale in pairs)
+        return tuple(Guard(Status.MASS_RANK, pivot, 1, scale=scale, positive=True) for pivot, scale in pairs)
 
     def solve(self, b: Sequence[Scalar]) -> Vector:
         """The solution of L D L^T x = b."""

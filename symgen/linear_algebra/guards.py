@@ -1,7 +1,8 @@
 """Denominators a result depends on, and how small is too small.
 
 A kernel decides on its own denominators: the status is not OK where |D| <= threshold * D_max, with D_max the sum of
-the absolute terms of D when every sine and cosine is 1, or what D would be if nothing were lost.
+the absolute terms of D when every sine and cosine is 1, or what D would be if nothing were lost.  Of the pivots of a
+definite matrix D itself is compared.
 
 A status says that one direction is all but lost.  A determinant is what is left of several directions multiplied, and
 where each of them is a little poor it is small without any of them being lost.  So pivots are compared one by one, each
@@ -31,7 +32,8 @@ class Guard:
 
     `degree` is 2 for a sum of squares (the threshold is squared), else 1.  `first` holds guards that are looked at
     only on failure, to name the cause.  `scale` takes the place of D_max where another factor of the denominator
-    has a guard of its own.  `directions` is how many the denominator is a determinant of, in this scale.
+    has a guard of its own.  `directions` is how many the denominator is a determinant of, in this scale.  One that is
+    `positive` is lost below 0, too: pivots of a definite matrix are lengths to what comes after them.
     """
 
     status: Status
@@ -40,6 +42,7 @@ class Guard:
     first: tuple[Guard, ...] = ()
     scale: Scalar | None = None
     directions: int = 1
+    positive: bool = False
 
     def threshold(self, n: int, unit_roundoff: Fraction) -> Fraction:
         """8 n eps for one direction, n eps for determinants of three or more; squared for sums of squares."""

@@ -235,6 +235,28 @@ class Reflections:
             self.pivots.append(squared)
             self.triangle.append((*y[:k], -signed))
 
+    def combinations(self, lengths: Sequence[Scalar]) -> list[Scalar]:
+        """The squared lengths of what each pivot is made of, from those of the columns.
+
+        The pivot is p_k = a_k - sum_j c_j a_j, j < k, with the c that make it shortest: |a_k|^2 + sum_j c_j^2 |a_j|^2.
+        What is computed are the reflections of columns that are off by eps of their lengths (Higham, Accuracy and
+        Stability of Numerical Algorithms, 19.3), which changes p_k by eps times the root of that: beside columns that
+        are nearly parallel by far more than eps of a_k.  For columns of length 1 it is p_k^2 |R^-1 e_k|^2, so that the
+        least share that a p_k^2 has of it is the square of the smallest singular value, or up to r times that.
+        """
+        found = list(lengths)
+        for k, column in enumerate(self.triangle):
+            rest = list(column[:k])
+            for j in reversed(range(k)):
+                if not rest[j].is_zero:
+                    amount = rest[j] * self._inverse(self.triangle[j][j])
+                    found[k] = found[k] + amount * amount * lengths[j]
+                    rest[:j] = (x - y * amount for x, y in zip(rest[:j], self.triangle[j], strict=False))
+        return found
+
+    def _inverse(self, x: Scalar) -> Scalar:
+        return self.graph.function("ratio_or_zero", (self.graph.one, x)) if self.everywhere else 1 / x
+
     @property
     def determinant_sign(self) -> Scalar:
         """The sign of det Q det R: each reflection has the determinant -1."""
@@ -290,8 +312,9 @@ class HouseholderSpace:
 
     @cached_property
     def guards(self) -> tuple[Guard, ...]:
-        """What the rows before leave of each row, beside its length."""
-        return beside_lengths(Status.CONSTRAINT_RANK, self.reflections.pivots, self.lengths)
+        """What the rows before leave of each row, beside the lengths of what leaves it."""
+        beside = self.reflections.combinations(self.lengths)
+        return beside_lengths(Status.CONSTRAINT_RANK, self.reflections.pivots, beside)
 
     @cached_property
     def volume(self) -> Guard:

@@ -61,6 +61,7 @@ class WeightedGramSchmidt:
 
         Components along V are taken out of b one by one, and given back in the opposite order from what is there: what
         rounding has left of them on the way does not stay (Bjorck and Paige, SIAM J. Matrix Anal. Appl. 15, 1994).
+        Exactly nothing is left of them, so that what is there has to be a number of which nothing is known.
         """
         graph, count = self._graph, len(self._directions)
         asked: list[Scalar] = []  # (V^T W y)_k
@@ -71,6 +72,7 @@ class WeightedGramSchmidt:
             along = dot(graph, self._weighted[k], y)
             y = _less(y, along * self._inverses[k], self._directions[k])
             shares.append((along - asked[k]) * self._inverses[k])
+        y = tuple(map(graph.rounded, y))
         for k in reversed(range(count)):
             surplus = dot(graph, self._weighted[k], y) - asked[k]
             y = _less(y, surplus * self._inverses[k], self._directions[k])
@@ -119,9 +121,10 @@ class WeightedGramSchmidt:
 class PivotedGramSchmidt(WeightedGramSchmidt):
     """A = V T where only `rank` columns are independent: V holds those of which most is left beside the ones before.
 
-    The choice is made at each configuration, by products with 0 and 1, by what is left of a column's own length.  What
-    is left of the others is rounding, and dropped.  Solved for are multipliers of the chosen rows, from which the
-    shortest ones of all rows follow (a complete orthogonal decomposition; Golub and Van Loan, 5.4).
+    The choice is made at each configuration, by products with 0 and 1, by what is left of a column times the share that
+    this is of its own length.  What is left of the others is rounding, and dropped.  Solved for are multipliers of the
+    chosen rows, from which the shortest ones of all rows follow (a complete orthogonal decomposition; Golub and Van
+    Loan, 5.4).
     """
 
     def __init__(self, graph: Graph, columns: Sequence[Vector], weights: Sequence[Scalar], rank: int) -> None:
@@ -134,7 +137,8 @@ class PivotedGramSchmidt(WeightedGramSchmidt):
         for _ in range(rank):
             squares = [_squared(graph, column, weights) for column in left]
             ratios = [graph.function("ratio_or_zero", pair) for pair in zip(squares, lengths, strict=True)]
-            choice = longest(graph, ratios)
+            # long rows are known to more digits than short ones that hold the same, beside V most of all
+            choice = longest(graph, [square * ratio for square, ratio in zip(squares, ratios, strict=True)])
             direction = _combined(graph, choice, left)
             weighted = tuple(x * w for x, w in zip(direction, weights, strict=True))
             square = dot(graph, weighted, direction)

@@ -68,6 +68,10 @@ class PivotedReflections(Reflections):
         self.rest: Matrix = tuple(remaining)
         self.coefficients: Matrix = tuple(row[:rank] for row in remaining)
 
+    def combinations(self, lengths: Sequence[Scalar]) -> list[Scalar]:
+        """Their own lengths: a row of which less is left than of those before is made of little of them."""
+        return list(lengths)
+
     def _add(self, k: int, tail: Vector) -> None:
         graph = self.graph
         squared = graph.sum(entry * entry for entry in tail)

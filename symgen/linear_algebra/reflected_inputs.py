@@ -56,6 +56,10 @@ class ReflectedInputs:
         """The squared lengths of the columns from those without weights."""
         return [square * share * share for square, share in zip(squares, self._shares, strict=True)]
 
+    def combinations(self, lengths: Sequence[Scalar]) -> list[Scalar]:
+        """By columns: of each pivot the squared lengths of the columns that it is made of."""
+        return self._space.reflections.combinations(lengths)
+
     def solve(self, force: Vector) -> Vector:
         """A^+ f; with weights the one of least weighted norm."""
         factors = self._space.lift_transposed(force) if self.by_columns else self._space.lift(force)

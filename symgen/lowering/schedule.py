@@ -91,7 +91,8 @@ class _Limits:
         if guard not in self._known:
             graph = self._mechanics.graph
             scale = magnitude(graph, [guard.denominator])[0] if guard.scale is None else guard.scale
-            size = guard.denominator if guard.degree == 2 else graph.function("abs", (guard.denominator,))
+            signed = guard.degree == 1 and not guard.positive
+            size = graph.function("abs", (guard.denominator,)) if signed else guard.denominator
             first = tuple(self.tests(guard.first))
             if all(cause.status is guard.status and not cause.first for cause in first):
                 first = ()  # nothing to tell apart

@@ -95,7 +95,7 @@ class ArticulatedFactor:
         # of the length of a quaternion the pivot says nothing: its rate is that of the row that holds it
         self.pivots: list[Scalar] = [pivots.get(j, self.graph.one) for j in range(len(bodies.q))]
         turns = (Guard(Status.MASS_RANK, joint.determinant, 1) for joint in free.values())
-        along = (Guard(Status.MASS_RANK, pivots[j], 1, scale=scales[j]) for j in sorted(pivots))
+        along = (Guard(Status.MASS_RANK, pivots[j], 1, scale=scales[j], positive=True) for j in sorted(pivots))
         self.guards = (*along, *turns)
 
     def lowered(self, b: Sequence[Scalar], wrenches: Mapping[str, Six] | None = None) -> Vector:

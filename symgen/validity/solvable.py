@@ -96,7 +96,8 @@ def _by_pivots(
 ) -> Guard:
     """What the inputs before leave of each input, or, of components of all inputs, the product of pivots."""
     if forms.by_columns:
-        shares = [graph.function("ratio_or_zero", pair) for pair in zip(forms.pivots, lengths, strict=True)]
+        beside = forms.combinations(lengths)
+        shares = [graph.function("ratio_or_zero", pair) for pair in zip(forms.pivots, beside, strict=True)]
         return Guard(status, _least(graph, shares), 2, before, graph.one)
     # in units of their mean size products stay in the range of a float32
     usual = graph.sum(lengths) * Fraction(1, len(lengths))

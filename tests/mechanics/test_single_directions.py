@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 import math
 import random
+from fractions import Fraction
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from symgen.cli.main import main
@@ -15,13 +17,17 @@ from symgen.linear_algebra.constrained_inverse import diagonal_sizes
 from symgen.linear_algebra.guards import Guard, magnitude, multiplied
 from symgen.linear_algebra.null_spaces import HouseholderSpace, MinorSpace
 from symgen.linear_algebra.pivoted import reflected
+from symgen.lowering.schedule import schedule
 from symgen.mechanics.genericity import genericity
 from symgen.mechanics.system import System
 from symgen.methods.derivation import Derivation
 from symgen.model.load import load_text
+from symgen.quantities.select import derive_quantities
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.matrix import Matrix
 from symgen.symbolic.scalar import Graph
+from symgen.verify.interpreted import outcomes
+from symgen.verify.reference.reference import State
 
 SINGLE = UNIT_ROUNDOFF["float32"]
 SIZE = 8
@@ -67,21 +73,36 @@ outputs: [inverse_dynamics]
 """
 
 
-def passes(guard: Guard, point: dict[str, float], size: int = SIZE) -> bool:
-    """The test of a kernel, in exact numbers."""
+# coupled by a parameter: beyond the root of the product of both inertias no energy is positive
+COUPLED = """
+model: coupled
+parameters: {k: {value: 0.4, range: [0.1, 0.5]}}
+coordinates: {a: {unit: rad}, b: {unit: rad}, c: {unit: rad}}
+kinetic_energy: (a_dot**2 + b_dot**2 + c_dot**2)/2 + k*cos(b)*a_dot*b_dot + k*sin(b)*b_dot*c_dot
+constraints: {nonholonomic: {belt: a_dot + cos(c)*c_dot}}
+inputs: {u: {acts_on: {a: 1}}}
+outputs: [forward_dynamics]
+"""
+
+
+def passes(guard: Guard, point: dict[str, float], size: int = SIZE, eps: Fraction = SINGLE) -> bool:
+    """The test of a kernel, in double precision."""
     graph = guard.denominator.graph
     scale = magnitude(graph, [guard.denominator])[0] if guard.scale is None else guard.scale
     denominator, most = Evaluator([guard.denominator, scale])(point)
-    return abs(denominator) > float(guard.threshold(size, SINGLE)) * most
+    return abs(denominator) > float(guard.threshold(size, eps)) * most
 
 
-def leaning(graph: Graph, shares: list[float]) -> tuple[Matrix, dict[str, float]]:
-    """Rows of length 1, of which each keeps a share beside the rows before, as symbols with their values."""
+def leaning(graph: Graph, shares: list[float], together: int = SIZE) -> tuple[Matrix, dict[str, float]]:
+    """Rows of length 1, of which each keeps a share beside the row before, as symbols with their values.
+
+    The first of so many rows `together` leans on none.
+    """
     values: dict[str, float] = {}
     rows = []
     for i, share in enumerate(shares):
         entries = dict.fromkeys(range(SIZE), 0.0) | {i: share}
-        if i:
+        if i % together:
             entries[i - 1] = math.sqrt(1 - share**2)
         values |= {f"x_{i}_{j}": entry for j, entry in entries.items()}
         rows.append(tuple(graph.symbol(f"x_{i}_{j}") for j in entries))
@@ -91,10 +112,38 @@ def leaning(graph: Graph, shares: list[float]) -> tuple[Matrix, dict[str, float]
 def test_many_poor_rows_are_no_lost_row() -> None:
     graph = Graph()
     for lost in (False, True):
-        rows, values = leaning(graph, [1.0, *[0.01] * 6, 1e-8 if lost else 0.01])
+        rows, values = leaning(graph, [1.0, 0.01] * 3 + [1.0, 1e-8 if lost else 0.01], together=2)
         guards = HouseholderSpace(graph, rows, SIZE).guards
         assert len(guards) == len(rows)
         assert all(passes(guard, values) for guard in guards) is not lost
+
+
+def test_rows_that_lean_on_leaning_rows_are_as_near_to_a_loss_as_all_of_them_together() -> None:
+    for shares, regular in (([1.0, 0.1, 0.1, 0.1], True), ([1.0, 0.01, 0.01, 0.01], False)):
+        graph = Graph()
+        rows, values = leaning(graph, shares)
+        guards = HouseholderSpace(graph, rows, SIZE).guards
+        assert all(passes(guard, values) for guard in guards) is regular
+        # the smallest singular value, up to the root of the number of rows
+        squares = [Evaluator([guard.denominator / guard.scale])(values)[0] for guard in guards if guard.scale]
+        found = math.sqrt(min(squares))
+        smallest = np.linalg.svd([[values[f"x_{i}_{j}"] for j in range(SIZE)] for i in range(4)])[1][-1]
+        assert smallest * (1 - 1e-6) <= found <= smallest * 2
+
+
+def test_what_rounding_leaves_of_a_dependent_row_beside_rows_that_are_nearly_parallel_is_no_direction() -> None:
+    source = np.random.default_rng(7)
+    for _ in range(20):
+        # three rows in a plane, the first two a millionth of a radian apart, and a share of the last out of the plane
+        axes = np.linalg.qr(source.normal(size=(SIZE, 3)))[0].T
+        angles = source.uniform(-3, 3) + np.array([0, 1e-6, source.uniform(1, 2)])
+        for share in (0.0, 0.01):
+            graph = Graph()
+            entries = np.stack([np.cos(angles), np.sin(angles), [0, 0, share]], axis=1) @ axes
+            rows = tuple(tuple(graph.symbol(f"x_{i}_{j}") for j in range(SIZE)) for i in range(3))
+            values = {f"x_{i}_{j}": float(entries[i, j]) for i in range(3) for j in range(SIZE)}
+            guards = HouseholderSpace(graph, rows, SIZE).guards
+            assert all(passes(guard, values, eps=UNIT_ROUNDOFF["float64"]) for guard in guards) is (share > 0)
 
 
 def test_rows_that_were_chosen_count_by_what_is_left_of_them() -> None:
@@ -141,6 +190,16 @@ def test_inertias_are_measured_by_themselves() -> None:
     (size,) = diagonal_sizes(mechanics.graph, ((nothing * nothing,),))
     tiny = Evaluator([nothing * nothing / size])({"m_tool": 1.0, "a": 1e-12})
     assert tiny[0] < 8 * float(SINGLE)
+
+
+def test_pivots_of_a_mass_matrix_below_0_are_lost() -> None:
+    asked = "forward_dynamics"
+    selection = derive_quantities(load_text(COUPLED, "coupled.yaml"), [asked], {asked: "schur_qr"})
+    program = schedule(selection.mechanics, selection.quantities, ("float64",))["float64"]
+    (kernel,) = (one for one in program.kernels if one.name == asked)
+    states = [State((0.1, 0.7, 0.2), (0.3, 0.2, 0.1), (), (1.0,), (k,)) for k in (0.4, 4.0)]
+    found = outcomes(kernel, program.sincos, "float64", states)
+    assert [one.status for one in found] == [Status.OK, Status.MASS_RANK]
 
 
 @pytest.mark.slow

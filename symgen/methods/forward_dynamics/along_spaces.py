@@ -13,6 +13,7 @@ from symgen.linear_algebra.refinement import of_motion, refined
 from symgen.mechanics.genericity import Genericity
 from symgen.methods.derivation import Derivation
 from symgen.methods.forward_dynamics.absolute import in_absolute_angles, motion_brought_back
+from symgen.methods.forward_dynamics.columns_apart import apart
 from symgen.methods.forward_dynamics.held_lengths import completed_multipliers
 from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA, minor_motion
 from symgen.methods.forward_dynamics.motion import Motion, Problem
@@ -99,7 +100,14 @@ def _schur_qr(derivation: Derivation) -> Motion:
     rank = derivation.generic.rank
     # it measures ranks itself where rows are many, or depend on each other
     measured = derivation.r > min(rank, LONGEST_PRODUCT)
-    return _solved_apart(derivation, lambda problem: schur_qr(problem, rank), measured)
+
+    def solved(problem: Problem) -> Motion:
+        found = apart(problem)
+        if found is None:
+            return schur_qr(problem, rank)
+        return found.brought_back(schur_qr(found, rank, found.factor))
+
+    return _solved_apart(derivation, solved, measured)
 
 
 def _nullspace(derivation: Derivation) -> Motion:

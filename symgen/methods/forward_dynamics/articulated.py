@@ -72,7 +72,7 @@ class _Loops(Problem):
 
     def bias_at(self, q_ddot: Vector) -> Vector:
         """B q_ddot + a."""
-        mechanics = self._mechanics
+        mechanics = self.mechanics
         weight = mechanics.bodies.gravity
         motions = frame_motions(mechanics.bodies, mechanics.qd, q_ddot, weight) if self.loops else {}
         held = [i for loop, _ in self.loops if motions.keys() >= set(loop.frames) for i in loop.rows.values()]
@@ -94,7 +94,7 @@ class _Loops(Problem):
         found = list(values)
         for loop, frame in self.loops:
             if frame != WORLD:
-                axes = self._mechanics.bodies.kinematics.axes(frame)
+                axes = self.mechanics.bodies.kinematics.axes(frame)
                 three = triple([values[i] for i in loop.rows.values()])
                 for i, x in zip(loop.rows.values(), applied(transposed(axes) if inward else axes, three), strict=True):
                     found[i] = x

@@ -38,28 +38,28 @@ class Problem:
         self.graph: Graph = mechanics.graph
         self.guards = guards
         self.n, self.r = mechanics.n, mechanics.r
-        self._mechanics = mechanics
+        self.mechanics = mechanics
         self._multipliers: dict[frozenset[Scalar], Multiplier] = {}
 
     @property
     def mass_matrix(self) -> Matrix:
         """G (n x n)."""
-        return self._mechanics.mass_matrix
+        return self.mechanics.mass_matrix
 
     @property
     def rows(self) -> Matrix:
         """B (r x n)."""
-        return self._mechanics.constraint_jacobian
+        return self.mechanics.constraint_jacobian
 
     @cached_property
     def force(self) -> Vector:
         """f (n)."""
-        return self._mechanics.applied_balance
+        return self.mechanics.applied_balance
 
     @cached_property
     def bias(self) -> Vector:
         """a (r)."""
-        return self._mechanics.constraint_acceleration_bias(self._mechanics.qd) if self.r else ()
+        return self.mechanics.constraint_acceleration_bias(self.mechanics.qd) if self.r else ()
 
     def multiplied_out(self, values: list[Scalar], kept: frozenset[Scalar] = frozenset()) -> list[Scalar]:
         """The values with sums of parameters multiplied out too, where that is not too long; sums in `kept` stay whole.
@@ -68,7 +68,7 @@ class Problem:
         becomes small where a rank drops has to be kept: the square of a small difference, multiplied out, is the
         difference of numbers that are not small.
         """
-        factoring = self._mechanics.factoring
+        factoring = self.mechanics.factoring
         if kept not in self._multipliers:
             self._multipliers[kept] = factoring.multiplier(lambda node: node in kept)
         shared = share_angles(self.graph, values)

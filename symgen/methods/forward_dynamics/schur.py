@@ -40,11 +40,14 @@ class Factor(Protocol):
 
 
 class SchurQR:
-    """By A = V R: valid wherever G is positive definite and B has its generic `rank`, for any right-hand sides."""
+    """By A = V R: valid wherever G is positive definite and B has its generic `rank`, for any right-hand sides.
 
-    def __init__(self, problem: Problem, rank: int) -> None:
+    `factor` is that of G where it is known.
+    """
+
+    def __init__(self, problem: Problem, rank: int, factor: Factor | None = None) -> None:
         self._graph = problem.graph
-        self._factor = OrderedCholesky(problem.graph, problem.mass_matrix)
+        self._factor = OrderedCholesky(problem.graph, problem.mass_matrix) if factor is None else factor
         columns = [self._factor.lowered(row) for row in problem.rows]
         self._elimination = Elimination(problem, self._factor, columns, rank)
 
@@ -62,9 +65,9 @@ class SchurQR:
         return elimination.motion(factor.lowered(force), asked, left_over)
 
 
-def schur_qr(problem: Problem, rank: int) -> Motion:
+def schur_qr(problem: Problem, rank: int, factor: Factor | None = None) -> Motion:
     """q_ddot and lambda of a system's own right-hand sides."""
-    return SchurQR(problem, rank).motion(problem.force, problem.bias)
+    return SchurQR(problem, rank, factor).motion(problem.force, problem.bias)
 
 
 class Elimination:
@@ -133,17 +136,17 @@ class OrderedCholesky:
 
     def __init__(self, graph: Graph, mass_matrix: Matrix) -> None:
         n = len(mass_matrix)
-        self._order = sorted(range(n), key=lambda i: (mass_matrix[i][i].size, -i))
-        turned = tuple(tuple(mass_matrix[i][j] for j in self._order) for i in self._order)
+        self.order = sorted(range(n), key=lambda i: (mass_matrix[i][i].size, -i))
+        turned = tuple(tuple(mass_matrix[i][j] for j in self.order) for i in self.order)
         self._factor = Cholesky(graph, turned, diagonal_sizes(graph, turned))
         self.pivots: Sequence[Scalar] = self._factor.pivots
         self.guards = self._factor.guards
 
     def lowered(self, b: Sequence[Scalar]) -> Vector:
         """The solution of L y = b."""
-        return self._factor.lowered([b[i] for i in self._order])
+        return self._factor.lowered([b[i] for i in self.order])
 
     def raised(self, b: Sequence[Scalar]) -> Vector:
         """The solution of L^T x = b."""
-        found = dict(zip(self._order, self._factor.raised(b), strict=True))
-        return tuple(found[i] for i in range(len(self._order)))
+        found = dict(zip(self.order, self._factor.raised(b), strict=True))
+        return tuple(found[i] for i in range(len(self.order)))

@@ -230,8 +230,9 @@ class _Core:
         """u less its components along several internal forces."""
         graph = self._graph
         space = HouseholderSpace(graph, z, len(u))
-        lengths = graph.sum(x * x for column in self._unit_columns() for x in column)
-        return space.project(u), beside_lengths(Status.CONSTRAINT_RANK, space.reflections.pivots, [lengths] * len(z))
+        length = graph.sum(x * x for column in self._unit_columns() for x in column)
+        beside = space.reflections.combinations([length] * len(z))
+        return space.project(u), beside_lengths(Status.CONSTRAINT_RANK, space.reflections.pivots, beside)
 
 
 def _null_vector_cost(rows: Matrix) -> int:
