@@ -15,7 +15,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from symgen.backends.literals import LiteralRangeError
+from symgen.backends.literals import LiteralRangeError, check_literals
 from symgen.backends.operations import count_operations
 from symgen.diagnostics import ModelError
 from symgen.generation.draft import Draft, draft_of
@@ -83,6 +83,8 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
                 from symgen.generation.parameter_bounds import ParameterBounds
                 from symgen.generation.states import expected_of
 
+                with _literals_in_range(path):
+                    check_literals(draft.programs)
                 expected = expected or expected_of(path, draft, options.states, progress)
                 bounds = bounds or ParameterBounds(expected)
                 draft = bounds.of(draft)

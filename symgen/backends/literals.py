@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache
 
-from symgen.ir.kernel import Scalar
+from symgen.ir.kernel import Literal, Program, Scalar
 
 _FLOAT32_DIGITS = 24
 _FLOAT32_LOWEST_EXPONENT = -149
@@ -49,6 +50,16 @@ def in_range(scalar: Scalar, value: Fraction) -> float:
         return round_to(scalar, value)
     except OverflowError as error:
         raise LiteralRangeError(scalar, value) from error
+
+
+def check_literals(programs: Mapping[Scalar, Program]) -> None:
+    """Raises LiteralRangeError as writing would."""
+    for scalar, program in programs.items():
+        for kernel in program.kernels:
+            for statement in kernel.statements:
+                for operand in statement.operands:
+                    if isinstance(operand, Literal):
+                        in_range(scalar, operand.value)
 
 
 @cache

@@ -7,17 +7,16 @@ way first, and what is written and compiled is what stays.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from symgen.backends.literals import decimal_text
+from symgen.backends.literals import check_literals
 from symgen.generation.draft import Draft
 from symgen.generation.fallback import Fallback
 from symgen.generation.files import verified
 from symgen.generation.results import Options
 from symgen.generation.states import expected_of
-from symgen.ir.kernel import Literal, Program, Scalar
 from symgen.verify.certificate import Certificate
 from symgen.verify.compile import find_compiler
 from symgen.verify.run import blank_certificate
@@ -38,7 +37,7 @@ class Trial:
         self._scalars = tuple(chosen | ({"float64": None} if "python" in run else {}))
         self._progress = progress
         self.fallback = Fallback(options, progress)
-        _check_literals(draft.programs)
+        check_literals(draft.programs)
         self.expected = expected_of(path, draft, options.states, progress, self._scalars)
 
     def settled(self, draft: Draft) -> tuple[Draft, Certificate]:
@@ -62,12 +61,3 @@ class Trial:
                 faults += [] if fault is None else [fault]
         return replace(self._blank, errors=tuple(errors), faults=tuple(faults), left_out=draft.left_out)
 
-
-def _check_literals(programs: Mapping[Scalar, Program]) -> None:
-    """Raises LiteralRangeError as writing would."""
-    for scalar, program in programs.items():
-        for kernel in program.kernels:
-            for statement in kernel.statements:
-                for operand in statement.operands:
-                    if isinstance(operand, Literal):
-                        decimal_text(scalar, operand.value)
