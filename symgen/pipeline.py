@@ -87,6 +87,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
                     check_literals(draft.programs)
                 expected = expected or expected_of(path, draft, options.states, progress)
                 bounds = bounds or ParameterBounds(expected)
+                progress("verifying: how far parameters may be")
                 draft = bounds.of(draft)
             if reporting is not None:
                 reporting.send(facts(draft))

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Container
+from collections.abc import Container, Iterator
 from typing import TYPE_CHECKING
 
+from symgen.backends.defaults import default_values
 from symgen.backends.operations import count_operations
 from symgen.diagnostics import Notice
 from symgen.generation.dense_motion import dense_motions
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 BYTES_AN_OPERATION = 7
 # What a step of `backends/c/steps.py` takes in its table.
 BYTES_A_STEP = 14
+# How far from its value a bound of a parameter goes without saying.
+NEAR = 10
 # Bytes of machine code beyond which a notice tells of them.
 LARGEST_CODE = 64_000
 
@@ -38,7 +41,7 @@ def notices(draft: Draft, options: Options, certificate: Certificate | None) -> 
     kernels = {kernel.name for kernel in draft.program.kernels}
     idle = [Notice(f"--form {n}={form}: {n} is not generated") for n, form in options.forms.items() if n not in kernels]
     unverified = () if certificate is None else certificate.notes
-    ways = (*replaced(draft), *_short(draft), *dense_motions(draft, options))
+    ways = (*replaced(draft), *_short(draft), *_near_bounds(draft), *dense_motions(draft, options))
     recorded = draft.notes if options.as_recorded else ()
     of_kernels = (*absent, *ways, *_size(draft, options), *idle, *map(Notice, (*unverified, *recorded)))
     return (*_renamed(draft.model), *of_kernels)
@@ -87,6 +90,24 @@ def _size(draft: Draft, options: Options) -> tuple[Notice, ...]:
             "much, name fewer with --outputs"
         ),
     )
+
+
+def _near_bounds(draft: Draft) -> Iterator[Notice]:
+    """That parameters may not be far from their values, where they may hardly be further than usual."""
+    values = {name: abs(float(value)) for name, value in default_values(draft.model).items()}
+    for quantity in (kernel.name for kernel in draft.program.kernels):
+        bounds = [bound for every in draft.bounds.values() for bound in every.get(quantity, ())]
+        below = (b for b in bounds if b.low is not None and NEAR * b.low > values[b.parameter])
+        above = (b for b in bounds if b.high is not None and b.high < NEAR * values[b.parameter])
+        near = dict.fromkeys(
+            (
+                *(f"{b.parameter} below {float(b.low or 0):g}" for b in below),
+                *(f"{b.parameter} above {float(b.high or 0):g}" for b in above),
+            )
+        )
+        if near:
+            beyond = ", ".join(near)
+            yield Notice(f"{quantity} refuses {beyond}: it would lose digits; a `range` has it verified further")
 
 
 def _bytes(kernel: Kernel) -> int:

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from symgen.generation.draft import draft_of
+from symgen.generation.notices import notices
 from symgen.generation.recorded import as_recorded
 from symgen.generation.results import Options
 from symgen.ir.bounded import Bound
@@ -155,6 +157,16 @@ def test_a_bound_is_recorded_told_and_taken_up_again(crane: Path, tmp_path: Path
     (tmp_path / "crane" / "derivation.json").write_text(str(result.files["derivation.json"]), encoding="utf-8")
     again = as_recorded(result.model, result.model.outputs, Options(measured=tmp_path))
     assert again.written == result.programs
+
+
+def test_a_bound_close_by_is_told(crane: Path) -> None:
+    model = load_model(crane)
+    draft = draft_of(model, (MULTIPLIERS,), Options())
+    bounds = (Bound(MASS, Fraction(1, 100), Fraction(3)), Bound("l_1", Fraction(1, 5), Fraction(40)))
+    told = notices(replace(draft, bounds={"float32": {MULTIPLIERS: bounds}}), Options(), None)
+    assert [one.message for one in told if MULTIPLIERS in one.message] == [
+        "multipliers refuses l_1 below 0.2, m_3 above 3: it would lose digits; a `range` has it verified further"
+    ]
 
 
 def test_a_declared_range_lies_within_the_bounds(tmp_path: Path) -> None:
