@@ -25,7 +25,7 @@ BYTES_AN_OPERATION = 7
 # What a step of `backends/c/steps.py` takes in its table.
 BYTES_A_STEP = 14
 # How far from its value a bound of a parameter goes without saying.
-NEAR = 10
+CLOSE_BY = 10
 # Bytes of machine code beyond which a notice tells of them.
 LARGEST_CODE = 64_000
 
@@ -97,8 +97,8 @@ def _near_bounds(draft: Draft) -> Iterator[Notice]:
     values = {name: abs(float(value)) for name, value in default_values(draft.model).items()}
     for quantity in (kernel.name for kernel in draft.program.kernels):
         bounds = [bound for every in draft.bounds.values() for bound in every.get(quantity, ())]
-        below = (b for b in bounds if b.low is not None and NEAR * b.low > values[b.parameter])
-        above = (b for b in bounds if b.high is not None and b.high < NEAR * values[b.parameter])
+        below = (b for b in bounds if b.low is not None and CLOSE_BY * b.low > values[b.parameter])
+        above = (b for b in bounds if b.high is not None and b.high < CLOSE_BY * values[b.parameter])
         near = dict.fromkeys(
             (
                 *(f"{b.parameter} below {float(b.low or 0):g}" for b in below),

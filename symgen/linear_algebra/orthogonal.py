@@ -56,12 +56,12 @@ class WeightedGramSchmidt:
         lengths = [_squared(self._graph, column, self._metric) for column in self._columns]
         return multiplied(status, self._squares, lengths)
 
-    def solve(self, b: Vector, c: Vector) -> tuple[Vector, Vector]:
+    def solve(self, b: Vector, c: Vector, again: bool = False) -> tuple[Vector, Vector]:
         """y and l of y + A l = b, A^T W y = c.
 
-        Components along V are taken out of b one by one, and given back in the opposite order from what is there: what
-        rounding has left of them on the way does not stay (Bjorck and Paige, SIAM J. Matrix Anal. Appl. 15, 1994).
-        Exactly nothing is left of them, so that what is there has to be a number of which nothing is known.
+        Components along V are taken out of b one by one, and given back in the opposite order.  Asked for `again`, what
+        is there is looked at, so that what rounding has left of them on the way does not stay (Bjorck and Paige, SIAM
+        J. Matrix Anal. Appl. 15, 1994).  Exactly nothing is: it has to be a number of which nothing is known then.
         """
         graph, count = self._graph, len(self._directions)
         asked: list[Scalar] = []  # (V^T W y)_k
@@ -72,7 +72,8 @@ class WeightedGramSchmidt:
             along = dot(graph, self._weighted[k], y)
             y = _less(y, along * self._inverses[k], self._directions[k])
             shares.append((along - asked[k]) * self._inverses[k])
-        y = tuple(map(graph.rounded, y))
+        if again:
+            y = tuple(map(graph.rounded, y))
         for k in reversed(range(count)):
             surplus = dot(graph, self._weighted[k], y) - asked[k]
             y = _less(y, surplus * self._inverses[k], self._directions[k])

@@ -92,7 +92,7 @@ def test_multipliers_by_the_form_asked_for_are_verified(form: str, tmp_path: Pat
         assert derivation["kernels"][quantity]["way"] == form
         assert derivation[f"form_of_{quantity}"]["valid_at_every_regular_state"] is True
     counted = derivation["kernels"]["multipliers"]["counted_cost"][form]
-    assert {"minor": 226, "schur_qr": 321}.get(form, counted) == counted
+    assert {"minor": 226, "schur_qr": 310}.get(form, counted) == counted
 
 
 def test_a_form_of_the_accelerations_that_fails_says_where(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

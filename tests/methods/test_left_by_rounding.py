@@ -7,6 +7,7 @@ import random
 import pytest
 
 from symgen.lowering.schedule import schedule
+from symgen.methods.forward_dynamics.motion import Problem
 from symgen.methods.method import MOTIONS
 from symgen.model.load import load_text
 from symgen.quantities.select import derive_quantities
@@ -33,7 +34,8 @@ outputs: [forward_dynamics, multipliers]
 
 
 @pytest.mark.parametrize("quantity", MOTIONS)
-def test_light_bodies_between_heavy_ones_keep_their_digits(quantity: str) -> None:
+def test_light_bodies_between_heavy_ones_keep_their_digits(quantity: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Problem, "rows_in_line", True)
     model = load_text(BETWEEN, "between.yaml")
     selection = derive_quantities(model, [quantity], {quantity: "schur_qr"})
     program = schedule(selection.mechanics, selection.quantities, ("float32",))["float32"]

@@ -34,6 +34,9 @@ class Apart(Problem):
     `factor` is that of T^T G T.
     """
 
+    # a column that is as short as the sine of a knee brings rows into line where a leg is stretched
+    rows_in_line = True
+
     def __init__(self, problem: Problem, shares: Mapping[int, Share], rows: Matrix) -> None:
         super().__init__(problem.mechanics, problem.guards)
         self._problem, self._shares, self._rows = problem, shares, rows

@@ -32,7 +32,12 @@ class Motion:
 
 
 class Problem:
-    """A system's equations of motion; `guards` tell where B loses rank."""
+    """A system's equations of motion; `guards` tell where B loses rank.
+
+    Where rows may be `rows_in_line`, what rounding leaves along them while they are solved with is taken out again.
+    """
+
+    rows_in_line = False
 
     def __init__(self, mechanics: System, guards: tuple[Guard, ...]) -> None:
         self.graph: Graph = mechanics.graph

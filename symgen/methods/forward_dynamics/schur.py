@@ -80,7 +80,7 @@ class Elimination:
         graph, r = problem.graph, problem.r
         self._graph, self._r, self._factor = graph, r, factor
         self.weights: Vector = tuple(1 / pivot for pivot in factor.pivots)
-        self._columns = columns
+        self._columns, self._again = columns, problem.rows_in_line
         self._orthogonal = (
             WeightedGramSchmidt(graph, columns, self.weights)
             if rank == r
@@ -118,13 +118,16 @@ class Elimination:
     def _solution(
         self, force: Vector, asked: Vector, left_over: Callable[[Vector, Vector], Solution] | None
     ) -> Solution:
-        solution = self._orthogonal.solve(force, asked)
+        solution = self._solved(force, asked)
         if self._r and left_over is not None:
-            solution = refined(self._graph, solution, left_over, self._orthogonal.solve)
+            solution = refined(self._graph, solution, left_over, self._solved)
         x, multipliers = solution
         if isinstance(self._orthogonal, PivotedGramSchmidt):
             multipliers = self._orthogonal.of_all(self._all_rows, multipliers)
         return x, multipliers
+
+    def _solved(self, force: Vector, asked: Vector) -> Solution:
+        return self._orthogonal.solve(force, asked, self._again)
 
 
 class OrderedCholesky:
