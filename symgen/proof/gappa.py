@@ -17,7 +17,7 @@ from symgen.backends.c.names import c_names
 from symgen.backends.literals import decimal_text, round_to
 from symgen.backends.locals import array_arguments
 from symgen.backends.render import render
-from symgen.backends.scalars import file_stem
+from symgen.backends.scalars import SUFFIX, file_stem
 from symgen.ir.kernel import Kernel, Literal, Local, Operand, Program, Statement
 from symgen.model.model import Model, Range
 from symgen.proof.box import box
@@ -48,6 +48,7 @@ class ErrorView:
 
     stem: str
     model: str
+    suffix: str
     quantity: str
     points: int
     arrays: tuple[tuple[str, int], ...]
@@ -120,6 +121,7 @@ def _measurement(model: Model, program: Program, kernel: Kernel) -> ErrorView:
     return ErrorView(
         stem=stem,
         model=model.c_name,
+        suffix=SUFFIX[program.scalar],
         quantity=kernel.name,
         points=POINTS,
         arrays=tuple((a.name, a.length) for a in arrays),
