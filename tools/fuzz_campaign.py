@@ -15,6 +15,8 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from symgen.backends.c.endings import BATCH
+
 COMPILE = ["clang", "-gline-tables-only", "-O1", "-std=c99", "-ffp-contract=off", "-fno-sanitize-recover=all", "-Ic",
            "-fsanitize=fuzzer,address,undefined,float-cast-overflow"]
 LENGTH = 1024  # bytes of one input
@@ -38,7 +40,7 @@ def main(folder: Path, seconds: int, names: list[str]) -> int:
 def campaign(folder: Path, model: str, seconds: int, sums: bool) -> tuple[int, str]:
     """How many inputs were tried, 0 if one failed; and the end of what the tools say."""
     sources = [f"proof/{model}_fuzz.c"]
-    sources += sorted(f"c/{path.name}" for path in (folder / "c").glob("*.c") if "_batch" not in path.name)
+    sources += sorted(f"c/{path.name}" for path in (folder / "c").glob("*.c") if BATCH not in path.name)
     made = run([*COMPILE, *(["-DSUMS"] if sums else []), *sources, "-lm", "-o", "fuzz"], folder)
     if made.returncode:
         return 0, made.stderr[-4000:]

@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from importlib import import_module
 from typing import TypeAlias
 
-from symgen.backends.scalars import SUFFIX
+from symgen.backends.scalars import file_stem
 from symgen.ir.kernel import Program, Scalar
 from symgen.model.model import Model
 from symgen.records import dataclass
@@ -50,7 +50,7 @@ class Backend:
 
     def paths(self, model: Model, scalar: Scalar, ending: str = "") -> tuple[str, ...]:
         """Where the files of a variant are, under the folder of a model, in the order of extensions."""
-        stem = f"{model.c_name}{ending}{SUFFIX[scalar]}"
+        stem = file_stem(model.c_name, scalar, ending)
         return tuple(f"{self.name}/{stem}{extension}" for extension in self.extensions)
 
     def programs(self, programs: Mapping[Scalar, Program], scalars: tuple[Scalar, ...]) -> list[Program]:

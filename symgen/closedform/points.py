@@ -18,6 +18,7 @@ from symgen.closedform.algebra.quotient import Matrix, Quotient
 from symgen.closedform.mechanics import ExactSystem
 from symgen.model.expressions.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
 from symgen.model.model import Model
+from symgen.validity.descent import Evaluated, zero_beside
 
 DIGITS = 40
 RANK_THRESHOLD = mpf(10) ** -18
@@ -25,8 +26,6 @@ RANK_THRESHOLD = mpf(10) ** -18
 MOST_STEPS = 60
 # Times the size of its start beyond which a search has lost its way.
 FARTHEST = 1e6
-# What the damping of a Newton step never falls below.
-LEAST_DAMPING = 1e-25
 
 
 def number(value: Fraction) -> mpf:
@@ -198,41 +197,28 @@ def generic_points(model: Model, mechanics: ExactSystem, count: int, on_constrai
 
 
 def _onto_constraints(model: Model, mechanics: ExactSystem, values: dict[str, mpf]) -> Point | None:
-    """Levenberg-Marquardt steps from `values` onto V; None when they do not converge.
-
-    The damping falls with the residual: off V rows that depend on each other on it are independent, if barely.
-    """
-    names = [c.name for c in model.coordinates]
-    point = Point(mechanics, values)
+    """A point on V beside `values`; None where no way leads there, ArithmeticError where it leads far away."""
     if not mechanics.residual:
-        return point
+        return Point(mechanics, values)
+    names = [c.name for c in model.coordinates]
     units = _units(model)[: len(mechanics.residual)]
-    residual = _scaled(point.flint_matrix(mechanics.residual), units)
-    size, damping = _largest(residual), 1e-3
+    rows = mechanics.jacobian[: len(units)]
     farthest = FARTHEST * max(1.0, *(abs(float(values[name])) for name in names))
-    for _ in range(MOST_STEPS):
-        if size < 10.0**-DIGITS:
-            return point
-        step = _step(point, mechanics, residual, units, damping)
-        if step is None:
-            damping *= 10
-            continue
-        trial = dict(values)
-        for j, name in enumerate(names):
-            trial[name] -= _as_mpf(step[j, 0])
-            if abs(trial[name]) > farthest:
-                return None
-        there = Point(mechanics, trial)
-        fresh = _scaled(there.flint_matrix(mechanics.residual), units)
-        smaller = _largest(fresh)
-        if smaller < size:
-            damping = max(damping * min(0.03, smaller / size), LEAST_DAMPING)
-            values, point, residual, size = trial, there, fresh, smaller
-        elif damping < 1e6:
-            damping *= 10
-        else:
-            return None
-    return None
+
+    def at(x: list[flint.arb]) -> Point:
+        return Point(mechanics, values | dict(zip(names, map(_as_mpf, x), strict=True)))
+
+    def evaluate(x: list[flint.arb]) -> Evaluated:
+        if any(abs(float(value)) > farthest for value in x):
+            raise ArithmeticError("the way to the constraints is lost")
+        point = at(x)
+        gaps = _scaled(point.flint_matrix(mechanics.residual), units)
+        return [gap for (gap,) in gaps], _scaled(point.flint_matrix(rows), units)
+
+    with _working_precision():
+        start = [flint.arb(values[name]) for name in names]
+        found = zero_beside(evaluate, start, 10.0**-DIGITS, MOST_STEPS, 1e-3)
+    return None if found is None else at(found)
 
 
 def _units(model: Model) -> tuple[int, ...]:
@@ -243,29 +229,6 @@ def _units(model: Model) -> tuple[int, ...]:
 
 def _scaled(rows: list[list[flint.arb]], units: Sequence[int]) -> list[list[flint.arb]]:
     return [[flint.arb(2) ** unit * x for x in row] if unit else row for row, unit in zip(rows, units, strict=True)]
-
-
-def _step(
-    point: Point, mechanics: ExactSystem, residual: list[list[flint.arb]], units: Sequence[int], damping: float
-) -> flint.arb_mat | None:
-    """J' (J J' + shift)^-1 g; None where rounding leaves the matrix singular, so that more damping is due.
-
-    A number without bounds, which would grow by 1 / damping for each row that depends on others.
-    """
-    with _working_precision():
-        jacobian = flint.arb_mat(_scaled(point.flint_matrix(mechanics.jacobian[: len(residual)]), units))
-        gram = (jacobian * jacobian.transpose()).mid()
-        shift = damping * max(gram[i, i] for i in range(len(residual)))
-        for i in range(len(residual)):
-            gram[i, i] += shift
-        try:
-            return jacobian.transpose() * gram.solve(flint.arb_mat(residual), algorithm="approx")
-        except ZeroDivisionError:
-            return None
-
-
-def _largest(residual: list[list[flint.arb]]) -> float:
-    return max(abs(float(value)) for (value,) in residual)
 
 
 def rank(matrix: Sequence[Sequence[mpf]]) -> int:

@@ -11,19 +11,19 @@ from symgen.generation.results import Options
 from symgen.registered import BACKENDS
 from symgen.runtime.activity import each, working
 
-# Parts whose files hold those of a backend.
-HOLDS = {"package": "c"}
+# Parts that hold files of a backend, or speak of them: what verification rejects is in neither.
+ABOUT = {"package": "c", "proof": "c"}
 
 
 def verified(options: Options) -> tuple[str, ...]:
-    """The backends whose files are run: those that are asked for, alone or in a package, or what stands for them."""
-    run = {backend(name).verified_as for name in _printed(options)}
+    """The backends whose files are run: those that are asked for, or what stands for them."""
+    run = {backend(name).verified_as for name in asked_for(options)}
     return tuple(name for name in BACKENDS if name in run)
 
 
 def sources_of(draft: Draft, options: Options) -> dict[str, str]:
-    """What the backends make: those that are asked for, alone or in a package, and those that are run."""
-    needed = {*_printed(options), *verified(options)}
+    """What the backends make: those that are asked for, and those that are run."""
+    needed = {*asked_for(options), *verified(options)}
     sources: dict[str, str] = {}
     for name in (name for name in BACKENDS if name in needed):
         made = backend(name)
@@ -54,9 +54,9 @@ def files_of(draft: Draft, options: Options, sources: Mapping[str, str]) -> dict
     return files
 
 
-def _printed(options: Options) -> set[str]:
-    """The backends whose files are asked for, alone or in a package."""
-    return {HOLDS.get(part, part) for part in options.parts}.intersection(BACKENDS)
+def asked_for(options: Options) -> set[str]:
+    """The backends whose files are asked for, or a package or proofs of them."""
+    return {ABOUT.get(part, part) for part in options.parts}.intersection(BACKENDS)
 
 
 def backend_of(path: str) -> str:

@@ -10,6 +10,7 @@ from symgen.backends.operations import count_operations
 from symgen.diagnostics import Notice
 from symgen.generation.dense_motion import dense_motions
 from symgen.generation.draft import Draft
+from symgen.generation.files import asked_for
 from symgen.generation.results import Options
 from symgen.ir.kernel import Kernel
 from symgen.ir.wide_functions import works_with_pairs
@@ -81,7 +82,7 @@ def _size(draft: Draft, options: Options) -> tuple[Notice, ...]:
     """How much machine code the C takes, where small targets do not hold it: all but steps of tables is written out."""
     sizes = {kernel.name: _bytes(kernel) for kernel in draft.program.kernels}
     size = sum(sizes.values())
-    if size <= LARGEST_CODE or "c" not in options.parts:
+    if size <= LARGEST_CODE or "c" not in asked_for(options):
         return ()
     each = ", ".join(f"{name} {round(count / 1000)} kB" for name, count in sizes.items())
     return (

@@ -8,17 +8,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import comb
 
 from symgen.linear_algebra.blocks import Component, components
 from symgen.linear_algebra.exterior import ActuationForms
 from symgen.linear_algebra.guards import Guard
-from symgen.linear_algebra.null_spaces import HouseholderSpace, InputEquations, MinorSpace, NullSpace, Restriction
+from symgen.linear_algebra.null_spaces import (
+    HouseholderSpace,
+    InputEquations,
+    MinorSpace,
+    NullSpace,
+    Restriction,
+    has_few_minors,
+)
 from symgen.symbolic.matrix import Matrix, Vector, identity, transpose
 from symgen.symbolic.scalar import Graph, Scalar
-
-# Minors of a block beyond which it is reflected.
-BLOCK_MINOR_LIMIT = 60
 
 
 @dataclass(frozen=True)
@@ -107,6 +110,4 @@ class BlockSpace:
 def _space(graph: Graph, rows: Matrix, places: Component) -> NullSpace:
     own = tuple(tuple(rows[i][j] for j in places.columns) for i in places.rows)
     width, rank = len(places.columns), len(places.rows)
-    if comb(width, rank) > BLOCK_MINOR_LIMIT:
-        return HouseholderSpace(graph, own, width)
-    return MinorSpace(graph, own, width, rank)
+    return MinorSpace(graph, own, width, rank) if has_few_minors(own, rank) else HouseholderSpace(graph, own, width)

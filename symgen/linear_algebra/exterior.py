@@ -21,6 +21,8 @@ Multivector: TypeAlias = dict[int, Scalar]
 
 # Products of a family of determinants beyond which equations are solved by reflections: as for nine dense directions.
 LARGEST_FAMILY = 4096
+# Products on the way to minors of rows, of which there may be few at the end: as for ten dense rows of twelve entries.
+LARGEST_ROW_FAMILY = 32768
 
 
 def unit(graph: Graph) -> Multivector:
@@ -82,8 +84,19 @@ def basis_wedges(graph: Graph, a: Multivector, n: int) -> list[Multivector]:
 
 def small_family(starts: Iterable[Iterable[int]], columns: Sequence[Vector], degree: int) -> bool:
     """Whether wedging `degree` of the columns on multivectors with these masks takes few products."""
+    return _family_size(starts, columns, degree, LARGEST_FAMILY) is not None
+
+
+def few_minors(rows: Matrix, rank: int, most: int) -> bool:
+    """Whether rows have at most so many minors of a rank that are not 0 for their zeros, and few products make them."""
+    size = _family_size([[0]], rows, rank, LARGEST_ROW_FAMILY)
+    return size is not None and size <= most
+
+
+def _family_size(starts: Iterable[Iterable[int]], columns: Sequence[Vector], degree: int, most: int) -> int | None:
+    """How many components such a family has in all; None where it takes more than `most` products."""
     places = [[axis for axis, entry in enumerate(column) if not entry.is_zero] for column in columns]
-    products = 0
+    products = size = 0
     for start in starts:
         for subset in combinations(range(len(columns)), degree):
             masks = set(start)
@@ -95,10 +108,11 @@ def small_family(starts: Iterable[Iterable[int]], columns: Sequence[Vector], deg
                         if not mask >> axis & 1:
                             products += 1
                             found.add(mask | 1 << axis)
-                    if products > LARGEST_FAMILY:
-                        return False
+                    if products > most:
+                        return None
                 masks = found
-    return True
+            size += len(masks)
+    return size
 
 
 class RowForms:

@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import Protocol
 
 from symgen.ir.kernel import Status
-from symgen.linear_algebra.exterior import ActuationForms, RowForms, small_family
+from symgen.linear_algebra.exterior import ActuationForms, RowForms, few_minors, small_family
 from symgen.linear_algebra.guards import Guard, beside_lengths
 from symgen.symbolic.matrix import Matrix, Vector, dot, identity, matvec, subtract_vectors, transpose
 from symgen.symbolic.scalar import Graph, Scalar
@@ -101,6 +101,11 @@ class NullSpace(Protocol):
 def without(x: Vector, locked: Sequence[int]) -> Vector:
     """x with 0 at the places of coordinates that rows of their own lock."""
     return tuple(entry.graph.zero if j in locked else entry for j, entry in enumerate(x)) if locked else x
+
+
+def has_few_minors(rows: Matrix, rank: int) -> bool:
+    """Whether a null space may be built from the minors of rows of this rank."""
+    return few_minors(rows, rank, MINOR_LIMIT)
 
 
 class Restriction:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from symgen.linear_algebra.block_space import BlockSpace
 from symgen.linear_algebra.blocks import components
-from symgen.linear_algebra.null_spaces import MINOR_LIMIT, MinorSpace
+from symgen.linear_algebra.null_spaces import MinorSpace, has_few_minors
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.mechanics.system import System
@@ -13,7 +13,7 @@ from symgen.methods.derivation import Derivation
 
 def along_minors(mechanics: System, generic: Genericity) -> Derivation | str:
     """The derivation along the minors of B, or why there is none."""
-    if generic.minors > MINOR_LIMIT:
+    if not has_few_minors(mechanics.constraint_jacobian, generic.rank):
         return f"B has {generic.minors} minors"
     space = MinorSpace(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, generic.rank)
     return Derivation(mechanics, generic, space)

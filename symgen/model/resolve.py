@@ -174,7 +174,7 @@ def _coordinate_list(scope: Scope, node: Node | None, names: tuple[str, ...]) ->
             remedy = did_you_mean(name, names, "name coordinates, without _dot")
             if name.removesuffix("_dot") in names:
                 remedy = f"write the coordinate: `{name.removesuffix('_dot')}`"
-            scope.wrong(f"`{name}` in `independent_velocities` is no coordinate", remedy, item.span)
+            scope.wrong_about(name, f"`{name}` in `independent_velocities` is no coordinate", remedy, item.span)
         elif name in chosen:
             scope.wrong(f"`{name}` stands twice in `independent_velocities`", "name it once", item.span)
         else:
@@ -190,7 +190,7 @@ def _configuration(
     for key, value in entries(node):
         if key.value not in names:
             remedy = did_you_mean(key.value, names, "name coordinates")
-            scope.wrong(f"`{key.value}` in `configuration` is no coordinate", remedy, key.span)
+            scope.wrong_about(key.value, f"`{key.value}` in `configuration` is no coordinate", remedy, key.span)
             continue
         number = constant(scope, value, f"the start value of `{key.value}`")
         if number is not None:

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from html import escape
 
 from symgen import __version__
+from symgen.backends.backend import backend
+from symgen.backends.c.endings import BATCH
 from symgen.backends.render import render
 from symgen.ir.kernel import Program
 from symgen.model.model import Model
@@ -45,7 +47,9 @@ class PackageView:
 
 def emit_package(model: Model, programs: Sequence[Program], c_files: Mapping[str, str]) -> dict[str, str]:
     """`package/...` from the C of one or both scalar types; nothing where there is no kernel."""
-    headers = single_headers(c_files)
+    # loops over many states are for workstations; firmware computes one state at a time
+    many = {backend("c").paths(model, program.scalar, BATCH)[0] for program in programs}
+    headers = single_headers(c_files, many)
     if not headers or not any(program.kernels for program in programs):
         return {}
     stem = model.c_name

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from symgen.backends.about import STATUS_MEANING
-from symgen.backends.c.names import c_names, status_name
+from symgen.backends.c.names import c_names, global_name, status_name
 from symgen.backends.defaults import default_values
 from symgen.backends.literals import decimal_text
 from symgen.backends.locals import array_arguments
 from symgen.backends.operations import count_operations
 from symgen.backends.quantities import meaning
-from symgen.backends.scalars import C_TYPE, SUFFIX
+from symgen.backends.scalars import C_TYPE, file_stem
 from symgen.ir.kernel import Kernel, Program, Status
 from symgen.ir.sincos import ANGLE_LIMIT
 from symgen.ir.wide_functions import works_with_pairs
@@ -67,17 +67,21 @@ def _use(model: Model, programs: Sequence[Program], stems: Sequence[str]) -> Ite
 
 def _example(model: Model, program: Program) -> Iterator[str]:
     kernel = next((k for k in program.kernels if k.name == "inverse_dynamics"), program.kernels[0])
-    suffix, kind = SUFFIX[program.scalar], C_TYPE[program.scalar]
+    kind = C_TYPE[program.scalar]
+
+    def named(what: str) -> str:
+        return global_name(model.c_name, program.scalar, what)
+
     names = c_names(model, program)
-    yield f'#include "{model.c_name}{suffix}.h"'
+    yield f'#include "{file_stem(model.c_name, program.scalar)}.h"'
     yield ""
-    yield f"{model.c_name}_params{suffix} p = {model.c_name}_default_params{suffix}();"
+    yield f"{named('params')} p = {named('default_params')}();"
     for argument in array_arguments(kernel):
         yield f"{kind} {argument.name}[{argument.length}] = {{0}}; /* {_order(model, argument.name)} */"
     output = names.outputs[kernel.name]
     yield f"{kind} {output}[{len(kernel.outputs)}];"
     arguments = ", ".join([*(argument.name for argument in array_arguments(kernel)), "&p", output])
-    yield f"if ({model.c_name}_{kernel.name}{suffix}({arguments}) != {status_name(model, Status.OK)}) {{"
+    yield f"if ({named(kernel.name)}({arguments}) != {status_name(model, Status.OK)}) {{"
     yield f"    /* {output} is as it was: hold the last command, or stop */"
     yield "}"
 

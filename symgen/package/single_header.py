@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import PurePosixPath
 
 from symgen.naming import macro_name
 
-# Loops over many states are for workstations; firmware computes one state at a time.
-_HOST_ONLY = ("_batch.h", "_batch_f.h")
 
-
-def single_headers(c_files: Mapping[str, str]) -> dict[str, str]:
-    """The single header of every header/source pair of `c/`, by file name.
+def single_headers(c_files: Mapping[str, str], without: Collection[str] = ()) -> dict[str, str]:
+    """The single header of every header/source pair of `c/`, by file name, but for headers that are left out.
 
     `#define <STEM>_IMPLEMENTATION` before the inclusion, in one source file, brings the definitions.
     """
     return {
         PurePosixPath(path).name: _merged(PurePosixPath(path).stem, header, c_files[path[:-2] + ".c"])
         for path, header in c_files.items()
-        if path.endswith(".h") and not path.endswith(_HOST_ONLY)
+        if path.endswith(".h") and path not in without
     }
 
 

@@ -9,7 +9,7 @@ from symgen.backends.c.names import c_members, status_name
 from symgen.backends.literals import decimal_text
 from symgen.backends.locals import array_arguments
 from symgen.backends.render import render
-from symgen.backends.scalars import C_TYPE, SUFFIX
+from symgen.backends.scalars import C_TYPE, SUFFIX, file_stem
 from symgen.ir.kernel import Kernel, Load, Local, Program, Scalar, Status
 from symgen.model.model import Model, Range
 from symgen.proof.box import box, loaded_angles
@@ -69,7 +69,7 @@ class EvaView:
 def emit_eva(model: Model, program: Program) -> dict[str, str]:
     """`proof/<model>_eva.c` (float32: `_f_eva.c`) with one entry function for each kernel."""
     suffix = SUFFIX[program.scalar]
-    stem = model.c_name + suffix
+    stem = file_stem(model.c_name, program.scalar)
     kind = C_TYPE[program.scalar]
     members = c_members(model, program)
     view = EvaView(

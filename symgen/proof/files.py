@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from symgen.backends.locals import array_arguments
+from symgen.backends.scalars import file_stem
 from symgen.ir.kernel import Kernel, Literal, Operand, Program
 from symgen.ir.wide_functions import works_with_pairs
 from symgen.model.model import Model
@@ -40,7 +41,7 @@ def _only(program: Program, names: Collection[str]) -> Program:
 
 
 def _page(model: Model, programs: Sequence[Program], files: Sequence[str]) -> Iterator[str]:
-    stem = model.c_name
+    single = file_stem(model.c_name, "float32")
     yield f"# Proofs about {model.name}"
     yield ""
     yield "All of them speak of the C as it is, over the ranges of the model file, with the portable sine and cosine."
@@ -48,7 +49,7 @@ def _page(model: Model, programs: Sequence[Program], files: Sequence[str]) -> It
     yield ""
     yield from (f"- `{path.removeprefix('proof/')}`" for path in files)
     yield ""
-    yield f"Frama-C Eva takes one kernel a run: `-main eva_<quantity>` with `{stem}_f_eva.c` and the like."
+    yield f"Frama-C Eva takes one kernel a run: `-main eva_<quantity>` with `{single}_eva.c` and the like."
     yield "0 alarms mean: no division by 0, no infinity, no NaN, no wrong access, status 0 in the whole box."
     yield ""
     yield "## Denominators that intervals cannot keep from 0"

@@ -8,12 +8,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from symgen.backends.c.endings import PREPARED, SINES_GIVEN
 from symgen.backends.c.names import c_members
 from symgen.backends.literals import decimal_text
 from symgen.backends.locals import array_arguments
 from symgen.backends.quantities import BATCHED
 from symgen.backends.render import render
-from symgen.backends.scalars import SUFFIX
+from symgen.backends.scalars import C_TYPE, SUFFIX, file_stem
 from symgen.ir.given_trig import GivenTrig, given_trig
 from symgen.ir.kernel import Kernel, Program
 from symgen.ir.prepare import prepare
@@ -23,21 +24,20 @@ from symgen.proof.box import box
 ARRAYS = ("q", "qd", "qdd", "u")
 # Kernels of a control loop: their float32 result is held against float64 at every state, however odd.
 HELD = ("inverse_dynamics", "forward_dynamics")
+BITS = {"float64": 64, "float32": 32}
 
-
-PLAIN, PREPARED, GIVEN = "plain", "prepared", "given"
-_ENDING = {PLAIN: "", PREPARED: "_prepared", GIVEN: "_sc"}
 
 
 @dataclass(frozen=True, slots=True)
 class KernelView:
     """One function: the places of its arguments among q, qd, qdd, u, and the length of its result.
 
-    `name` is the quantity with the ending of its form; `same` names the function that must return the same bits.
+    `name` is the quantity with the ending of its variant; `same` names the function that must return the same bits.
     """
 
     name: str
-    form: str
+    prepared: bool
+    given: bool
     arguments: tuple[int, ...]
     size: int
     held: bool
@@ -48,12 +48,14 @@ class KernelView:
 class FuzzView:
     """Everything the template of the fuzz target prints.
 
+    `types` are the scalar types with their bits and suffixes, `units` the files without extension, of both types.
     `given` are members of the structs of sines and cosines, each with whether it is a sine, its place in q, and the
     suffixes of the scalar types whose struct has it.
     """
 
     stem: str
     model: str
+    types: tuple[tuple[str, int, str], ...]
     units: tuple[str, ...]
     sizes: tuple[tuple[str, int], ...]
     longest: int
@@ -74,19 +76,21 @@ def emit_fuzz(model: Model, programs: Sequence[Program]) -> dict[str, str]:
     members = tuple(named_members[parameter.name] for parameter in model.parameters)
     sizes = (*((name, len(ranges[name])) for name in ARRAYS), ("sc", len(trig)))
     named = [(f"{name}[{index}]", pair) for name in (*ARRAYS, "p") for index, pair in enumerate(ranges[name])]
-    forms = {PLAIN: program.kernels, PREPARED: ready, GIVEN: given}
+    variants = {"": program.kernels, PREPARED: ready, SINES_GIVEN: given}
+    units = [ending for ending, kernels in variants.items() if kernels]
     stem = model.c_name
     view = FuzzView(
         stem=stem,
         model=model.c_name,
-        units=tuple(stem + _ENDING[form] for form, kernels in forms.items() if kernels),
+        types=tuple((C_TYPE[one.scalar], BITS[one.scalar], SUFFIX[one.scalar]) for one in programs),
+        units=tuple(file_stem(stem, one.scalar, ending) for ending in units for one in programs),
         sizes=sizes,
         longest=max(1, *(size for _, size in sizes)),
         largest_result=max((len(kernel.outputs) for kernel in program.kernels), default=1),
         members=members,
         given=trig,
         ranges=tuple((place, *_bounds(pair)) for place, pair in named),
-        kernels=tuple(_kernel(kernel, form) for form, kernels in forms.items() for kernel in kernels),
+        kernels=tuple(_kernel(kernel, ending) for ending, kernels in variants.items() for kernel in kernels),
         held=tuple(kernel.name for kernel in program.kernels if kernel.name in HELD),
     )
     return {f"proof/{view.stem}_fuzz.c": render("proof/fuzz.c.jinja", view)} if view.kernels else {}
@@ -121,10 +125,13 @@ def _with_trig(program: Program) -> Iterator[GivenTrig]:
     return (one for one in found if one is not None)
 
 
-def _kernel(kernel: Kernel, form: str) -> KernelView:
+def _kernel(kernel: Kernel, ending: str) -> KernelView:
     places = tuple(ARRAYS.index(argument.name) for argument in array_arguments(kernel))
-    same = kernel.name if form == PREPARED else ""
-    return KernelView(kernel.name + _ENDING[form], form, places, len(kernel.outputs), kernel.name in HELD, same)
+    prepared, name = ending == PREPARED, kernel.name
+    same = name if prepared else ""
+    return KernelView(
+        name + ending, prepared, ending == SINES_GIVEN, places, len(kernel.outputs), name in HELD, same
+    )
 
 
 def _bounds(pair: Range) -> tuple[str, str]:

@@ -17,6 +17,7 @@ from symgen.backends.c.names import c_names
 from symgen.backends.literals import decimal_text, round_to
 from symgen.backends.locals import array_arguments
 from symgen.backends.render import render
+from symgen.backends.scalars import SUFFIX, file_stem
 from symgen.ir.kernel import Kernel, Literal, Local, Operand, Program, Statement
 from symgen.model.model import Model, Range
 from symgen.proof.box import box
@@ -47,6 +48,7 @@ class ErrorView:
 
     stem: str
     model: str
+    suffix: str
     quantity: str
     points: int
     arrays: tuple[tuple[str, int], ...]
@@ -60,7 +62,7 @@ def emit_gappa(model: Model, program: Program) -> dict[str, str]:
     kernel = next((kernel for kernel in program.kernels if kernel.name == QUANTITY), None)
     if program.scalar != "float32" or kernel is None or obstacle(model, kernel):
         return {}
-    stem = f"{model.c_name}_f"
+    stem = file_stem(model.c_name, program.scalar)
     view = _view(model, kernel, stem)
     return {
         f"proof/{stem}_{QUANTITY}.gappa": render("proof/bound.gappa.jinja", view),
@@ -119,6 +121,7 @@ def _measurement(model: Model, program: Program, kernel: Kernel) -> ErrorView:
     return ErrorView(
         stem=stem,
         model=model.c_name,
+        suffix=SUFFIX[program.scalar],
         quantity=kernel.name,
         points=POINTS,
         arrays=tuple((a.name, a.length) for a in arrays),

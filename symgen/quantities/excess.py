@@ -16,7 +16,7 @@ from itertools import combinations
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.exterior import ActuationForms, RowForms, small_family, square, wedge
 from symgen.linear_algebra.guards import Guard
-from symgen.linear_algebra.null_spaces import MINOR_LIMIT
+from symgen.linear_algebra.null_spaces import has_few_minors
 from symgen.linear_algebra.pivoted import PivotedReflections
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
@@ -46,7 +46,8 @@ def with_test_of_excess(mechanics: System, generic: Genericity, derived: Quantit
     if not rows and not inputs:
         return derived
     ways: list[Tests] = [_by_reflections(mechanics, generic, rows, inputs)]
-    if generic.minors <= MINOR_LIMIT and (not inputs or _few_inputs(mechanics, generic)):
+    few = has_few_minors(mechanics.constraint_jacobian, generic.rank)
+    if few and (not inputs or _few_inputs(mechanics, generic)):
         ways.append(_by_minors(mechanics, generic, rows, inputs))
     candidates = [replace(derived, guards=(*before, *derived.guards, *after)) for before, after in ways]
     return min(candidates, key=_weight)

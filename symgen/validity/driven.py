@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations
-from math import comb, prod
+from math import prod
 
-from symgen.linear_algebra.exterior import unit, wedge_all
+from symgen.linear_algebra.exterior import few_minors, unit, wedge_all
 from symgen.symbolic.matrix import Matrix, Vector
 from symgen.symbolic.scalar import Graph, Scalar
 
@@ -32,7 +32,7 @@ def driven_minors(graph: Graph, rows: Matrix, inputs: Sequence[Vector], n: int) 
         drives[places[0]] += 1
     r = len(rows)
     passive = [j for j in range(n) if not drives[j]]
-    if not r or len(passive) > r or comb(n, r) > MOST_LISTED_MINORS:
+    if not r or len(passive) > r or not few_minors(rows, r, MOST_LISTED_MINORS):
         return None
     minors = wedge_all(unit(graph), rows)
     total, choices = graph.zero, 0

@@ -11,20 +11,19 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from functools import cached_property
 
-from flint import arb_mat
-
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
-from symgen.model.configurations.sparse import solve_gram, transposed_product
+from symgen.model.configurations.sparse import Row, pivots, solve_gram, transposed_product
 from symgen.records import dataclass
 from symgen.symbolic.matrix import flatten
 from symgen.symbolic.scalar import PI, Scalar
 from symgen.symbolic.translate import translate
 from symgen.symbolic.traverse import topological
+from symgen.validity.descent import STALLED, STALLED_STEPS, Evaluated, zero_beside
 from symgen.validity.floats import FloatGradients
 from symgen.validity.precise import Precise, PreciseEvaluator, UndefinedError, precise, precision
 
@@ -33,11 +32,6 @@ SEED = 20120731
 SEARCH_STARTS = 12
 # Newton steps of a search from one start.
 SEARCH_STEPS = 40
-# Steps in turn that may come closer by less than STALLED allows: a way on which there are more leads to no zero, as
-# towards one, even where slopes vanish too, each step takes away more.
-STALLED_STEPS = 8
-# What of its distance such a step leaves at least.
-STALLED = 0.9
 # Terms of a sum of squares that are driven to 0 one by one.
 MOST_DRIVEN_SQUARES = 12
 # Share of its usual size up to which a scalar has vanished; the same of constraint residuals.
@@ -185,61 +179,24 @@ class ZeroSearch:
         self, evaluator: PreciseEvaluator, point: Point, usual: float, names: Sequence[str], rows: int
     ) -> Point | None:
         """The zero beside a point, if there is one."""
-        damping = 1e-12
+        boxes = [self._box[name] for name in names]
+
+        def evaluate(x: list[Precise]) -> Evaluated:
+            values, slopes = evaluator.gradients(point | dict(zip(names, x, strict=True)), names)
+            weights = [1.0] * rows + [1 / usual] * (len(values) - rows)
+            scaled = [[w * slope for slope in row] for w, row in zip(weights, slopes, strict=True)]
+            return [w * value for w, value in zip(weights, values, strict=True)], scaled
+
+        def inside(x: list[Precise]) -> list[Precise]:
+            bounded = zip(names, x, boxes, strict=True)
+            return [y if name in self._angles else min(max(y, lower), upper) for name, y, (lower, upper) in bounded]
+
+        start, widths = [point[name] for name in names], [upper - lower for lower, upper in boxes]
         try:
-            values, slopes = evaluator.gradients(point, names)
+            x = zero_beside(evaluate, start, VANISHED, SEARCH_STEPS, 1e-12, widths, inside)
         except UndefinedError:
             return None
-        weights = [1.0] * rows + [1 / usual] * (len(values) - rows)
-        size = _size(values, weights)
-        for _ in range(SEARCH_STEPS):
-            if size <= VANISHED:
-                return point
-            trial = self._step(point, names, values, slopes, weights, damping)
-            if trial is not None:
-                try:
-                    fresh, fresh_slopes = evaluator.gradients(trial, names)
-                except UndefinedError:
-                    return None
-                fresh_size = _size(fresh, weights)
-            if trial is not None and fresh_size < size:
-                point, values, slopes, size, damping = trial, fresh, fresh_slopes, fresh_size, damping / 10
-            else:
-                damping = damping * 10
-                if damping > 1000:
-                    return None
-        return point if size <= VANISHED else None
-
-    def _step(
-        self,
-        point: Point,
-        names: Sequence[str],
-        values: Sequence[Precise],
-        slopes: Sequence[Sequence[Precise]],
-        weights: Sequence[float],
-        damping: float,
-    ) -> Point | None:
-        """Where a damped step leads; None where rounding leaves its equations singular."""
-        widths = [self._box[name][1] - self._box[name][0] for name in names]
-        pairs = zip(weights, slopes, strict=True)
-        j = arb_mat([[w * s * width for s, width in zip(row, widths, strict=True)] for w, row in pairs])
-        right = arb_mat([[w * v] for w, v in zip(weights, values, strict=True)])
-        normal = (j * j.transpose()).mid()
-        shift = damping * sum(normal[i, i] for i in range(normal.nrows())) / normal.nrows() + 1e-30
-        for i in range(normal.nrows()):
-            normal[i, i] += shift
-        try:
-            shares = j.transpose() * normal.mid().solve(right.mid(), algorithm="approx")
-        except ZeroDivisionError:
-            return None
-        trial = dict(point)
-        for k, name in enumerate(names):
-            moved = (point[name] - widths[k] * shares[k, 0]).mid()
-            if name not in self._angles:
-                lower, upper = self._box[name]
-                moved = min(max(moved, lower), upper)
-            trial[name] = moved
-        return trial
+        return None if x is None else point | dict(zip(names, x, strict=True))
 
     def _regular(self, point: Point) -> bool:
         """Whether B and [B; M^T] have their generic ranks beyond doubt."""
@@ -249,13 +206,11 @@ class ZeroSearch:
         except UndefinedError:
             return False
         rows = [
-            [x / length for x in row] if length else row
+            {j: x / (length or 1.0) for j, x in enumerate(row) if x}
             for row, length in zip(self._matrix(values), self._lengths, strict=True)
         ]
-        return (
-            _smallest_pivot(rows[: generic.r], generic.rank) > REGULAR
-            and _smallest_pivot(rows, generic.rank + generic.alpha) > REGULAR
-        )
+        constraints, together = generic.rank, generic.rank + generic.alpha
+        return _has_rank(rows[: generic.r], constraints) and _has_rank(rows, together)
 
     def _matrix(self, values: Sequence[Precise]) -> list[list[float]]:
         n = self._generic.n
@@ -304,34 +259,7 @@ def squares(scalar: Scalar) -> list[Scalar]:
             return [scalar]
 
 
-def _size(values: Sequence[Precise], weights: Sequence[float]) -> float:
-    return max(float(abs(v) * w) for v, w in zip(values, weights, strict=True))
-
-
-def _smallest_pivot(rows: Sequence[Sequence[float]], rank: int) -> float:
-    """The pivot number `rank` of elimination with complete pivoting; rows of large mechanisms hold few coordinates."""
-    work = [{j: x for j, x in enumerate(row) if x} for row in rows]
-    # of each row its largest entry, the first of equal ones
-    largest = [_largest(row) for row in work]
-    size = 1.0
-    for k in range(rank):
-        size, i, j = max(((largest[i][0], -i, largest[i][1]) for i in range(k, len(work))), default=(0.0, 0, 0))
-        if not size:
-            return 0.0
-        i, j = -i, -j
-        work[k], work[i], largest[k], largest[i] = work[i], work[k], largest[i], largest[k]
-        for other in range(k + 1, len(work)):
-            row = work[other]
-            if j not in row:
-                continue
-            factor = row[j] / work[k][j]
-            for column, y in work[k].items():
-                row[column] = row.get(column, 0.0) - factor * y
-            del row[j]
-            largest[other] = _largest(row)
-    return size
-
-
-def _largest(row: Mapping[int, float]) -> tuple[float, int]:
-    """The size of the largest entry of a row, and its column with a minus sign."""
-    return max(((abs(x), -j) for j, x in row.items()), default=(0.0, 0))
+def _has_rank(rows: Sequence[Row], rank: int) -> bool:
+    """Whether rows have a rank beyond doubt."""
+    found = pivots(rows)
+    return found is not None and len(found) >= rank and min(found[:rank], default=1.0) > REGULAR

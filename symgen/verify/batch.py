@@ -7,9 +7,10 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from symgen.backends.c.endings import BATCH
+from symgen.backends.c.names import global_name
 from symgen.backends.locals import array_arguments
 from symgen.backends.quantities import BATCHED
-from symgen.backends.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.verify.certificate import Fault
 from symgen.verify.compile import C_TYPES, CFunction, Outcome, c_array
@@ -28,7 +29,7 @@ class BatchFunction:
     def __init__(
         self, library: ctypes.CDLL, model: str, kernel: Kernel, scalar: Scalar, states: Sequence[State]
     ) -> None:
-        self._function = library[f"{model}_{kernel.name}_batch{SUFFIX[scalar]}"]
+        self._function = library[global_name(model, scalar, kernel.name, BATCH)]
         self._function.restype = ctypes.c_size_t
         self._count = len(states) + len(HARD)
         self._stride = self._count + SPARE

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from symgen.backends.c.names import global_name
 from symgen.backends.locals import array_arguments
-from symgen.backends.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar, Status
 from symgen.runtime.activity import working
 from symgen.runtime.processes import ToolError, ended, run, start, stop
@@ -163,7 +163,7 @@ class CFunction:
     """One kernel of a library: arrays, then the parameter struct, then the result."""
 
     def __init__(self, library: ctypes.CDLL, model: str, kernel: Kernel, scalar: Scalar) -> None:
-        name = f"{model}_{kernel.name}{SUFFIX[scalar]}"
+        name = global_name(model, scalar, kernel.name)
         try:
             self._function = library[name]
         except AttributeError as error:

@@ -10,8 +10,9 @@ from typing import Any
 
 from flint import arb, ctx
 
+from symgen.backends.c.endings import SINES_GIVEN
+from symgen.backends.c.names import global_name
 from symgen.backends.locals import array_arguments
-from symgen.backends.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.model.model import Model
 from symgen.verify.compile import C_TYPES, Outcome, c_array
@@ -40,11 +41,12 @@ def run_given_trig(
     header: str,
 ) -> dict[str, list[Outcome]]:
     """Outcomes of the kernels that the header names."""
-    suffix = SUFFIX[scalar]
-    named = re.findall(rf"\b{model.c_name}_(\w+)_sc{suffix}\(", header)
     outcomes: dict[str, list[Outcome]] = {}
-    for kernel in (kernel for kernel in kernels if kernel.name in named):
-        function = library[f"{model.c_name}_{kernel.name}_sc{suffix}"]
+    for kernel in kernels:
+        name = global_name(model.c_name, scalar, kernel.name, SINES_GIVEN)
+        if f"{name}(" not in header:
+            continue
+        function = library[name]
         function.restype = ctypes.c_int
         kind = C_TYPES[scalar] * math.prod(kernel.shape)
         outcomes[kernel.name] = []

@@ -8,8 +8,9 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from symgen.backends.c.endings import PREPARED
+from symgen.backends.c.names import global_name
 from symgen.backends.locals import array_arguments
-from symgen.backends.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.verify.batch import HARD
 from symgen.verify.certificate import Fault
@@ -21,12 +22,11 @@ class PreparedFunction:
     """One prepared kernel of a library, called as the plain one: the parameters are prepared at each call."""
 
     def __init__(self, library: ctypes.CDLL, model: str, kernel: Kernel, scalar: Scalar, size: int) -> None:
-        suffix = SUFFIX[scalar]
         entries = C_TYPES[scalar] * size
         struct = type("Prepared", (ctypes.Structure,), {"_fields_": [("value", entries)]})
-        self._prepare = library[f"{model}_prepare{suffix}"]
+        self._prepare = library[global_name(model, scalar, "prepare")]
         self._prepare.restype = struct
-        self._function = library[f"{model}_{kernel.name}_prepared{suffix}"]
+        self._function = library[global_name(model, scalar, kernel.name, PREPARED)]
         self._function.restype = ctypes.c_int
         self._arguments = tuple(argument.name for argument in array_arguments(kernel))
         self._result = C_TYPES[scalar] * math.prod(kernel.shape)
@@ -50,11 +50,10 @@ def run_prepared(
 ) -> tuple[dict[str, list[Outcome]], list[Fault]]:
     """Outcomes of the prepared kernels that the header names, and faults where plain ones give something else."""
     (size,) = (int(text) for text in re.findall(r"value\[(\d+)\];", header))
-    named = re.findall(rf"\b{model}_(\w+)_prepared{SUFFIX[scalar]}\(", header)
     outcomes: dict[str, list[Outcome]] = {}
     faults = []
     for kernel in kernels:
-        if kernel.name not in named:
+        if f"{global_name(model, scalar, kernel.name, PREPARED)}(" not in header:
             continue
         prepared = PreparedFunction(library, model, kernel, scalar, size)
         plain = CFunction(library, model, kernel, scalar)

@@ -14,7 +14,7 @@ import flint
 
 import symgen
 from symgen.backends.backend import backend
-from symgen.backends.c import batch, given_sines, prepared
+from symgen.backends.c.endings import BATCH, PREPARED, SINES_GIVEN
 from symgen.backends.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.model.model import Model
@@ -232,11 +232,11 @@ def _run_c(
         companions = dict(sources[scalar].companions)
         given = library, model.c_name, kernels, scalar, samples[scalar], outcomes
         others = {}
-        if companions.get(_header(model, scalar, batch.ENDING)) is not None:
+        if companions.get(_header(model, scalar, BATCH)) is not None:
             others["batch"] = run_batch(*given)
-        if (header := companions.get(_header(model, scalar, prepared.ENDING))) is not None:
+        if (header := companions.get(_header(model, scalar, PREPARED))) is not None:
             others["prepared"] = run_prepared(*given, header)
-        if (header := companions.get(_header(model, scalar, given_sines.ENDING))) is not None:
+        if (header := companions.get(_header(model, scalar, SINES_GIVEN))) is not None:
             made = run_given_trig(library, model, kernels, scalar, samples[scalar], header)
             others["sines given"] = made, []
         for kind, (made, differing) in others.items():

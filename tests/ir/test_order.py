@@ -10,7 +10,7 @@ import pytest
 import shipped
 
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Statement, Status
-from symgen.ir.order import REGISTERS, relaxed
+from symgen.ir.order import LONGEST_REORDERED, REGISTERS, relaxed
 from symgen.ir.split import names_in, names_of_check
 from symgen.lowering.schedule import schedule
 from symgen.quantities.select import derive_quantities
@@ -108,6 +108,14 @@ def test_kernels_whose_values_fit_keep_their_order() -> None:
     kernel = legs(6)
     assert waiting(kernel) < REGISTERS
     assert relaxed(kernel) is kernel
+
+
+def test_long_kernels_keep_their_order() -> None:
+    """A better one is looked for among all steps that may come next: that grows with the square of their number."""
+    short, long = legs(LONGEST_REORDERED // 6 - 1), legs(LONGEST_REORDERED // 6 + 1)
+    assert len(short.statements) <= LONGEST_REORDERED < len(long.statements)
+    assert relaxed(short) is not short
+    assert relaxed(long) is long
 
 
 def test_a_test_stands_late_but_before_its_division() -> None:

@@ -31,6 +31,7 @@ from symgen.ir.kernel import (
 from symgen.ir.lifted import Lifted, same_kernel
 from symgen.ir.sincos import sincos
 from symgen.ir.wide import GAINED, widened, with_sharp_thresholds
+from symgen.ir.wide_angles import MOST_PARTS
 from symgen.ir.wide_functions import WIDE, wide_function
 from symgen.verify.exactness import EXACT, exact_outputs
 from symgen.verify.many_states import run_many
@@ -239,6 +240,20 @@ def test_sums_of_angles_of_their_own_stay_as_they_are() -> None:
     sine = lines("sincos", lines("add", "a", "k"), targets=2)
     wide = widened(lines.kernel(sine), "float64")
     assert sum(one.operation == "sincos" for one in wide.statements) == 1
+
+
+@pytest.mark.parametrize("more", [0, 1])
+def test_sums_of_many_angles_are_not_made_of_their_parts(more: int) -> None:
+    """Each angle turns by one more: k times an angle would be k turns, whatever a model writes for k."""
+    lines = Lines()
+    angle = lines("add", "a", "k")
+    for _ in range(MOST_PARTS - 2 + more):
+        angle = lines("add", angle, "k")
+    sine = lines("sincos", angle, targets=2)
+    lines("sincos", "a", targets=2)
+    one = len(lines.statements) - 1
+    wide = widened(lines.kernel(lines("mul", sine, f"t{one}a")), "float64")
+    assert (sum(one.operation == "wide_mul" for one in wide.statements) > 4 * (MOST_PARTS - 1)) is not bool(more)
 
 
 @pytest.mark.parametrize("scalar", SCALARS)

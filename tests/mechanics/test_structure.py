@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import pytest
+import shipped
+
 from symgen.mechanics.genericity import genericity
 from symgen.mechanics.structure import Structure, analyse
 from symgen.mechanics.system import System
@@ -78,6 +81,15 @@ def test_zero_and_constant_parts() -> None:
     assert found["44 of 45 couplings in G"] == "they are zero"
     assert found["derivatives of 10 of 55 entries of G"] == "they are constant"
     assert found["the values of b, e, k, i"] == "only their rates and accelerations matter"
+
+
+@pytest.mark.parametrize(("name", "looked_through"), [("chain8", True), ("chain16", False)])
+def test_a_large_mass_matrix_of_bodies_is_not_formed(name: str, looked_through: bool) -> None:
+    """u does without it: to look through that of 32 links takes ten times as long as all the rest."""
+    mechanics = System(shipped.model(name))
+    found = {decision.what for decision in analyse(mechanics, genericity(mechanics)).decisions}
+    assert ("mass_matrix" in vars(mechanics)) is looked_through
+    assert any("entries of G" in what or "couplings in G" in what for what in found) is looked_through
 
 
 def test_shared_work() -> None:

@@ -58,14 +58,16 @@ def test_energies_written_out_are_derived_in_absolute_angles(tmp_path: Path) -> 
 
 
 def test_the_size_of_long_code_is_told(tmp_path: Path) -> None:
-    def notices(links: int) -> list[str]:
+    def notices(links: int, *parts: str) -> list[str]:
         path = tmp_path / f"chain{links}.yaml"
         path.write_text(chain(links), encoding="utf-8")
-        options = Options(parts=("c",), scalars=("float64",), verify=False)
+        options = Options(parts=parts, scalars=("float64",), verify=False)
         return [notice.message for notice in generate(path, options, lambda _: None).notices]
 
-    assert notices(4) == []
-    (told,) = notices(32)
+    assert notices(4, "c") == []
+    assert notices(32, "python") == []
+    (told,) = notices(32, "c")
+    assert notices(32, "package") == [told]
     assert "kB of machine code on a Cortex-M4" in told
     assert "inverse_dynamics 1" in told
 

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import random
-
 import numpy as np
 import pytest
 
 from symgen.diagnostics import Mistake, Span
 from symgen.model.configurations.algebra import BEYOND, Expansion, NotPolynomialError, is_zero
-from symgen.model.configurations.dense import is_positive, null_space, rank, solve_definite
+from symgen.model.configurations.dense import is_positive, null_space, rank
 from symgen.model.configurations.gradient import Gradients
 from symgen.model.expressions.expression import Expression
 from symgen.model.expressions.parser import parse_expression
@@ -80,17 +78,6 @@ def test_rank_and_null_space(true_rank: int) -> None:
     assert basis.shape == (6 - true_rank, 6)
     assert np.allclose(basis @ basis.T, np.eye(6 - true_rank))
     assert np.allclose(matrix @ basis.T, 0)
-
-
-def test_solve_definite() -> None:
-    generator = random.Random(3)
-    root = np.array([[generator.gauss(0, 1) for _ in range(5)] for _ in range(5)])
-    matrix = root @ root.T + np.eye(5)
-    right = [1.0, -2.0, 0.5, 3.0, 0.0]
-    solution = solve_definite(matrix.tolist(), right)
-    assert solution is not None
-    assert np.allclose(solution, np.linalg.solve(matrix, right))
-    assert solve_definite([[1.0, 2.0], [2.0, 1.0]], [1.0, 1.0]) is None
 
 
 @pytest.mark.parametrize(

@@ -137,21 +137,27 @@ def made(out: Path, parts: str) -> int:
 
 
 @pytest.mark.toolchain
-def test_a_package_alone_is_verified_as_its_c_is(tool: Callable[[str], str], tmp_path: Path) -> None:
+def test_a_package_or_proofs_alone_are_verified_as_their_c_is(tool: Callable[[str], str], tmp_path: Path) -> None:
     tool("cc")
     certificates = []
-    for parts in ("c", "package"):
+    for parts in ("c", "package", "proof"):
         assert made(tmp_path / parts, parts) == 0
         certificates.append(json.loads((tmp_path / parts / NAME / "certificate.json").read_text()))
-    assert certificates[0] == certificates[1]
+    assert certificates[0] == certificates[1] == certificates[2]
     assert certificates[1]["passed"]
     assert {record["target"] for record in certificates[1]["errors"]} >= {"C float64"}
     assert not (tmp_path / "package" / NAME / "c").exists()
+    assert not (tmp_path / "proof" / NAME / "c").exists()
 
 
 @pytest.mark.toolchain
-def test_a_package_of_wrong_c_is_not_written(
-    tool: Callable[[str], str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize("parts", ["package", "proof"])
+def test_nothing_is_written_about_wrong_c(
+    tool: Callable[[str], str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    parts: str,
 ) -> None:
     tool("cc")
 
@@ -160,6 +166,6 @@ def test_a_package_of_wrong_c_is_not_written(
 
     variants = Variant(wrong), *backend.BACKEND.variants[1:]
     monkeypatch.setattr(backend, "BACKEND", replace(backend.BACKEND, variants=variants))
-    assert made(tmp_path, "package") == 1
+    assert made(tmp_path, parts) == 1
     assert "inverse_dynamics is left out in float64" in capsys.readouterr().err
-    assert not list(tmp_path.rglob("*.h"))
+    assert not list(tmp_path.rglob("*.[ch]"))

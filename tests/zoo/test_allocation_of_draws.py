@@ -42,7 +42,7 @@ def test_limits_move_the_internal_force_as_little_as_they_must() -> None:
         }
         block = {"preload": "p", "limits": dict.fromkeys(limits, ("", ""))}
         found = directed(PAIR, [3.0, 3.0], names, block, {"preload": preload, **ends}, 1.0)
-        return [round(x, 12) for x in found]
+        return [round(float(x), 12) for x in found]
 
     root = 2**0.5
     assert shared({}, 2 * root) == [5, 1]

@@ -11,7 +11,7 @@ from symgen.backends.literals import in_range
 from symgen.backends.locals import Names, all_statements, array_arguments, names_of, used_locals
 from symgen.backends.quantities import meaning
 from symgen.backends.render import render
-from symgen.backends.scalars import SUFFIX
+from symgen.backends.scalars import file_stem
 from symgen.backends.statements import Helper
 from symgen.ir.kernel import Kernel, Program, Scalar, Status
 from symgen.ir.wide_functions import wide_function, wide_operations, with_bodies
@@ -59,7 +59,7 @@ def emit_array_api(model: Model, program: Program) -> dict[str, str]:
     view = ModuleView(
         about=module_lines(model, program),
         scalar=program.scalar,
-        other=f"{model.c_name}{SUFFIX[other]}",
+        other=file_stem(model.c_name, other),
         statuses=tuple((status.name, int(status), STATUS_MEANING[status]) for status in Status),
         not_finite=int(Status.NOT_FINITE),
         fields=tuple(
@@ -70,7 +70,7 @@ def emit_array_api(model: Model, program: Program) -> dict[str, str]:
         needs_ratio="ratio_or_zero" in {statement.operation for statement in with_bodies(statements)},
         wide=tuple((name, array_helper(program.scalar, wide_function(name, program.scalar))) for name in wide),
     )
-    return {f"array_api/{model.c_name}{SUFFIX[program.scalar]}.py": render("array_api/module.py.jinja", view)}
+    return {f"array_api/{file_stem(model.c_name, program.scalar)}.py": render("array_api/module.py.jinja", view)}
 
 
 def _function(program: Program, kernel: Kernel, names: Names) -> FunctionView:

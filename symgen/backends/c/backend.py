@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from symgen.backends.backend import Backend, Variant
-from symgen.backends.c import batch, given_sines, prepared
+from symgen.backends.c.batch import emit_c_batch
+from symgen.backends.c.endings import BATCH, PREPARED, SINES_GIVEN
+from symgen.backends.c.given_sines import emit_c_sc
 from symgen.backends.c.plain import emit_c
+from symgen.backends.c.prepared import emit_c_prepared
 
 VARIANTS = (
     Variant(emit_c),
-    Variant(batch.emit_c_batch, batch.ENDING),
-    Variant(prepared.emit_c_prepared, prepared.ENDING),
-    Variant(given_sines.emit_c_sc, given_sines.ENDING),
+    Variant(emit_c_batch, BATCH),
+    Variant(emit_c_prepared, PREPARED),
+    Variant(emit_c_sc, SINES_GIVEN),
 )
 BACKEND = Backend("c", "C", VARIANTS, (".h", ".c"), "c")

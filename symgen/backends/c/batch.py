@@ -9,16 +9,17 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
+from symgen.backends.c.endings import BATCH
 from symgen.backends.c.file import file_view, files
 from symgen.backends.c.finite import rests
 from symgen.backends.c.functions import FunctionView
-from symgen.backends.c.names import c_members, function_name, guard, names_in_file, status_name, struct_name
+from symgen.backends.c.names import c_members, global_name, guard, names_in_file, status_name
 from symgen.backends.c.pairs import pair_body
 from symgen.backends.c.statements import CStatements, c_literal
 from symgen.backends.comments import c_comment_lines
 from symgen.backends.locals import Names, all_statements, array_arguments
 from symgen.backends.quantities import BATCHED, meaning
-from symgen.backends.scalars import C_TYPE, SUFFIX
+from symgen.backends.scalars import C_TYPE, file_stem
 from symgen.ir.kernel import Argument, Check, Kernel, Load, Local, Operand, Program, Status
 from symgen.ir.split import names_in, names_of_blocks, split, without_first
 from symgen.ir.wide_functions import works_with_pairs
@@ -32,7 +33,6 @@ _OWN_NAMES = frozenset({"count", "stride", "status", "start", "length", "k", "i"
 _OWN_NAMES |= {"flag", "flags", "bits", "code", "refused", "rest", "y"}
 
 
-ENDING = "_batch"
 _ABOUT = """Kernels of {plain}.h for many states: compile {plain_batch}.c and {plain}.c.
 
 Component i of state k is at [i*stride + k] of each array, stride >= count. A state that has no valid result gets
@@ -84,11 +84,12 @@ def emit_c_batch(model: Model, program: Program) -> dict[str, str]:
     kernels = tuple(kernel for kernel in program.kernels if kernel.name in BATCHED)
     if not kernels:
         return {}
-    plain = model.c_name + SUFFIX[program.scalar]
-    stem = f"{model.c_name}{ENDING}{SUFFIX[program.scalar]}"
-    pair, ratio, params = (struct_name(model, program, kind) for kind in ("sincos", "ratio", "params"))
+    plain = file_stem(model.c_name, program.scalar)
+    stem = file_stem(model.c_name, program.scalar, BATCH)
+    pair, ratio, params = (global_name(model.c_name, program.scalar, kind) for kind in ("sincos", "ratio", "params"))
     inline = f"{macro_name(stem)}_INLINE"
-    own = {function_name(model, program, kernel, tail) for kernel in program.kernels for tail in ("", ENDING)}
+    both = [(kernel.name, ending) for kernel in program.kernels for ending in ("", BATCH)]
+    own = {global_name(model.c_name, program.scalar, *one) for one in both}
     own |= {pair, ratio, inline, guard(stem), params, *_OWN_NAMES}
     own |= {status_name(model, status) for status in Status}
     own |= {f"{argument.name}_one" for kernel in kernels for argument in kernel.arguments}
@@ -117,7 +118,7 @@ def emit_c_batch(model: Model, program: Program) -> dict[str, str]:
     )
     about = tuple(_ABOUT.format(plain=plain, plain_batch=stem).splitlines())
     shown = tuple(FunctionView(one.comment, one.prototype, ()) for one in functions)
-    header = file_view(model, few, ENDING, about, shown)
+    header = file_view(model, few, BATCH, about, shown)
     return files(replace(header, includes=(*header.includes, "<stddef.h>")), view, "c/batch.c.jinja")
 
 
@@ -125,7 +126,8 @@ def _function(model: Model, program: Program, kernel: Kernel, names: Names, priv
     scalar, output = C_TYPE[program.scalar], names.outputs[kernel.name]
     arguments = array_arguments(kernel)
     given = ["size_t count", "size_t stride", *(f"const {scalar} *{a.name}" for a in arguments)]
-    given += [f"const {struct_name(model, program, 'params')} *p", f"{scalar} *{output}", "unsigned char *status"]
+    params = global_name(model.c_name, program.scalar, "params")
+    given += [f"const {params} *p", f"{scalar} *{output}", "unsigned char *status"]
     by_pairs = works_with_pairs(kernel)
     flat = Kernel(kernel.name, (), (), (), (), ()) if by_pairs else without_first(kernel)
     parts = split(flat)
@@ -145,8 +147,8 @@ def _function(model: Model, program: Program, kernel: Kernel, names: Names, priv
     body += [f"result[{k}][k] = {printer.operand(operand)};" for k, operand in enumerate(flat.outputs)]
     return BatchView(
         comment=c_comment_lines(f"{meaning(kernel)}; {output} has {len(kernel.outputs)} rows"),
-        prototype=f"size_t {function_name(model, program, kernel, ENDING)}({', '.join(given)})",
-        single=function_name(model, program, kernel),
+        prototype=f"size_t {global_name(model.c_name, program.scalar, kernel.name, BATCH)}({', '.join(given)})",
+        single=global_name(model.c_name, program.scalar, kernel.name),
         arguments=arguments,
         rows=rows,
         output=output,

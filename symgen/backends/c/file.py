@@ -9,7 +9,7 @@ from symgen.backends.c.pairs import PairsView, pairs_view
 from symgen.backends.c.steps import StepsView, steps_view
 from symgen.backends.c.surroundings import LibraryPair, apart_macro, library_pair, rare_macro, uses_library
 from symgen.backends.render import render
-from symgen.backends.scalars import C_TYPE, SUFFIX
+from symgen.backends.scalars import C_TYPE, SUFFIX, file_stem
 from symgen.ir.kernel import Program
 from symgen.model.model import Model
 from symgen.records import dataclass
@@ -68,13 +68,13 @@ def file_view(
     `program` holds the kernels that the functions are made of.
     """
     prefix, suffix = model.c_name, SUFFIX[program.scalar]
-    stem = f"{prefix}{ending}{suffix}"
+    stem = file_stem(prefix, program.scalar, ending)
     return FileView(
         stem=stem,
         guard=guard(stem),
         scalar=C_TYPE[program.scalar],
         about=about,
-        includes=(f'"{prefix}{suffix}.h"',) if ending else (),
+        includes=(f'"{file_stem(prefix, program.scalar)}.h"',) if ending else (),
         functions=functions,
         struct=struct,
         statuses=statuses,

@@ -8,7 +8,7 @@ from dataclasses import replace
 from symgen.backends.c.causes import Cause, CauseView, cause_view, causes_of, operands_of, place
 from symgen.backends.c.finite import SUM, FiniteTest
 from symgen.backends.c.lanes import each_name, lane_loops, loop_lines, results_of
-from symgen.backends.c.names import function_name, status_name
+from symgen.backends.c.names import global_name, status_name
 from symgen.backends.c.pairs import GROUP_NAMES, group_lines, leading_group
 from symgen.backends.c.statements import CStatements
 from symgen.backends.c.steps import Table, table
@@ -36,7 +36,7 @@ def kernel_function(
     model: Model, program: Program, kernel: Kernel, names: Names, about: str, given: Mapping[str, str], ending: str = ""
 ) -> FunctionView:
     """The function of a kernel; `given` declares what it gets besides arrays: `*p` behind them, and before `*sc`."""
-    scalar, name = C_TYPE[program.scalar], function_name(model, program, kernel, ending)
+    scalar, name = C_TYPE[program.scalar], global_name(model.c_name, program.scalar, kernel.name, ending)
     arguments = [given[struct] for struct in ("sc",) if struct in given]
     arguments += [f"const {scalar} {argument.name}[{argument.length}]" for argument in array_arguments(kernel)]
     arguments += [given["p"], f"{scalar} {names.outputs[kernel.name]}[{len(kernel.outputs)}]"]

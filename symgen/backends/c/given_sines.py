@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from symgen.backends.c.endings import SINES_GIVEN
 from symgen.backends.c.file import StructView, file_view, files
 from symgen.backends.c.functions import kernel_function
-from symgen.backends.c.names import struct_name, variant_names
+from symgen.backends.c.names import global_name, variant_names
 from symgen.backends.comments import c_comment
 from symgen.backends.quantities import BATCHED, meaning
-from symgen.backends.scalars import SUFFIX
+from symgen.backends.scalars import file_stem
 from symgen.ir.given_trig import GivenTrig, given_trig
 from symgen.ir.kernel import Program
 from symgen.model.model import Model
 
-ENDING = "_sc"
 _ABOUT = (
     "Kernels of {header} that take sines and cosines from the caller: from an encoder, a table, or computed once",
     "for several kernels. The angles behind them may be of any size. Coordinates that enter elsewhere are read from q.",
@@ -27,15 +27,15 @@ def emit_c_sc(model: Model, program: Program) -> dict[str, str]:
     if not made:
         return {}
     kernels = tuple(one.kernel for one in made)
-    struct, params = (struct_name(model, program, kind) for kind in ("trig", "params"))
-    names = variant_names(model, program, kernels, ENDING, {"sc", struct})
+    struct, params = (global_name(model.c_name, program.scalar, kind) for kind in ("trig", "params"))
+    names = variant_names(model, program, kernels, SINES_GIVEN, {"sc", struct})
     given = {"sc": f"const {struct} *sc", "p": f"const {params} *p"}
-    functions = (kernel_function(model, program, k, names, meaning(k), given, ENDING) for k in kernels)
+    functions = (kernel_function(model, program, k, names, meaning(k), given, SINES_GIVEN) for k in kernels)
     view = file_view(
         model,
         replace(program, kernels=kernels),
-        ENDING,
-        tuple(line.format(header=f"{model.c_name}{SUFFIX[program.scalar]}.h") for line in _ABOUT),
+        SINES_GIVEN,
+        tuple(line.format(header=f"{file_stem(model.c_name, program.scalar)}.h") for line in _ABOUT),
         tuple(functions),
         StructView(struct, _members(model, made)),
     )

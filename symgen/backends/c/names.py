@@ -12,8 +12,8 @@ from symgen.backends.c.reserved import is_taken
 from symgen.backends.c.steps import local_names
 from symgen.backends.c.surroundings import surrounding_names
 from symgen.backends.locals import Names, names_of
-from symgen.backends.scalars import SUFFIX
-from symgen.ir.kernel import Kernel, Program, Status
+from symgen.backends.scalars import SUFFIX, file_stem
+from symgen.ir.kernel import Kernel, Program, Scalar, Status
 from symgen.model.model import Model
 from symgen.naming import macro_name
 
@@ -25,14 +25,12 @@ def status_name(model: Model, status: Status) -> str:
     return f"{macro_name(model.c_name)}_{status.name}"
 
 
-def function_name(model: Model, program: Program, kernel: Kernel, ending: str = "") -> str:
-    """The function of a kernel; `ending` tells the variants apart."""
-    return f"{model.c_name}_{kernel.name}{ending}{SUFFIX[program.scalar]}"
+def global_name(model: str, scalar: Scalar, what: str, ending: str = "") -> str:
+    """A function or type: `what` is a quantity, params, default_params, prepared, ...; `ending` tells variants apart.
 
-
-def struct_name(model: Model, program: Program, kind: str) -> str:
-    """A type or a function of the file: `kind` is params, default_params, prepared, ..."""
-    return f"{model.c_name}_{kind}{SUFFIX[program.scalar]}"
+    `model` is what names of the model begin with.
+    """
+    return f"{model}_{what}{ending}{SUFFIX[scalar]}"
 
 
 def guard(stem: str) -> str:
@@ -65,7 +63,7 @@ def names_in_file(model: Model, program: Program, own: Iterable[str]) -> Names:
 
 
 def _own_names(model: Model, program: Program) -> set[str]:
-    own = {struct_name(model, program, kind) for kind in ("params", "default_params")}
+    own = {global_name(model.c_name, program.scalar, kind) for kind in ("params", "default_params")}
     own |= {f"{model.c_name}_status", f"{macro_name(model.c_name)}_STATUS_DEFINED"}
     return own | _of_functions(model, program, "")
 
@@ -73,9 +71,10 @@ def _own_names(model: Model, program: Program) -> set[str]:
 def _of_functions(model: Model, program: Program, ending: str) -> set[str]:
     """The functions of a file for one state, and what stands before them."""
     prefix, suffix = model.c_name, SUFFIX[program.scalar]
-    names = {guard(f"{prefix}{ending}{suffix}")} | pair_names(prefix, suffix) | surrounding_names(prefix, suffix)
+    names = {guard(file_stem(prefix, program.scalar, ending))}
+    names |= pair_names(prefix, suffix) | surrounding_names(prefix, suffix)
     names |= {status_name(model, status) for status in Status}
     for kernel in program.kernels:
-        function = function_name(model, program, kernel, ending)
+        function = global_name(prefix, program.scalar, kernel.name, ending)
         names |= {function, *cause_names(kernel, function)}
     return names

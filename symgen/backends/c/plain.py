@@ -15,7 +15,7 @@ from symgen.backends.about import (
 )
 from symgen.backends.c.file import StatusView, StructView, file_view, files
 from symgen.backends.c.functions import FunctionView, kernel_function
-from symgen.backends.c.names import c_names, status_name, struct_name
+from symgen.backends.c.names import c_names, global_name, status_name
 from symgen.backends.c.statements import c_literal
 from symgen.backends.comments import c_comment, c_comment_lines, indent_of
 from symgen.backends.defaults import default_values
@@ -43,11 +43,11 @@ class _Member:
 def emit_c(model: Model, program: Program) -> dict[str, str]:
     """Header and source of the program's scalar type: `c/<model>.h`, `.c` (float64) or `c/<model>_f.h`, `_f.c`."""
     names = c_names(model, program)
-    params = struct_name(model, program, "params")
+    params = global_name(model.c_name, program.scalar, "params")
     members = _members(model, program, names)
     default = FunctionView(
         (),
-        f"{params} {struct_name(model, program, 'default_params')}(void)",
+        f"{params} {global_name(model.c_name, program.scalar, 'default_params')}(void)",
         (f"{params} p;", *(f"p.{member.name} = {member.default};" for member in members), "return p;"),
     )
     given = {"p": f"const {params} *p"}

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from symgen.backends.c.endings import PREPARED
 from symgen.backends.c.file import StructView, file_view, files
 from symgen.backends.c.functions import FunctionView, kernel_function
-from symgen.backends.c.names import struct_name, variant_names
+from symgen.backends.c.names import global_name, variant_names
 from symgen.backends.c.pairs import pairs_view
 from symgen.backends.c.statements import CStatements
 from symgen.backends.locals import Names
 from symgen.backends.operations import count_operations
 from symgen.backends.quantities import BATCHED, meaning
-from symgen.backends.scalars import C_TYPE, SUFFIX
+from symgen.backends.scalars import C_TYPE, SUFFIX, file_stem
 from symgen.ir.kernel import Block, Kernel, Program
 from symgen.ir.prepare import Prepared, prepare
 from symgen.model.model import Model
 
-ENDING = "_prepared"
 _ABOUT = (
     "Kernels of {header} with the work that depends on parameters done once: call the first function for each",
     "set of parameters and hand its result to the others. Same results, bit for bit; same statuses.",
@@ -29,10 +29,11 @@ def emit_c_prepared(model: Model, program: Program) -> dict[str, str]:
     prepared = prepare(program, BATCHED)
     if prepared is None:
         return {}
-    struct, params, make = (struct_name(model, program, kind) for kind in ("prepared", "params", "prepare"))
+    kinds = ("prepared", "params", "prepare")
+    struct, params, make = (global_name(model.c_name, program.scalar, kind) for kind in kinds)
     once = Kernel("prepare", (), prepared.loads, (Block(prepared.statements, ()),), prepared.values, ())
     kernels = (*prepared.kernels, once)
-    names = variant_names(model, program, kernels, ENDING, {"prepared", struct, params, make})
+    names = variant_names(model, program, kernels, PREPARED, {"prepared", struct, params, make})
     values = {f"value[{k}]": f"value[{k}]" for k in range(len(prepared.values))}
     before = {kernel.name: count_operations(kernel.statements).total for kernel in program.kernels}
     placed, given = replace(names, members=names.members | values), {"p": f"const {struct} *p"}
@@ -40,14 +41,14 @@ def emit_c_prepared(model: Model, program: Program) -> dict[str, str]:
     def function(kernel: Kernel) -> FunctionView:
         now = count_operations(kernel.statements).total
         about = f"{meaning(kernel)}; {now} operations instead of {before[kernel.name]}"
-        return kernel_function(model, program, kernel, placed, about, given, ENDING)
+        return kernel_function(model, program, kernel, placed, about, given, PREPARED)
 
     made = FunctionView((), f"{struct} {make}(const {params} *p)", _lines(model, program, prepared, names, struct))
     view = file_view(
         model,
         replace(program, kernels=prepared.kernels),
-        ENDING,
-        tuple(line.format(header=f"{model.c_name}{SUFFIX[program.scalar]}.h") for line in _ABOUT),
+        PREPARED,
+        tuple(line.format(header=f"{file_stem(model.c_name, program.scalar)}.h") for line in _ABOUT),
         (made, *map(function, prepared.kernels)),
         StructView(
             struct,
@@ -58,14 +59,14 @@ def emit_c_prepared(model: Model, program: Program) -> dict[str, str]:
     # the functions of one angle at a time are those that the lines of `prepare` call
     pairs = pairs_view(model.c_name, SUFFIX[program.scalar], replace(program, kernels=kernels))
     if pairs is not None and any(statement.operation == "sincos" for statement in prepared.statements):
-        pairs = replace(pairs, single=f"{model.c_name}_sincos{SUFFIX[program.scalar]}")
+        pairs = replace(pairs, single=global_name(model.c_name, program.scalar, "sincos"))
     return files(replace(view, pairs=pairs))
 
 
 def _lines(model: Model, program: Program, prepared: Prepared, names: Names, struct: str) -> tuple[str, ...]:
     """The body of the function that prepares."""
     scalar = C_TYPE[program.scalar]
-    sincos = None if program.sincos is None else f"{model.c_name}_sincos{SUFFIX[program.scalar]}"
+    sincos = None if program.sincos is None else global_name(model.c_name, program.scalar, "sincos")
     targets = {target for statement in prepared.statements for target in statement.targets}
     printer = CStatements(program.scalar, names.locals, targets, sincos)
     lines = [] if prepared.loads else ["(void)p;"]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 
+from symgen.backends.c.endings import BATCH, PREPARED, SINES_GIVEN
 from symgen.registered import Words, words
 
 _C = """auto break case char const continue default do double else enum extern float for goto if inline int long
@@ -114,8 +115,8 @@ def is_taken(name: str) -> bool:
 
 
 # Of files (eva, fuzz and error are drivers for proofs), and how functions begin behind the model's name.
-_ENDINGS = words(
-    """f batch prepared sc eva fuzz error
+_ENDINGS = frozenset(ending[1:] for ending in (BATCH, PREPARED, SINES_GIVEN)) | words(
+    """f eva fuzz error
     default actuator minimal projected weighted inverse_dynamics forward_dynamics multipliers"""
 )
 WORDS = Words(KEYWORDS, is_taken, _HEADERS | _TARGETS | _WINDOWS_FILES | _STATUSES, _ENDINGS)

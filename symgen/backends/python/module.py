@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from symgen.backends.about import STATUS_MEANING, module_lines, parameter_text
+from symgen.backends.c.endings import BATCH
 from symgen.backends.c.reserved import is_taken as is_taken_in_c
 from symgen.backends.comments import docstring_lines
 from symgen.backends.defaults import default_values
@@ -12,6 +13,7 @@ from symgen.backends.python.reserved import WORDS
 from symgen.backends.python.statements import NumpyStatements, numpy_helper
 from symgen.backends.quantities import BATCHED, meaning
 from symgen.backends.render import render
+from symgen.backends.scalars import file_stem
 from symgen.backends.statements import Helper
 from symgen.ir.kernel import Kernel, Program, Status
 from symgen.ir.wide_functions import wide_function, wide_operations, with_bodies
@@ -63,6 +65,7 @@ class PythonView:
     needs_ratio: bool
     wide: tuple[tuple[str, Helper], ...]
     c_files: tuple[str, ...]
+    batch: str
 
 
 def emit_python(model: Model, program: Program) -> dict[str, str]:
@@ -84,6 +87,7 @@ def emit_python(model: Model, program: Program) -> dict[str, str]:
         needs_ratio="ratio_or_zero" in operations,
         wide=tuple((name, numpy_helper(wide_function(name))) for name in wide_operations(statements)),
         c_files=_c_files(model, program),
+        batch=BATCH,
     )
     return {f"python/{view.stem}.py": render("python/module.py.jinja", view)}
 
@@ -136,5 +140,5 @@ def _kernel(kernel: Kernel, names: Names, sincos: str | None) -> FunctionView:
 def _c_files(model: Model, program: Program) -> tuple[str, ...]:
     """What `compile()` builds: the float64 kernels for one state and for many."""
     stem = model.c_name
-    stems = (stem, f"{stem}_batch") if any(kernel.name in BATCHED for kernel in program.kernels) else (stem,)
-    return tuple(name + ending for name in stems for ending in (".h", ".c"))
+    many = [file_stem(stem, program.scalar, BATCH)] if any(kernel.name in BATCHED for kernel in program.kernels) else []
+    return tuple(name + extension for name in (stem, *many) for extension in (".h", ".c"))

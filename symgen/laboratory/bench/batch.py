@@ -11,10 +11,11 @@ from time import perf_counter_ns
 from typing import Any
 
 from symgen.backends.c.batch import emit_c_batch
+from symgen.backends.c.endings import BATCH
+from symgen.backends.c.names import global_name
 from symgen.backends.c.plain import emit_c
 from symgen.backends.python.module import emit_python
 from symgen.backends.render import render
-from symgen.backends.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.laboratory.bench.build import compile_candidate, gcc
 from symgen.laboratory.bench.candidate import CCandidate, Task
@@ -116,7 +117,7 @@ def _library(folder: Path, model: Model, program: Program) -> ctypes.CDLL:
     for path, text in files.items():
         (folder / Path(path).name).write_text(text, encoding="utf-8")
     sources = [str(folder / Path(path).name) for path in files if path.endswith(".c")]
-    target = folder / f"{model.c_name}_many{SUFFIX[program.scalar]}.so"
+    target = folder / f"{global_name(model.c_name, program.scalar, 'many')}.so"
     gcc([*FLAGS, "-shared", "-fPIC", "-o", str(target), *sources, "-lm"], "symgen's batch kernels")
     return ctypes.CDLL(str(target))
 
@@ -129,7 +130,7 @@ def _batches(
     ways = []
     for scalar, program in programs.items():
         (kernel,) = program.kernels
-        function = _library(folder, model, program)[f"{model.c_name}_{kernel.name}_batch{SUFFIX[scalar]}"]
+        function = _library(folder, model, program)[global_name(model.c_name, scalar, kernel.name, BATCH)]
         rows = [np.ascontiguousarray(part.T, dtype=scalar) for part in _arguments(kernel, parts)]
         result = np.empty((len(kernel.outputs), STREAMED), dtype=scalar)
         run = _call(function, [*rows, np.array([*parameters, 0.0], dtype=scalar), result], (STREAMED,), (None,))

@@ -9,12 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from symgen.backends.c.causes import cause_names
+from symgen.backends.c.names import global_name
 from symgen.backends.c.pairs import pair_names
 from symgen.backends.c.plain import emit_c
 from symgen.backends.c.steps import TABLE, step_names
 from symgen.backends.operations import count_operations
 from symgen.backends.python.module import emit_python
-from symgen.backends.scalars import SUFFIX
+from symgen.backends.scalars import SUFFIX, file_stem
 from symgen.generation.draft import Draft
 from symgen.generation.recorded import as_recorded
 from symgen.generation.results import Options
@@ -116,10 +117,10 @@ def _candidate(model: Model, program: Program, way: str, trig: str) -> CCandidat
     kernel = program.kernels[0]
     files = emit_c(model, program)
     suffix = SUFFIX[program.scalar]
-    stem = model.c_name + suffix
-    function = f"{model.c_name}_{kernel.name}{suffix}"
+    stem = file_stem(model.c_name, program.scalar)
+    function = global_name(model.c_name, program.scalar, kernel.name)
     entry = re.sub(r"\W", "_", f"symgen_{way}_{trig}_{program.scalar}")
-    defaults = f"{model.c_name}_default_params{suffix}"  # every variant brings its own
+    defaults = global_name(model.c_name, program.scalar, "default_params")  # every variant brings its own
     headers = {f"{stem}.h": str(files[f"c/{stem}.h"])}
     source = str(files[f"c/{stem}.c"])
     if any(a.name in ("qdd", "u") and a.length for a in kernel.arguments):

@@ -7,11 +7,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from flint import arb, arb_mat
+from flint import arb
 
 from symgen.laboratory.stress.determinants import Trouble
+from symgen.validity.descent import Evaluated, zero_beside
 from symgen.verify.reference.closing import onto_manifold
-from symgen.verify.reference.linear import column, identity, norm, solve
+from symgen.verify.reference.linear import column, norm
 from symgen.verify.reference.manifold import starts
 from symgen.verify.reference.reference import Reference
 from symgen.verify.reference.system import default_parameters
@@ -82,48 +83,25 @@ def places(reference: Reference, trouble: Trouble, count: int, parameters_too: b
 def _solved(
     reference: Reference, trouble: Trouble, start: list[Any], parameters: Sequence[Any], free: Sequence[int]
 ) -> list[Any] | None:
-    """Levenberg-Marquardt on [g; functions] = 0 in q and the free parameters."""
+    """A zero of [g; functions] in q and the free parameters beside a start."""
     n = reference.system.n
 
-    def residual(x: Sequence[Any]) -> Any:
+    def gaps(x: Sequence[Any]) -> list[Any]:
         p = list(parameters)
         for i, value in zip(free, x[n:], strict=True):
             p[i] = value
         values = list(trouble.values(x[:n], p))
         if reference.system.r_geometric:
             values += reference.system.geometry(x[:n], p, reference.literals())[0].entries()
-        return column([arb(v.mid()) for v in values])
+        return [arb(v.mid()) for v in values]
 
-    x = [*start, *(parameters[i] for i in free)]
-    h = residual(x)
-    size, damping, slow = norm(h), 1e-2, 0
-    for _ in range(STEPS):
-        if size <= RESIDUAL:
-            return x
-        slopes = [[((b - a) / DIFFERENCE).mid() for a, b in zip(h.entries(), moved, strict=True)]
-                  for moved in (residual([*x[:j], x[j] + DIFFERENCE, *x[j + 1 :]]).entries() for j in range(len(x)))]
-        transposed = arb_mat(len(x), h.nrows(), [entry for row in slopes for entry in row])
-        gram = transposed * transposed.transpose()
-        shift = damping * max(float(gram.trace()), 1e-60)
-        try:
-            step = solve((gram + identity(len(x)) * shift).mid(), (transposed * h).mid())
-        except ZeroDivisionError:
-            damping *= 1e6
-            continue
-        trial = [arb((a - b).mid()) for a, b in zip(x, step.entries(), strict=True)]
-        h_trial = residual(trial)
-        size_trial = norm(h_trial)
-        if size_trial < size:
-            slow = slow + 1 if size_trial > 0.9 * size else 0
-            if slow > 12:
-                return None
-            damping = max(damping * min(0.03, (size_trial / size) ** 2), 1e-45)
-            x, h, size = trial, h_trial, size_trial
-        elif damping < 1e6:
-            damping *= 10
-        else:
-            return None
-    return None
+    def evaluate(x: list[Any]) -> Evaluated:
+        here = gaps(x)
+        moved = [gaps([*x[:j], x[j] + DIFFERENCE, *x[j + 1 :]]) for j in range(len(x))]
+        slopes = [[((there[i] - gap) / DIFFERENCE).mid() for there in moved] for i, gap in enumerate(here)]
+        return here, slopes
+
+    return zero_beside(evaluate, [*start, *(parameters[i] for i in free)], RESIDUAL, STEPS, 1e-2)
 
 
 def _allowed(reference: Reference, q: Sequence[Any], parameters: Sequence[Any], free: Sequence[int]) -> bool:

@@ -7,9 +7,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import hypot, isfinite
 
+from symgen.backends.c.endings import SINES_GIVEN
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
 from symgen.laboratory.target.driver import FORMAT, SIZE, Record, Results
-from symgen.laboratory.target.entries import GIVEN, Entries, Entry
+from symgen.laboratory.target.entries import Entries, Entry
 from symgen.laboratory.target.vectors import PERTURBATIONS
 
 # Both results may be 16 units of d + eps |y| from the exact one, and the d of a few perturbations falls short by two.
@@ -33,7 +34,7 @@ def uses_library(entry: Entry, portable: bool) -> bool:
 
     What is prepared may have come through one.
     """
-    kernel = entry.kernel if entry.form == GIVEN else entry.plain
+    kernel = entry.kernel if entry.form == SINES_GIVEN else entry.plain
     names = {statement.operation for statement in kernel.statements}
     return bool(names & LIBRARY) or (not portable and "sincos" in names)
 

@@ -8,8 +8,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from symgen.backends.c.names import global_name
 from symgen.backends.render import render
-from symgen.backends.scalars import C_TYPE, SUFFIX
+from symgen.backends.scalars import C_TYPE, file_stem
 from symgen.ir.kernel import Argument, Scalar
 from symgen.laboratory.target.entries import Entries, Entry
 from symgen.model.model import Model
@@ -125,20 +126,24 @@ def _given(q: Sequence[Any]) -> list[float]:
 
 
 def _group(model: Model, entries: Entries) -> GroupView:
-    suffix, kind = SUFFIX[entries.scalar], C_TYPE[entries.scalar]
+    kind = C_TYPE[entries.scalar]
+
+    def named(what: str) -> str:
+        return global_name(model.c_name, entries.scalar, what)
+
     arrays = (
         Argument("q", model.n), Argument("qd", model.n), Argument("qdd", model.n), Argument("u", model.m),
         OwnArray("p", len(model.parameters)), OwnArray("sc", 2 * model.n),
     )
-    units = dict.fromkeys([f"{model.c_name}{suffix}", *(entry.unit for entry in entries.functions)])
+    units = dict.fromkeys([file_stem(model.c_name, entries.scalar), *(entry.unit for entry in entries.functions)])
     return GroupView(
         headers=tuple(f"{unit}.h" for unit in units),
         type=kind,
-        params=f"{model.c_name}_params{suffix}",
-        defaults=f"{model.c_name}_default_params{suffix}",
-        prepared=f"{model.c_name}_prepared{suffix}" if entries.prepared else "",
-        prepare=f"{model.c_name}_prepare{suffix}",
-        trig=f"{model.c_name}_trig{suffix}" if entries.given else "",
+        params=named("params"),
+        defaults=named("default_params"),
+        prepared=named("prepared") if entries.prepared else "",
+        prepare=named("prepare"),
+        trig=named("trig") if entries.given else "",
         given=tuple(
             (f"{half}_{model.coordinates[index].name}", 2 * index + place)
             for index in entries.given

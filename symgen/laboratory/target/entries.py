@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from symgen.backends.c.endings import PREPARED, SINES_GIVEN
+from symgen.backends.c.names import global_name
 from symgen.backends.locals import array_arguments
 from symgen.backends.quantities import BATCHED
-from symgen.backends.scalars import C_TYPE, SUFFIX
+from symgen.backends.scalars import C_TYPE, file_stem
 from symgen.ir.given_trig import given_trig
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.ir.prepare import prepare
 from symgen.model.model import Model
-
-PREPARED, GIVEN = "_prepared", "_sc"
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,17 +70,16 @@ def with_companions(model: Model, entries: Entries, program: Program) -> Entries
     functions = (
         *entries.functions,
         *(_entry(model, program.scalar, kernel, plain[kernel.name], PREPARED) for kernel in ready),
-        *(_entry(model, program.scalar, made.kernel, plain[made.kernel.name], GIVEN) for made in given),
+        *(_entry(model, program.scalar, made.kernel, plain[made.kernel.name], SINES_GIVEN) for made in given),
     )
     places = sorted({load.index for made in given for load in made.coordinates})
     return Entries(program.scalar, functions, tuple(places))
 
 
 def _entry(model: Model, scalar: Scalar, kernel: Kernel, plain: Kernel, form: str) -> Entry:
-    kind, suffix = C_TYPE[scalar], SUFFIX[scalar]
-    function = f"{model.c_name}_{kernel.name}{form}{suffix}"
-    arguments = [f"&sc_{kind}"] if form == GIVEN else []
+    kind, function = C_TYPE[scalar], global_name(model.c_name, scalar, kernel.name, form)
+    arguments = [f"&sc_{kind}"] if form == SINES_GIVEN else []
     arguments += [f"row_{kind}.{argument.name}" for argument in array_arguments(kernel)]
     arguments += [f"&ready_{kind}" if form == PREPARED else f"&p_{kind}", f"y_{kind}"]
     call = f"{function}({', '.join(arguments)})"
-    return Entry(kernel, plain, form, function, call, f"{model.c_name}{form}{suffix}")
+    return Entry(kernel, plain, form, function, call, file_stem(model.c_name, scalar, form))

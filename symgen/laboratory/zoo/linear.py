@@ -1,9 +1,11 @@
-"""Linear algebra of the witness in any arithmetic: bases by pivoted Gram-Schmidt, solutions of least norm."""
+"""Linear algebra of the witness: bases by pivoted Gram-Schmidt, solutions of least norm."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Any
+
+from flint import arb_mat
 
 Vector = list[Any]
 Matrix = list[Vector]
@@ -89,41 +91,13 @@ def complement(taken: Matrix, n: int, one: Any) -> Matrix:
 
 
 def solve(a: Sequence[Sequence[Any]], b: Sequence[Any]) -> Vector:
-    """The solution of a regular square system, by elimination with complete choice of rows."""
-    n = len(a)
-    rows = [[*row, right] for row, right in zip(a, b, strict=True)]
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(float(rows[i][k])))
-        rows[k], rows[best] = rows[best], rows[k]
-        for i in range(k + 1, n):
-            factor = rows[i][k] / rows[k][k]
-            rows[i] = [x - factor * y for x, y in zip(rows[i], rows[k], strict=True)]
-    x: Vector = [0] * n
-    for k in reversed(range(n)):
-        x[k] = (rows[k][n] - inner(rows[k][k + 1 : n], x[k + 1 :])) / rows[k][k]
-    return x
+    """The solution of a regular square system in balls."""
+    return list(arb_mat(a).solve(arb_mat([[x] for x in b])).entries()) if a else []
 
 
 def determinant(a: Sequence[Sequence[Any]]) -> Any:
-    """The determinant, by elimination; what is left in balls of columns that depend on others comes last."""
-    rows = [list(row) for row in a]
-    n, value = len(rows), 1
-    for k in range(n):
-        best = max(((i, j) for i in range(k, n) for j in range(k, n)), key=lambda at: abs(float(rows[at[0]][at[1]])))
-        if float(rows[best[0]][best[1]]) == 0:
-            return 0
-        if best[0] != k:
-            rows[k], rows[best[0]] = rows[best[0]], rows[k]
-            value = -value
-        if best[1] != k:
-            for row in rows:
-                row[k], row[best[1]] = row[best[1]], row[k]
-            value = -value
-        value = value * rows[k][k]
-        for i in range(k + 1, n):
-            factor = rows[i][k] / rows[k][k]
-            rows[i] = [x - factor * y for x, y in zip(rows[i], rows[k], strict=True)]
-    return value
+    """The determinant in balls; the characteristic polynomial knows it where elimination would divide by 0."""
+    return (-1) ** len(a) * arb_mat(a).charpoly()[0] if a else 1
 
 
 def least(

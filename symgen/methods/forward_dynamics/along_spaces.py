@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from math import comb
 
 from symgen.linear_algebra.constrained_inverse import ConstrainedInertia
 from symgen.linear_algebra.guards import Guard
-from symgen.linear_algebra.null_spaces import LONGEST_PRODUCT, MINOR_LIMIT, MinorSpace, NullSpace
+from symgen.linear_algebra.null_spaces import LONGEST_PRODUCT, MinorSpace, NullSpace
 from symgen.linear_algebra.refinement import of_motion, refined
 from symgen.mechanics.genericity import Genericity
 from symgen.methods.derivation import Derivation
@@ -23,23 +22,12 @@ from symgen.methods.method import Method
 from symgen.symbolic.matrix import Vector, matvec, subtract_vectors
 from symgen.validity.definiteness import positive_definite
 
-# Minors of as many columns as give the most, up to which they are taken although the null space is not built from
-# them.
-MOST_MINORS_OF_ANY_RANK = 70
-
 
 def _few_directions(generic: Genericity) -> bool:
     return generic.rank == generic.r and 1 <= generic.delta <= LARGEST_DELTA
 
 
-def _few_minors(generic: Genericity) -> bool:
-    """Whether minors of the rows are at hand although the null space is not built from them."""
-    return comb(generic.n, generic.n // 2) <= MOST_MINORS_OF_ANY_RANK
-
-
-def _no_minors(generic: Genericity) -> str | None:
-    if generic.minors > MINOR_LIMIT:
-        return f"B has {generic.minors} minors"
+def _many_directions(generic: Genericity) -> str | None:
     if _few_directions(generic):
         return None
     directions = f"it is for {LARGEST_DELTA} degrees of freedom at most, of which the system has {generic.delta}"
@@ -56,7 +44,7 @@ def _by_minors(derivation: Derivation) -> bool:
         return False
     if isinstance(derivation.space, MinorSpace):
         return True
-    return generic.r > 0 and _few_minors(generic) and not positive_definite(derivation.mechanics)
+    return generic.r > 0 and not positive_definite(derivation.mechanics)
 
 
 def _by_basis(derivation: Derivation) -> bool:
@@ -148,7 +136,7 @@ def reactions(problem: Problem, space: NullSpace, force: Vector, accelerations: 
 
 
 MINOR: Method = AlongNullSpace(
-    _minor, "its denominator is the determinant of the equations of motion", _no_minors, _by_minors, grows=True
+    _minor, "its denominator is the determinant of the equations of motion", _many_directions, _by_minors, grows=True
 )
 SCHUR_QR: Method = AlongNullSpace(_schur_qr, POSITIVE, offered=_by_elimination, free=True)
 NULLSPACE: Method = AlongNullSpace(

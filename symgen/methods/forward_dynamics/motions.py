@@ -13,7 +13,7 @@ from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 
-from symgen.linear_algebra.null_spaces import MINOR_LIMIT
+from symgen.linear_algebra.null_spaces import has_few_minors
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
 from symgen.methods.admission import DECIMALS, ByTheorem, Singular, Verdict
@@ -60,7 +60,7 @@ class AlongNullSpace(ByTheorem):
     `theorem` says why it is valid at every regular state: those that are `free` of the constraints are so where G is
     positive definite in every direction.  `lacking` says why a system does not have it, `offered` whether it may be
     chosen along the null space of a derivation.  Alone it has an `orthonormal` basis, or the minors of B.  What `grows`
-    may double with each row, and is given up where there are others.
+    may double with each row: it takes minors alone, and is given up where there are others.
     """
 
     solved: Callable[[Derivation], Motion]
@@ -87,8 +87,8 @@ class AlongNullSpace(ByTheorem):
         if self.lacking is not None and (reason := self.lacking(generic)):
             return reason
         mechanics = System(workspace.model)
-        few = generic.minors <= MINOR_LIMIT and not self.orthonormal
-        along = (along_minors if few else along_reflections)(mechanics, generic)
+        few = has_few_minors(mechanics.constraint_jacobian, generic.rank) and not self.orthonormal
+        along = (along_minors if few or self.grows else along_reflections)(mechanics, generic)
         return along if isinstance(along, str) else (mechanics, self.solved(along))
 
 

@@ -28,9 +28,7 @@ from symgen.symbolic.matrix import Matrix, Vector, identity, matmul, transpose
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import cost
 
-# Rows that may be left for determinants: of more these cost more than reflections.
-LARGEST_REST = 4
-# Bases of the null space that are tried, and those kept of the ones found.
+# Bases of the null space that are tried: where each of the first has a determinant that vanishes, others mostly have.
 MOST_BASES = 6
 
 
@@ -59,7 +57,7 @@ def nullspace_form(system: MethodInput, allowed: Callable[[Scalar], bool]) -> Ca
     graph, mechanics, generic = system.mechanics.graph, system.mechanics, system.generic
     choices = list(islice(_bases(system), MOST_BASES))
     if not choices:
-        return f"more than {LARGEST_REST} constraint rows are left that no safe step solves"
+        return "too many constraint rows are left that no safe step solves"
     basis = next((choice for choice in choices if all(map(allowed, choice.pivots))), choices[0])
     w = transpose(basis.columns, generic.delta)
     inputs = transpose(matmul(graph, w, mechanics.control_matrix, generic.m), generic.m)
@@ -127,7 +125,7 @@ def _kernels(graph: Graph, rest: Rates, rows: list[int], rates: list[int]) -> li
     """Bases of the null space of one component, the cheapest first."""
     part = tuple(tuple(rest.core[i][j] for j in rates) for i in rows)
     width = rest.width
-    if len(rows) > LARGEST_REST or len(rows) > len(rates):
+    if len(rows) > len(rates) or not small_family([[0]], part, len(part)):
         return []
     if not rows:
         return [_Kernel(_spread(graph, identity(graph, len(rates)), rates, width), ())]
@@ -137,7 +135,7 @@ def _kernels(graph: Graph, rest: Rates, rows: list[int], rates: list[int]) -> li
         return [_Kernel(_spread(graph, (cross_product(graph, part, len(rates)),), rates, width), ())]
     found = [_solved(graph, part, chosen) for chosen in combinations(range(len(rates)), len(rows))]
     kernels = [_Kernel(_spread(graph, k.vectors, rates, width), k.pivots) for k in found if k is not None]
-    return sorted(kernels, key=lambda kernel: cost(x for v in kernel.vectors for x in v).weight)[:MOST_BASES]
+    return sorted(kernels, key=lambda kernel: cost(x for v in kernel.vectors for x in v).weight)
 
 
 def _spread(graph: Graph, vectors: Matrix, rates: list[int], width: int) -> Matrix:

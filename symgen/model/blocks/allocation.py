@@ -140,7 +140,7 @@ def _check_inputs(scope: Scope, node: Node | None, part: str, inputs: Mapping[st
     for key, _ in entries(node):
         if key.value not in inputs:
             remedy = did_you_mean(key.value, inputs, "name inputs")
-            scope.wrong(f"`{key.value}` in `{part}` is no input", remedy, key.span)
+            scope.wrong_about(key.value, f"`{key.value}` in `{part}` is no input", remedy, key.span)
 
 
 def _value(scope: Scope, setting: _Setting, expression: Expression, known: Mapping[str, float]) -> float | None:

@@ -53,11 +53,9 @@ def _own_frame(scope: Scope, key: ScalarNode) -> str | None:
     """The frame of the body's own name."""
     if scope.kinds.get(key.value) == "frame" or key.value == WORLD:
         return key.value
-    if scope.is_attempted(key.value):
-        return None
     frames = [name for name, kind in scope.kinds.items() if kind == "frame"]
     remedy = did_you_mean(key.value, frames, "say which with `frame:`, or name the body like its frame")
-    scope.wrong(f"the body `{key.value}` has no frame", remedy, key.span)
+    scope.wrong_about(key.value, f"the body `{key.value}` has no frame", remedy, key.span)
     return None
 
 
@@ -78,7 +76,7 @@ def _rotor_inertias(scope: Scope, tree: MappingNode) -> tuple[RotorInertia, ...]
             remedy = did_you_mean(key.value, coordinates, "name a coordinate")
             if key.value in scope.moved_by:
                 remedy = f"name the coordinate of that joint: {' or '.join(scope.moved_by[key.value])}"
-            scope.wrong(f"`{key.value}` in `rotor_inertias` is no coordinate", remedy, key.span)
+            scope.wrong_about(key.value, f"`{key.value}` in `rotor_inertias` is no coordinate", remedy, key.span)
         elif inertia is not None:
             rotors.append(RotorInertia(key.value, inertia, key.span))
     return tuple(rotors)

@@ -109,7 +109,8 @@ def _stretch(scope: Scope, key: ScalarNode, node: Node, what: str) -> tuple[Expr
         good = is_coordinate(scope, joint, f"`joint` of {what}")
         return (Name(joint.value), Name(f"{joint.value}_dot")) if good else (None, None)
     if member(node, "between") is None:
-        scope.wrong(f"{what} is attached to nothing", "give `between: [point, point]` or `joint`", key.span)
+        remedy = "give `between: [point, point]` or `joint`"
+        scope.wrong_about(key.value, f"{what} is attached to nothing", remedy, key.span)
         return None, None
     owners: Sequence[str | None] = [
         point_name(scope, item, f"`between` of {what}") for item in items(member(node, "between"))

@@ -89,15 +89,13 @@ def frame_name(scope: Scope, node: Node | None, what: str) -> str | None:
     if name == WORLD or scope.kinds.get(name) == "frame":
         return name
     kind = scope.kinds.get(name)
-    if scope.is_attempted(name):
-        return None
     if kind is not None:
         remedy = NEED_FRAME if kind == "point" else "name one of `frames` or `joints`, or `world`"
-        scope.wrong(f"`{name}` is {a_kind(kind)}, but {what} names a frame", remedy, node.span)
+        scope.wrong_about(name, f"`{name}` is {a_kind(kind)}, but {what} names a frame", remedy, node.span)
         return None
     frames = [other for other, kind in scope.kinds.items() if kind == "frame"]
     remedy = did_you_mean(name, [WORLD, *frames], "declare it under `frames`")
-    scope.wrong(f"unknown frame `{name}` in {what}", remedy, node.span)
+    scope.wrong_about(name, f"unknown frame `{name}` in {what}", remedy, node.span)
     return None
 
 

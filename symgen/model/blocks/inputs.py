@@ -72,14 +72,13 @@ def point_name(scope: Scope, node: Node | None, what: str) -> str | None:
         scope.used.add(name)
         return name
     kind = scope.kinds.get(name)
-    if scope.is_attempted(name):
-        return None
     if kind is not None:
         remedy = "name one of `points`, or a frame for its origin"
-        scope.wrong(f"`{name}` is {a_kind(kind)}, but {what} names a point", remedy, node.span)
+        scope.wrong_about(name, f"`{name}` is {a_kind(kind)}, but {what} names a point", remedy, node.span)
         return None
     points = [other for other, kind in scope.kinds.items() if kind in ("point", "frame")]
-    scope.wrong(f"unknown point `{name}` in {what}", did_you_mean(name, points, "declare it under `points`"), node.span)
+    remedy = did_you_mean(name, points, "declare it under `points`")
+    scope.wrong_about(name, f"unknown point `{name}` in {what}", remedy, node.span)
     return None
 
 
@@ -125,7 +124,8 @@ def chosen_action(scope: Scope, key: ScalarNode, node: Node, actions: Sequence[s
     given = [action for action in actions if member(node, action) is not None]
     listed = ", ".join(f"`{action}`" for action in actions[:-1])
     if not given:
-        scope.wrong(f"`{key.value}` acts on nothing", f"give one of {listed} or `{actions[-1]}`", key.span)
+        remedy = f"give one of {listed} or `{actions[-1]}`"
+        scope.wrong_about(key.value, f"`{key.value}` acts on nothing", remedy, key.span)
         return None
     if len(given) > 1:
         span = key_span(node, given[1]) if isinstance(node, MappingNode) else key.span

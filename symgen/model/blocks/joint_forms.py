@@ -62,15 +62,16 @@ def declare_joints(scope: Scope, tree: MappingNode) -> tuple[JointCoordinate, ..
         named = _coordinates(node)
         for moved in (key.value, text_of(member(node, "child")) or key.value):
             scope.moved_by[moved] = tuple(item.value for item in named)
-        if len(named) != len(units):
-            scope.attempted |= {item.value for item in named}
         if units and len(named) != len(units):
             message = f"the joint `{key.value}` has {len(named)} coordinates, {len(units)} are due"
             remedy = "give `coordinate: name`, or `coordinates: [...]`: lengths first, then the angle or the quaternion"
-            scope.wrong(message, remedy, key.span)
+            scope.wrong_about(key.value, message, remedy, key.span)
+        if len(named) != len(units):
+            scope.attempted |= {item.value for item in named}
         for position, (item, unit) in enumerate(zip(named, units, strict=False)):
             if item.value in moving:
                 _moved_twice(scope, item, key, moving[item.value])
+                scope.attempted.add(key.value)
                 continue
             moving[item.value] = key
             if scope.kinds.get(item.value) == "coordinate":
@@ -113,7 +114,8 @@ def read_joints(
         # mistakes that have been reported: the frame stays, at rest, for those that hang on it
         if isinstance(fixed, Quaternion):
             fixed = ()
-        if kind not in JOINTS or len(names) != len(JOINTS[kind]) or not _all_coordinates(scope, node):
+        good = kind in JOINTS and len(names) == len(JOINTS[kind]) and key.value not in scope.attempted
+        if not good or not _all_coordinates(scope, node):
             frames.append(Frame(child, parent, at, fixed, "", key.span))
             continue
         shift, rotation = _motion(kind, names, axis)

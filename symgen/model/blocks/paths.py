@@ -55,7 +55,8 @@ def _path(scope: Scope, tree: MappingNode, key: ScalarNode, node: Node, coordina
     for coordinate, value in entries(member(node, "start")):
         if coordinate.value not in coordinates:
             remedy = did_you_mean(coordinate.value, coordinates, "name coordinates")
-            scope.wrong(f"`{coordinate.value}` in `start` is no coordinate", remedy, coordinate.span)
+            message = f"`{coordinate.value}` in `start` is no coordinate"
+            scope.wrong_about(coordinate.value, message, remedy, coordinate.span)
             continue
         number = constant(scope, value, f"the start value of `{coordinate.value}`")
         if number is not None:

@@ -76,7 +76,7 @@ def _independent(scope: Scope, node: Node | None, where: str, coordinates: tuple
         name = text_of(item)
         if name is not None and name not in coordinates:
             remedy = did_you_mean(name, coordinates, "name coordinates, without _dot")
-            scope.wrong(f"`{name}` in {where} is no coordinate", remedy, item.span)
+            scope.wrong_about(name, f"`{name}` in {where} is no coordinate", remedy, item.span)
         elif name is not None:
             chosen.append(name)
     return tuple(chosen)

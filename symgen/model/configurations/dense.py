@@ -44,28 +44,6 @@ def null_space(rows: Rows, n: int, relative: float = RELATIVE) -> Rows:
     return basis[constrained:]
 
 
-def solve_definite(matrix: Rows, right: list[float]) -> list[float] | None:
-    """The solution for a positive definite matrix by Cholesky's method; None where it is not definite."""
-    n = len(right)
-    lower: Rows = [[0.0] * n for _ in range(n)]
-    for i in range(n):
-        for j in range(i + 1):
-            value = matrix[i][j] - sum(lower[i][k] * lower[j][k] for k in range(j))
-            if i == j:
-                if not value > 0:
-                    return None
-                lower[i][i] = math.sqrt(value)
-            else:
-                lower[i][j] = value / lower[j][j]
-    forward: list[float] = []
-    for i in range(n):
-        forward.append((right[i] - sum(lower[i][k] * forward[k] for k in range(i))) / lower[i][i])
-    solution = [0.0] * n
-    for i in reversed(range(n)):
-        solution[i] = (forward[i] - sum(lower[k][i] * solution[k] for k in range(i + 1, n))) / lower[i][i]
-    return solution
-
-
 def is_positive(matrix: Rows, relative: float = RELATIVE) -> tuple[bool, bool]:
     """Whether a symmetric matrix is positive semidefinite, and whether it is positive definite.
 

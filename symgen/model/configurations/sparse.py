@@ -69,24 +69,30 @@ def pivots(rows: Sequence[Row]) -> list[float] | None:
     left = [dict(row) for row in rows]
     if not all(math.isfinite(value) for row in left for value in row.values()):
         return None
+    # of each row its largest entry, the first of equal ones: only rows that a step changes are looked at again
+    largest = [_largest(row) for row in left]
     found: list[float] = []
-    while True:
-        size, place, column = 0.0, -1, -1
-        for i, row in enumerate(left):
-            for j, value in row.items():
-                if abs(value) > size:
-                    size, place, column = abs(value), i, j
+    while left:
+        size, place, column = max((size, -i, column) for i, (size, column) in enumerate(largest))
         if size < NEGLIGIBLE:
-            return found
-        lead = left.pop(place)
-        pivot = lead.pop(column)
-        for row in left:
-            entry = row.pop(column, 0.0)
+            break
+        lead = left.pop(-place)
+        del largest[-place]
+        pivot = lead.pop(-column)
+        for i, row in enumerate(left):
+            entry = row.pop(-column, 0.0)
             if entry:
                 factor = entry / pivot
                 for j, value in lead.items():
                     row[j] = row.get(j, 0.0) - factor * value
+                largest[i] = _largest(row)
         found.append(size)
+    return found
+
+
+def _largest(row: Row) -> tuple[float, int]:
+    """The size of the largest entry of a row, and its column with a minus sign."""
+    return max(((abs(x), -j) for j, x in row.items()), default=(0.0, 0))
 
 
 def solve_gram(rows: Sequence[Row], right: Sequence[float], damping: float) -> list[float] | None:

@@ -58,7 +58,7 @@ def read_ranges(scope: Scope, tree: MappingNode) -> DeclaredRanges:
     for key, value in entries(tree.get("ranges")):
         if key.value not in ranged:
             remedy = did_you_mean(key.value, ranged, "name a coordinate, rate, acceleration or parameter")
-            scope.wrong(f"unknown name `{key.value}` in `ranges`", remedy, key.span)
+            scope.wrong_about(key.value, f"unknown name `{key.value}` in `ranges`", remedy, key.span)
             continue
         if key.value in ranges:
             scope.wrong(f"`{key.value}` has two ranges", "keep the one here or the one at its declaration", key.span)
@@ -179,8 +179,6 @@ def is_coordinate(scope: Scope, key: ScalarNode, where: str) -> bool:
     """Whether the key names a coordinate; a mistake where it does not."""
     if scope.kinds.get(key.value) == "coordinate":
         return True
-    if key.value not in scope.kinds and scope.is_attempted(key.value):
-        return False
     coordinates = [name for name, kind in scope.kinds.items() if kind == "coordinate"]
     listed = f": {', '.join(coordinates)}" if 0 < len(coordinates) <= MOST_LISTED else ""
     remedy = did_you_mean(key.value, coordinates, f"forces act on coordinates; name one of them{listed}")
@@ -188,7 +186,7 @@ def is_coordinate(scope: Scope, key: ScalarNode, where: str) -> bool:
         remedy = f"name the coordinate of that joint: {' or '.join(f'`{one}`' for one in scope.moved_by[key.value])}"
     if not is_name(key.value):
         remedy = QUOTING
-    scope.wrong(f"`{key.value}` in {where} is no coordinate", remedy, key.span)
+    scope.wrong_about(key.value, f"`{key.value}` in {where} is no coordinate", remedy, key.span)
     return False
 
 

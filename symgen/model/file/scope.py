@@ -92,9 +92,10 @@ class Scope:
         """Records a mistake; `about` is the name that tells it from the same one made elsewhere."""
         self.mistakes.append(Mistake(message, remedy, span, about))
 
-    def is_attempted(self, name: str) -> bool:
-        """Whether an unknown name follows from a mistake in a declaration, which is enough to be told."""
-        return name in self.attempted or name.removesuffix("_ddot").removesuffix("_dot") in self.attempted
+    def wrong_about(self, name: str, message: str, remedy: str, span: Span | None) -> None:
+        """Records a mistake about what a name stands for; one in its declaration is enough to be told."""
+        if name not in self.attempted and name.removesuffix("_ddot").removesuffix("_dot") not in self.attempted:
+            self.wrong(message, remedy, span)
 
     def inner(self, **kinds: Kind) -> Scope:
         """A scope for further names that shares everything else with this one."""
@@ -105,7 +106,7 @@ class Scope:
         mistake = name_mistake(node, kind)
         if mistake is not None:
             self.mistakes.append(mistake)
-            self.attempted |= words_of(node.value)
+            self.attempted |= {node.value, *words_of(node.value)}
             return False
         name = node.value
         if kind == "frame" and name == WORLD:
@@ -156,8 +157,6 @@ class Scope:
         if is_component(name):
             return self._component(name, span, where, allowed)
         kind = self.kinds.get(name, "time" if name == "t" else None)
-        if kind is None and self.is_attempted(name):
-            return False
         if kind is None and name.lower() in NO_NUMBERS:
             self.wrong(f"{where} is not finite: `{name}`", "give a finite number", span)
             return False
@@ -165,11 +164,11 @@ class Scope:
             visible = [other for other, its in self.kinds.items() if its in allowed]
             declared = "declare it under `coordinates`, `parameters` or `definitions`"
             remedy = _rate_meant(name, visible) or did_you_mean(name, visible, declared)
-            self.wrong(f"unknown name `{name}` in {where}", remedy, span)
+            self.wrong_about(name, f"unknown name `{name}` in {where}", remedy, span)
             return False
         self.used.add(name)
         if kind not in allowed:
-            self.wrong(f"`{name}` is {a_kind(kind)}, which {where} must not contain", _REMEDIES[kind], span)
+            self.wrong_about(name, f"`{name}` is {a_kind(kind)}, which {where} must not contain", _REMEDIES[kind], span)
             return False
         if earlier is not None and kind in ("parameter", "definition") and name not in earlier:
             self.wrong(f"{where} uses `{name}`, which is declared later", "declare it before its first use", span)
@@ -187,12 +186,10 @@ class Scope:
         """Whether `owner.what` is known here."""
         owner, _, what = name.partition(".")
         kind = self.kinds.get(owner)
-        if kind is None and owner in self.attempted:
-            return False
         if kind not in ("point", "frame"):
             owners = [other for other, its in self.kinds.items() if its in ("point", "frame")]
             remedy = did_you_mean(owner, owners, "declare it under `points` or `frames`")
-            self.wrong(f"unknown point or frame `{owner}` in {where}", remedy, span)
+            self.wrong_about(owner, f"unknown point or frame `{owner}` in {where}", remedy, span)
             return False
         known = (*PLACES, *VELOCITIES, *(TURNING_RATES if kind == "frame" else ()))
         if what not in known:

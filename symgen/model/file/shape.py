@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import TypeAlias
 
 from symgen.diagnostics import Mistake, Span
-from symgen.model.expressions.names import MOST_LISTED, NAME_PATTERN, QUOTING, did_you_mean, is_name
+from symgen.model.expressions.names import MOST_LISTED, NAME_PATTERN, QUOTING, did_you_mean, is_name, nearest
 from symgen.model.file.source import MappingNode, Node, ScalarNode, SequenceNode
 from symgen.records import dataclass
 
@@ -215,8 +215,9 @@ def _check_record(shape: Record, node: MappingNode) -> Iterator[Mistake]:
                 # most likely the rest of a description behind its comma
                 remedy = f"{remedy}; {QUOTING}"
             yield Mistake(f"`{key.value}` is no key of {shape.what}", remedy, key.span)
+    misspelt = {nearest(key.value, sorted(known)) for key, _ in node.entries if key.value not in known}
     for field in shape.fields:
-        if field.required and node.get(field.key) is None:
+        if field.required and node.get(field.key) is None and field.key not in misspelt:
             span = Span(node.span.line, node.span.column, node.span.column + 1)
             yield Mistake(f"{shape.what} has no `{field.key}`", f"add `{field.key}`: {field.about}", span)
 

@@ -1,0 +1,128 @@
+"""Limits of ways that few systems meet: beyond each the way is not built, and up to it it is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import count
+
+import pytest
+import shipped
+
+from symgen.linear_algebra.block_space import BlockSpace
+from symgen.linear_algebra.null_spaces import HouseholderSpace, MinorSpace, has_few_minors
+from symgen.mechanics.genericity import Genericity, genericity
+from symgen.mechanics.system import System
+from symgen.methods.comparisons.printed import MOST_PARTITIONS, printed_form
+from symgen.methods.derivation import Derivation
+from symgen.methods.inverse_dynamics.nullspace import MOST_BASES, nullspace_form
+from symgen.methods.method import Candidate
+from symgen.methods.selection import Methods
+from symgen.methods.spaces import along_minors
+from symgen.methods.system import MethodInput
+from symgen.methods.workspace import Workspace
+from symgen.model.load import load_text
+from symgen.symbolic.matrix import Matrix
+from symgen.symbolic.scalar import Graph, Scalar
+
+
+def dense(graph: Graph, rows: int, columns: int, letter: str = "b") -> Matrix:
+    return tuple(tuple(graph.symbol(f"{letter}{i}_{j}") for j in range(columns)) for i in range(rows))
+
+
+def ropes(coordinates: int, rows: int) -> System:
+    """Masses that rows with an entry for each coordinate hold; as many drives as are left free."""
+    names = [f"y_{k}" for k in range(coordinates)]
+    parts = ["model: ropes", "coordinates:", *(f"  {name}: {{unit: rad}}" for name in names)]
+    parts += ["kinetic_energy: " + " + ".join(f"{name}_dot**2" for name in names), "constraints:", "  nonholonomic:"]
+    for i in range(rows):
+        numbers = [1 + (7 * k * k + 3 * i * k + 5 * i * i) % 11 for k in range(coordinates)]
+        terms = (f"({number} + cos({name} + {i}))*{name}_dot" for number, name in zip(numbers, names, strict=True))
+        parts.append(f"    row_{i}: {' + '.join(terms)}")
+    parts += ["inputs:", *(f"  u_{k}: {{acts_on: {{y_{k}: 1}}}}" for k in range(coordinates - rows))]
+    return System(load_text("\n".join(parts) + "\n", "ropes.yaml"))
+
+
+@pytest.mark.parametrize(("rows", "columns", "few"), [(2, 25, True), (2, 26, False), (10, 12, True), (12, 14, False)])
+def test_minors_of_b_and_the_products_on_the_way_to_them_decide(rows: int, columns: int, few: bool) -> None:
+    """300 minors at most; of twelve rows of fourteen there are 91, and 150 000 products."""
+    assert has_few_minors(dense(Graph(), rows, columns), rows) is few
+
+
+def test_minors_that_vanish_are_not_counted() -> None:
+    graph = Graph()
+    wide = dense(graph, 4, 16)
+    band = tuple((*row[:i], *(graph.zero,) * 12, *row[i + 12 :]) for i, row in enumerate(wide))
+    assert not has_few_minors(wide, 4)
+    assert has_few_minors(band, 4)
+
+
+def test_few_minors_of_many_products_are_not_formed() -> None:
+    mechanics = ropes(14, 12)
+    generic = genericity(mechanics)
+    assert (generic.rank, generic.minors) == (12, 91)
+    assert along_minors(mechanics, generic) == "B has 91 minors"
+    assert len(mechanics.graph) < 5_000
+    few = ropes(5, 3)
+    assert isinstance(along_minors(few, genericity(few)), Derivation)
+
+
+def test_a_block_of_many_minors_is_reflected() -> None:
+    graph = Graph()
+    first, second = dense(graph, 2, 4), dense(graph, 4, 12, "c")
+    zeros = tuple(graph.zero for _ in range(12))
+    rows = tuple((*row, *zeros) for row in first) + tuple((*zeros[:4], *row) for row in second)
+    spaces = [type(part.space) for part in BlockSpace(graph, rows, 16)._parts]
+    assert spaces == [MinorSpace, HouseholderSpace]
+
+
+def _input(name: str) -> MethodInput:
+    model = shipped.model(name)
+    return Workspace(model, genericity(System(model))).fresh()
+
+
+def test_rows_of_many_determinants_are_left_to_other_methods() -> None:
+    assert nullspace_form(_input("gough_stewart"), lambda _: True) == (
+        "too many constraint rows are left that no safe step solves"
+    )
+    system = _input("gough_stewart")
+    assert len(system.mechanics.graph) < 20_000
+
+
+@pytest.mark.parametrize("nth", [1, 2, MOST_BASES, MOST_BASES + 1])
+def test_as_many_bases_are_tried(nth: int) -> None:
+    """delta has twenty: two of three arms' rates, or of the platform's, each with its determinant."""
+    asked: list[Scalar] = []
+    numbers: Iterator[int] = count(1)
+
+    def allowed(pivot: Scalar) -> bool:
+        asked.append(pivot)
+        return next(numbers) == nth
+
+    made = nullspace_form(_input("delta"), allowed)
+    assert isinstance(made, Candidate)
+    assert len(asked) == min(nth, MOST_BASES)
+    taken = asked[-1] if nth <= MOST_BASES else asked[0]
+    assert taken in made.divisors
+
+
+def test_methods_of_long_systems_are_not_derived_to_say_where_they_fail() -> None:
+    model = shipped.model("chain16")
+    methods = Methods(model, genericity(System(model)))
+    assert methods.failing() == ()
+    assert not methods._candidates
+    short = shipped.model("rapkm_2rrr_rr")
+    assert [name for name, _ in Methods(short, genericity(System(short))).failing()] == ["nullspace"]
+
+
+@pytest.mark.parametrize(("inputs", "told"), [(6, ""), (7, "there are 35 choices of inputs")])
+def test_the_printed_form_is_not_made_of_many_choices(inputs: int, told: str) -> None:
+    names = ["x", "y", "z"]
+    drives = "\n".join(f"  u_{k}: {{acts_on: {{{', '.join(f'{n}: {1 + k**i}' for i, n in enumerate(names))}}}}}"
+                       for k in range(inputs))
+    energy = " + ".join(f"{name}_dot**2" for name in names)
+    text = f"model: pushed\ncoordinates: {{x: {{}}, y: {{}}, z: {{}}}}\nkinetic_energy: {energy}\ninputs:\n{drives}\n"
+    model = load_text(text, "pushed.yaml")
+    generic: Genericity = genericity(System(model))
+    assert MOST_PARTITIONS == 20
+    made = printed_form(MethodInput.fresh(model, generic))
+    assert made == told if told else isinstance(made, Candidate)
