@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from functools import cache
 from pathlib import Path
+from typing import Any
+
+import pytest
 
 from symgen.backends.backend import backend
-from symgen.generation.results import Options
+from symgen.generation.results import Options, Result
 from symgen.ir.kernel import Program, Scalar
 from symgen.lowering.schedule import schedule
 from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.pipeline import generate
-from symgen.quantities.select import derive_quantities
+from symgen.quantities.select import Selection, derive_quantities
 from symgen.registered import USUAL
+from symgen.symbolic.identity import every_identity_evaluated
 
 ROOT = Path(__file__).resolve().parent.parent
 ALL = tuple(sorted(path.stem for path in (ROOT / "models").glob("*.yaml")))
@@ -41,9 +45,13 @@ def model(name: str) -> Model:
 
 
 @cache
+def derivations(name: str) -> Selection:
+    return derive_quantities(model(name), model(name).outputs)
+
+
+@cache
 def programs(name: str) -> dict[Scalar, Program]:
-    derivations = derive_quantities(model(name), model(name).outputs)
-    return schedule(derivations.mechanics, derivations.quantities, SCALARS)
+    return schedule(derivations(name).mechanics, derivations(name).quantities, SCALARS)
 
 
 @cache
@@ -64,7 +72,21 @@ def write_sources(name: str, folder: Path) -> None:
 
 
 @cache
-def generated(name: str) -> dict[str, str]:
-    """Every file of a model but of measurements; what its verification rejected is taken from the record."""
+def result(name: str) -> Result:
+    """The run without measurements; what verification rejected is taken from the record.
+
+    Every identity of rewriting is evaluated exactly on the way: bytes are those of runs that take fingerprints' word.
+    """
     options = Options(verify=False, as_recorded=True, measured=ROOT / "generated")
-    return dict(generate(ROOT / "models" / f"{name}.yaml", options, lambda _: None).files)
+    with every_identity_evaluated():
+        return generate(ROOT / "models" / f"{name}.yaml", options, lambda _: None)
+
+
+def generated(name: str) -> dict[str, str]:
+    """Every file of a model but of measurements."""
+    return dict(result(name).files)
+
+
+def together(name: str, *others: object) -> Any:
+    """A parameter of tests that look at what `result` makes: one worker runs all those of a model."""
+    return pytest.param(name, *others, marks=pytest.mark.xdist_group(name))

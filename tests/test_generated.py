@@ -18,7 +18,7 @@ COPIED = "package/src/"
 LIMIT = 1_000_000
 
 
-@pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.xdist_group(name)) for name in shipped.ALL])
+@pytest.mark.parametrize("name", [*map(shipped.together, shipped.ALL)])
 def test_generated_files_are_current(name: str) -> None:
     made = shipped.generated(name)
     folder = GENERATED / name

@@ -26,7 +26,7 @@ COMPILERS = {
 @pytest.mark.parametrize(
     ("name", "compiler"),
     [
-        pytest.param(n, compiler, marks=pytest.mark.xdist_group(n))
+        shipped.together(n, compiler)
         for n in shipped.ALL
         for compiler in COMPILERS
         if n in shipped.SWEPT or compiler == "clang"
