@@ -84,7 +84,7 @@ def arguments(state: State) -> dict[str, tuple[float, ...]]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", shipped.NAMES)
+@pytest.mark.parametrize("name", shipped.SWEPT)
 def test_every_change_of_the_function_is_rejected(name: str) -> None:
     trial = Trial(name)
     mutants = mutations(trial.program, COUNT, seed=2)
