@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -87,6 +88,6 @@ def generated(name: str) -> dict[str, str]:
     return dict(result(name).files)
 
 
-def together(name: str, *others: object) -> Any:
+def together(name: str, *others: object, marks: Sequence[pytest.MarkDecorator] = ()) -> Any:
     """A parameter of tests that look at what `result` makes: one worker runs all those of a model."""
-    return pytest.param(name, *others, marks=pytest.mark.xdist_group(name))
+    return pytest.param(name, *others, marks=[pytest.mark.xdist_group(name), *marks])

@@ -20,6 +20,7 @@ TESTED = {
     "package": ("cmake", "arm-none-eabi-gcc", "riscv64-unknown-elf-gcc"),
     "proof": ("frama-c", "gappa", "gcc", "clang", "cppcheck", "clang-tidy"),
     "stress": ("gcc",),
+    "toolchain": ("gcc", "g++", "clang", "clang++"),
     "witness": (),
     "zoo": ("gcc",),
 }

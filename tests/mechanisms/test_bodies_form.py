@@ -225,7 +225,14 @@ gravity: [0, 0, -10]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["floating_body", "tilted_four_bar", "rolling_disc"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "rolling_disc",
+        pytest.param("floating_body", marks=pytest.mark.mechanisms),
+        pytest.param("tilted_four_bar", marks=pytest.mark.mechanisms),
+    ],
+)
 def test_generated_python_is_verified(name: str) -> None:
     """All the way from the file: kernels of u, accelerations and multipliers within the tolerance."""
     result = generate(MECHANISMS[name], Options(parts=("python",), states=8), lambda _: None)
