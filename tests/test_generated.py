@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 
 import pytest
 import shipped
@@ -20,6 +21,8 @@ LIMIT = 1_000_000
 
 @pytest.mark.parametrize("name", [*map(shipped.together, shipped.ALL)])
 def test_generated_files_are_current(name: str) -> None:
+    """Whatever seed Python hashes with: each run of the tests has another one."""
+    assert sys.flags.hash_randomization
     made = shipped.generated(name)
     folder = GENERATED / name
     assert folder.is_dir(), "a new model: run `make generated`"

@@ -6,6 +6,7 @@ import math
 import random
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -42,6 +43,7 @@ QUANTITIES = (
 )
 
 
+@cache
 def mechanism(name: str) -> Model:
     """A shipped mechanism, or one of those beside this file."""
     return load_model(MECHANISMS[name])
