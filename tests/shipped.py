@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,7 @@ import pytest
 
 from symgen.backends.backend import backend
 from symgen.generation.results import Options, Result
-from symgen.ir.kernel import Program, Scalar
+from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.lowering.schedule import schedule
 from symgen.model.load import load_model
 from symgen.model.model import Model
@@ -38,6 +39,7 @@ NAMES = (
 # inputs.  Their bits and values are compared with the reference when generated/ is made.
 SWEPT = tuple(name for name in NAMES if name != "rapkm_two_drives")
 SCALARS: tuple[Scalar, ...] = ("float64", "float32")
+LONG = 500  # statements
 
 
 @cache
@@ -53,6 +55,19 @@ def derivations(name: str) -> Selection:
 @cache
 def programs(name: str) -> dict[Scalar, Program]:
     return schedule(derivations(name).mechanics, derivations(name).quantities, SCALARS)
+
+
+@cache
+def short(name: str, scalar: Scalar) -> Program:
+    """Without the longest kernels, for tests that run every statement: they are made of what is in the others, too."""
+    whole = programs(name)[scalar]
+    kernels = tuple(kernel for kernel in whole.kernels if len(kernel.statements) < LONG)
+    assert operations(kernels) == operations(whole.kernels)
+    return replace(whole, kernels=kernels)
+
+
+def operations(kernels: Sequence[Kernel]) -> set[str]:
+    return {statement.operation for kernel in kernels for statement in kernel.statements}
 
 
 @cache

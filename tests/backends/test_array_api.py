@@ -70,7 +70,7 @@ def run(text: str) -> types.ModuleType:
 
 @cache
 def module(name: str, scalar: Scalar) -> types.ModuleType:
-    (text,) = emit_array_api(shipped.model(name), shipped.programs(name)[scalar]).values()
+    (text,) = emit_array_api(shipped.model(name), shipped.short(name, scalar)).values()
     return run(text)
 
 
@@ -96,7 +96,7 @@ def checked(kernel: Kernel, made: tuple[Any, Any], wanted: list[tuple[Status, li
 @pytest.mark.parametrize("scalar", shipped.SCALARS)
 @pytest.mark.parametrize("name", shipped.SWEPT)
 def test_the_interpreters_bits_and_statuses(name: str, scalar: Scalar) -> None:
-    program, made = shipped.programs(name)[scalar], module(name, scalar)
+    program, made = shipped.short(name, scalar), module(name, scalar)
     xp, drawn = with_pair(program), states(name, scalar)
     for kernel in program.kernels:
         arrays = [np.array([state[a.name] for state in drawn], dtype=scalar) for a in array_arguments(kernel)]
@@ -108,7 +108,7 @@ def test_the_interpreters_bits_and_statuses(name: str, scalar: Scalar) -> None:
 
 @pytest.mark.parametrize("name", ["front_car", "rapkm_2rrr_rr"])
 def test_numpy_has_the_bits_of_the_python_module(name: str) -> None:
-    model, program = shipped.model(name), with_library_trig(shipped.programs(name)["float64"])
+    model, program = shipped.model(name), with_library_trig(shipped.short(name, "float64"))
     (ours,), (theirs,) = emit_array_api(model, program).values(), emit_python(model, program).values()
     ours, theirs, drawn = run(ours), run(theirs), states(name, "float64")
     for kernel in program.kernels:
@@ -196,7 +196,7 @@ def test_twice_the_digits(scalar: Scalar) -> None:
 @pytest.mark.parametrize("scalar", shipped.SCALARS)
 @pytest.mark.parametrize("name", shipped.SWEPT)
 def test_functions_branch_on_nothing_and_ask_for_nothing_but_the_standard(name: str, scalar: Scalar) -> None:
-    for program in (shipped.programs(name)[scalar], with_twice_the_digits(name, scalar)):
+    for program in (shipped.short(name, scalar), with_twice_the_digits(name, scalar)):
         (text,) = emit_array_api(shipped.model(name), program).values()
         assert set(re.findall(r"\bxp\.(\w+)", text)) <= STANDARD
         kernels = {kernel.name for kernel in program.kernels}
