@@ -17,6 +17,7 @@ PRODUCT = ("symgen", "templates", "models", "pyproject.toml")
 # Folders with tests of the mark `campaign`, and the tools they need; a part of each class stays in `make test`.
 TESTED = {
     "growth": (),
+    "mechanics": ("gcc",),
     "package": ("cmake", "arm-none-eabi-gcc", "riscv64-unknown-elf-gcc"),
     "proof": ("frama-c", "gappa", "gcc", "clang", "cppcheck", "clang-tidy"),
     "stress": ("gcc",),

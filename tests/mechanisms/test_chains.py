@@ -58,6 +58,7 @@ def test_energies_written_out_are_derived_in_absolute_angles(tmp_path: Path) -> 
         assert not [name for name in symbols if "absolute" in name]
 
 
+@pytest.mark.mechanisms
 def test_the_size_of_long_code_is_told(tmp_path: Path) -> None:
     def notices(links: int) -> list[str]:
         path = tmp_path / f"chain{links}.yaml"
