@@ -15,7 +15,7 @@ run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
 
 test: lint
-	$(BIN)/pytest -n 2 --dist loadgroup
+	$(BIN)/pytest -n 2 --dist loadfile
 
 # In the minute between two edits: all but tests of other packages, of several at once, and slow ones.
 quick: lint

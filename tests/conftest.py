@@ -42,12 +42,8 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
     return None if unit_folders() & {collection_path, *collection_path.parents} else True
 
 
-@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """One worker runs a file, whose tests share much; unit tests take milliseconds and no tools of the system."""
-    for item in items:
-        if item.get_closest_marker("xdist_group") is None:
-            item.add_marker(pytest.mark.xdist_group(item.path.stem))
+    """Unit tests take milliseconds and no tools of the system."""
     if config.getoption("--unit"):
         others = [item for item in items if not _is_unit(item)]
         config.hook.pytest_deselected(items=others)

@@ -6,9 +6,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import Any
-
-import pytest
 
 from symgen.backends.backend import backend
 from symgen.generation.results import Options, Result
@@ -19,7 +16,6 @@ from symgen.model.model import Model
 from symgen.pipeline import generate
 from symgen.quantities.select import Selection, derive_quantities
 from symgen.registered import USUAL
-from symgen.symbolic.identity import every_identity_evaluated
 
 ROOT = Path(__file__).resolve().parent.parent
 ALL = tuple(sorted(path.stem for path in (ROOT / "models").glob("*.yaml")))
@@ -87,22 +83,8 @@ def write_sources(name: str, folder: Path) -> None:
         (folder / path).write_text(text)
 
 
-@cache
-def result(name: str) -> Result:
-    """The run without measurements; what verification rejected is taken from the record.
-
-    Every identity of rewriting is evaluated exactly on the way: bytes are those of runs that take fingerprints' word.
-    """
+def made(name: str, *parts: str) -> Result:
+    """A run without measurements; what verification rejected is taken from the record."""
     options = Options(verify=False, as_recorded=True, measured=ROOT / "generated")
-    with every_identity_evaluated():
-        return generate(ROOT / "models" / f"{name}.yaml", options, lambda _: None)
-
-
-def generated(name: str) -> dict[str, str]:
-    """Every file of a model but of measurements."""
-    return dict(result(name).files)
-
-
-def together(name: str, *others: object, marks: Sequence[pytest.MarkDecorator] = ()) -> Any:
-    """A parameter of tests that look at what `result` makes: one worker runs all those of a model."""
-    return pytest.param(name, *others, marks=[pytest.mark.xdist_group(name), *marks])
+    options = replace(options, parts=parts) if parts else options
+    return generate(ROOT / "models" / f"{name}.yaml", options, lambda _: None)
