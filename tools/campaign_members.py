@@ -22,6 +22,7 @@ TESTED = {
     "proof": ("frama-c", "gappa", "gcc", "clang", "cppcheck", "clang-tidy"),
     "stress": ("gcc",),
     "test_generated.py": ("gcc", "g++", "clang", "clang++"),
+    "verify": ("gcc",),
     "witness": (),
     "zoo": ("gcc",),
 }

@@ -23,7 +23,7 @@ PINS = {"three_rrr": [(f"tip_{i}", f"corner_{i}") for i in (1, 2, 3)]}
 SERIAL = ("arm7", "scara")
 LOOPED = (*RODS, *LEGS, *PINS)
 # The others take many times as long to derive.
-FEW = ("scara", "arm7", "delta")
+FEW = ("scara", "arm7")
 NAMES = [name if name in FEW else pytest.param(name, marks=pytest.mark.mechanisms) for name in (*SERIAL, *LOOPED)]
 
 

@@ -574,6 +574,7 @@ outputs: [inverse_dynamics, forward_dynamics, multipliers]
 """
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("text", [LIGHT, LIFT], ids=["light_yoke", "lift"])
 def test_real_machines_get_every_quantity(text: str, tmp_path: Path) -> None:
     path = tmp_path / "machine.yaml"
