@@ -9,13 +9,13 @@ CAMPAIGN_FILES := $(CAMPAIGN:%=models/%.yaml)
 MODELS := $(wildcard models/*.yaml)
 MECHANISMS := $(filter-out $(CAMPAIGN_FILES),$(MODELS))
 
-.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms generation stress skipping passes constants trig zoo zoo-case zoo-sweeps docs api lock robots
+.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms generation stress skipping passes constants trig zoo zoo-case zoo-sweeps docs api lock robots jax
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
 
 test: lint
-	$(BIN)/pytest -n 2 --dist loadgroup
+	$(BIN)/pytest -n 2 --dist loadfile
 
 # In the minute between two edits: all but tests of other packages, of several at once, and slow ones.
 quick: lint
@@ -131,10 +131,17 @@ lock: $(VENV)/installed
 	printf 'pin\nexample-robot-data\n' | $(BIN)/uv pip compile --quiet --python-version 3.11 \
 	    --python-platform x86_64-manylinux_2_28 --generate-hashes --constraint requirements.lock --no-header \
 	    --no-annotate --no-emit-index-url --no-emit-find-links --output-file tests/mechanisms/robots.lock -
+	printf 'jax\n' | $(BIN)/uv pip compile --quiet --python-version 3.11 --python-platform x86_64-manylinux_2_28 \
+	    --generate-hashes --constraint requirements.lock --no-emit-package numpy --no-emit-package scipy --no-header \
+	    --no-annotate --no-emit-index-url --no-emit-find-links --output-file tests/backends/jax.lock -
 
 # Pinocchio and published robot descriptions, witnesses of the mechanisms: wheels for Linux and Python 3.11.
 robots: $(VENV)/installed
 	$(BIN)/pip install --quiet --require-hashes --requirement tests/mechanisms/robots.lock
+
+# JAX, under which docs/array-api.md runs: beside the environment, so that nothing else meets it.
+jax: $(VENV)/installed
+	$(BIN)/pip install --quiet --require-hashes --no-deps --upgrade --target build/jax --requirement tests/backends/jax.lock
 
 $(VENV)/locked: requirements.lock
 	$(PYTHON) -m venv $(VENV)

@@ -28,5 +28,5 @@ def generated_python(name: str) -> ModuleType:
     """The module of a shipped model."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"{name}.py"
-        path.write_text(shipped.generated(name)[f"python/{name}.py"], encoding="utf-8")
+        path.write_text(str(shipped.made(name, "python").files[f"python/{name}.py"]), encoding="utf-8")
         return load_generated(path)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import cache
-from pathlib import Path
+from functools import cache, cached_property
+
+import shipped
 
 from symgen.ir.interpret import Interpreter, round_float32
 from symgen.ir.kernel import Kernel, Program, Scalar, Status
@@ -16,13 +17,6 @@ from symgen.verify.reference.reference import Reference, State
 from symgen.verify.reference.system import parameters_from
 from symgen.verify.tolerance import FACTOR, expectations
 
-ROOT = Path(__file__).resolve().parents[1]
-
-
-def shipped(name: str) -> str:
-    """The text of a model file of the repository."""
-    return (ROOT / "models" / f"{name}.yaml").read_text()
-
 
 class System:
     """One model with its derivation, its kernels for both scalar types and its reference, each made on first use."""
@@ -30,8 +24,11 @@ class System:
     def __init__(self, text: str, outputs: Sequence[str] = ("all",)) -> None:
         self.model: Model = load_text(text, "laws.yaml")
         self.derivations: Selection = derive_quantities(self.model, outputs)
-        self.reference = Reference(self.model)
         self._programs: dict[Scalar, Program] = {}
+
+    @cached_property
+    def reference(self) -> Reference:
+        return Reference(self.model)
 
     def program(self, scalar: Scalar = "float64") -> Program:
         if scalar not in self._programs:
@@ -91,6 +88,15 @@ class System:
         assert not wrong, f"{self.model.name} {scalar} at q = {state.q}: {wrong}"
 
 
+class _Shipped(System):
+    """A model of the repository with what its file asks for, which other tests of shipped models have derived, too."""
+
+    def __init__(self, name: str) -> None:
+        self.model = shipped.model(name)
+        self.derivations = shipped.derivations(name)
+        self._programs = shipped.programs(name)
+
+
 def _float(value: float, scalar: Scalar) -> float:
     return float(value) if scalar == "float64" else round_float32(float(value))
 
@@ -99,3 +105,9 @@ def _float(value: float, scalar: Scalar) -> float:
 def system(text: str, outputs: tuple[str, ...] = ("all",)) -> System:
     """A system shared by the tests of one process."""
     return System(text, outputs)
+
+
+@cache
+def shipped_system(name: str) -> System:
+    """A model of the repository."""
+    return _Shipped(name)

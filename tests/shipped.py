@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
 from symgen.backends.backend import backend
-from symgen.generation.results import Options
-from symgen.ir.kernel import Program, Scalar
+from symgen.generation.results import Options, Result
+from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.lowering.schedule import schedule
 from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.pipeline import generate
-from symgen.quantities.select import derive_quantities
+from symgen.quantities.select import Selection, derive_quantities
 from symgen.registered import USUAL
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -33,6 +35,7 @@ NAMES = (
 # inputs.  Their bits and values are compared with the reference when generated/ is made.
 SWEPT = tuple(name for name in NAMES if name != "rapkm_two_drives")
 SCALARS: tuple[Scalar, ...] = ("float64", "float32")
+LONG = 500  # statements
 
 
 @cache
@@ -41,9 +44,26 @@ def model(name: str) -> Model:
 
 
 @cache
+def derivations(name: str) -> Selection:
+    return derive_quantities(model(name), model(name).outputs)
+
+
+@cache
 def programs(name: str) -> dict[Scalar, Program]:
-    derivations = derive_quantities(model(name), model(name).outputs)
-    return schedule(derivations.mechanics, derivations.quantities, SCALARS)
+    return schedule(derivations(name).mechanics, derivations(name).quantities, SCALARS)
+
+
+@cache
+def short(name: str, scalar: Scalar) -> Program:
+    """Without the longest kernels, for tests that run every statement: they are made of what is in the others, too."""
+    whole = programs(name)[scalar]
+    kernels = tuple(kernel for kernel in whole.kernels if len(kernel.statements) < LONG)
+    assert operations(kernels) == operations(whole.kernels)
+    return replace(whole, kernels=kernels)
+
+
+def operations(kernels: Sequence[Kernel]) -> set[str]:
+    return {statement.operation for kernel in kernels for statement in kernel.statements}
 
 
 @cache
@@ -63,8 +83,8 @@ def write_sources(name: str, folder: Path) -> None:
         (folder / path).write_text(text)
 
 
-@cache
-def generated(name: str) -> dict[str, str]:
-    """Every file of a model but of measurements; what its verification rejected is taken from the record."""
+def made(name: str, *parts: str) -> Result:
+    """A run without measurements; what verification rejected is taken from the record."""
     options = Options(verify=False, as_recorded=True, measured=ROOT / "generated")
-    return dict(generate(ROOT / "models" / f"{name}.yaml", options, lambda _: None).files)
+    options = replace(options, parts=parts) if parts else options
+    return generate(ROOT / "models" / f"{name}.yaml", options, lambda _: None)

@@ -14,6 +14,18 @@ PYTEST = (PYTHON, "-m", "pytest")
 CORES = ("arm-none-eabi-gcc", "qemu-system-arm", "riscv64-unknown-elf-gcc", "qemu-system-riscv32", "gcc", "clang")
 # What looks at the product as a whole.
 PRODUCT = ("symgen", "templates", "models", "pyproject.toml")
+# What in tests/ has tests of the mark `campaign`, and the tools they need; a part of each class stays in `make test`.
+TESTED = {
+    "growth": (),
+    "mechanics": ("gcc",),
+    "package": ("cmake", "arm-none-eabi-gcc", "riscv64-unknown-elf-gcc"),
+    "proof": ("frama-c", "gappa", "gcc", "clang", "cppcheck", "clang-tidy"),
+    "stress": ("gcc",),
+    "test_generated.py": ("gcc", "g++", "clang", "clang++"),
+    "verify": ("gcc",),
+    "witness": (),
+    "zoo": ("gcc",),
+}
 
 
 def all_members(root: Path) -> tuple[Member, ...]:
@@ -32,6 +44,7 @@ def all_members(root: Path) -> tuple[Member, ...]:
         *(_mechanism(f"tests/mechanisms/{name}.yaml", name, PRODUCT) for name in others),
         Member("mechanisms", "witnesses", ((*PYTEST, "tests/mechanisms", "-m", "mechanisms or not mechanisms"),),
                (*PRODUCT, "tests/mechanisms"), ("gcc",)),
+        *(_tests(path, tools) for path, tools in TESTED.items()),
         Member("trig", "every_float32", ((*PYTEST, "tests/toolchain/test_portable_pair.py", "-k", "everywhere"),),
                ("symgen/ir", "symgen/backends", "templates/c", "tests/toolchain"), ("gcc",),
                environment=(("SYMGEN_TRIG_STRIDE", "1"),)),
@@ -51,6 +64,11 @@ def _size(root: Path, name: str) -> int:
     """How long a model takes: its kernels' operations."""
     kernels = json.loads((root / "generated" / name / "derivation.json").read_bytes())["kernels"]
     return sum(sum(kernel["operations"].values()) for kernel in kernels.values())
+
+
+def _tests(path: str, tools: tuple[str, ...]) -> Member:
+    command = (*PYTEST, f"tests/{path}", "-m", "campaign")
+    return Member("tests", path.partition(".")[0], (command,), (*PRODUCT, "tests/shipped.py", f"tests/{path}"), tools)
 
 
 def _made(name: str) -> tuple[str, ...]:

@@ -119,7 +119,7 @@ class FarParameters:
                 q = np.where(closed[:, None], q, starts["q"][place])
                 configurations[side, step], shut[side, step] = q, closed
         shape = 2, steps, parameters, count
-        return configurations.reshape(*shape, -1), shut.reshape(shape)
+        return configurations.reshape(*shape, configurations.shape[-1]), shut.reshape(shape)
 
     @cached_property
     def _starts(self) -> dict[str, Lanes]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import random
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
 
@@ -14,9 +14,11 @@ import pytest
 import shipped
 from generated_python import load_generated
 
+from symgen.backends.c.plain import emit_c
 from symgen.backends.defaults import default_values
 from symgen.backends.literals import round_to
 from symgen.backends.locals import array_arguments
+from symgen.backends.python.module import emit_python
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Scalar, Status
 
@@ -41,10 +43,15 @@ def states(name: str, scalar: Scalar) -> list[dict[str, list[float]]]:
 
 @cache
 def expected(name: str, quantity: str, scalar: Scalar) -> list[tuple[Status, list[float]]]:
-    (kernel,) = (kernel for kernel in shipped.programs(name)[scalar].kernels if kernel.name == quantity)
-    interpreter = Interpreter(shipped.programs(name)[scalar].sincos, scalar)
+    (kernel,) = (kernel for kernel in shipped.short(name, scalar).kernels if kernel.name == quantity)
+    interpreter = Interpreter(shipped.short(name, scalar).sincos, scalar)
     parameters = [round_to(scalar, value) for value in default_values(shipped.model(name)).values()]
     return [interpreter.run(kernel, state, parameters) for state in states(name, scalar)]
+
+
+def write(folder: Path, files: Mapping[str, str]) -> None:
+    for path, text in files.items():
+        (folder / Path(path).name).write_text(text)
 
 
 def same(found: list[float], wanted: list[float]) -> bool:
@@ -55,18 +62,18 @@ def same(found: list[float], wanted: list[float]) -> bool:
 @pytest.mark.parametrize("scalar", shipped.SCALARS)
 @pytest.mark.parametrize("name", shipped.SWEPT)
 def test_c(tool: Callable[[str], str], tmp_path: Path, name: str, scalar: Scalar) -> None:
-    shipped.write_sources(name, tmp_path)
     suffix = "" if scalar == "float64" else "_f"
+    write(tmp_path, emit_c(shipped.model(name), shipped.short(name, scalar)))
     library = tmp_path / "lib.so"
     flags = ["-std=c99", "-O1", "-ffp-contract=off", "-shared", "-fPIC", "-o", str(library)]
-    subprocess.run([tool("gcc"), *flags, str(tmp_path / f"c/{name}{suffix}.c"), "-lm"], check=True)
+    subprocess.run([tool("gcc"), *flags, str(tmp_path / f"{name}{suffix}.c"), "-lm"], check=True)
     loaded = ctypes.CDLL(str(library))
     count = max(1, len(shipped.model(name).parameters))
     parameters = type("Parameters", (ctypes.Structure,), {"_fields_": [("all", C_NUMBER[scalar] * count)]})
     default = getattr(loaded, f"{name}_default_params{suffix}")
     default.restype = parameters
     p = default()
-    for kernel in shipped.programs(name)[scalar].kernels:
+    for kernel in shipped.short(name, scalar).kernels:
         function = getattr(loaded, f"{name}_{kernel.name}{suffix}")
         for state, (status, wanted) in zip(states(name, scalar), expected(name, kernel.name, scalar), strict=True):
             arrays = [(C_NUMBER[scalar] * a.length)(*state[a.name]) for a in array_arguments(kernel)]
@@ -79,10 +86,10 @@ def test_c(tool: Callable[[str], str], tmp_path: Path, name: str, scalar: Scalar
 @pytest.mark.slow
 @pytest.mark.parametrize("name", shipped.SWEPT)
 def test_python(tmp_path: Path, name: str) -> None:
-    shipped.write_sources(name, tmp_path)
-    module = load_generated(tmp_path / f"python/{name}.py")
+    write(tmp_path, emit_python(shipped.model(name), shipped.short(name, "float64")))
+    module = load_generated(tmp_path / f"{name}.py")
     drawn = states(name, "float64")
-    for kernel in shipped.programs(name)["float64"].kernels:
+    for kernel in shipped.short(name, "float64").kernels:
         batch = getattr(module, kernel.name)(*(np.array([s[a.name] for s in drawn]) for a in array_arguments(kernel)))
         assert batch.shape == (len(drawn), *kernel.shape)
         for state, row, (status, wanted) in zip(drawn, batch, expected(name, kernel.name, "float64"), strict=True):

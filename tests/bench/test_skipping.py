@@ -51,12 +51,14 @@ def test_the_page_has_a_row_for_each_model() -> None:
     assert {line.count("|") for line in table} == {3 + len(rows[0].kept) + 1}
 
 
+@pytest.mark.bench
 def test_what_would_be_too_long_is_told_and_not_derived() -> None:
     kept = {one.what: str(one) for one in skipped(shipped.model("chain16")).kept}
     assert kept["zeros of B and M"] == "too long"
     assert kept["coordinates no constraint touches"] == "–"
 
 
+@pytest.mark.bench
 def test_minors_of_many_rows_are_not_listed() -> None:
     found = skipped(shipped.model("gough_loops"))
     assert found.minor is None

@@ -6,6 +6,8 @@ from collections import Counter
 from fractions import Fraction
 from pathlib import Path
 
+import pytest
+
 from symgen.laboratory.bench.altered import DOUBLE, HALF
 from symgen.laboratory.bench.constants import measured
 from symgen.laboratory.bench.tuned import NUMERICAL, Constant, tuned
@@ -51,6 +53,7 @@ def test_what_cannot_be_followed_counts_as_noticed() -> None:
     assert noticed == {("X", HALF), ("X", DOUBLE)}
 
 
+@pytest.mark.bench
 def test_half_and_twice_of_a_constant_that_decides_make_other_kernels() -> None:
     (one,) = (one for one in tuned() if one.name == "LARGEST_CORE_BY_MINORS")
     found = measured([one], [ROOT / "models/delta.yaml"])

@@ -67,8 +67,11 @@ ENDINGS = {
 
 
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="processes are looked up in /proc")
-@pytest.mark.parametrize("number", ENDINGS)
-@pytest.mark.parametrize("first", [True, False], ids=["nothing written", "one model written"])
+@pytest.mark.parametrize(
+    ("first", "number"),
+    [*((True, number) for number in ENDINGS), (False, signal.SIGTERM)],
+    ids=lambda given: given.name if isinstance(given, signal.Signals) else "nothing" if given else "one model",
+)
 def test_a_signal_ends_compilers_and_says_what_was_written(
     tmp_path: Path, number: signal.Signals, first: bool, tool: Callable[[str], str]
 ) -> None:

@@ -8,7 +8,9 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -116,46 +118,58 @@ def test_models_that_differ_in_capitals_do_not_share_a_folder(tmp_path: Path) ->
     assert tree(tmp_path / "Rob") == dict(sorted(OLD.items()))
 
 
-KILLED = """
-import os, signal, sys
-from pathlib import Path
-from symgen.output import write
-from symgen.output import journal
-sys.path.insert(0, sys.argv[3])
-from test_folders import NEW
-calls, limit = 0, int(sys.argv[2])
-def dying(name):
-    own = getattr(os, name)
-    def call(*args, **kwargs):
-        global calls
-        calls += 1
-        if calls == limit:
-            os.kill(os.getpid(), signal.SIGKILL)
-        return own(*args, **kwargs)
-    setattr(os, name, call)
-for name in ("replace", "rename", "link", "unlink", "mkdir", "rmdir"):
-    dying(name)
-write.write_files(Path(sys.argv[1]), NEW)
-print(calls)
-"""
+STEPS = ("replace", "rename", "link", "unlink", "mkdir", "rmdir")
 
 
-def killed(folder: Path, limit: int) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-c", KILLED, str(folder), str(limit), str(Path(__file__).parent)]
-    return subprocess.run(command, capture_output=True, text=True, check=False)
+def killed(folder: Path, limit: int) -> int:
+    """How many steps a process of its own took to write NEW; it is killed before the step of this number."""
+    taken, told = os.pipe()
+    child = os.fork()
+    if not child:
+        # the copy of this process ends here whatever happens: what pytest would do at its end is the parent's
+        try:
+            _dying(limit, told)
+            write_files(folder, NEW, silent)
+            os._exit(0)
+        finally:
+            os._exit(1)
+    os.close(told)
+    with open(taken, "rb") as steps:
+        count = len(steps.read())
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == (-signal.SIGKILL if count == limit else 0)
+    return count
+
+
+def _dying(limit: int, told: int) -> None:
+    """Every step tells that it comes, and the last one ends the process."""
+    count = 0
+
+    def counted(step: Callable[..., Any]) -> Callable[..., Any]:
+        def call(*arguments: Any, **named: Any) -> Any:
+            nonlocal count
+            count += 1
+            os.write(told, b".")
+            if count == limit:
+                os.kill(os.getpid(), signal.SIGKILL)
+            return step(*arguments, **named)
+
+        return call
+
+    for name in STEPS:
+        setattr(os, name, counted(getattr(os, name)))
 
 
 def test_a_run_killed_anywhere_leaves_what_the_next_start_mends(tmp_path: Path) -> None:
     """The folder then holds all earlier files or all new ones, and those of the user, and nothing else."""
     write_files(tmp_path / "whole", OLD)
-    steps = int(killed(tmp_path / "whole", 10**9).stdout)
+    steps = killed(tmp_path / "whole", 10**9)
     assert steps > 15
     ways = set()
     for limit in range(1, steps + 1):
         folder = tmp_path / str(limit) / "m"
         write_files(folder, OLD)
         (folder / "c/main.c").write_text("mine\n")
-        assert killed(folder, limit).returncode == -signal.SIGKILL
+        assert killed(folder, limit) == limit
         told: list[str] = []
         recover_folders(folder.parent, told.append)
         found = tree(folder)

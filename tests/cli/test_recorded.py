@@ -18,7 +18,6 @@ from symgen.generation.runnable import Kernels
 from symgen.ir.kernel import Scalar
 from symgen.ir.wide_functions import works_with_pairs
 from symgen.laboratory.bench.candidate import Task
-from symgen.laboratory.bench.run import benchmark
 from symgen.laboratory.bench.symgen_kernels import generated, programs_of
 from symgen.model.load import load_model
 
@@ -127,24 +126,6 @@ def test_bench_measures_the_kernel_that_is_generated_beside_the_plain_one(tmp_pa
     assert first[0].endswith(", with twice the digits in float32")
     assert works_with_pairs(first[1]["float32"].kernels[0])
     assert not any(works_with_pairs(program["float32"].kernels[0]) for _, program in others)
-
-
-@pytest.mark.toolchain
-@pytest.mark.slow
-def test_bench_measures_twice_the_digits_and_not_what_is_left_out(
-    tmp_path: Path, tool: Callable[[str], str]
-) -> None:
-    tool("gcc")
-    path, out = recorded(tmp_path, {"forward_dynamics": ["float32"]}, {"inverse_dynamics": ["float32"]})
-    found = benchmark(path, 8, lambda _: None, out)
-    assert {one.task.quantity for one in found.comparisons} == {"forward_dynamics", "multipliers"}
-    (one,) = (one for one in found.comparisons if one.task.quantity == "forward_dynamics")
-    chosen = [m for m in one.measured if m.chosen and m.language == "C"]
-    assert {m.scalar for m in chosen} == {"float64", "float32"}
-    assert all("twice the digits in float32" in m.form and m.beyond == 0 for m in chosen)
-    code = {m.scalar: m.footprint.code for m in chosen if m.footprint is not None and "portable" in m.form}
-    assert code["float32"] > 2 * code["float64"]  # with its table and what runs it
-    assert any("inverse_dynamics is left out in float32" in note for note in found.notes)
 
 
 def test_explain_tells_what_verification_led_to(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

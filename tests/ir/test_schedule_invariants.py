@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
-from laws_harness import shipped, system
+from laws_harness import shipped_system
 
 from symgen.ir.kernel import UNIT_ROUNDOFF, Block, Kernel, Literal, Local, Operand, Scalar, Status
 from symgen.ir.sincos import ANGLE_LIMIT, sincos
@@ -18,7 +18,7 @@ ORDER = (Status.ANGLE_RANGE, Status.CONSTRAINT_RANK, Status.MASS_RANK, Status.AC
 
 def kernels(scalar: Scalar = "float64") -> Iterator[Kernel]:
     for model in MODELS:
-        yield from system(shipped(model)).program(scalar).kernels
+        yield from shipped_system(model).program(scalar).kernels
 
 
 def names(*operands: Operand) -> set[str]:
@@ -130,7 +130,7 @@ def test_sizes_are_those_of_the_shape() -> None:
 
 
 def test_constant_quantities_cannot_fail() -> None:
-    pendulum = system(shipped("double_pendulum"))
+    pendulum = shipped_system("double_pendulum")
     kernel = pendulum.kernel("nullspace_projector")
     assert [operand.value for operand in kernel.outputs if isinstance(operand, Literal)] == [1, 0, 0, 1]
     assert not kernel.statements
@@ -140,7 +140,7 @@ def test_constant_quantities_cannot_fail() -> None:
 def test_thresholds_follow_the_scalar_type() -> None:
     """8 eps squared enters the limit of the sum of squared determinants of two rows."""
     for scalar in ("float64", "float32"):
-        kernel = system(shipped("slider_crank")).kernel("nullspace_projector", scalar)
+        kernel = shipped_system("slider_crank").kernel("nullspace_projector", scalar)
         literals = {o.value for s in kernel.statements for o in s.operands if isinstance(o, Literal)}
         assert (8 * UNIT_ROUNDOFF[scalar]) ** 2 in literals
 

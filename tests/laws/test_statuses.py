@@ -6,7 +6,7 @@ from math import acos, atan2, cos, hypot, inf, isfinite, nan, pi, sin
 
 import pytest
 import special_texts as texts
-from laws_harness import System, shipped, system
+from laws_harness import System, shipped_system, system
 
 from symgen.ir.kernel import Scalar, Status
 from symgen.verify.reference.reference import State
@@ -19,7 +19,7 @@ MODELS = ("skate", "front_car", "rear_car", "rapkm_two_drives", "slider_crank", 
 
 @pytest.mark.parametrize("scalar", SCALARS)
 def test_rear_car_with_wheels_across_has_no_inverse_dynamics(scalar: Scalar) -> None:
-    car = system(shipped("rear_car"))
+    car = shipped_system("rear_car")
     for turned in (pi / 2, -pi / 2, 3 * pi / 2):
         state = car.state([0.1, 0.2, 0.3, turned], scalar=scalar)
         for name in ("inverse_dynamics", "projected_control_pseudoinverse", "actuator_mass_matrix", "actuator_bias"):
@@ -30,9 +30,9 @@ def test_rear_car_with_wheels_across_has_no_inverse_dynamics(scalar: Scalar) -> 
     assert car.run("inverse_dynamics", car.state([0.1, 0.2, 0.3, 1.5], scalar=scalar), scalar)[0] is Status.OK
 
 
-def _stretched_arm(text: str, distance: float, scalar: Scalar) -> tuple[System, State]:
+def _stretched_arm(name: str, distance: float, scalar: Scalar) -> tuple[System, State]:
     """The mechanism with the third arm stretched but for `distance`, which the first two drives cannot hold."""
-    given = system(text, MOTION)
+    given = shipped_system(name)
     values = dict(zip((p.name for p in given.model.parameters), given.state([0.0] * 6).parameters, strict=True))
     l_1, l_2 = values["l_1"], values["l_2"]
     # the tip on the ray from the third base towards the other two
@@ -57,13 +57,13 @@ def _arm(tip: tuple[float, float], x: float, y: float, l_1: float, l_2: float) -
 
 @pytest.mark.parametrize("scalar", SCALARS)
 def test_two_drives_lose_the_mechanism_where_the_third_arm_is_stretched(scalar: Scalar) -> None:
-    given, state = _stretched_arm(shipped("rapkm_two_drives"), 0.0, scalar)
+    given, state = _stretched_arm("rapkm_two_drives", 0.0, scalar)
     assert given.run("inverse_dynamics", state, scalar)[0] is Status.ACTUATION_RANK
     assert given.run("forward_dynamics", state, scalar)[0] is Status.OK
-    given, near = _stretched_arm(shipped("rapkm_two_drives"), 0.01, scalar)
+    given, near = _stretched_arm("rapkm_two_drives", 0.01, scalar)
     given.assert_right(near, ["inverse_dynamics", "forward_dynamics"], scalar)
     # the third drive makes the difference
-    three, same = _stretched_arm(shipped("rapkm_2rrr_rr"), 0.0, scalar)
+    three, same = _stretched_arm("rapkm_2rrr_rr", 0.0, scalar)
     three.assert_right(same, MOTION, scalar)
 
 
@@ -132,7 +132,7 @@ def test_statuses_follow_the_measure_of_singularity() -> None:
 
 @pytest.mark.parametrize(("scalar", "limit"), [("float64", 1e5), ("float32", 100.0)])
 def test_angles_are_refused_beyond_their_range(scalar: Scalar, limit: float) -> None:
-    skate = system(shipped("skate"))
+    skate = shipped_system("skate")
     for name in ("nullspace_projector", "inverse_dynamics", "forward_dynamics"):
         assert skate.run(name, skate.state([limit, 0, 0], scalar=scalar), scalar)[0] is Status.OK
         beyond = skate.state([-limit * 1.0001, 0, 0], scalar=scalar)
@@ -145,10 +145,10 @@ def test_angles_are_refused_beyond_their_range(scalar: Scalar, limit: float) -> 
 @pytest.mark.parametrize("scalar", SCALARS)
 @pytest.mark.parametrize("model", MODELS)
 def test_no_number_never_passes(model: str, scalar: Scalar) -> None:
-    given = system(shipped(model), (*MOTION, "singularity", "energy"))
+    given = shipped_system(model)
     n = len(given.model.coordinates)
     good = given.state([0.4 + 0.1 * i for i in range(n)], scalar=scalar)
-    for name in given.names:
+    for name in sorted({*MOTION, "singularity", "energy"}.intersection(given.names)):
         for load in given.kernel(name, scalar).loads:
             for bad in (nan, inf, -inf, 1e38):
                 parts = {"q": good.q, "qd": good.qd, "qdd": good.qdd, "u": good.u, "p": good.parameters}

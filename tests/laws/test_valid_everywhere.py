@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from math import acos, atan2, cos, hypot, pi, sin
 
 import pytest
-from laws_harness import System, shipped, system
+from laws_harness import System, shipped_system
 
 from symgen.ir.kernel import Status
 
@@ -16,7 +16,7 @@ EVEN = (1.0, 1.0, 1.0)
 
 
 def manipulator() -> System:
-    return system(shipped("rapkm_2rrr_rr"), NAMES)
+    return shipped_system("rapkm_2rrr_rr")
 
 
 def pose(given: System, x: float, y: float, elbows: Sequence[float]) -> list[float] | None:
@@ -114,7 +114,7 @@ def test_near_a_stretched_arm(arm: int, gap: float) -> None:
 
 @pytest.mark.parametrize("name", ["front_car", "skate"])
 def test_cars_at_the_singularities_of_their_parametrisations(name: str) -> None:
-    given = system(shipped(name))
+    given = shipped_system(name)
     n = len(given.model.coordinates)
     names = [*NAMES, "nullspace_projector", "projected_control_pseudoinverse"]
     for theta in (0.0, pi / 2, pi):
@@ -125,7 +125,7 @@ def test_cars_at_the_singularities_of_their_parametrisations(name: str) -> None:
 
 
 def test_independent_velocities_bound_only_what_they_name() -> None:
-    given = system(shipped("front_car"))
+    given = shipped_system("front_car")
     across = given.state([0.2, -0.3, pi / 2, 0.3])  # x does not determine the motion here
     assert given.run("orthogonal_complement", across)[0] is Status.CONSTRAINT_RANK
     given.assert_right(across, ["nullspace_projector", "inverse_dynamics", "forward_dynamics", "multipliers"])

@@ -9,7 +9,7 @@ from itertools import chain
 
 import numpy as np
 import pytest
-from laws_harness import System, shipped, system
+from laws_harness import System, shipped_system
 
 from symgen.ir.kernel import Status
 from symgen.quantities.catalogue import BY_NAME, sizes
@@ -35,7 +35,7 @@ CLOSE = 2e-9
 @cache
 def states(name: str) -> tuple[State, ...]:
     """Regular states at random configurations, off the manifold too: identities hold everywhere."""
-    given, source = system(shipped(name)), random.Random(name)
+    given, source = shipped_system(name), random.Random(name)
     found: list[State] = []
     while len(found) < 3:
         q = [source.uniform(-1.4, 1.4) for _ in given.model.coordinates]
@@ -61,7 +61,7 @@ def near(a: np.ndarray, b: np.ndarray, scale: float = 1.0) -> bool:
 
 @pytest.mark.parametrize("model", MODELS)
 def test_shapes(model: str) -> None:
-    given = system(shipped(model))
+    given = shipped_system(model)
     numbers = sizes(given.model, given.derivations.generic)
     for kernel in given.program().kernels:
         assert kernel.shape == BY_NAME[kernel.name].shape(numbers)
@@ -70,7 +70,7 @@ def test_shapes(model: str) -> None:
 
 @pytest.mark.parametrize("model", MODELS)
 def test_projector(model: str) -> None:
-    given = system(shipped(model))
+    given = shipped_system(model)
     for state in states(model):
         n = array(given, "nullspace_projector", state)
         assert near(n @ n, n)
@@ -93,7 +93,7 @@ def test_projector(model: str) -> None:
 
 @pytest.mark.parametrize("model", [m for m in MODELS if m != "double_pendulum"])
 def test_weighted_projector(model: str) -> None:
-    given = system(shipped(model))
+    given = shipped_system(model)
     for state in states(model):
         g, b, n = (array(given, x, state) for x in ("mass_matrix", "constraint_jacobian", "nullspace_projector"))
         weighted, inverse = (array(given, f"weighted_{x}", state) for x in ("nullspace_projector", "pseudoinverse"))
@@ -107,7 +107,7 @@ def test_weighted_projector(model: str) -> None:
 
 @pytest.mark.parametrize("model", MODELS)
 def test_control_pseudoinverse(model: str) -> None:
-    given = system(shipped(model))
+    given = shipped_system(model)
     for state in states(model):
         m, inverse = (array(given, f"projected_control_{x}", state) for x in ("matrix", "pseudoinverse"))
         n = array(given, "nullspace_projector", state)
@@ -121,7 +121,7 @@ def test_control_pseudoinverse(model: str) -> None:
 
 @pytest.mark.parametrize("model", MODELS)
 def test_orthogonal_complement_and_minimal_equations(model: str) -> None:
-    given = system(shipped(model))
+    given = shipped_system(model)
     chosen = [c.name for c in given.model.coordinates]
     independent = [chosen.index(name) for name in given.model.independent_velocities]
     assert independent
@@ -138,7 +138,7 @@ def test_orthogonal_complement_and_minimal_equations(model: str) -> None:
 
 @pytest.mark.parametrize("model", MODELS)
 def test_projected_equations(model: str) -> None:
-    given = system(shipped(model))
+    given = shipped_system(model)
     for state in states(model):
         n, g = (array(given, name, state) for name in ("nullspace_projector", "mass_matrix"))
         assert near(array(given, "projected_mass_matrix", state), n @ g @ n)
@@ -150,7 +150,7 @@ def test_projected_equations(model: str) -> None:
 @pytest.mark.parametrize("model", MODELS)
 def test_rates_are_derivatives_along_the_motion(model: str) -> None:
     """Judged by the reference, which differentiates B and N_B by Taylor series at 50 digits."""
-    given = system(shipped(model))
+    given = shipped_system(model)
     rates = [name for name in ("nullspace_projector_dot", "constraint_jacobian_dot") if name in given.names]
     for state in states(model):
         for name, exact in given.reference.evaluate(state, rates).items():
@@ -178,7 +178,7 @@ def rate_of(given: System, name: str, state: State, acceleration: np.ndarray | N
 @pytest.mark.parametrize("model", MODELS)
 def test_coriolis_matrices_are_those_of_christoffel(model: str) -> None:
     """d/dt G - 2 C is skew; so is d/dt G~ - 2 C~ along admissible velocities and d/dt G- - 2 C-."""
-    given = system(shipped(model))
+    given = shipped_system(model)
     for state in states(model):
         velocity = tuple(row[0] for row in given.matrix("admissible_velocity", state))
         along = State(state.q, velocity, state.qdd, state.u, state.parameters)
@@ -192,7 +192,7 @@ def test_coriolis_matrices_are_those_of_christoffel(model: str) -> None:
 
 @pytest.mark.parametrize("model", MODELS)
 def test_inverse_and_forward_dynamics_undo_each_other(model: str) -> None:
-    given = system(shipped(model))
+    given = shipped_system(model)
     for state in states(model):
         velocity = tuple(row[0] for row in given.matrix("admissible_velocity", state))
         moving = State(state.q, velocity, state.qdd, state.u, state.parameters)
@@ -216,7 +216,7 @@ def test_inverse_and_forward_dynamics_undo_each_other(model: str) -> None:
 @pytest.mark.parametrize("model", ["skate", "front_car", "rear_car", "rapkm_two_drives", "slider_crank"])
 def test_actuator_equations(model: str) -> None:
     """u = W^T G W nu_dot + bias along an admissible motion (Remark 10)."""
-    given = system(shipped(model))
+    given = shipped_system(model)
     for state in states(model):
         velocity = tuple(row[0] for row in given.matrix("admissible_velocity", state))
         moving = State(state.q, velocity, state.qdd, state.u, state.parameters)

@@ -8,16 +8,11 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from shipped import ALL, model
+from shipped import model
 
 from symgen.diagnostics import SymgenBug
-from symgen.ir.given_trig import given_trig
-from symgen.ir.kernel import Kernel, Program
-from symgen.ir.library_trig import with_library_trig
+from symgen.ir.kernel import Program
 from symgen.ir.lifted import Lifted, same_kernel
-from symgen.ir.order import relaxed
-from symgen.ir.prepare import prepare
-from symgen.ir.split import split, without_first
 from symgen.lowering.schedule import schedule
 from symgen.quantities.select import derive_quantities
 from symgen.symbolic.angles import share_angles
@@ -104,30 +99,6 @@ def test_a_pass_keeps_every_value(name: str) -> None:
             same_values(name, outputs, found)
         changed += any(one is not other for one, other in zip(outputs, found, strict=True))
     assert changed, "no draw gives this pass anything to do"
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ALL)
-def test_shipped_models_are_derived_and_written_by_identities(name: str) -> None:
-    """Every check of generation with exact evaluation in place of fingerprints, and what it leaves unchecked."""
-    with every_identity_evaluated():
-        derivations = derive_quantities(model(name), model(name).outputs)
-        program = schedule(derivations.mechanics, derivations.quantities, ("float64",))["float64"]
-        names = [kernel.name for kernel in program.kernels]
-        prepare(program, names)
-        with_library_trig(program)
-        for kernel in program.kernels:
-            given_trig(kernel)
-            _cut(kernel)
-            same_kernel("order", Lifted(kernel), Lifted(relaxed(kernel)))
-
-
-def _cut(kernel: Kernel) -> None:
-    flat = without_first(kernel)
-    parts = split(flat)
-    first = replace(flat.blocks[0], statements=parts.fixed, checks=())
-    whole = replace(flat, blocks=(first, *parts.blocks))
-    same_kernel("cutting in two", Lifted(kernel), Lifted(whole), whole=False)
 
 
 def test_a_wrong_pass_ends_generation_and_is_named(monkeypatch: pytest.MonkeyPatch) -> None:

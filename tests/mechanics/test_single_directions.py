@@ -202,7 +202,7 @@ def test_pivots_of_a_mass_matrix_below_0_are_lost() -> None:
     assert [one.status for one in found] == [Status.OK, Status.MASS_RANK]
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_single_precision_is_kept_where_bounds_are_far_above_inertias(tmp_path: Path) -> None:
     file = tmp_path / "arm.yaml"
     file.write_text(ARM)

@@ -36,7 +36,7 @@ def inverse(model: Model, q: Sequence[float]) -> tuple[Status, tuple[float, ...]
     return status, tuple(u)
 
 
-@pytest.mark.parametrize("count", [1, 2, 4])
+@pytest.mark.parametrize("count", [1, 2, pytest.param(4, marks=pytest.mark.mechanisms)])
 @pytest.mark.parametrize("scales", [("1", "1"), ("1e-6", "1e4"), ("1e7", "1e-7")])
 def test_equal_bars_hold_their_weight_on_the_branch_that_moves(count: int, scales: tuple[str, str]) -> None:
     model = load_text(row_of_four_bars(count, scales=scales), "row.yaml")
@@ -65,7 +65,7 @@ def test_a_singular_start_and_a_branch_of_other_ranks_are_told() -> None:
     assert not any("singular" in notice.message for notice in regular.notices)
 
 
-@pytest.mark.parametrize("count", [3, 4, 5])
+@pytest.mark.parametrize("count", [3, *(pytest.param(count, marks=pytest.mark.mechanisms) for count in (4, 5))])
 @pytest.mark.parametrize("tail", ["", "configuration: {a0: 0.6, a1: 0.6, a2: 0.6, b: 0}"])
 def test_more_cranks_than_needed_move(count: int, tail: str) -> None:
     model = load_text(cranks_on_one_coupler(count, tail), "cranks.yaml")
@@ -211,7 +211,7 @@ def test_a_linkage_that_closes_stretched_alone_is_refused() -> None:
         load_text(text.replace("w*sin(b1)", "0.3*sin(b1)"), "stretched.yaml")
 
 
-@pytest.mark.parametrize("count", [1, 12])
+@pytest.mark.parametrize("count", [1, pytest.param(12, marks=pytest.mark.mechanisms)])
 def test_what_cannot_close_is_named_with_its_gap_at_once(count: int) -> None:
     """The last coupler is a metre too short for its cranks."""
     text = row_of_four_bars(count).replace(f"w*cos(b{count}) - w", f"w*cos(b{count}) - w - 1.6")
@@ -221,6 +221,7 @@ def test_what_cannot_close_is_named_with_its_gap_at_once(count: int) -> None:
     assert resource.getrusage(resource.RUSAGE_SELF).ru_utime - before < 4
 
 
+@pytest.mark.mechanisms
 def test_a_long_row_takes_no_dense_sums() -> None:
     before = resource.getrusage(resource.RUSAGE_SELF)
     model = load_text(row_of_four_bars(25), "long.yaml")

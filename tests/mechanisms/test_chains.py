@@ -34,6 +34,7 @@ def test_u_grows_linearly(tmp_path: Path) -> None:
     assert weights[2] - weights[1] == pytest.approx(2 * (weights[1] - weights[0]), rel=0.05)
 
 
+@pytest.mark.mechanisms
 def test_accelerations_grow_linearly(tmp_path: Path) -> None:
     weights = []
     for links in (8, 12, 16):
@@ -57,6 +58,7 @@ def test_energies_written_out_are_derived_in_absolute_angles(tmp_path: Path) -> 
         assert not [name for name in symbols if "absolute" in name]
 
 
+@pytest.mark.mechanisms
 def test_the_size_of_long_code_is_told(tmp_path: Path) -> None:
     def notices(links: int, *parts: str) -> list[str]:
         path = tmp_path / f"chain{links}.yaml"
@@ -72,7 +74,7 @@ def test_the_size_of_long_code_is_told(tmp_path: Path) -> None:
     assert "inverse_dynamics 1" in told
 
 
-@pytest.mark.slow  # 400 states of a chain of 24 links, with the reference at the worst
+@pytest.mark.mechanisms  # 400 states of a chain of 24 links, with the reference at the worst
 def test_links_that_turn_quickly_beside_a_tip_that_hardly_pulls(tmp_path: Path) -> None:
     """Centripetal accelerations gathered from the root, and taken off again, cost 11 units at one state."""
     path = tmp_path / "chain24.yaml"

@@ -52,6 +52,7 @@ def test_the_spin_may_hide_in_the_wheels_own_frame() -> None:
     assert rows(other, 0.4) == pytest.approx(rows(DISC, 0.4), rel=1e-13, abs=1e-15)
 
 
+@pytest.mark.mechanisms
 def test_a_disc_stays_upright_above_the_published_speed() -> None:
     """A thin homogeneous disc rolls straight on in a stable way for spins beyond sqrt(g/(3 R)): there the growth of a
     small lean changes its sign (Neimark and Fufaev, Dynamics of Nonholonomic Systems, 1972)."""

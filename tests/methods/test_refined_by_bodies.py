@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import random
+from functools import cache
 
 import pytest
 
@@ -102,6 +103,29 @@ inputs: {u: {joint: a}}
 QUANTITIES = ("weighted_pseudoinverse", "weighted_nullspace_projector")
 
 
+@cache
+def table(text: str) -> Model:
+    return load_text(text, "table.yaml")
+
+
+@cache
+def ways(text: str) -> Alternatives:
+    return Alternatives(table(text), genericity(System(table(text))), None)
+
+
+@cache
+def motions(text: str, name: str) -> Evaluator:
+    """q_ddot and lambda by a form."""
+    methods = Methods(table(text), genericity(System(table(text))))
+    made = [methods.candidate(quantity, name) for quantity in MOTIONS]
+    return Evaluator([x for found in made if isinstance(found, Candidate) for x in found.derived.outputs])
+
+
+@cache
+def expected(text: str) -> Expected:
+    return Expected(table(text), MOTIONS, 8, lambda _: None)
+
+
 def points(model: Model) -> list[dict[str, float]]:
     """States of the table on the constraint manifold."""
     source = random.Random(3)
@@ -122,15 +146,10 @@ def points(model: Model) -> list[dict[str, float]]:
 @pytest.mark.parametrize("text", [PLANE, SPACE], ids=["plane", "space"])
 def test_rows_that_depend_on_each_other(text: str, form: str) -> None:
     """As along an orthonormal basis: the same accelerations, the same smallest multipliers."""
-    model = load_text(text, "table.yaml")
-    generic = genericity(System(model))
+    generic = genericity(System(table(text)))
     assert generic.rank == generic.r - 1
-    methods = Methods(model, generic)
-    one, other = (
-        Evaluator([x for found in made if isinstance(found, Candidate) for x in found.derived.outputs])
-        for made in ([methods.candidate(quantity, name) for quantity in MOTIONS] for name in (form, "nullspace"))
-    )
-    for point in points(model):
+    one, other = motions(text, form), motions(text, "nullspace")
+    for point in points(table(text)):
         assert one(point) == pytest.approx(other(point), rel=1e-9, abs=1e-8)
 
 
@@ -138,41 +157,33 @@ def test_rows_that_depend_on_each_other(text: str, form: str) -> None:
 @pytest.mark.parametrize("text", [HUNG, ALWAYS], ids=["hung", "always"])
 def test_rows_of_loops_beside_quaternions(text: str, form: str) -> None:
     """As verification asks for, at its states."""
-    model = load_text(text, "loop.yaml")
-    quantities = ("forward_dynamics", "multipliers")
-    expected = Expected(model, quantities, 8, lambda _: None)
-    ways = Alternatives(model, genericity(System(model)), None)
-    for quantity in quantities:
-        way = ways.named(quantity, form)
+    for quantity in MOTIONS:
+        way = ways(text).named(quantity, form)
         assert way is not None
         program = schedule(way.mechanics, [way.derived], ("float64",))["float64"]
-        assert measured(program.kernels[0], program.sincos, "float64", expected)[1] is None
+        assert measured(program.kernels[0], program.sincos, "float64", expected(text))[1] is None
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES)
 def test_weighted_projections_with_dependent_rows(quantity: str) -> None:
-    model = load_text(PLANE, "table.yaml")
-    ways = Alternatives(model, genericity(System(model)), None)
-    one, other = ways.named(quantity, BY_FRAMES), ways.named(quantity, "householder")
+    one, other = ways(PLANE).named(quantity, BY_FRAMES), ways(PLANE).named(quantity, "householder")
     assert one is not None
     assert other is not None
-    for point in points(model):
-        found, expected = Evaluator(one.derived.outputs)(point), Evaluator(other.derived.outputs)(point)
-        assert found == pytest.approx(expected, rel=1e-9, abs=1e-9)
+    for point in points(table(PLANE)):
+        found, wanted = Evaluator(one.derived.outputs)(point), Evaluator(other.derived.outputs)(point)
+        assert found == pytest.approx(wanted, rel=1e-9, abs=1e-9)
 
 
 def test_heavy_bodies_at_the_end_of_light_links() -> None:
     """A step of refinement gives back what articulated inertias lose by a thousand units, and dense forms by 1e5."""
-    model = load_text(LIGHT, "light.yaml")
     motion = "forward_dynamics"
-    ways = Alternatives(model, genericity(System(model)), None)
-    expected = Expected(model, (motion, QUANTITIES[0]), 8, lambda _: None)
+    states = Expected(table(LIGHT), (motion, QUANTITIES[0]), 8, lambda _: None)
 
     def largest(quantity: str, name: str) -> float:
-        way = ways.named(quantity, name)
+        way = ways(LIGHT).named(quantity, name)
         assert way is not None
         program = schedule(way.mechanics, [way.derived], ("float64",))["float64"]
-        return measured(program.kernels[0], program.sincos, "float64", expected)[0].largest
+        return measured(program.kernels[0], program.sincos, "float64", states)[0].largest
 
     assert largest(motion, "articulated_refined") < 8
     assert largest(motion, BY_FRAMES) > 100

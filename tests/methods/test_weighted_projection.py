@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 
 import pytest
 
@@ -48,15 +49,19 @@ def beam_on_three_cranks() -> Model:
     return load_text("\n".join(lines), "beam.yaml")
 
 
+@cache
+def given(make: Callable[[], Model]) -> tuple[Alternatives, Expected]:
+    model = make()
+    return Alternatives(model, genericity(System(model)), None), Expected(model, QUANTITIES, 16, lambda _: None)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("quantity", QUANTITIES)
 @pytest.mark.parametrize("make", [hanging_chain, beam_on_three_cranks])
 def test_within_what_verification_allows(make: Callable[[], Model], quantity: str) -> None:
-    model = make()
-    generic = genericity(System(model))
-    way = Alternatives(model, generic, None).named(quantity, "schur_qr")
+    ways, expected = given(make)
+    way = ways.named(quantity, "schur_qr")
     assert way is not None
-    expected = Expected(model, (quantity,), 16, lambda _: None)
     for scalar, program in schedule(way.mechanics, [way.derived], ("float64", "float32")).items():
         record, fault = measured(program.kernels[0], program.sincos, scalar, expected)
         assert fault is None

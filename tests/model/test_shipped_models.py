@@ -2,25 +2,33 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 import jsonschema
 import pytest
+import shipped
 import yaml
 from shipped import ALL, NAMES
 
 from symgen.model.configurations.mechanics import NumericSystem
 from symgen.model.file.schema import json_schema
-from symgen.model.load import load_model
 from symgen.model.model import Model, PublishedEquations, PublishedMatrix
 
 FOLDER = Path(__file__).parents[2] / "models"
 
 
+@cache
+def validator() -> jsonschema.Draft202012Validator:
+    """By the schema, which is one itself."""
+    jsonschema.Draft202012Validator.check_schema(json_schema())
+    return jsonschema.Draft202012Validator(json_schema())
+
+
 @pytest.fixture(params=NAMES)
 def model(request: pytest.FixtureRequest) -> Model:
     """Each model in turn."""
-    return load_model(FOLDER / f"{request.param}.yaml")
+    return shipped.model(request.param)
 
 
 def test_complete(model: Model) -> None:
@@ -37,7 +45,7 @@ def test_complete(model: Model) -> None:
 
 @pytest.mark.parametrize("name", ALL)
 def test_named_and_described(name: str) -> None:
-    model = load_model(FOLDER / f"{name}.yaml")
+    model = shipped.model(name)
     assert model.name == name
     assert model.notices == ()
     assert model.source
@@ -47,8 +55,7 @@ def test_named_and_described(name: str) -> None:
 @pytest.mark.parametrize("name", ALL)
 def test_valid_by_the_schema(name: str) -> None:
     document = yaml.safe_load((FOLDER / f"{name}.yaml").read_text(encoding="utf-8"))
-    jsonschema.Draft202012Validator.check_schema(json_schema())
-    jsonschema.validate(document, json_schema())
+    assert list(validator().iter_errors(document)) == []
 
 
 @pytest.mark.parametrize(
@@ -65,7 +72,7 @@ def test_valid_by_the_schema(name: str) -> None:
 def test_the_schema_refuses(change: dict[str, object]) -> None:
     document = yaml.safe_load((FOLDER / "skate.yaml").read_text(encoding="utf-8"))
     with pytest.raises(jsonschema.ValidationError):
-        jsonschema.validate({**document, **change}, json_schema())
+        validator().validate({**document, **change})
 
 
 def test_configuration_is_assembled(model: Model) -> None:
@@ -92,12 +99,12 @@ def test_configuration_is_assembled(model: Model) -> None:
     ],
 )
 def test_sizes(name: str, n: int, r: int, m: int) -> None:
-    model = load_model(FOLDER / f"{name}.yaml")
+    model = shipped.model(name)
     assert (model.n, model.r, model.m) == (n, r, m)
 
 
 def test_the_two_manipulators_differ_in_drives_only() -> None:
-    full, two = load_model(FOLDER / "rapkm_2rrr_rr.yaml"), load_model(FOLDER / "rapkm_two_drives.yaml")
+    full, two = shipped.model("rapkm_2rrr_rr"), shipped.model("rapkm_two_drives")
     assert full.inputs[:2] == two.inputs
     assert (full.kinetic_energy, full.constraints, full.definitions) == (
         two.kinetic_energy,
@@ -130,5 +137,5 @@ def test_shapes_of_published_matrices(model: Model) -> None:
 def test_every_printed_formula_of_the_examples_is_there() -> None:
     numbers: set[str] = set()
     for name in ("skate", "front_car", "front_car_wheelset", "rear_car"):
-        numbers |= {formula.equation for formula in load_model(FOLDER / f"{name}.yaml").published}
+        numbers |= {formula.equation for formula in shipped.model(name).published}
     assert numbers == {f"({number})" for number in range(31, 48)}

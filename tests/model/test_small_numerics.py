@@ -1,7 +1,10 @@
-"""The float checks of the loader against NumPy, difference quotients and cases with known answers."""
+"""The float checks of the loader against NumPy, derivatives in 50 digits and cases with known answers."""
 
 from __future__ import annotations
 
+from typing import Any
+
+import mpmath
 import numpy as np
 import pytest
 
@@ -11,7 +14,6 @@ from symgen.model.configurations.dense import is_positive, null_space, rank
 from symgen.model.configurations.gradient import Gradients
 from symgen.model.expressions.expression import Expression
 from symgen.model.expressions.parser import parse_expression
-from symgen.model.expressions.walk import evaluate
 from symgen.model.file.source import ScalarNode
 
 VALUES = {"x": 0.6, "y": 0.3, "m": 1.7}
@@ -38,17 +40,19 @@ def tree(text: str) -> Expression:
     ],
 )
 def test_gradients(text: str) -> None:
-    definitions = {"d": tree("x*y + 2*m")}
-    value, gradient = Gradients(VALUES, {"x": 0, "y": 1}, definitions).of(tree(text))
-    step = 1e-6
-    for index, name in enumerate(("x", "y")):
+    """Beside derivatives of the same text read by Python and worked out in 50 digits."""
+    value, gradient = Gradients(VALUES, {"x": 0, "y": 1}, {"d": tree("x*y + 2*m")}).of(tree(text))
 
-        def at(shift: float, name: str = name) -> float:
-            moved = {**VALUES, name: VALUES[name] + shift}
-            return evaluate(tree(text), {**moved, "d": evaluate(definitions["d"], moved)})
+    def at(x: Any, y: Any) -> Any:
+        m = mpmath.mpf(VALUES["m"])
+        return eval(text, {**vars(mpmath), "x": x, "y": y, "m": m, "d": x * y + 2 * m})
 
-        assert value == pytest.approx(at(0.0))
-        assert gradient.get(index, 0.0) == pytest.approx((at(step) - at(-step)) / (2 * step), rel=1e-7, abs=1e-7)
+    point = VALUES["x"], VALUES["y"]
+    with mpmath.workdps(50):
+        assert value == pytest.approx(float(at(*map(mpmath.mpf, point))), rel=1e-14)
+        for index, orders in enumerate(((1, 0), (0, 1))):
+            exact = float(mpmath.diff(at, point, orders))
+            assert gradient.get(index, 0.0) == pytest.approx(exact, rel=1e-13, abs=1e-14)
 
 
 def test_expansion_in_the_rates() -> None:

@@ -78,6 +78,7 @@ def test_front_car_has_no_alarm_in_its_box(tool: Callable[[str], str], tmp_path:
     assert alarms(tool("frama-c"), "front_car", None, tmp_path) == 0
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(("limit", "proved"), [(Fraction(12, 10), True), (Fraction(165, 100), False)])
 def test_eva_separates_the_input_singularity_of_the_rear_car(
     tool: Callable[[str], str], tmp_path: Path, limit: Fraction, proved: bool
@@ -102,7 +103,9 @@ def test_slices_cover_the_range_without_overlap(scalar: Scalar) -> None:
     assert found[0].low == -found[-1].high
 
 
-@pytest.mark.parametrize("name", ["front_car", "skate", "differential_drive"])
+@pytest.mark.parametrize(
+    "name", ["skate", *(pytest.param(name, marks=pytest.mark.campaign) for name in ("front_car", "differential_drive"))]
+)
 def test_gappa_certifies_a_rounding_bound_above_the_measured_error(
     tool: Callable[[str], str], tmp_path: Path, name: str
 ) -> None:
@@ -133,6 +136,7 @@ def test_gappa_counts_the_rounding_of_a_sum_of_angles() -> None:
 
 # make fuzz takes every kernel of every model, for longer
 TRIED = ("double_pendulum", "front_car", "slider_crank", "rear_car")
+FEW = ("double_pendulum", "front_car")
 SHORT = ("inverse_dynamics", "forward_dynamics", "multipliers", "nullspace_projector", "singularity")
 CAMPAIGNS = {
     "clang": ["-fsanitize=address,undefined,float-cast-overflow"],
@@ -140,7 +144,13 @@ CAMPAIGNS = {
 }
 
 
-@pytest.mark.parametrize(("name", "compiler"), [(name, [*CAMPAIGNS][k % 2]) for k, name in enumerate(TRIED)])
+@pytest.mark.parametrize(
+    ("name", "compiler"),
+    [
+        pytest.param(name, [*CAMPAIGNS][k % 2], marks=() if name in FEW else pytest.mark.campaign)
+        for k, name in enumerate(TRIED)
+    ],
+)
 def test_short_campaign(tool: Callable[[str], str], tmp_path: Path, name: str, compiler: str) -> None:
     """Sanitizers, statuses, aliasing and float32 against float64; `make fuzz` takes every model."""
     fewer = [
@@ -162,6 +172,7 @@ def test_short_campaign(tool: Callable[[str], str], tmp_path: Path, name: str, c
     assert all(int(compared) > 100 for _, compared, _ in counted)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("compiler", [*CAMPAIGNS])
 def test_short_campaign_with_twice_the_digits_in_one_type(
     tool: Callable[[str], str], tmp_path: Path, compiler: str
@@ -233,6 +244,7 @@ def test_static_analysis_has_listed_deviations_only(tool: Callable[[str], str], 
     assert "warning:" not in told
 
 
+@pytest.mark.campaign
 def test_static_analysis_of_kernels_with_twice_the_digits(tool: Callable[[str], str], tmp_path: Path) -> None:
     """Tables of steps and what runs them deviate from no other rule."""
     path, out = recorded(tmp_path, {"forward_dynamics": ("float64", "float32")})

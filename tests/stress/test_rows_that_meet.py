@@ -28,7 +28,10 @@ SYSTEMS = {
 }
 
 
-@pytest.mark.parametrize("name", SYSTEMS)
+@pytest.mark.parametrize(
+    "name",
+    ["three_wheels", *(pytest.param(name, marks=pytest.mark.campaign) for name in ("two_wheels", "wheels_and_knife"))],
+)
 def test_no_digit_is_lost_twice(name: str, tmp_path: Path) -> None:
     model = wheels(name, SYSTEMS[name])
     generated = Kernels(model, tmp_path, STRESSED)

@@ -30,6 +30,7 @@ def measured(tool: Callable[[str], str], folder: Path, core: str) -> TargetRepor
     return measure(model, [BY_NAME[core]], out=out)
 
 
+@pytest.mark.firmware
 @pytest.mark.toolchain
 @pytest.mark.parametrize("core", ["cortex-m4f", "rv32imac"])
 def test_bits_are_those_of_the_host(tool: Callable[[str], str], tmp_path: Path, core: str) -> None:

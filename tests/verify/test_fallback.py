@@ -26,6 +26,7 @@ from symgen.pipeline import generate
 from symgen.quantities import alternatives, candidates, everything
 from symgen.quantities.alternatives import Alternative
 from symgen.symbolic.scalar import Graph, Scalar
+from symgen.verify import compile as compiling
 from symgen.verify.certificate import LeftOut
 from symgen.verify.reference.reference import State
 from symgen.verify.searched import JUDGED
@@ -54,6 +55,7 @@ outputs: [mass_matrix, inverse_dynamics, forward_dynamics, multipliers]
 """
 OFF = 1 + Fraction(1, 2**16)  # beyond the tolerance in either scalar type
 FAST = Options(parts=("c", "python"), states=8)
+QUICKLY = ("--only", "c,python", "--states", "8")
 
 
 @pytest.fixture
@@ -64,8 +66,18 @@ def yoke(tmp_path: Path) -> Path:
 
 
 @pytest.fixture(autouse=True)
-def compiler(tool: Callable[[str], str]) -> None:
+def compiler(tool: Callable[[str], str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Bits are the same at every level (test_levels), and a run compiles several times."""
     tool("cc")
+    monkeypatch.setattr(compiling, "FLAGS", (*compiling.FLAGS, *compiling.PLAIN))
+
+
+@pytest.fixture(scope="module")
+def usual(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """What derivation.json tells where nothing is spoilt."""
+    path = tmp_path_factory.mktemp("usual") / "yoke.yaml"
+    path.write_text(YOKE, encoding="utf-8")
+    return derived(made(path))
 
 
 def made(path: Path, options: Options = FAST) -> Result:
@@ -186,10 +198,9 @@ def spoil_named(monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[Motion], Moti
     ],
 )
 def test_what_is_rejected_takes_the_next_way(
-    yoke: Path, monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[Motion], Motion], why: str
+    yoke: Path, usual: Any, monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[Motion], Motion], why: str
 ) -> None:
-    usual = made(yoke)
-    assert "rejected" not in derived(usual)
+    assert "rejected" not in usual
     spoil_choice(monkeypatch, spoilt)
     result = made(yoke)
     assert result.failures == ()
@@ -200,7 +211,7 @@ def test_what_is_rejected_takes_the_next_way(
     taken = derived(result)["kernels"]["multipliers"]["way"]
     assert derived(result)["form_of_multipliers"]["name"] == taken
     assert any(n.message.startswith(f"multipliers takes {taken}: verification speaks against") for n in result.notices)
-    kernels, before = derived(result)["kernels"], derived(usual)["kernels"]
+    kernels, before = derived(result)["kernels"], usual["kernels"]
     assert all(kernels[name] == before[name] for name in before if name != "multipliers")
     assert result.certificate is not None
     assert result.certificate["passed"]
@@ -365,7 +376,7 @@ def test_float32_works_with_twice_the_digits_where_it_alone_is_rejected(
     """Its thresholds are sharp then: a state that is regular for float64 is regular."""
     spoil_choice(monkeypatch, refusing_float32)
     spoil_named(monkeypatch, refusing_float32)
-    common = [str(yoke), "--out", str(tmp_path / "out"), "--states", "8", "--quiet"]
+    common = [str(yoke), "--out", str(tmp_path / "out"), *QUICKLY, "--quiet"]
     assert cli.main(common) == 0
     content = json.loads((tmp_path / "out/yoke/derivation.json").read_bytes())
     assert content["kernels"]["multipliers"]["twice_the_digits"] == ["float32"]
@@ -403,7 +414,7 @@ def test_check_takes_over_the_way_that_verification_led_to(
     yoke: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     spoil_choice(monkeypatch, cancelling)
-    common = [str(yoke), "--out", str(tmp_path / "out"), "--states", "8", "--quiet"]
+    common = [str(yoke), "--out", str(tmp_path / "out"), *QUICKLY, "--quiet"]
     assert cli.main(common) == 0
     assert cli.main([*common, "--check"]) == 0
     source = tmp_path / "out/yoke/c/yoke.c"
@@ -412,12 +423,11 @@ def test_check_takes_over_the_way_that_verification_led_to(
 
 
 def test_where_every_way_loses_digits_one_works_with_twice_as_many(
-    yoke: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    yoke: Path, usual: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    usual = derived(made(yoke))["kernels"]
     spoil_choice(monkeypatch, losing_digits)
     spoil_named(monkeypatch, losing_digits)
-    common = [str(yoke), "--out", str(tmp_path / "out"), "--states", "8"]
+    common = [str(yoke), "--out", str(tmp_path / "out"), *QUICKLY]
     assert cli.main(common) == 0
     assert "with twice the digits in float64 and float32: verification speaks against" in capsys.readouterr().err
     folder = tmp_path / "out/yoke"
@@ -427,7 +437,7 @@ def test_where_every_way_loses_digits_one_works_with_twice_as_many(
     assert {one["quantity"] for one in content["rejected"]} == {"multipliers"}
     # nothing else pays for it
     assert {name: one for name, one in content["kernels"].items() if name != "multipliers"} == {
-        name: one for name, one in usual.items() if name != "multipliers"
+        name: one for name, one in usual["kernels"].items() if name != "multipliers"
     }
     certificate = json.loads((folder / "certificate.json").read_bytes())
     assert certificate["passed"]
@@ -564,6 +574,7 @@ outputs: [inverse_dynamics, forward_dynamics, multipliers]
 """
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("text", [LIGHT, LIFT], ids=["light_yoke", "lift"])
 def test_real_machines_get_every_quantity(text: str, tmp_path: Path) -> None:
     path = tmp_path / "machine.yaml"

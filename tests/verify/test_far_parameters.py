@@ -177,3 +177,15 @@ def test_a_declared_range_lies_within_the_bounds(tmp_path: Path) -> None:
     bounds = json.loads(result.files["derivation.json"])["kernels"][MULTIPLIERS].get("bounds", {})
     for found in bounds.values():
         assert found.get(MASS, (None, None))[1] is None or found[MASS][1] >= 500
+
+
+def test_a_linkage_without_parameters_has_no_bounds(tmp_path: Path) -> None:
+    values = {"l_1": "0.9", "l_2": "0.7", "m_1": "2", "m_2": "1.5", "m_3": "0.4", "length: d": "length: 1.1"}
+    head, _, rest = CRANE.partition("gravity:")
+    for name, value in values.items():
+        rest = rest.replace(name, value)
+    path = tmp_path / "crane.yaml"
+    path.write_text(f"{head.partition('parameters:')[0]}gravity:{rest}", encoding="utf-8")
+    result = generate(path, Options(parts=("c",), states=8), lambda _: None)
+    assert not result.failures
+    assert not any("bounds" in kernel for kernel in json.loads(result.files["derivation.json"])["kernels"].values())

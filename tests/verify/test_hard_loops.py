@@ -46,6 +46,7 @@ ranges: {a_4: [1.21, 2.37]}
 """
 
 
+@pytest.mark.campaign
 def test_states_are_found_from_those_that_are_known(monkeypatch: pytest.MonkeyPatch) -> None:
     """Draw 1116:175: every start that did not close was followed by eleven more, and fifty seconds went by."""
     reference = Reference(load_text(ARM, "arm.yaml"))

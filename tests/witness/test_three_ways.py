@@ -34,6 +34,8 @@ ALL_THREE = {
     "projected_control_pseudoinverse",
     "inverse_dynamics",
 }
+# A loop, rows of rates, bodies with points, inputs that fall short.
+FEW = ("slider_crank", "skate", "crane", "under_actuated")
 STATES = 2
 TOLERANCE = 1e-9
 REGULAR = 1e-3  # of both measures of `singularity`: rounding is not what these tests are about
@@ -118,7 +120,9 @@ class SympyWitness:
         return np.array([[float(entry) for entry in row] for row in matrix.tolist()])
 
 
-@pytest.mark.parametrize("name", [*SHIPPED, *EXTRA])
+@pytest.mark.parametrize(
+    "name", [name if name in FEW else pytest.param(name, marks=pytest.mark.campaign) for name in (*SHIPPED, *EXTRA)]
+)
 def test_three_derivations_agree(name: str) -> None:
     model = load_model(SHIPPED[name]) if name in SHIPPED else load_text(EXTRA[name], name)
     witness = witness_functions(model)

@@ -65,7 +65,7 @@ def test_an_over_constrained_linkage_moves(family: str, freedom: int) -> None:
 
 
 def test_a_seed_draws_the_same_under_any_hash_seed() -> None:
-    code = "from symgen.laboratory.zoo.families import draw\nfor k in range(30): print(draw(3, k).text)"
+    code = "from symgen.laboratory.zoo.families import draw\nfor k in range(8): print(draw(3, k).text)"
     texts = [
         subprocess.run(
             [sys.executable, "-c", code],
@@ -77,12 +77,12 @@ def test_a_seed_draws_the_same_under_any_hash_seed() -> None:
         for seed in ("1", "2")
     ]
     assert texts[0] == texts[1]
-    assert texts[0].count("model: ") == 30
+    assert texts[0].count("model: ") == 8
 
 
 def test_seeds_and_numbers_draw_different_systems() -> None:
-    texts = {draw(seed, index).text for seed in range(5) for index in range(20)}
-    assert len(texts) == 100
+    texts = {draw(seed, index).text for seed in range(3) for index in range(6)}
+    assert len(texts) == 18
 
 
 def test_as_many_velocities_are_independent_as_there_are_degrees_of_freedom() -> None:

@@ -19,6 +19,8 @@ from symgen.symbolic.identity import every_identity_evaluated
 SEED = 20
 # Others take long with every value worked out, and come up in campaigns, where fingerprints are compared.
 SLOW = ("spatial_bodies", "bricard", "cable_robot", "parallelogram_bodies", "legged_platform")
+# By energies, by bodies, with a loop.
+FEW = ("disc", "tree_bodies", "bennett")
 
 
 def _first(family: str, folder: Path) -> Model:
@@ -34,7 +36,14 @@ def _first(family: str, folder: Path) -> Model:
     raise AssertionError(f"all draws of {family} are refused")
 
 
-@pytest.mark.parametrize("family", [family for family in FAMILIES if family not in SLOW])
+@pytest.mark.parametrize(
+    "family",
+    [
+        family if family in FEW else pytest.param(family, marks=pytest.mark.campaign)
+        for family in FAMILIES
+        if family not in SLOW
+    ],
+)
 def test_every_rewriting_of_a_draw_is_an_identity(family: str, tmp_path: Path) -> None:
     model = _first(family, tmp_path)
     with every_identity_evaluated():

@@ -13,7 +13,7 @@ from symgen.laboratory.zoo.features import ALL, features
 DRAWS, LEAST = 500, 1
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_nothing_is_missing() -> None:
     count: Counter[str] = Counter()
     for index in range(DRAWS):

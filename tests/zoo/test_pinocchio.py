@@ -28,7 +28,13 @@ def compared(index: int, family: str = "tree_bodies") -> float | None:
     return disagreement(blocks, values, Dice("test", index), description.files)
 
 
-@pytest.mark.parametrize("family", ["tree_bodies", "spatial_bodies", "cable_robot", "robot_files"])
+@pytest.mark.parametrize(
+    "family",
+    [
+        "tree_bodies",
+        *(pytest.param(name, marks=pytest.mark.campaign) for name in ("spatial_bodies", "cable_robot", "robot_files")),
+    ],
+)
 def test_trees_agree(family: str) -> None:
     """Of joints of every kind, with quaternions and without, of files and of robot descriptions."""
     found = [each for each in (compared(index, family) for index in range(12)) if each is not None]

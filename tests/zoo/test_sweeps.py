@@ -189,7 +189,7 @@ def test_records_are_told_and_summed_up(folder: Path, monkeypatch: pytest.Monkey
     assert row[2:] == ["6", *["0"] * len(sweeps.STATUSES), "0", "6", "0"]
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_a_draw_is_swept(tmp_path: Path) -> None:
     record, line = one_sweep(Campaign(2001, tmp_path), 22)
     assert record.violations == ()

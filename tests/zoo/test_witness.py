@@ -201,7 +201,7 @@ def test_a_wheel_that_could_lift_is_held() -> None:
     assert rows[1] == pytest.approx([1, 0, -0.25, 0])
 
 
-@pytest.mark.slow
+@pytest.mark.campaign
 def test_multipliers_of_wheels_and_limited_inputs_are_compared(tmp_path: Path) -> None:
     (tmp_path / "hopper.yaml").write_text(WHEEL)
     run = run_command(tmp_path / "hopper.yaml", tmp_path / "out")
@@ -303,6 +303,7 @@ outputs: [inverse_dynamics, forward_dynamics]
 """
 
 
+@pytest.mark.campaign
 def test_a_branch_on_which_inputs_span_less_has_a_status(tmp_path: Path) -> None:
     """It is told; what the kernel answers there is no false status, whether it is this one is looked at."""
     model = tmp_path / "two.yaml"
