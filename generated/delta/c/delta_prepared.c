@@ -164,6 +164,7 @@ delta_prepared delta_prepare(const delta_params *p) {
     const double g = p->g;
     const double J_a = p->J_a;
     const double J_m = p->J_m;
+    const double l_2 = p->l_2;
     const double v1 = R - r;
     const double v2 = -v1;
     const double v3 = 1.5 * m_r;
@@ -188,14 +189,15 @@ delta_prepared delta_prepare(const delta_params *p) {
     prepared.value[1] = r;
     prepared.value[2] = l_1;
     prepared.value[3] = g;
-    prepared.value[4] = v1;
-    prepared.value[5] = v2;
-    prepared.value[6] = v4;
-    prepared.value[7] = v6;
-    prepared.value[8] = v7;
-    prepared.value[9] = v8;
-    prepared.value[10] = v12;
-    prepared.value[11] = v19;
+    prepared.value[4] = l_2;
+    prepared.value[5] = v1;
+    prepared.value[6] = v2;
+    prepared.value[7] = v4;
+    prepared.value[8] = v6;
+    prepared.value[9] = v7;
+    prepared.value[10] = v8;
+    prepared.value[11] = v12;
+    prepared.value[12] = v19;
     return prepared;
 }
 
@@ -400,6 +402,10 @@ static DELTA_APART delta_status delta_inverse_dynamics_prepared_cause(const doub
 
 delta_status delta_inverse_dynamics_prepared(const double q[6], const double qd[6], const double qdd[6], const delta_prepared *p, double u[3]) {
     (void)qd;
+    const double l_2 = p->value[4];
+    if (DELTA_RARELY(!(47.0 >= l_2))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const double a_1 = q[0];
     const double t1 = fabs(a_1);
     const double a_2 = q[1];
@@ -422,7 +428,7 @@ delta_status delta_inverse_dynamics_prepared(const double q[6], const double qd[
     const double l_1 = p->value[2];
     const double t7 = cosine[1];
     const double t19 = l_1 * t7;
-    const double t18 = p->value[5];
+    const double t18 = p->value[6];
     const double t20 = t18 - t19;
     const double t21 = 0.8660254037844386 * t20;
     const double y = q[4];
@@ -437,10 +443,10 @@ delta_status delta_inverse_dynamics_prepared(const double q[6], const double qd[
     const double t34 = y - t33;
     const double t36 = 0.5 * t32;
     const double t37 = x - t36;
-    const double t12 = p->value[4];
+    const double t12 = p->value[5];
     const double t13 = x - t12;
     const double y_ddot = qdd[4];
-    const double t270 = p->value[6];
+    const double t270 = p->value[7];
     const double t273 = y_ddot * t270;
     const double x_ddot = qdd[3];
     const double t275 = x_ddot * t270;
@@ -501,14 +507,14 @@ delta_status delta_inverse_dynamics_prepared(const double q[6], const double qd[
     const double t320 = t318 + t319;
     const double t52 = fabs(y);
     const double t53 = fabs(x);
-    const double t56 = p->value[8];
+    const double t56 = p->value[9];
     const double t57 = t53 + t56;
     const double t50 = fabs(z);
     const double t51 = l_1 + t50;
     const double t58 = t52 * t57;
-    const double t59 = p->value[9];
+    const double t59 = p->value[10];
     const double t60 = t52 + t59;
-    const double t55 = p->value[7];
+    const double t55 = p->value[8];
     const double t61 = t53 + t55;
     const double t62 = t57 + t61;
     const double t63 = t60 * t62;
@@ -524,9 +530,9 @@ delta_status delta_inverse_dynamics_prepared(const double q[6], const double qd[
     const double t286 = t4 * t13;
     const double t287 = t285 + t286;
     const double a_1_ddot = qdd[0];
-    const double t260 = p->value[11];
+    const double t260 = p->value[12];
     const double t261 = a_1_ddot * t260;
-    const double t265 = p->value[10];
+    const double t265 = p->value[11];
     const double t266 = t5 * t265;
     const double t267 = t261 - t266;
     const double t289 = t287 * t288;

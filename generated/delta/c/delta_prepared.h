@@ -14,7 +14,7 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    double value[12];
+    double value[13];
 } delta_prepared;
 
 delta_prepared delta_prepare(const delta_params *p);

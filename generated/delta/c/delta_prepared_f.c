@@ -151,6 +151,7 @@ delta_prepared_f delta_prepare_f(const delta_params_f *p) {
     const float g = p->g;
     const float J_a = p->J_a;
     const float J_m = p->J_m;
+    const float l_2 = p->l_2;
     const float v1 = R - r;
     const float v2 = -v1;
     const float v3 = 1.5f * m_r;
@@ -175,14 +176,15 @@ delta_prepared_f delta_prepare_f(const delta_params_f *p) {
     prepared.value[1] = r;
     prepared.value[2] = l_1;
     prepared.value[3] = g;
-    prepared.value[4] = v1;
-    prepared.value[5] = v2;
-    prepared.value[6] = v4;
-    prepared.value[7] = v6;
-    prepared.value[8] = v7;
-    prepared.value[9] = v8;
-    prepared.value[10] = v12;
-    prepared.value[11] = v19;
+    prepared.value[4] = l_2;
+    prepared.value[5] = v1;
+    prepared.value[6] = v2;
+    prepared.value[7] = v4;
+    prepared.value[8] = v6;
+    prepared.value[9] = v7;
+    prepared.value[10] = v8;
+    prepared.value[11] = v12;
+    prepared.value[12] = v19;
     return prepared;
 }
 
@@ -387,6 +389,10 @@ static DELTA_APART_F delta_status delta_inverse_dynamics_prepared_f_cause(const 
 
 delta_status delta_inverse_dynamics_prepared_f(const float q[6], const float qd[6], const float qdd[6], const delta_prepared_f *p, float u[3]) {
     (void)qd;
+    const float l_2 = p->value[4];
+    if (DELTA_RARELY_F(!(47.0f >= l_2))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const float a_1 = q[0];
     const float t1 = fabsf(a_1);
     const float a_2 = q[1];
@@ -409,7 +415,7 @@ delta_status delta_inverse_dynamics_prepared_f(const float q[6], const float qd[
     const float l_1 = p->value[2];
     const float t7 = cosine[1];
     const float t19 = l_1 * t7;
-    const float t18 = p->value[5];
+    const float t18 = p->value[6];
     const float t20 = t18 - t19;
     const float t21 = 0.8660254f * t20;
     const float y = q[4];
@@ -424,10 +430,10 @@ delta_status delta_inverse_dynamics_prepared_f(const float q[6], const float qd[
     const float t34 = y - t33;
     const float t36 = 0.5f * t32;
     const float t37 = x - t36;
-    const float t12 = p->value[4];
+    const float t12 = p->value[5];
     const float t13 = x - t12;
     const float y_ddot = qdd[4];
-    const float t270 = p->value[6];
+    const float t270 = p->value[7];
     const float t273 = y_ddot * t270;
     const float x_ddot = qdd[3];
     const float t275 = x_ddot * t270;
@@ -488,14 +494,14 @@ delta_status delta_inverse_dynamics_prepared_f(const float q[6], const float qd[
     const float t320 = t318 + t319;
     const float t52 = fabsf(y);
     const float t53 = fabsf(x);
-    const float t56 = p->value[8];
+    const float t56 = p->value[9];
     const float t57 = t53 + t56;
     const float t50 = fabsf(z);
     const float t51 = l_1 + t50;
     const float t58 = t52 * t57;
-    const float t59 = p->value[9];
+    const float t59 = p->value[10];
     const float t60 = t52 + t59;
-    const float t55 = p->value[7];
+    const float t55 = p->value[8];
     const float t61 = t53 + t55;
     const float t62 = t57 + t61;
     const float t63 = t60 * t62;
@@ -511,9 +517,9 @@ delta_status delta_inverse_dynamics_prepared_f(const float q[6], const float qd[
     const float t286 = t4 * t13;
     const float t287 = t285 + t286;
     const float a_1_ddot = qdd[0];
-    const float t260 = p->value[11];
+    const float t260 = p->value[12];
     const float t261 = a_1_ddot * t260;
-    const float t265 = p->value[10];
+    const float t265 = p->value[11];
     const float t266 = t5 * t265;
     const float t267 = t261 - t266;
     const float t289 = t287 * t288;

@@ -14,7 +14,7 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    float value[12];
+    float value[13];
 } delta_prepared_f;
 
 delta_prepared_f delta_prepare_f(const delta_params_f *p);

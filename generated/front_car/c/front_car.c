@@ -1146,6 +1146,10 @@ front_car_status front_car_orthogonal_complement(const double q[4], const front_
 }
 
 front_car_status front_car_projected_mass_matrix(const double q[4], const front_car_params *p, double G_tilde[16]) {
+    const double L = p->L;
+    if (FRONT_CAR_RARELY(!(L >= 0.18))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const double theta = q[2];
     const double t1 = fabs(theta);
     const double phi = q[3];
@@ -1167,7 +1171,6 @@ front_car_status front_car_projected_mass_matrix(const double q[4], const front_
     const double t4 = cosine[0];
     const double t9 = t4 * t4;
     const double t10 = t8 + t9;
-    const double L = p->L;
     const double t11 = L * L;
     const double t6 = cosine[1];
     const double t12 = t6 * t11;
@@ -1589,6 +1592,10 @@ front_car_status front_car_minimal_mass_matrix(const double q[4], const front_ca
 }
 
 front_car_status front_car_minimal_coriolis_matrix(const double q[4], const double qd[4], const front_car_params *p, double C_bar[4]) {
+    const double L = p->L;
+    if (FRONT_CAR_RARELY(!(L >= 0.11))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const double phi = q[3];
     const double t1 = fabs(phi);
     const double theta = q[2];
@@ -1605,7 +1612,6 @@ front_car_status front_car_minimal_coriolis_matrix(const double q[4], const doub
     front_car_sincos_group(2, angle, sine, cosine);
     const double t3 = sine[0];
     const double t7 = t3 * t3;
-    const double L = p->L;
     const double t4 = cosine[0];
     const double t8 = L * t4;
     const double t5 = sine[1];
@@ -2114,6 +2120,10 @@ front_car_status front_car_actuator_mass_matrix(const double q[4], const front_c
 }
 
 front_car_status front_car_actuator_bias(const double q[4], const double qd[4], const front_car_params *p, double bias_nu[2]) {
+    const double m_2 = p->m_2;
+    if (FRONT_CAR_RARELY(!(35000.0 >= m_2))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const double phi = q[3];
     const double t1 = fabs(phi);
     const double theta = q[2];
@@ -2158,7 +2168,6 @@ front_car_status front_car_actuator_bias(const double q[4], const double qd[4], 
     const double t19 = phi_dot * t4;
     const double t20 = t3 * t19;
     const double t21 = L * L;
-    const double m_2 = p->m_2;
     const double t22 = m_2 * t21;
     const double Theta_1 = p->Theta_1;
     const double t23 = Theta_1 + t22;

@@ -1133,6 +1133,10 @@ front_car_status front_car_orthogonal_complement_f(const float q[4], const front
 }
 
 front_car_status front_car_projected_mass_matrix_f(const float q[4], const front_car_params_f *p, float G_tilde[16]) {
+    const float L = p->L;
+    if (FRONT_CAR_RARELY_F(!(L >= 0.18f))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const float theta = q[2];
     const float t1 = fabsf(theta);
     const float phi = q[3];
@@ -1154,7 +1158,6 @@ front_car_status front_car_projected_mass_matrix_f(const float q[4], const front
     const float t4 = cosine[0];
     const float t9 = t4 * t4;
     const float t10 = t8 + t9;
-    const float L = p->L;
     const float t11 = L * L;
     const float t6 = cosine[1];
     const float t12 = t6 * t11;
@@ -1576,6 +1579,13 @@ front_car_status front_car_minimal_mass_matrix_f(const float q[4], const front_c
 }
 
 front_car_status front_car_minimal_coriolis_matrix_f(const float q[4], const float qd[4], const front_car_params_f *p, float C_bar[4]) {
+    const float L = p->L;
+    if (FRONT_CAR_RARELY_F(!(L >= 0.11f))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
+    if (FRONT_CAR_RARELY_F(!(710000000.0f >= L))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const float phi = q[3];
     const float t1 = fabsf(phi);
     const float theta = q[2];
@@ -1592,7 +1602,6 @@ front_car_status front_car_minimal_coriolis_matrix_f(const float q[4], const flo
     front_car_sincos_group_f(2, angle, sine, cosine);
     const float t3 = sine[0];
     const float t7 = t3 * t3;
-    const float L = p->L;
     const float t4 = cosine[0];
     const float t8 = L * t4;
     const float t5 = sine[1];
@@ -1789,6 +1798,10 @@ front_car_status front_car_admissible_velocity_f(const float q[4], const float q
 }
 
 front_car_status front_car_admissible_acceleration_f(const float q[4], const float qd[4], const float qdd[4], const front_car_params_f *p, float qdd_admissible[4]) {
+    const float L = p->L;
+    if (FRONT_CAR_RARELY_F(!(4000000.0f >= L))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const float phi = q[3];
     const float t1 = fabsf(phi);
     const float theta = q[2];
@@ -1805,7 +1818,6 @@ front_car_status front_car_admissible_acceleration_f(const float q[4], const flo
     front_car_sincos_group_f(2, angle, sine, cosine);
     const float t3 = sine[0];
     const float t7 = t3 * t3;
-    const float L = p->L;
     const float t4 = cosine[0];
     const float t8 = L * t4;
     const float t5 = sine[1];
@@ -2101,6 +2113,10 @@ front_car_status front_car_actuator_mass_matrix_f(const float q[4], const front_
 }
 
 front_car_status front_car_actuator_bias_f(const float q[4], const float qd[4], const front_car_params_f *p, float bias_nu[2]) {
+    const float m_2 = p->m_2;
+    if (FRONT_CAR_RARELY_F(!(35000.0f >= m_2))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const float phi = q[3];
     const float t1 = fabsf(phi);
     const float theta = q[2];
@@ -2145,7 +2161,6 @@ front_car_status front_car_actuator_bias_f(const float q[4], const float qd[4], 
     const float t19 = phi_dot * t4;
     const float t20 = t3 * t19;
     const float t21 = L * L;
-    const float m_2 = p->m_2;
     const float t22 = m_2 * t21;
     const float Theta_1 = p->Theta_1;
     const float t23 = Theta_1 + t22;
