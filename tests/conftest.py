@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import shutil
 import tomllib
@@ -12,6 +13,8 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from symgen.runtime.garbage import let_go
+
 # The same examples in every run: what is new and random is drawn by `make zoo` and `make fuzz`.
 settings.register_profile("same examples", derandomize=True)
 settings.load_profile("same examples")
@@ -19,6 +22,16 @@ settings.load_profile("same examples")
 TESTS = Path(__file__).parent
 # Seconds of a processor that a test without the mark `slow` may take, some times what it takes: machines differ.
 QUICK = 5.0
+
+
+def pytest_configure() -> None:
+    """Without the collector of cycles, as commands run: looking for them all the time takes a third of the tests."""
+    gc.disable()
+
+
+def pytest_runtest_teardown() -> None:
+    """What a test leaves behind goes once it is much."""
+    let_go()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
