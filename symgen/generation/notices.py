@@ -26,7 +26,7 @@ BYTES_AN_OPERATION = 7
 # What a step of `backends/c/steps.py` takes in its table.
 BYTES_A_STEP = 14
 # How far from its value a bound of a parameter goes without saying.
-CLOSE_BY = 10
+CLOSE_BY = 100
 # Bytes of machine code beyond which a notice tells of them.
 LARGEST_CODE = 64_000
 

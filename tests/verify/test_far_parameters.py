@@ -162,7 +162,7 @@ def test_a_bound_is_recorded_told_and_taken_up_again(crane: Path, tmp_path: Path
 def test_a_bound_close_by_is_told(crane: Path) -> None:
     model = load_model(crane)
     draft = draft_of(model, (MULTIPLIERS,), Options())
-    bounds = (Bound(MASS, Fraction(1, 100), Fraction(3)), Bound("l_1", Fraction(1, 5), Fraction(40)))
+    bounds = (Bound(MASS, Fraction(1, 1000), Fraction(3)), Bound("l_1", Fraction(1, 5), Fraction(400)))
     told = notices(replace(draft, bounds={"float32": {MULTIPLIERS: bounds}}), Options(), None)
     assert [one.message for one in told if MULTIPLIERS in one.message] == [
         "multipliers refuses l_1 below 0.2, m_3 above 3: it would lose digits; a `range` has it verified further"
