@@ -33,7 +33,8 @@ STATES = 4
 BITS = 256
 POLYNOMIAL = ("minor", "minor factored", "elimination", "nullspace")  # forms without square roots
 SAME = 1e-40
-RANKS = (Status.CONSTRAINT_RANK, Status.ACTUATION_RANK)
+# Statuses that depend on units: bounds of parameters are in those of the model file.
+IN_UNITS = (Status.CONSTRAINT_RANK, Status.ACTUATION_RANK, Status.PARAMETER_RANGE)
 # exponents of two for mass, length, time
 POWERS_OF_TWO = (("lengths", (0, 3, 0)), ("masses", (-4, 0, 0)), ("times", (0, 0, 2)), ("all three", (3, -2, 1)))
 Factors: TypeAlias = tuple[Fraction, ...]  # of mass, length, time
@@ -43,7 +44,8 @@ Factors: TypeAlias = tuple[Fraction, ...]  # of mass, length, time
 class Scaled:
     """One quantity under one change of units, over all states: the largest error in units of d + eps |y*|.
 
-    `refused` counts states with a rank status: relative ranks depend on units, and lengths are no longer O(1).
+    `refused` counts states with a status of rank or of parameters: relative ranks and bounds depend on units, and
+    lengths are no longer O(1).
     `covariant` is false where the exact result depends on units, so that nothing is compared.  `identical` says that
     the bits are the same after conversion, `required` that they must be.
     """
@@ -116,7 +118,7 @@ def _compare(
                 moved = rounded_state(moved, scalar)
                 outcome = other_kernels.run(name, moved, scalar)
                 if outcome.status != Status.OK:
-                    worst, identical = worst if outcome.status in RANKS else float("inf"), False
+                    worst, identical = worst if outcome.status in IN_UNITS else float("inf"), False
                     refused += 1
                     continue
                 expected = expectations(other, moved, (name,), scalar, f"{what} {index}", all_literals=True)[name]
