@@ -373,14 +373,21 @@ class System:
         slopes = gradient(self.graph, self._written_potential, self.q)
         return tuple(u + a - f for u, a, f in zip(driven, self.applied_force, slopes, strict=True))
 
+    @cached_property
+    def given_parts(self) -> list[tuple[Scalar, Vector, Expression | None]]:
+        """`given_force` part by part: a magnitude, the force of 1, and the rate that it works on where it has one."""
+        slopes: Vector = tuple(gradient(self.graph, self._written_potential, self.q))
+        rates = [*(i.velocity for i in self.model.inputs), None, *(force.velocity for force in self.model.forces)]
+        forces = [*zip(self.u, self.inputs, strict=True), *self._applied]
+        parts = [(x, force, velocity) for (x, force), velocity in zip(forces, rates, strict=True)]
+        return [*parts, (self.graph.const(-1), slopes, None)]
+
     def given_along(self, direction: Mapping[int, Scalar]) -> Scalar:
         """The component of `given_force` along a direction in the coordinates.
 
         Input by input and force by force, because it is exactly 0 of each of them that does no work there.
         """
-        slopes: Vector = tuple(gradient(self.graph, self._written_potential, self.q))
-        parts = [*zip(self.u, self.inputs, strict=True), *self._applied, (self.graph.const(-1), slopes)]
-        along = ((x, self.graph.sum(column[j] * d for j, d in direction.items())) for x, column in parts)
+        along = ((x, self.graph.sum(force[j] * d for j, d in direction.items())) for x, force, _ in self.given_parts)
         return self.graph.sum(x * component for x, component in along if not component.is_zero)
 
     @cached_property

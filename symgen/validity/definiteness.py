@@ -1,4 +1,4 @@
-"""Whether the mass matrix is positive definite everywhere, not only along the constraints.
+"""Whether the mass matrix is positive definite everywhere, or at least wherever the motion is determined.
 
 The smallest pivot of G = L D L^T in units of its diagonal entry, and the smallest diagonal entry in units of what it is
 elsewhere, are minimised over configurations and parameters within their ranges, from many seeded starts, by moving one
@@ -14,6 +14,7 @@ import random
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import lru_cache
+from operator import add
 
 from symgen.linear_algebra.constrained_inverse import Cholesky
 from symgen.mechanics.genericity import parameter_values
@@ -21,6 +22,7 @@ from symgen.mechanics.system import System
 from symgen.model.model import Model
 from symgen.records import dataclass
 from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.matrix import flatten, matmul, transpose
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import topological
 from symgen.validity.precise import PreciseEvaluator, UndefinedError, precise
@@ -66,6 +68,33 @@ def indefinite_model(model: Model) -> Indefinite | None:
     return found
 
 
+@lru_cache(maxsize=2)
+def definite_beside_rows(model: Model) -> bool:
+    """Whether G, of bodies, is singular only where rows leave the same direction free: the motion is not determined.
+
+    With H = G + B^T W B each pivot of G is at most that of H, and both vanish there.  Where a row holds what has no
+    mass, one of G vanishes beside its own of H.  W makes rows as large as the inertia that they act on.
+    """
+    mechanics = System(model)
+    graph, n, rows = mechanics.graph, mechanics.n, mechanics.constraint_jacobian
+    entries = _largest(mechanics, [*flatten(mechanics.mass_matrix), *flatten(rows)])
+    sizes = [entries[i * n + i] for i in range(n)]
+    weights = [
+        sum(x * x / size for x, size in zip(entries[k : k + n], sizes, strict=True) if size)
+        for k in range(n * n, len(entries), n)
+    ]
+    if not all(weights):
+        # rows that hold nothing but what has no mass
+        return False
+    scaled = [[x / Fraction(weight) for x in row] for row, weight in zip(rows, weights, strict=True)]
+    holding = matmul(graph, transpose(rows, n), tuple(map(tuple, scaled)), n)
+    held = tuple(tuple(map(add, *pair)) for pair in zip(mechanics.mass_matrix, holding, strict=True))
+    pairs = zip(Cholesky(graph, mechanics.mass_matrix).pivots, Cholesky(graph, held).pivots, strict=True)
+    least = smallest(mechanics, [own / other for own, other in pairs])[0]
+    graph.dissolve()
+    return least > SMALLEST
+
+
 def _indefinite(mechanics: System) -> Indefinite | None:
     graph = mechanics.graph
     for i, row in enumerate(mechanics.mass_matrix):
@@ -94,12 +123,17 @@ def _indefinite(mechanics: System) -> Indefinite | None:
 
 def _beside_the_largest(mechanics: System, entries: Sequence[Scalar]) -> list[Scalar]:
     """Entries in units of the largest values found of them; bounds may be far above what turns leave of them."""
+    largest = _largest(mechanics, entries)
+    return [entry / Fraction(size) if size else entry for entry, size in zip(entries, largest, strict=True)]
+
+
+def _largest(mechanics: System, entries: Sequence[Scalar]) -> list[float]:
+    """The largest magnitude found of each."""
     evaluate, source = Evaluator(entries), random.Random(SEED)
     known, ranges = parameter_values(mechanics), _ranges(mechanics, entries)
     points = ({name: source.uniform(*limits) for name, limits in ranges.items()} for _ in range(LOOKED_AT))
     found = zip(*(evaluate(known | point) for point in points), strict=True)
-    largest = (max((abs(x) for x in values if math.isfinite(x)), default=0.0) for values in found)
-    return [entry / Fraction(size) if size else entry for entry, size in zip(entries, largest, strict=True)]
+    return [max((abs(x) for x in values if math.isfinite(x)), default=0.0) for values in found]
 
 
 def _ranges(mechanics: System, values: Sequence[Scalar]) -> dict[str, tuple[float, float]]:

@@ -8,7 +8,7 @@ were rounded one by one.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property, partial
 
 from symgen.linear_algebra.guards import Guard
@@ -20,6 +20,7 @@ from symgen.mechanics.bodies import Vector3
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.newton_euler import frame_motions, inertial_wrenches
 from symgen.mechanics.system import System
+from symgen.methods.forward_dynamics.frame_forces import FrameForces, added_loads
 from symgen.methods.forward_dynamics.held_lengths import HeldLengths, LengthsApart, held_lengths
 from symgen.methods.forward_dynamics.joint_accelerations import by_joints
 from symgen.methods.forward_dynamics.loop_points import LoopPoint, acceleration, loop_points, wrenches
@@ -28,33 +29,13 @@ from symgen.methods.forward_dynamics.motions import BY_BODIES_ALONE, STRUCTURED,
 from symgen.methods.method import Method
 from symgen.methods.workspace import Workspace
 from symgen.model.expressions.expression import Number
-from symgen.model.kinematics.components import components_in, definitions_before_frames
 from symgen.model.kinematics.triples import applied, transposed, triple
-from symgen.model.kinematics.walk import Kinematics, Twist
-from symgen.model.mechanism import WORLD, component
+from symgen.model.mechanism import WORLD
 from symgen.model.model import Model
-from symgen.symbolic.calculus import gradient
 from symgen.symbolic.matrix import Vector, dot
-from symgen.symbolic.scalar import Graph, Scalar
-from symgen.symbolic.translate import translate
-from symgen.symbolic.traverse import substitute
+from symgen.symbolic.scalar import Scalar
+from symgen.validity.definiteness import definite_beside_rows
 from symgen.validity.local_inertias import definite_along_motion, definite_by_frames
-
-
-class _Loose(Kinematics[Scalar, Scalar]):
-    """Every frame moves by itself: its turning rates and the velocity of its origin are symbols."""
-
-    def __init__(self, mechanics: System) -> None:
-        super().__init__(mechanics.bodies.mechanism, mechanics.bodies.scalars)
-        self._graph: Graph = mechanics.graph
-
-    def symbols(self, name: str) -> Six:
-        """Turning rates and velocity in the frame's axes."""
-        return tuple(self._graph.stand_in(f"{name} {kind}") for kind in ("wx", "wy", "wz", "vx", "vy", "vz"))
-
-    def _own_twist(self, name: str) -> Twist[Scalar]:
-        a, b, c, x, y, z = self.symbols(name)
-        return Twist((a, b, c), (x, y, z))
 
 
 class _Loops(Problem):
@@ -116,7 +97,8 @@ class BodyEquations:
         tested = [rows[i] for i in others] if held.apart(rows) else rows
         few = 0 < len(others) <= LONGEST_PRODUCT and rank == len(rows)
         guards = reflected(graph, tuple(tested), mechanics.n, len(tested)).guards if few else ()
-        self._forces = _forces(mechanics)
+        forces = FrameForces(mechanics)
+        self._forces, self._given = forces.of_rows(), forces.given()
         columns = [factor.lowered(direct, loads) for direct, loads in self._forces]
         loops = list[tuple[LoopPoint, str]]()
         for loop in loop_points(mechanics) if turned else ():
@@ -134,19 +116,23 @@ class BodyEquations:
     def motion(self, by_bodies: bool = False) -> Motion:
         """q_ddot and lambda; `by_bodies` they are refined by Newton and Euler's equations of the bodies."""
         mechanics, problem = self._mechanics, self._problem
-        if not by_bodies and (own := by_joints(mechanics, self._factor, problem.loops, self._forces)) is not None:
+        loops, forces = problem.loops, self._forces
+        own = None if by_bodies else by_joints(mechanics, self._factor, loops, forces, self._given)
+        if own is not None:
             found = self._apart.solve(own.force, own.bias, raised=own.raised)
             return Motion(found[0], self._completed(problem.of_the_model(found[1])), self.guards)
         none = (mechanics.graph.zero,) * mechanics.n
-        given = mechanics.given_force
-        force = self._factor.lowered(given, self._inertial_forces(mechanics.qd, none, mechanics.bodies.gravity))
+        direct, loads = self._given
+        inertial = self._inertial_forces(mechanics.qd, none, mechanics.bodies.gravity)
+        force = self._factor.lowered(direct, added_loads(inertial, loads, mechanics.graph.one))
         if not by_bodies:
             found = self._apart.solve(force, problem.bias)
         else:
 
             def left_over(q_ddot: Vector, multipliers: Vector) -> Solution:
-                loads = self._inertial_forces(mechanics.qd, q_ddot, mechanics.bodies.gravity)
-                return self._less(given, loads, q_ddot, multipliers), problem.bias_at(q_ddot)
+                inertial = self._inertial_forces(mechanics.qd, q_ddot, mechanics.bodies.gravity)
+                acting = added_loads(inertial, loads, mechanics.graph.one)
+                return self._less(direct, acting, q_ddot, multipliers), problem.bias_at(q_ddot)
 
             found = self._refined(force, problem.bias, left_over)
         return Motion(found[0], self._completed(problem.of_the_model(found[1])), self.guards)
@@ -219,7 +205,7 @@ def body_equations(model: Model, generic: Genericity, turned: bool) -> tuple[Sys
         return None
     # where no row may hold what has no mass, pivots vanish only where the motion is not determined
     definite = definite_by_frames if held.others(len(rows)) else definite_along_motion
-    if not definite(mechanics, factor):
+    if not definite(mechanics, factor) and not definite_beside_rows(model):
         return None
     return mechanics, BodyEquations(mechanics, factor, held, generic.rank, turned)
 
@@ -248,50 +234,6 @@ def _along_best_axes(
         for frame in loop.frames:
             found[frame] = [factor.lowered(none, loads) for loads in wrenches(mechanics, loop, frame)]
     return min(found.items(), key=lambda one: sum(not entry.is_zero for column in one[1] for entry in column))
-
-
-def _forces(mechanics: System) -> list[tuple[Vector, Mapping[str, Six]]]:
-    """For each row of B what it does to the coordinates directly, and the wrenches it puts on frames."""
-    graph, model = mechanics.graph, mechanics.model
-    loose = _Loose(mechanics)
-    stand_ins = {name: graph.stand_in(f"component {name}") for name in components_in(model)}
-    names = _names(mechanics, stand_ins)
-    values = {symbol: mechanics.names[name] for name, symbol in stand_ins.items()}
-    rates = {name: loose.component_rate(component(name)) for name in stand_ins}
-    rows = [row for row in model.constraints if row.kind == "geometric"]
-    rows += [row for row in model.constraints if row.kind == "nonholonomic"]
-    found: list[tuple[Vector, Mapping[str, Six]]] = []
-    for row in rows:
-        expression = translate(graph, row.expression, names)
-        used = [name for name in stand_ins if row.kind == "geometric" or component(name).is_rate]
-        slopes = gradient(graph, expression, [stand_ins[name] for name in used])
-        own = gradient(graph, expression, mechanics.q if row.kind == "geometric" else mechanics.qd)
-        slopes, own = substitute(graph, slopes, values), substitute(graph, own, values)
-        speed = graph.sum(x * rates[name] for x, name in zip(slopes, used, strict=True) if not x.is_zero)
-        direct = tuple(a + b for a, b in zip(own, gradient(graph, speed, mechanics.qd), strict=True))
-        wrenches = {}
-        for frame in mechanics.bodies.mechanism.frames:
-            wrench = tuple(gradient(graph, speed, loose.symbols(frame.name)))
-            if not all(entry.is_zero for entry in wrench):
-                wrenches[frame.name] = wrench
-        found.append((direct, wrenches))
-    return found
-
-
-def _names(mechanics: System, stand_ins: Mapping[str, Scalar]) -> dict[str, Scalar]:
-    """The names of formulas with symbols in place of components of points and frames."""
-    graph, model = mechanics.graph, mechanics.model
-    names = {
-        **{c.name: node for c, node in zip(model.coordinates, mechanics.q, strict=True)},
-        **{c.rate: node for c, node in zip(model.coordinates, mechanics.qd, strict=True)},
-        **{p.name: node for p, node in zip(model.parameters, mechanics.parameters, strict=True)},
-        **{d.name: mechanics.names[d.name] for d in definitions_before_frames(model)},
-        **stand_ins,
-    }
-    for definition in model.definitions:
-        if definition.name not in names:
-            names[definition.name] = translate(graph, definition.value, names)
-    return names
 
 
 def _alone(workspace: Workspace, by_bodies: bool = False) -> tuple[System, Motion] | str:

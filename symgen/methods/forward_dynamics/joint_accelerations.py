@@ -14,9 +14,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
-from symgen.mechanics.articulated_inertias import ArticulatedFactor, Six
+from symgen.mechanics.articulated_inertias import ArticulatedFactor
 from symgen.mechanics.newton_euler import FrameMotion, joint_motions
 from symgen.mechanics.system import System
+from symgen.methods.forward_dynamics.frame_forces import Load, added_loads
 from symgen.methods.forward_dynamics.loop_points import LoopPoint, acceleration, loop_points
 from symgen.model.mechanism import WORLD
 from symgen.records import dataclass
@@ -37,11 +38,13 @@ def by_joints(
     mechanics: System,
     factor: ArticulatedFactor,
     loops: Sequence[tuple[LoopPoint, str]],
-    forces: Sequence[tuple[Vector, Mapping[str, Six]]],
+    forces: Sequence[Load],
+    given: Load,
 ) -> RightSides | None:
     """The right-hand sides; None where axes are not parallel, or rows hold other things than places of points.
 
-    `forces` are what rows do to coordinates and frames; those of `loops` are taken along the axes of a frame.
+    `forces` are what rows do to coordinates and frames, `given` what acts beside them; those of `loops` are taken along
+    the axes of a frame.
     """
     bodies = mechanics.bodies
     motions = joint_motions(bodies, mechanics.qd, bodies.gravity)
@@ -60,7 +63,8 @@ def by_joints(
     resisted = {
         name: tuple(-x for x in (*wrench.moment, *wrench.force)) for name, wrench in motions.wrenches.items()
     }
-    force, _ = factor.brought_inwards(mechanics.given_force, resisted, added)
+    direct, loads = given
+    force, _ = factor.brought_inwards(direct, added_loads(resisted, loads, mechanics.graph.one), added)
     return RightSides(force, tuple(bias), partial(factor.raised, added=added))
 
 
@@ -68,7 +72,7 @@ def _row_accelerations(
     mechanics: System,
     turning: Mapping[str, FrameMotion],
     loops: Sequence[tuple[LoopPoint, str]],
-    forces: Sequence[tuple[Vector, Mapping[str, Six]]],
+    forces: Sequence[Load],
 ) -> list[Scalar] | None:
     """What frames that turn and have no acceleration leave of each row's, or None."""
     taken = {i for loop, _ in loops for i in loop.rows.values()}
