@@ -7,7 +7,7 @@ from itertools import combinations
 
 from symgen.linear_algebra.blocks import components
 from symgen.linear_algebra.exterior import small_family, square, unit, wedge_all
-from symgen.linear_algebra.null_spaces import Reflections
+from symgen.linear_algebra.reflections import Reflections
 from symgen.symbolic.matrix import Matrix, Vector, transpose
 from symgen.symbolic.scalar import Graph, Scalar
 

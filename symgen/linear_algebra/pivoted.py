@@ -21,7 +21,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 
-from symgen.linear_algebra.null_spaces import HouseholderSpace, Reflections
+from symgen.linear_algebra.null_spaces import HouseholderSpace
+from symgen.linear_algebra.reflections import Reflections
 from symgen.symbolic.matrix import Matrix, Vector, dot, identity, transpose
 from symgen.symbolic.scalar import Graph, Scalar
 

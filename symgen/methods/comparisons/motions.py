@@ -12,7 +12,8 @@ from dataclasses import replace
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.constrained_inverse import Cholesky, diagonal_sizes
 from symgen.linear_algebra.guards import Guard
-from symgen.linear_algebra.null_spaces import NullSpace, Reflections
+from symgen.linear_algebra.null_spaces import NullSpace
+from symgen.linear_algebra.reflections import Reflections
 from symgen.methods.derivation import Derivation
 from symgen.methods.forward_dynamics.along_spaces import reactions
 from symgen.methods.forward_dynamics.held_lengths import completed_multipliers
