@@ -68,14 +68,19 @@ class FarParameters:
         given["q"] = configurations[at]
         return Far(which, far, given).only(shut[at])
 
-    def bound(self, parameter: int, low: float | None, high: float | None) -> Bound:
-        """A parameter may be by these powers of ten below and above the values that it has in the verification."""
+    def bound(self, parameter: int, low: float | None, high: float | None) -> Bound | None:
+        """A parameter may be by these powers of ten below and above the values that it has in the verification.
+
+        Where these reach 0 nothing is below them, and nothing is above 0 alone; None where no bound is left.
+        """
         declared = self._reference.model.parameters[parameter]
-        sizes = [abs(float(sample.state.parameters[parameter])) for sample in self._drawn]
-        sizes += [abs(float(end)) for end in declared.range or ()]
-        near = None if low is None or not min(sizes) else _in_digits(min(sizes) * 10.0**low, up=True)
-        far = None if high is None else _in_digits(max(sizes) * 10.0**high, up=False)
-        return Bound(declared.name, near, far)
+        values = [float(sample.state.parameters[parameter]) for sample in self._drawn]
+        values += map(float, declared.range or ())
+        least = 0.0 if min(values) <= 0 <= max(values) else min(map(abs, values))
+        most = max(map(abs, values))
+        near = _in_digits(least * 10.0**low, up=True) if low is not None and least else None
+        far = _in_digits(most * 10.0**high, up=False) if high is not None and most else None
+        return None if near is None and far is None else Bound(declared.name, near, far)
 
     def is_lost(self, kernel: Kernel, program: Program, far: Far) -> bool:
         """Whether the reference finds a state, in seven digits, at which a kernel loses more than is allowed."""
@@ -167,8 +172,8 @@ class _Bounds:
                 else None
                 for sign in SIDES
             )
-            if low is not None or high is not None:
-                yield self._far.bound(index, low, high)
+            if (bound := self._far.bound(index, low, high)) is not None:
+                yield bound
 
     def _power(self, scalar: Scalar, lost: Far, sign: int, last: float) -> float:
         """The power of ten up to which nothing is lost on one side, where something is at the `last`."""

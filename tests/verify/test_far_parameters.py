@@ -127,6 +127,48 @@ def test_what_loses_nothing_has_no_bound(expected: Expected) -> None:
     assert bounds_by_name(expected, kernel) == {}
 
 
+def with_an_offset(path: Path, of: str) -> Expected:
+    """Of the crane with its hook beside its last link by a parameter `k`, which comes before `d`."""
+    text = CRANE.replace("  d: {", f"  k: {{{of}, unit: m}}\n  d: {{").replace("[0.3, 0, 0]", "[0.3, k, 0]")
+    path.write_text(text, encoding="utf-8")
+    return Expected(load_model(path), (MULTIPLIERS,), 16, lambda _: None)
+
+
+def of_an_offset(*statements: Statement) -> Kernel:
+    loads = (Load("a", "qd", 0), Load("k", "p", 5, "k"), Load("d", "p", 6, "d"))
+    return Kernel(MULTIPLIERS, (), loads, (Block(statements, ()),), (Local(statements[-1].targets[0]),), (1,))
+
+
+@pytest.mark.parametrize("ends", ["[0, 1]", "[-1, 1]"])
+def test_a_range_that_includes_0_is_not_bounded_below(ends: str, tmp_path: Path) -> None:
+    """(k + x - x) (d + x - x) loses what is small of both; a bound of k would refuse a part of its range."""
+    small = Literal(Fraction(1, 100))
+    kernel = of_an_offset(
+        Statement(("k_x",), "add", (Local("k"), small)),
+        Statement(("k_",), "sub", (Local("k_x"), small)),
+        Statement(("d_x",), "add", (Local("d"), small)),
+        Statement(("d_",), "sub", (Local("d_x"), small)),
+        Statement(("y",), "mul", (Local("k_"), Local("d_"))),
+    )
+    expected = with_an_offset(tmp_path / "crane.yaml", f"value: 0.1, range: {ends}")
+    (bound,) = bounds_by_name(expected, kernel).values()
+    assert bound.parameter == "d"
+    assert bound.low is not None
+
+
+def test_what_is_0_at_every_state_has_no_bound(tmp_path: Path) -> None:
+    """d + k + x - x loses d and k whatever they are."""
+    large = Literal(Fraction(10**6))
+    kernel = of_an_offset(
+        Statement(("d_k",), "add", (Local("d"), Local("k"))),
+        Statement(("d_x",), "add", (Local("d_k"), large)),
+        Statement(("y",), "sub", (Local("d_x"), large)),
+    )
+    found = bounds_by_name(with_an_offset(tmp_path / "crane.yaml", "value: 0"), kernel)
+    assert "d" in found
+    assert "k" not in found
+
+
 def test_status_0_means_a_result_within_the_tolerance_however_large_the_mass(crane: Path, expected: Expected) -> None:
     result = generate(crane, Options(parts=("c",)), lambda _: None)
     program = result.programs["float64"]
