@@ -6,27 +6,22 @@ The counts are the baseline against which a change of symgen is held.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from typing import Any
 
 from symgen import __version__
 from symgen.backends.operations import count_operations
 from symgen.backends.quantities import BATCHED
-from symgen.ir.bounded import Bound, bounds_of
+from symgen.generation.draft import Draft
+from symgen.ir.bounded import Bound
 from symgen.ir.given_trig import given_trig
-from symgen.ir.kernel import Kernel, Program, Scalar
+from symgen.ir.kernel import Kernel
 from symgen.ir.prepare import prepare
-from symgen.mechanics.structure import Structure
 from symgen.methods.selection import MethodChoice
-from symgen.model.model import Model
-from symgen.quantities.select import Selection
 
 
-def derivation_json(
-    model: Model, derivations: Selection, structure: Structure, programs: Mapping[Scalar, Program]
-) -> str:
-    """The file's text; keys in a fixed order.  What is counted is that of float64."""
-    program = programs["float64"]
+def derivation_json(draft: Draft) -> str:
+    """The file's text; keys in a fixed order.  What is counted is that of float64, with the checks of bounds."""
+    model, derivations, structure, program = draft.model, draft.derivations, draft.structure, draft.written["float64"]
     generic = derivations.generic
     ways = {choice.quantity: choice for choice in derivations.choices}
     rejected, left_out = derivations.rejected, derivations.left_out
@@ -38,7 +33,7 @@ def derivation_json(
             "way": choice.way,
             **({"form": choice.form} if choice.form else {}),
             **({"twice_the_digits": list(choice.wide)} if choice.wide else {}),
-            **_bounds(kernel.name, programs),
+            **_bounds(draft, kernel.name),
             "counted_cost": dict(choice.costs),
             "operations": _operations(kernel),
             "statuses": sorted({check.status.name for block in kernel.blocks for check in block.checks}),
@@ -88,11 +83,10 @@ def derivation_json(
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
 
 
-def _bounds(quantity: str, programs: Mapping[Scalar, Program]) -> dict[str, Any]:
-    """The bounds of parameters by type and name, where a kernel has any."""
-    every = ((scalar, kernel) for scalar, program in programs.items() for kernel in program.kernels)
-    kernels = ((scalar, kernel) for scalar, kernel in every if kernel.name == quantity)
-    found = {scalar: {b.parameter: _ends(b) for b, _ in bounds_of(kernel)} for scalar, kernel in kernels}
+def _bounds(draft: Draft, quantity: str) -> dict[str, Any]:
+    """The bounds of parameters by type and name, where a kernel of the quantity has any."""
+    bounds = {scalar: draft.bounds.get(scalar, {}).get(quantity, ()) for scalar in draft.kernels(quantity)}
+    found = {scalar: {bound.parameter: _ends(bound) for bound in own} for scalar, own in bounds.items()}
     return {"bounds": found} if any(found.values()) else {}
 
 

@@ -50,7 +50,7 @@ def files_of(draft: Draft, options: Options, sources: Mapping[str, str]) -> dict
 
         with working("drivers for proofs"):
             files |= emit_proofs(draft.model, programs)
-    files["derivation.json"] = derivation_json(draft.model, draft.derivations, draft.structure, draft.written)
+    files["derivation.json"] = derivation_json(draft)
     return files
 
 
