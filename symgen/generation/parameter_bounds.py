@@ -24,7 +24,7 @@ class ParameterBounds:
         for name in (kernel.name for kernel in draft.program.kernels):
             kernels, known = draft.kernels(name), self._known.get(name)
             if known is None or any(kernel is not known[0].get(scalar) for scalar, kernel in kernels.items()):
-                known = self._known[name] = kernels, self._far.bounds(name, draft.programs)
+                known = self._known[name] = kernels, self._far.bounds(kernels, draft.programs)
             for scalar, bounds in known[1].items():
                 if bounds:
                     found[scalar][name] = bounds

@@ -43,17 +43,18 @@ class FarParameters:
         self._reference, self._drawn = expected.reference, expected.drawn
         self._loops = Loops(expected.reference.system, [float(x) for x in expected.reference.literals()])
 
-    def bounds(self, quantity: str, programs: Mapping[Scalar, Program]) -> dict[Scalar, tuple[Bound, ...]]:
-        """The bounds for the kernels of a quantity: of parameters that they read, or that say where loops close.
+    def bounds(
+        self, kernels: Mapping[Scalar, Kernel], programs: Mapping[Scalar, Program]
+    ) -> dict[Scalar, tuple[Bound, ...]]:
+        """The bounds for the kernels of one quantity: of parameters that they read, or that say where loops close.
 
-        Pairs have digits enough in float64.
+        None where that of float64 works with pairs of numbers, which have digits enough.
         """
-        found = ((scalar, kernel) for scalar, program in programs.items() for kernel in program.kernels)
-        kernels = {scalar: kernel for scalar, kernel in found if kernel.name == quantity}
-        read = {load.index for load in kernels["float64"].loads if load.argument == "p"} | self._leading
-        if works_with_pairs(kernels["float64"]) or not read:
+        double = kernels["float64"]
+        read = {load.index for load in double.loads if load.argument == "p"} | self._leading
+        if works_with_pairs(double) or not read:
             return {}
-        with working(f"how far parameters of {quantity} may be"):
+        with working(f"how far parameters of {double.name} may be"):
             return _Bounds(self, kernels, programs).of(sorted(read))
 
     def led(self, steps: Sequence[tuple[int, float]], states: int) -> Far:

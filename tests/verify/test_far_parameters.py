@@ -75,8 +75,9 @@ def straight(*statements: Statement) -> Kernel:
 
 
 def bounds_by_name(expected: Expected, kernel: Kernel, scalar: Scalar = "float64") -> dict[str, Bound]:
+    kernels = dict.fromkeys(SCALARS, kernel)
     programs = {scalar: Program(scalar, None, (kernel,)) for scalar in SCALARS}
-    return {bound.parameter: bound for bound in FarParameters(expected).bounds(kernel.name, programs)[scalar]}
+    return {bound.parameter: bound for bound in FarParameters(expected).bounds(kernels, programs)[scalar]}
 
 
 def test_what_hides_the_rest_is_bounded_above(expected: Expected) -> None:
