@@ -25,7 +25,7 @@ class ParameterBounds:
             kernels, known = draft.kernels(name), self._known.get(name)
             if known is None or any(kernel is not known[0].get(scalar) for scalar, kernel in kernels.items()):
                 known = self._known[name] = kernels, self._far.bounds(kernels, draft.programs)
-            for scalar, bounds in known[1].items():
-                if bounds:
+            for scalar in kernels:
+                if bounds := known[1].get(scalar):
                     found[scalar][name] = bounds
         return replace(draft, bounds=found)

@@ -12,6 +12,7 @@ import pytest
 
 from symgen.generation.draft import draft_of
 from symgen.generation.notices import notices
+from symgen.generation.parameter_bounds import ParameterBounds
 from symgen.generation.recorded import as_recorded
 from symgen.generation.results import Options
 from symgen.ir.bounded import Bound
@@ -200,6 +201,14 @@ def test_a_bound_is_recorded_told_and_taken_up_again(crane: Path, tmp_path: Path
     (tmp_path / "crane" / "derivation.json").write_text(str(result.files["derivation.json"]), encoding="utf-8")
     again = as_recorded(result.model, result.model.outputs, Options(measured=tmp_path))
     assert again.written == result.programs
+
+
+def test_a_type_that_is_left_out_has_no_bounds(crane: Path, expected: Expected) -> None:
+    bounds = ParameterBounds(expected)
+    draft = bounds.of(draft_of(load_model(crane), (MULTIPLIERS,), Options()))
+    rest = bounds.of(draft.without(MULTIPLIERS, ("float32",), "lost"))
+    assert [list(every) for every in draft.bounds.values()] == [[MULTIPLIERS], [MULTIPLIERS]]
+    assert rest.bounds == {"float64": draft.bounds["float64"], "float32": {}}
 
 
 def test_a_bound_close_by_is_told(crane: Path) -> None:
