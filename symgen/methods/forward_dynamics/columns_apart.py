@@ -14,7 +14,7 @@ from functools import cached_property
 
 from symgen.mechanics.never_zero import Definite
 from symgen.methods.forward_dynamics.motion import Motion, Problem
-from symgen.methods.forward_dynamics.schur import Factor, OrderedCholesky
+from symgen.methods.forward_dynamics.schur import Factor, OrderedCholesky, elimination_order
 from symgen.records import dataclass
 from symgen.symbolic.matrix import Matrix, Vector, dot
 from symgen.symbolic.scalar import Scalar
@@ -99,11 +99,11 @@ def apart(problem: Problem) -> Apart | None:
     mechanics = problem.mechanics
     if mechanics.change is None or not problem.rows:
         return None
-    definite, factor = Definite(mechanics), OrderedCholesky(problem.graph, problem.mass_matrix)
+    definite, order = Definite(mechanics), elimination_order(problem.mass_matrix)
     columns = [list(column) for column in zip(*problem.rows, strict=True)]
     shares: dict[int, Share] = {}
     for child, parent in enumerate(mechanics.change.parents):
-        if parent is None or parent in shares or factor.order.index(child) > factor.order.index(parent):
+        if parent is None or parent in shares or order.index(child) > order.index(parent):
             continue
         found = _beside(definite, *(tuple(row[j] for row in problem.rows) for j in (parent, child)))
         if found is not None:

@@ -130,16 +130,20 @@ class Elimination:
         return self._orthogonal.solve(force, asked, self._again)
 
 
+def elimination_order(mass_matrix: Matrix) -> list[int]:
+    """The coordinates from those that carry least to those that carry most: outer links before inner ones."""
+    return sorted(range(len(mass_matrix)), key=lambda i: (mass_matrix[i][i].size, -i))
+
+
 class OrderedCholesky:
-    """G = L D L^T from the coordinates that carry least to those that carry most: outer links before inner ones.
+    """G = L D L^T in the order of elimination.
 
     What an inner coordinate holds of the outer ones is taken off again as it stands, and exactly where nothing else is
     in between; the other way round the pivot of a light link is a difference of heavy ones.
     """
 
     def __init__(self, graph: Graph, mass_matrix: Matrix) -> None:
-        n = len(mass_matrix)
-        self.order = sorted(range(n), key=lambda i: (mass_matrix[i][i].size, -i))
+        self.order = elimination_order(mass_matrix)
         turned = tuple(tuple(mass_matrix[i][j] for j in self.order) for i in self.order)
         self._factor = Cholesky(graph, turned, diagonal_sizes(graph, turned))
         self.pivots: Sequence[Scalar] = self._factor.pivots
