@@ -97,17 +97,12 @@ def _near_bounds(draft: Draft) -> Iterator[Notice]:
     """That parameters may not be far from their values, where they may hardly be further than usual."""
     values = {name: abs(float(value)) for name, value in default_values(draft.model).items()}
     for quantity in (kernel.name for kernel in draft.program.kernels):
-        bounds = [bound for every in draft.bounds.values() for bound in every.get(quantity, ())]
-        below = (b for b in bounds if b.low is not None and CLOSE_BY * b.low > values[b.parameter])
-        above = (b for b in bounds if b.high is not None and b.high < CLOSE_BY * values[b.parameter])
-        near = dict.fromkeys(
-            (
-                *(f"{b.parameter} below {float(b.low or 0):g}" for b in below),
-                *(f"{b.parameter} above {float(b.high or 0):g}" for b in above),
-            )
-        )
-        if near:
-            beyond = ", ".join(near)
+        bounds = [(b, values[b.parameter]) for every in draft.bounds.values() for b in every.get(quantity, ())]
+        below = [f"{b.parameter} below {float(b.low):g}" for b, size in bounds if b.low and b.low * CLOSE_BY > size]
+        above = [f"{b.parameter} above {float(b.high):g}" for b, size in bounds if b.high and b.high < size * CLOSE_BY]
+        if below or above:
+            # a bound of both types is told once
+            beyond = ", ".join(dict.fromkeys((*below, *above)))
             yield Notice(f"{quantity} refuses {beyond}: it would lose digits; a `range` has it verified further")
 
 
