@@ -71,7 +71,9 @@ def _checks(size: Local, bound: Bound) -> Iterator[Check]:
         yield Check(Status.PARAMETER_RANGE, Literal(bound.high), size, inclusive=True)
 
 
-def _new(name: str, taken: Container[str]) -> str:
+def _new(name: str, taken: set[str]) -> str:
+    """A name that was not taken; now it is."""
     while name in taken:
         name += "_"
+    taken.add(name)
     return name

@@ -79,10 +79,12 @@ def test_blocks_that_are_alike_stay_so() -> None:
     assert second == PLAIN.blocks[2]
 
 
-def test_new_names_are_new() -> None:
+@pytest.mark.parametrize("read", [True, False])
+def test_new_names_are_new(read: bool) -> None:
     loads = (PLAIN.loads[0], PLAIN.loads[1], Load("c", "p", 1, "offset"))
-    taken = replace(PLAIN, loads=(*loads, Load("size_of_c", "p", 2, "another")))
-    made = bounded(taken, (Bound("offset", None, Fraction(8)),), (), ())
+    taken = replace(PLAIN, loads=(*loads, Load("size_of_c", "p", 2, "size_of_c")) if read else loads)
+    bounds = (Bound("offset", None, Fraction(8)), Bound("size_of_c", None, Fraction(8)))
+    made = bounded(taken, bounds, ("mass", "offset", "size_of_c"), {"size_of_c"})
     names = [target for statement in made.statements for target in statement.targets]
     names += [load.local for load in made.loads]
     assert len(names) == len(set(names))
