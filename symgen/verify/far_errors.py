@@ -57,11 +57,13 @@ class FarErrors:
     def units(self, far: Far) -> dict[Scalar, Lanes]:
         """By scalar type, a number for each state; 0 where a kernel refuses with reason."""
         own, unit = self._estimated.with_units(far.given)
-        found: dict[Scalar, Lanes] = {"float64": own / unit}
+        estimated = own / unit
+        found: dict[Scalar, Lanes] = {"float64": estimated}
         if self._single is not None:
-            measured = self._measured(self._single, far) / (float(UNIT_ROUNDOFF["float32"]) * unit)
-            plain = not works_with_pairs(self._single)
-            found["float32"] = np.maximum(measured, own / unit) if plain else measured
+            off, size = self._measured(self._single, far), float(UNIT_ROUNDOFF["float32"]) * unit
+            # a unit is infinite where the kernel of float64 refuses, or where squares of slopes are too large for it
+            measured = np.divide(off, size, out=np.zeros_like(off), where=np.isfinite(size))
+            found["float32"] = measured if works_with_pairs(self._single) else np.maximum(measured, estimated)
         return found
 
     def _measured(self, kernel: Kernel, far: Far) -> Lanes:

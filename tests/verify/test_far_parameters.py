@@ -122,6 +122,15 @@ def test_what_float32_does_not_hold_is_bounded(expected: Expected) -> None:
     assert bounds_by_name(expected, kernel, "float64") == {}
 
 
+@pytest.mark.filterwarnings("error")
+def test_a_type_may_refuse_where_nothing_is_estimated(expected: Expected) -> None:
+    """The squares of errors of m^18 are no numbers of float64 any more, m^18 none of float32."""
+    powers = [Statement((f"p{k}",), "mul", (Local(f"p{k - 1}" if k > 2 else "m"), Local("m"))) for k in range(2, 19)]
+    bound = bounds_by_name(expected, straight(*powers), "float32")[MASS]
+    assert bound.high is not None
+    assert 10 < bound.high < 1e3
+
+
 def test_what_loses_nothing_has_no_bound(expected: Expected) -> None:
     kernel = straight(
         Statement(("cm",), "mul", (Local("c"), Local("m"))), Statement(("y",), "div", (Local("cm"), Local("d")))
