@@ -73,16 +73,6 @@ class PivotedReflections(Reflections):
         """Their own lengths: a row of which less is left than of those before is made of little of them."""
         return list(lengths)
 
-    def _add(self, k: int, tail: Vector) -> None:
-        graph = self.graph
-        squared = graph.sum(entry * entry for entry in tail)
-        norm = graph.function("sqrt", (squared,))
-        signed = graph.function("copysign", (norm, tail[0]))
-        reach = norm * (norm + graph.function("abs", (tail[0],)))
-        factor = graph.function("ratio_or_zero", (graph.one, reach)) if self.everywhere else 1 / reach
-        self.reflectors.append((k, (tail[0] + signed, *tail[1:]), factor))
-        self.pivots.append(squared)
-
 
 def _candidates(rows: Matrix, rank: int, locked: Sequence[int]) -> Iterator[Sequence[int]]:
     """For each reflection the rows it may be made from: those that lock coordinates first, then the others."""
@@ -122,7 +112,6 @@ class PivotedSpace(HouseholderSpace):
     ) -> None:
         self.graph, self.rows, self.n, self.rank, self.locked = graph, rows, n, rank, locked
         self.delta = n - rank
-        self._everywhere = everywhere
         self._pivoted = PivotedReflections(graph, rows, n, rank, everywhere, own, locked)
         self.reflections = self._pivoted
 
@@ -134,7 +123,7 @@ class PivotedSpace(HouseholderSpace):
     @cached_property
     def _inner(self) -> Reflections:
         columns = transpose(self._pivoted.coefficients, self.rank)
-        return Reflections(self.graph, columns, len(self.rows), self._everywhere)
+        return Reflections(self.graph, columns, len(self.rows), self._pivoted.everywhere)
 
     @property
     def square(self) -> Scalar:

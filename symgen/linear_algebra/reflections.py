@@ -35,16 +35,20 @@ class Reflections:
                 self.pivots.append(tail[0] * tail[0])
                 self.triangle.append((*y[:k], tail[0]))
                 continue
-            squared = graph.sum(entry * entry for entry in tail)
-            norm = graph.function("sqrt", (squared,))
-            head = tail[0]
-            # the sign that adds: no cancellation in the first component
-            signed = norm if head.is_zero else graph.function("copysign", (norm, head))
-            reach = norm * (norm + graph.function("abs", (head,)))
-            factor = graph.function("ratio_or_zero", (graph.one, reach)) if everywhere else 1 / reach
-            self.reflectors.append((k, (head + signed, *tail[1:]), factor))
-            self.pivots.append(squared)
-            self.triangle.append((*y[:k], -signed))
+            self.triangle.append((*y[:k], -self._add(k, tail)))
+
+    def _add(self, k: int, tail: Vector) -> Scalar:
+        """One more reflection, of entries from place k on, which makes (-s, 0, ...) of `tail`: s."""
+        graph, head = self.graph, tail[0]
+        squared = graph.sum(entry * entry for entry in tail)
+        norm = graph.function("sqrt", (squared,))
+        # the sign that adds: no cancellation in the first component
+        signed = norm if head.is_zero else graph.function("copysign", (norm, head))
+        reach = norm * (norm + graph.function("abs", (head,)))
+        factor = self._inverse(reach)
+        self.reflectors.append((k, (head + signed, *tail[1:]), factor))
+        self.pivots.append(squared)
+        return signed
 
     def combinations(self, lengths: Sequence[Scalar]) -> list[Scalar]:
         """The squared lengths of what each pivot is made of, from those of the columns.
