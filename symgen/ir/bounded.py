@@ -13,7 +13,7 @@ from symgen.records import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """The magnitude of a parameter is at least `low` and at most `high`; None where nothing bounds it."""
+    """The magnitude of a parameter, in its unit, is at least `low` and at most `high`; None where nothing bounds it."""
 
     parameter: str
     low: Fraction | None
@@ -21,10 +21,11 @@ class Bound:
 
 
 def bounded(kernel: Kernel, bounds: Sequence[Bound], parameters: Sequence[str], positive: Container[str]) -> Kernel:
-    """The kernel with status PARAMETER_RANGE where one of the `parameters`, of any sign if not `positive`, is beyond.
+    """The kernel with status PARAMETER_RANGE where a parameter is beyond its bound, of any sign if not `positive`.
 
     That is found before anything else: where numbers are so far apart, other statuses may come of rounding alone.  It
-    may be a parameter that says where the coordinates are and that the kernel itself does not need.
+    may be a parameter that says where the coordinates are and that the kernel itself does not need; `parameters` are
+    the names of all, in the order of the model.
     """
     locals_ = {load.member: load.local for load in kernel.loads if load.argument == "p"}
     taken = {load.local for load in kernel.loads}

@@ -27,11 +27,18 @@ from symgen.verify.loops_in_lanes import Loops
 from symgen.verify.reference.reference import ReferenceValueError, State
 from symgen.verify.tolerance import FACTOR, expectations
 
-# Powers of ten, looked at one by one and then in quarters; a bound is given in two digits.
-FURTHEST, NEAREST, DIGITS = 9, 0.25, 2
+# Powers of ten by which a parameter is away at most: they are looked at one by one.
+FURTHEST = 9
+# Of a power of ten: steps in which the first one that is too far is looked at again.  A bound is one before the loss.
+QUARTER = 0.25
+# Digits in which a bound is given.
+DIGITS = 2
+# Below and above, as signs of powers.
 SIDES = (-1, 1)
-# States at which that is looked at, fewer for long kernels: so many numbers are held at a time, and worked out at most.
-STATES, HELD, MOST = 4, 4_000_000, 60_000_000
+# States at which that is looked at, fewer for long kernels.
+STATES = 4
+# Numbers that are held at a time, and that are worked out for the powers of one kernel.
+HELD, MOST = 4_000_000, 60_000_000
 # Up to this power the reference judges so many of the worst.
 JUDGED_UP_TO, JUDGED = 1.0, 2
 
@@ -58,14 +65,14 @@ class FarParameters:
             return _Bounds(self, kernels, programs).of(sorted(read))
 
     def led(self, steps: Sequence[tuple[int, float]], states: int) -> Far:
-        """States with one parameter far away, by a power of ten, for each of the steps as far as the loops close."""
+        """States with one parameter far away, for each step (which, and by what power of ten) as far as loops close."""
         places = range(min(states, len(self._starts["p"])))
         table = [(which, power, place) for which, power in steps for place in places]
         which, far, place = (np.array(column) for column in zip(*table, strict=True))
         given = {name: rows[place] for name, rows in self._starts.items()}
         given["p"][np.arange(len(which)), which] *= 10.0**far
         configurations, shut = self._closed
-        at = (far > 0).astype(int), np.rint(np.abs(far) / NEAREST).astype(int) - 1, which, place
+        at = (far > 0).astype(int), np.rint(np.abs(far) / QUARTER).astype(int) - 1, which, place
         given["q"] = configurations[at]
         return Far(which, far, given).only(shut[at])
 
@@ -109,16 +116,16 @@ class FarParameters:
 
         By side, quarter of a power of ten, parameter and state: each step starts where the one before it ended.
         """
-        starts, steps = self._starts, round(FURTHEST / NEAREST)
+        starts, steps = self._starts, round(FURTHEST / QUARTER)
         count, parameters = starts["p"].shape
         which, place = np.arange(parameters).repeat(count), np.tile(np.arange(count), parameters)
         configurations = np.empty((2, steps, len(which), starts["q"].shape[1]))
         shut = np.empty((2, steps, len(which)), dtype=bool)
-        for side, sign in enumerate((-1, 1)):
+        for side, sign in enumerate(SIDES):
             q, closed = starts["q"][place], np.ones(len(which), dtype=bool)
             for step in range(steps):
                 p = starts["p"][place]
-                p[np.arange(len(which)), which] *= 10.0 ** (sign * NEAREST * (step + 1))
+                p[np.arange(len(which)), which] *= 10.0 ** (sign * QUARTER * (step + 1))
                 with np.errstate(all="ignore"):
                     q, now = self._loops.newton(q, p)
                 closed &= now.all(axis=1)
@@ -146,7 +153,7 @@ class _Bounds:
         self._size = len(kernels["float64"].statements) + 1
 
     def of(self, read: Sequence[int]) -> dict[Scalar, tuple[Bound, ...]]:
-        """Of these parameters, where there are any."""
+        """By scalar type, those of the parameters that are `read`, given by their places."""
         states = max(1, min(STATES, MOST // (self._size * len(read) * 2 * FURTHEST)))
         decades = [(index, sign * power) for index in read for sign in SIDES for power in range(1, FURTHEST + 1)]
         lost = self._lost(self._far.led(decades, states))
@@ -155,7 +162,7 @@ class _Bounds:
             (index, sign * (power - 1 + quarter))
             for found in first.values()
             for (index, sign), power in found.items()
-            for quarter in np.arange(NEAREST, 1 + NEAREST, NEAREST).tolist()
+            for quarter in np.arange(QUARTER, 1 + QUARTER, QUARTER).tolist()
         }
         if not closer:
             return dict.fromkeys(first, ())
@@ -182,7 +189,7 @@ class _Bounds:
         for power in powers:
             worst = lost.only(np.abs(lost.powers) == power).only(slice(JUDGED))
             if power > JUDGED_UP_TO or self._far.is_lost(self._kernels[scalar], self._programs[scalar], worst):
-                return sign * max(min(power, last) - NEAREST, NEAREST)
+                return sign * max(min(power, last) - QUARTER, QUARTER)
         return sign * last
 
     def _lost(self, far: Far) -> dict[Scalar, Far]:
@@ -207,7 +214,7 @@ def _nearest(far: Far) -> dict[tuple[int, int], float]:
 
 
 def _in_digits(value: float, up: bool) -> Fraction:
-    """A positive number in few digits."""
+    """A positive number in DIGITS digits, rounded up or down."""
     size = Fraction(10) ** (floor(log10(value)) - DIGITS + 1)
     parts = Fraction(value) / size
     return size * (-floor(-parts) if up else floor(parts))

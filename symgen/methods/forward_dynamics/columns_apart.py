@@ -85,6 +85,7 @@ class _Turned(OrderedCholesky):
         lower = list(self._factor.lower)
         for parent, share in shares.items():
             row, k = lower[place[parent]], place[share.child]
+            # beside the pivot, where what both columns hold of outer links cancels
             (rest,) = problem.multiplied_out([(row[k] - share.amount) * self.pivots[k]])
             before = (x - share.amount * y for x, y in zip(row[:k], self._factor.lower[k], strict=True))
             lower[place[parent]] = [*before, rest / self.pivots[k], *row[k + 1 :]]
