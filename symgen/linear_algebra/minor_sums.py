@@ -1,4 +1,7 @@
-"""Sums of squared minors of a size: every minor where they are few, else of the matrix brought to two diagonals."""
+"""Sums of squared minors of a size: every minor where they are few, else of the matrix brought to two diagonals.
+
+Of columns that are orthogonal they are sums of products of squared lengths, which is the most they can be.
+"""
 
 from __future__ import annotations
 
@@ -59,3 +62,11 @@ def _two_diagonals(graph: Graph, columns: Matrix) -> list[Scalar]:
         left = list(transpose(tuple(map(turn.apply_transposed, rows[1:])), len(rows[0])))
         left = [column for column in left if column]
     return found
+
+
+def elementary_symmetric(graph: Graph, values: Sequence[Scalar], degree: int) -> Scalar:
+    """The sum of the products of `degree` of the values."""
+    sums = [graph.one, *(graph.zero for _ in range(degree))]
+    for value in values:
+        sums = [sums[0], *(sums[k] + value * sums[k - 1] for k in range(1, degree + 1))]
+    return sums[degree]

@@ -171,11 +171,3 @@ def reflected(
     if rank == len(rows):
         return HouseholderSpace(graph, rows, n, everywhere, locked)
     return PivotedSpace(graph, rows, n, rank, everywhere, own, locked)
-
-
-def elementary_symmetric(graph: Graph, values: Sequence[Scalar], degree: int) -> Scalar:
-    """The sum of the products of `degree` of the values."""
-    sums = [graph.one, *(graph.zero for _ in range(degree))]
-    for value in values:
-        sums = [sums[0], *(sums[k] + value * sums[k - 1] for k in range(1, degree + 1))]
-    return sums[degree]
