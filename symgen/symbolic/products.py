@@ -81,11 +81,11 @@ class Products:
         self._sums = {value: a for value, a in self._sums.items() if stays(a)}
 
     def combined(self, a: Scalar, b: Scalar, sign: int) -> Scalar | None:
-        """a + sign * b where the two are products that differ in constants or in a pair of sines and cosines only."""
+        """a + sign * b where the two are products that differ in constants or in two sines and cosines only."""
         (k1, left), (k2, right) = self.monomial(a), self.monomial(b)
         if left == right and k1:
             return a * (Fraction(k1 + sign * k2) / k1)
-        if abs(k1) != abs(k2) or a not in self._turning or b not in self._turning:
+        if abs(k1) != abs(k2) or (a not in self._turning and b not in self._turning):
             return None
         # factors of either side; what one of them alone is divided by stays
         more = {f: left.get(f, 0) - right.get(f, 0) for f in {**left, **right}}
@@ -93,9 +93,13 @@ class Products:
             return None
         lost = [f for f, count in more.items() for _ in range(count)]
         gained = [f for f, count in more.items() for _ in range(-count)]
-        if len(lost) != 2 or len(gained) != 2 or not all(f.op in ("sin", "cos") for f in (*lost, *gained)):
+        if not all(f.op in ("sin", "cos") for f in (*lost, *gained)):
             return None
-        angle = self._addition_theorem(lost, gained, sign if k1 == k2 else -sign)
+        sign_of_both = sign if k1 == k2 else -sign
+        if len(lost) == len(gained) == 2:
+            angle = self._addition_theorem(lost, gained, sign_of_both)
+        else:
+            angle = self._other_leg(lost, gained) if sign_of_both < 0 else None
         if angle is None:
             return None
         rest = {f: common for f in more if (common := min(left.get(f, 0), right.get(f, 0)))}
@@ -122,6 +126,15 @@ class Products:
             for _ in range(-count):
                 product = product / factor
         return product
+
+    def _other_leg(self, lost: list[Scalar], gained: list[Scalar]) -> Scalar | None:
+        """1 - s s as c c, and s s - 1 as -c c: where s is nearly 1, the difference holds no digit of c."""
+        match lost, gained:
+            case ([], [one, other]) | ([one, other], []) if one is other:
+                leg = self._graph.trig("cos" if one.op == "sin" else "sin", one.args[0])
+                return -(leg * leg) if lost else leg * leg
+            case _:
+                return None
 
     def _addition_theorem(self, lost: list[Scalar], gained: list[Scalar], sign: int) -> Scalar | None:
         """t1 t2 + sign * t3 t4 with t sines and cosines of the same two angles, as one sine or cosine."""
