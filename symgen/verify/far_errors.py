@@ -15,7 +15,7 @@ from math import dist, inf
 import numpy as np
 
 from symgen.ir.interpret import round_literal
-from symgen.ir.kernel import UNIT_ROUNDOFF, Block, Kernel, Literal, Operand, Program, Scalar
+from symgen.ir.kernel import UNIT_ROUNDOFF, Block, Kernel, Literal, Operand, Program, Scalar, Status
 from symgen.ir.wide_functions import works_with_pairs
 from symgen.verify.lanes import Lanes, RoundingErrors
 from symgen.verify.many_states import run_many
@@ -48,21 +48,27 @@ class FarErrors:
     """Those of the kernels of one quantity, of which that of float64 works with plain numbers."""
 
     def __init__(self, kernels: Mapping[Scalar, Kernel], programs: Mapping[Scalar, Program]) -> None:
-        self._programs = programs
-        self._estimated = RoundingErrors(kernels["float64"])
+        self._programs, self._double = programs, kernels["float64"]
+        self._estimated = RoundingErrors(self._double)
         self._single = kernels.get("float32")
         if self._single is not None:
             self._beside = _with_numbers_of_float32(self._single)
 
     def units(self, far: Far) -> dict[Scalar, Lanes]:
-        """By scalar type, a number for each state; 0 where a kernel refuses with reason."""
+        """By scalar type, a number for each state; 0 where a kernel refuses with reason.
+
+        That masses far apart seem to leave the motion undetermined is no reason: infinitely many units.
+        """
         own, unit = self._estimated.with_units(far.given)
         estimated = own / unit
+        refused = np.flatnonzero(~np.isfinite(unit))
+        made = run_many(self._double, self._programs["float64"].sincos, "float64", far.only(refused).rounded)
+        estimated[refused] = [inf if status is Status.MASS_RANK else 0.0 for status, _ in made]
         found: dict[Scalar, Lanes] = {"float64": estimated}
         if self._single is not None:
             off, size = self._measured(self._single, far), float(UNIT_ROUNDOFF["float32"]) * unit
             # a unit is infinite where the kernel of float64 refuses, or where squares of slopes are too large for it
-            measured = np.divide(off, size, out=np.zeros_like(off), where=np.isfinite(size))
+            measured = np.divide(off, size, out=np.where(np.isfinite(off), 0.0, off), where=np.isfinite(size))
             found["float32"] = measured if works_with_pairs(self._single) else np.maximum(measured, estimated)
         return found
 
@@ -72,7 +78,7 @@ class FarErrors:
         exact = run_many(self._beside, programs["float64"].sincos, "float64", given)
         made = run_many(kernel, programs["float32"].sincos, "float32", given)
         off = [
-            0.0 if refused else inf if status else dist(y, z)
+            0.0 if refused and status is not Status.MASS_RANK else inf if status else dist(y, z)
             for (refused, y), (status, z) in zip(exact, made, strict=True)
         ]
         return np.array(off)

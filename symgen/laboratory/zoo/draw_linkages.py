@@ -125,6 +125,7 @@ def parallelogram_bodies(dice: Dice) -> Description:
     count = dice.whole(2, 4)
     sketch.mark("parallelogram with several cranks")
     cranks = [_joint(sketch, f"crank_{k}", f"a_{k}", angle, at=[_times(k, d), "0", "0"]) for k in range(count + 1)]
+    turned = list(sketch.start)
     for crank in cranks:
         sketch.block("bodies")[crank] = {"mass": m, "com": [f"{bar}/2", "0", "0"], "inertia": {"zz": "0.02"}}
     starts = range(count) if in_a_row else (0,)
@@ -138,7 +139,7 @@ def parallelogram_bodies(dice: Dice) -> Description:
             sketch.block("points")[end] = {"frame": rod, "at": [_times(other - k, d), "0", "0"]}
             sketch.mark("loop in the plane")
             sketch.block("loops")[sketch.name(f"pin_{k}_{other}")] = {"type": "point", "between": [end, tip]}
-    drives = dice.sample([name for name in sketch.start if name.startswith("a_")], dice.whole(1, 3)) or ["a_0"]
+    drives = dice.sample(turned, dice.whole(1, 3))
     for k, name in enumerate(drives, 1):
         sketch.block("inputs")[sketch.name(f"u_{k}")] = {"joint": name}
     return finish(sketch)
