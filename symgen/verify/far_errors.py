@@ -45,11 +45,11 @@ class Far:
 
 
 class FarErrors:
-    """Those of the kernels of one quantity, of which that of float64 works with plain numbers."""
+    """Those of the kernels of one quantity; of pairs, which have digits enough in float64, refusals alone."""
 
     def __init__(self, kernels: Mapping[Scalar, Kernel], programs: Mapping[Scalar, Program]) -> None:
-        self._programs, self._double = programs, kernels["float64"]
-        self._estimated = RoundingErrors(self._double)
+        self._programs, self._kernels, double = programs, kernels, kernels["float64"]
+        self._estimated = None if works_with_pairs(double) else RoundingErrors(double)
         self._single = kernels.get("float32")
         if self._single is not None:
             self._beside = _with_numbers_of_float32(self._single)
@@ -59,11 +59,12 @@ class FarErrors:
 
         That masses far apart seem to leave the motion undetermined is no reason: infinitely many units.
         """
+        if self._estimated is None:
+            return {scalar: self._refusals(scalar, far) for scalar in self._kernels}
         own, unit = self._estimated.with_units(far.given)
         estimated = own / unit
         refused = np.flatnonzero(~np.isfinite(unit))
-        made = run_many(self._double, self._programs["float64"].sincos, "float64", far.only(refused).rounded)
-        estimated[refused] = [inf if status is Status.MASS_RANK else 0.0 for status, _ in made]
+        estimated[refused] = self._refusals("float64", far.only(refused))
         found: dict[Scalar, Lanes] = {"float64": estimated}
         if self._single is not None:
             off, size = self._measured(self._single, far), float(UNIT_ROUNDOFF["float32"]) * unit
@@ -71,6 +72,11 @@ class FarErrors:
             measured = np.divide(off, size, out=np.where(np.isfinite(off), 0.0, off), where=np.isfinite(size))
             found["float32"] = measured if works_with_pairs(self._single) else np.maximum(measured, estimated)
         return found
+
+    def _refusals(self, scalar: Scalar, far: Far) -> Lanes:
+        """Infinite where a kernel finds masses singular, 0 elsewhere."""
+        made = run_many(self._kernels[scalar], self._programs[scalar].sincos, scalar, far.rounded)
+        return np.array([inf if status is Status.MASS_RANK else 0.0 for status, _ in made])
 
     def _measured(self, kernel: Kernel, far: Far) -> Lanes:
         """How far float32 is off; infinitely where it refuses what the same operations do in float64."""

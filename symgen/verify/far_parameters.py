@@ -17,7 +17,6 @@ import numpy as np
 
 from symgen.ir.bounded import Bound
 from symgen.ir.kernel import Kernel, Program, Scalar
-from symgen.ir.wide_functions import works_with_pairs
 from symgen.runtime.activity import working
 from symgen.verify.expected import Expected
 from symgen.verify.far_errors import Far, FarErrors
@@ -53,13 +52,10 @@ class FarParameters:
     def bounds(
         self, kernels: Mapping[Scalar, Kernel], programs: Mapping[Scalar, Program]
     ) -> dict[Scalar, tuple[Bound, ...]]:
-        """The bounds for the kernels of one quantity: of parameters that they read, or that say where loops close.
-
-        None where that of float64 works with pairs of numbers, which have digits enough.
-        """
+        """The bounds for the kernels of one quantity: of parameters that they read, or that say where loops close."""
         double = kernels["float64"]
         read = {load.index for load in double.loads if load.argument == "p"} | self._leading
-        if works_with_pairs(double) or not read:
+        if not read:
             return {}
         with working(f"how far parameters of {double.name} may be"):
             return _Bounds(self, kernels, programs).of(sorted(read))
