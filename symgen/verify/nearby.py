@@ -17,7 +17,7 @@ import numpy as np
 
 from symgen.verify.lanes import Lanes
 from symgen.verify.loops_in_lanes import DEPENDENT, Loops, lengths_of, times
-from symgen.verify.ranks_in_lanes import is_regular, matrices, ranked_parts
+from symgen.verify.ranks_in_lanes import is_regular, matrices, measures, ranked_parts
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference.system import default_parameters
 from symgen.verify.regular import values_at
@@ -130,6 +130,10 @@ class Surroundings:
             q, _ = self._loops.newton(start.parts["q"], start.parts["p"], held)
             parts = {**start.parts, "q": q}
             return self._settled(Nearby(parts, start.admissible, start.origins), start.parts["q"])
+
+    def measures(self, states: Nearby) -> Lanes:
+        """What tells how far rows and inputs are from a drop of rank, a row for each state."""
+        return measures(self._parts, self._matrices(states.parts["q"], states.parts["p"]))
 
     def moved(self, states: Nearby, seed: str) -> Nearby:
         """States a step further, of which some are left out: those that are not regular or out of range."""

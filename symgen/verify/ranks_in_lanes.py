@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
+from math import comb
 
 import numpy as np
 
@@ -76,3 +78,32 @@ def is_regular(part: RankedPart, rows: Lanes, control: Lanes, other_branches: bo
         if not other_branches:
             good &= (sizes[:, part.actuation :] <= INDEPENDENT).all(axis=1)
     return good
+
+
+def measures(parts: Sequence[RankedPart], blocks: Sequence[tuple[Lanes, Lanes]]) -> Lanes:
+    """What `singularity` gives of B and M of each part: of the rows, and of the inputs along what these leave free."""
+    of_rows, of_inputs, whole = [], [], []
+    for part, (rows, control) in zip(parts, blocks, strict=True):
+        rows, control = (np.where(np.isfinite(made), made, 0.0) for made in (rows, control))
+        count, r, n = rows.shape
+        free = np.broadcast_to(np.eye(n), (count, n, n))
+        if r:
+            sizes, directions = np.linalg.svd(rows / lengths_of(rows))[1:]
+            of_rows.append(sizes)
+            free = directions[:, part.constraints :]
+        of_inputs.append(np.linalg.svd(free @ control, compute_uv=False))
+        whole.append(np.linalg.svd(control, compute_uv=False))
+    rows_rank, inputs_rank = (sum(ranks) for ranks in zip(*((p.constraints, p.actuation) for p in parts), strict=True))
+    all_rows = sum(made.shape[1] for made, _ in blocks)
+    rows_measure = _sum_of_minors(of_rows, rows_rank) / comb(all_rows, rows_rank)
+    least, most = (_sum_of_minors(sizes, inputs_rank) for sizes in (of_inputs, whole))
+    return np.stack([rows_measure * np.ones(len(least)), np.where(most > 0, least / most, 0.0)], axis=1)
+
+
+def _sum_of_minors(sizes: Sequence[Lanes], rank: int) -> Lanes:
+    """Of the squares of so many singular values, all products of `rank`, summed."""
+    sums = [np.ones(1), *(np.zeros(1) for _ in range(rank))]
+    for made in sizes:
+        for square in (made * made).T:
+            sums = [sums[0], *(x + square * before for before, x in pairwise(sums))]
+    return sums[rank]

@@ -90,14 +90,19 @@ class WorstStateSearch:
             others = np.linspace(samples, len(states), max(0, count - samples), endpoint=False).astype(int)
             states = states.only(np.append(np.arange(samples), others))
         errors = RoundingErrors(kernel)
-        units = errors.at(states.parts)
+        units = self._units(errors, states)
         for step in range(STEPS if units.max() > DOUBTFUL else 0):
             worst = states.only(_worst(units, KEPT))
             starts = worst.only(np.arange(len(worst)).repeat(DIRECTIONS))
             further = self._surroundings.moved(starts, f"{kernel.name} {step}")
             if len(further):
-                states, units = joined(states, further), np.append(units, errors.at(further.parts))
+                states, units = joined(states, further), np.append(units, self._units(errors, further))
         return states, units
+
+    def _units(self, errors: RoundingErrors, states: Nearby) -> Lanes:
+        """What is estimated where nothing speaks against a regular state: others would take the places of these."""
+        units, measures = errors.at(states.parts), self._surroundings.measures(states)
+        return np.where((measures >= self._settling.measures).all(axis=1), units, 0.0)
 
     @cached_property
     def _surroundings(self) -> Surroundings:

@@ -19,7 +19,10 @@ TYPICAL = 8
 
 
 class Settling:
-    """Takes what is as regular as the samples are: at least a thousandth of the usual, or as the least of them."""
+    """Takes what is as regular as the samples are: at least a thousandth of the usual, or as the least of them.
+
+    `measures` are the least that rows and inputs are to have.
+    """
 
     def __init__(self, reference: Reference, samples: Sequence[Sample]) -> None:
         self._reference, model = reference, reference.model
@@ -27,7 +30,7 @@ class Settling:
         self._varied = ParameterValues(model, [p.name for p in model.parameters if p.range and p.name not in tied])
         usual = REGULAR ** max(1.0, (model.n - reference.ranks.constraints) / 2)
         columns = zip(*(sample.measures for sample in samples), strict=True)
-        self._measures = [min(usual, max(column) / 10, *column) for column in columns]
+        self.measures = [min(usual, max(column) / 10, *column) for column in columns]
         with precision(SAMPLING_BITS):
             lengths = [self._lengths(sample.state) for sample in samples[:TYPICAL]]
         self._rows = [min(REGULAR * max(column), *column) for column in zip(*lengths, strict=True)]
@@ -51,7 +54,7 @@ class Settling:
         values = values_at(reference, state, ("singularity", *PROJECTED))
         first, second = values["singularity"]
         found = (first, second, *self._lengths(state))
-        if not all(low <= x and isfinite(x) for low, x in zip((*self._measures, *self._rows), found, strict=True)):
+        if not all(low <= x and isfinite(x) for low, x in zip((*self.measures, *self._rows), found, strict=True)):
             return None
         if admissible:
             rates = settled(values["admissible_velocity"], [c.rate_range for c in model.coordinates])
