@@ -8,6 +8,7 @@ ZeroDivisionError.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import islice
 from math import hypot
 from typing import Any
 
@@ -118,10 +119,7 @@ def sums_of_minors(gram: Any) -> list[Any]:
 
 
 def pseudoinverse(matrix: Any, rank: int) -> Any:
-    """The Moore-Penrose inverse (m x n) of an n x m matrix of known rank, by subsets of columns where these depend.
-
-    Beside V, where inputs that load the constraints alone seem to move something, too, it is as smooth as kernels are.
-    """
+    """The Moore-Penrose inverse (m x n) of an n x m matrix of known rank, by a full-rank factorisation."""
     n, m = matrix.nrows(), matrix.ncols()
     if rank == 0:
         return arb_mat(m, n)
@@ -129,7 +127,18 @@ def pseudoinverse(matrix: Any, rank: int) -> Any:
         return solve(matrix.transpose() * matrix, matrix.transpose())
     if rank == n:
         return solve(matrix * matrix.transpose(), matrix).transpose()
-    return right_pseudoinverse(matrix.transpose(), rank).transpose()
+    basis = columns_of(matrix, independent_columns(matrix, rank))
+    left = solve(basis.transpose() * basis, basis.transpose())
+    factor = left * matrix
+    return factor.transpose() * solve(factor * factor.transpose(), left)
+
+
+def independent_columns(matrix: Any, rank: int) -> list[int]:
+    """`rank` columns by pivoting on the largest remaining one."""
+    chosen = sorted(column for _, column in islice(pivots(matrix), rank))
+    if len(chosen) < rank:
+        raise ZeroDivisionError("the matrix is of lower rank")
+    return chosen
 
 
 def pivots(matrix: Any) -> Iterator[tuple[float, int]]:
