@@ -122,7 +122,11 @@ class Derivation:
     def _solve_inputs(self, force: Vector) -> Vector:
         forms, restriction = self._actuation
         given, rest = self._taken_directly(force)
-        return tuple(a + b for a, b in zip(given, forms.solve(restriction(rest)), strict=True))
+        found = forms.solve(restriction(rest))
+        if self.generic.alpha < min(self.m, self.generic.delta):
+            # M~^+ M~ u = u: beside V, inputs that on V load the constraints alone would answer to what no input moves
+            found = forms.solve(restriction(matvec(self.graph, self.mechanics.control_matrix, found)))
+        return tuple(a + b for a, b in zip(given, found, strict=True))
 
     def _taken_directly(self, force: Vector) -> tuple[Vector, Vector]:
         """Inputs p that take what loads the coordinates that they drive alone, and what is left, f - M p.
