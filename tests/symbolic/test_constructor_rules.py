@@ -257,6 +257,19 @@ def test_addition_theorem(graph: Graph) -> None:
     assert mixed.op == "add"
 
 
+def test_what_a_square_of_a_sine_leaves_of_1(graph: Graph) -> None:
+    """Where the sine is nearly 1 the difference has no digit of the cosine; nothing else is a square."""
+    x, y = graph.symbol("x"), graph.symbol("y")
+    sine, cosine = graph.trig("sin", x), graph.trig("cos", x)
+    assert graph.one - sine * sine is cosine * cosine
+    assert graph.one - cosine * cosine is sine * sine
+    assert sine * sine - graph.one is -(cosine * cosine)
+    assert (3 * y - sine * (3 * y * sine)).op == "mul"
+    for left, right in ((graph.one, sine), (2 * graph.one, sine * sine), (y, sine * sine), (graph.one, sine * cosine)):
+        assert (left - right).op == "sub"
+    assert (graph.one + sine * sine).op == "add"
+
+
 def test_roots(graph: Graph) -> None:
     x = graph.symbol("x")
     assert graph.function("sqrt", (graph.const(Fraction(9, 4)),)).constant == Fraction(3, 2)

@@ -16,7 +16,7 @@ from symgen.generation.parameter_bounds import ParameterBounds
 from symgen.generation.recorded import as_recorded
 from symgen.generation.results import Options
 from symgen.ir.bounded import Bound
-from symgen.ir.kernel import Block, Kernel, Literal, Load, Local, Program, Scalar, Statement, Status
+from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Program, Scalar, Statement, Status
 from symgen.model.load import load_model
 from symgen.pipeline import generate
 from symgen.verify.expected import Expected
@@ -129,6 +129,20 @@ def test_a_type_may_refuse_where_nothing_is_estimated(expected: Expected) -> Non
     bound = bounds_by_name(expected, straight(*powers), "float32")[MASS]
     assert bound.high is not None
     assert 10 < bound.high < 1e3
+
+
+@pytest.mark.parametrize("scalar", SCALARS)
+def test_masses_that_are_taken_for_none_are_bounded(expected: Expected, scalar: Scalar) -> None:
+    """c d is no share of m any more, although nothing is lost."""
+    share = Statement(("share",), "mul", (Local("m"), Literal(Fraction(1, 10**6))))
+    check = Check(Status.MASS_RANK, Local("d"), Local("share"))
+    loads = (Load("c", "qd", 2), Load("m", "p", 4, MASS), Load("d", "p", 5, "d"))
+    product = Statement(("y",), "mul", (Local("c"), Local("d")))
+    kernel = Kernel(MULTIPLIERS, (), loads, (Block((share,), (check,)), Block((product,), ())), (Local("y"),), (1,))
+    bound = bounds_by_name(expected, kernel, scalar)[MASS]
+    assert bound.low is None
+    assert bound.high is not None
+    assert 1e5 < bound.high < 1e7
 
 
 def test_what_loses_nothing_has_no_bound(expected: Expected) -> None:

@@ -13,6 +13,7 @@ from symgen.model.load import load_model
 from symgen.verify.lanes import RoundingErrors
 from symgen.verify.nearby import Surroundings
 from symgen.verify.reference.reference import Reference
+from symgen.verify.regular import values_at
 from symgen.verify.states import sample_states
 
 # A ladder whose feet slide on a floor and along a wall, and a disc that is geared to its turning.
@@ -135,3 +136,15 @@ def test_inputs_are_small_too_where_weights_move_the_machine(tmp_path: Path, wei
     further = surroundings.moved(drawn.only(shares < 0.01), "inputs")
     again = np.abs(further.parts["u"]).max(axis=1, initial=0.0) / np.maximum(largest, 1.0)[further.origins]
     assert (again < 0.02).all()
+
+
+@pytest.mark.parametrize("name", ["five_bar", "three_rrr", "skate", "rapkm_bodies"])
+def test_measures_in_lanes_are_those_of_the_reference(name: str) -> None:
+    """So that what is no regular state takes no place among the worst."""
+    model = load_model(Path("models") / f"{name}.yaml")
+    reference = Reference(model)
+    samples = sample_states(reference, ["singularity"], 8)
+    around = Surroundings(reference, samples)
+    for sample, found in zip(samples, around.measures(around.samples), strict=True):
+        exact = values_at(reference, sample.state, ["singularity"])["singularity"]
+        assert found == pytest.approx(exact, rel=1e-9)

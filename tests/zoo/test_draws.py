@@ -96,3 +96,11 @@ def test_as_many_velocities_are_independent_as_there_are_degrees_of_freedom() ->
             "constraints": {"geometric": {"one": "x + y - 0.7", "two": "x + y + 2e-4*(z - w - 0.1) - 0.7"}},
         }
         assert len(independent(sketch)) == 2
+
+
+def test_parallelograms_are_driven_at_their_own_cranks() -> None:
+    """Whatever the coordinates are called."""
+    for index in range(40):
+        description = draw(23, index, "parallelogram_bodies")
+        driven = {entry["joint"] for entry in description.blocks["inputs"].values() if "joint" in entry}
+        assert driven <= {*description.start, "nowhere"}
