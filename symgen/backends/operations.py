@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
+from operator import attrgetter
 
 from symgen.ir.kernel import OperationName, Statement
-from symgen.ir.wide_functions import is_wide, wide_function
+from symgen.ir.wide_functions import is_wide_operation, wide_function
 from symgen.records import dataclass
 
+_operation = attrgetter("operation")
 _KIND = {
     "add": "add",
     "sub": "add",
@@ -44,16 +46,16 @@ class OperationCounts:
 
 def count_operations(statements: Iterable[Statement]) -> OperationCounts:
     """Counts the statements by kind; operations on pairs of numbers are those of their bodies."""
-    counts = Counter(dict.fromkeys(("add", "mul", "div", "sqrt", "sincos", "sign", "other"), 0))
-    for statement in statements:
-        counts.update(_of_pairs(statement.operation) if is_wide(statement) else (_kind(statement),))
+    counts = dict.fromkeys(("add", "mul", "div", "sqrt", "sincos", "sign", "other"), 0)
+    for operation, times in Counter(map(_operation, statements)).items():
+        for kind, number in _kinds(operation).items():
+            counts[kind] += times * number
     return OperationCounts(**counts)
 
 
-def _kind(statement: Statement) -> str:
-    return _KIND.get(statement.operation, "other")
-
-
 @lru_cache
-def _of_pairs(operation: OperationName) -> Mapping[str, int]:
-    return Counter(map(_kind, wide_function(operation).statements))
+def _kinds(operation: OperationName) -> Mapping[str, int]:
+    """Of one operation."""
+    if not is_wide_operation(operation):
+        return {_KIND.get(operation, "other"): 1}
+    return Counter(_KIND.get(part.operation, "other") for part in wide_function(operation).statements)

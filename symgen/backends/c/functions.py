@@ -52,9 +52,12 @@ def _causes(
     model: Model, program: Program, kernel: Kernel, names: Names, function: str, given: Mapping[str, str]
 ) -> tuple[CauseView, ...]:
     """What tells the causes of failures apart beside the body of `function`."""
+    causes = causes_of(kernel, function)
+    if not causes:
+        return ()
     printer = _printer(model, program, kernel, names, ())
     declared = {"": f"static {apart_name(model.c_name, SUFFIX[program.scalar])} {model.c_name}_status", **given}
-    return tuple(cause_view(cause, kernel, names, printer, declared) for cause in causes_of(kernel, function))
+    return tuple(cause_view(cause, kernel, names, printer, declared) for cause in causes)
 
 
 def _printer(model: Model, program: Program, kernel: Kernel, names: Names, causes: tuple[Cause, ...]) -> CStatements:

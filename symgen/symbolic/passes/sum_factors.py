@@ -77,9 +77,10 @@ def _grouped(terms: Sequence[_Term], numbers: bool) -> list[_Group]:
             for factor in dict.fromkeys(term.factors):
                 if (numbers or factor.constant is None) and len(term.factors) > 1:
                     holders.setdefault(factor, []).append(place)
-        shared = [(_common([left[place].factors for place in places], numbers), places) for places in holders.values()]
+        several = (places for places in holders.values() if len(places) > 1)
+        shared = [(_common([left[place].factors for place in places], numbers), places) for places in several]
         common, places = max(shared, key=lambda group: len(group[0]) * (len(group[1]) - 1), default=((), []))
-        if len(places) < 2:
+        if not places:
             break
         chosen = [left.pop(place) for place in places]
         groups.append(_Group(places[0], common, tuple(chosen)))
