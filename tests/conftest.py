@@ -13,13 +13,14 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-from symgen.runtime.garbage import let_go
-
 # The same examples in every run: what is new and random is drawn by `make zoo` and `make fuzz`.
 settings.register_profile("same examples", derandomize=True)
 settings.load_profile("same examples")
 
 TESTS = Path(__file__).parent
+# Objects that nobody may hold any more, 200 MB of them; commands let go of fewer, but each time all that is cached by
+# the tests before is looked through as well.
+MUCH = 2_000_000
 # Seconds of a processor that a test without the mark `slow` may take, some times what it takes: machines differ.
 QUICK = 5.0
 
@@ -29,9 +30,15 @@ def pytest_configure() -> None:
     gc.disable()
 
 
+def pytest_collection_finish() -> None:
+    """Nobody looks again through the modules."""
+    gc.freeze()
+
+
 def pytest_runtest_teardown() -> None:
-    """What a test leaves behind goes once it is much."""
-    let_go()
+    """What tests leave behind goes once it is much."""
+    if gc.get_count()[0] > MUCH:
+        gc.collect()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
