@@ -57,11 +57,17 @@ class FarErrors:
     def units(self, far: Far) -> dict[Scalar, Lanes]:
         """By scalar type, a number for each state; 0 where a kernel refuses with reason.
 
-        That masses far apart seem to leave the motion undetermined is no reason: infinitely many units.
+        That masses far apart seem to leave the motion undetermined is no reason: infinitely many units.  That they are
+        no masses is one.
         """
         if self._estimated is None:
             return {scalar: self._refusals(scalar, far) for scalar in self._kernels}
-        own, unit = self._estimated.with_units(far.given)
+        found = self._estimated_and_measured(self._estimated, far)
+        masses = ~self._estimated.indefinite(far.given)
+        return {scalar: np.where(masses, units, 0.0) for scalar, units in found.items()}
+
+    def _estimated_and_measured(self, estimates: RoundingErrors, far: Far) -> dict[Scalar, Lanes]:
+        own, unit = estimates.with_units(far.given)
         estimated = own / unit
         refused = np.flatnonzero(~np.isfinite(unit))
         estimated[refused] = self._refusals("float64", far.only(refused))

@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from symgen.ir.kernel import Kernel, Literal, Operand, OperationName, Statement
+from symgen.ir.kernel import Kernel, Literal, Operand, OperationName, Statement, Status
 from symgen.verify.many_states import VECTORISED
 
 # A float64 for each state; slopes have a row for each combination of outputs, too.
@@ -70,6 +70,18 @@ class RoundingErrors:
             unit = np.sqrt(sum(x * x for x in outputs)) + LARGEST * np.sqrt(inputs)
             regular &= np.isfinite(unit) & (unit > 0) & np.isfinite(own)
         return np.sqrt(np.where(regular, own, 0.0)), np.where(regular, unit, np.inf)
+
+    def indefinite(self, given: Mapping[str, Lanes]) -> Lanes:
+        """Where a pivot of masses is below 0, by more than rounding leaves of one that is 0."""
+        count = len(next(iter(given.values())))
+        with np.errstate(all="ignore"):
+            values, _ = self._values(given, count)
+            found = np.zeros(count, dtype=bool)
+            for block, (_, checks) in zip(self._kernel.blocks, self._blocks, strict=True):
+                for check, (_, value, limit) in zip(block.checks, checks, strict=True):
+                    if check.status is Status.MASS_RANK:
+                        found |= values[value] < -np.abs(values[limit])
+        return found
 
     def _put(self, name: str) -> int:
         """The place of what is worked out next; numbers stand before all of it, at negative places."""

@@ -94,15 +94,15 @@ def measures(parts: Sequence[RankedPart], blocks: Sequence[tuple[Lanes, Lanes]])
         of_inputs.append(np.linalg.svd(free @ control, compute_uv=False))
         whole.append(np.linalg.svd(control, compute_uv=False))
     rows_rank, inputs_rank = (sum(ranks) for ranks in zip(*((p.constraints, p.actuation) for p in parts), strict=True))
-    all_rows = sum(made.shape[1] for made, _ in blocks)
-    rows_measure = _sum_of_minors(of_rows, rows_rank) / comb(all_rows, rows_rank)
-    least, most = (_sum_of_minors(sizes, inputs_rank) for sizes in (of_inputs, whole))
-    return np.stack([rows_measure * np.ones(len(least)), np.where(most > 0, least / most, 0.0)], axis=1)
+    all_rows, count = sum(made.shape[1] for made, _ in blocks), len(blocks[0][0])
+    rows_measure = _sum_of_minors(count, of_rows, rows_rank) / comb(all_rows, rows_rank)
+    least, most = (_sum_of_minors(count, sizes, inputs_rank) for sizes in (of_inputs, whole))
+    return np.stack([rows_measure, np.divide(least, most, out=np.zeros(count), where=most > 0)], axis=1)
 
 
-def _sum_of_minors(sizes: Sequence[Lanes], rank: int) -> Lanes:
+def _sum_of_minors(count: int, sizes: Sequence[Lanes], rank: int) -> Lanes:
     """Of the squares of so many singular values, all products of `rank`, summed."""
-    sums = [np.ones(1), *(np.zeros(1) for _ in range(rank))]
+    sums = [np.ones(count), *(np.zeros(count) for _ in range(rank))]
     for made in sizes:
         for square in (made * made).T:
             sums = [sums[0], *(x + square * before for before, x in pairwise(sums))]
