@@ -112,11 +112,11 @@ class Products:
         return found
 
     def quotient(self, a: Scalar, powers: Mapping[Scalar, int], number: int | Fraction = 1) -> Scalar:
-        """`a` over a number times powers of its factors, which are left out instead of divided by."""
+        """`a` over a number times powers of factors; those of its own are left out instead of divided by."""
         coefficient, own = self.monomial(a)
         if not coefficient:
             return a
-        rest = {f: count - powers.get(f, 0) for f, count in own.items()}
+        rest = {f: own.get(f, 0) - powers.get(f, 0) for f in {**own, **powers}}
         return Fraction(coefficient) / number * self._product({f: count for f, count in rest.items() if count})
 
     def _product(self, powers: dict[Scalar, int]) -> Scalar:

@@ -88,7 +88,13 @@ configuration: {a: 1.9, b: -1.0, c: -0.5, d: 2.3, e: -1.1, s: 0.0}
 """
 
 
-@pytest.mark.parametrize("text", [LEG, CHAINS], ids=["leg", "chains"])
+# A thigh that is bent: its column has two terms, and no factor in common with that of the shin.
+BENT = LEG.replace("along: thigh*cos(hip)", "along: thigh*cos(hip) - 0.03*sin(hip)").replace(
+    "across: thigh*sin(hip)", "across: thigh*sin(hip) + 0.03*cos(hip)"
+)
+
+
+@pytest.mark.parametrize("text", [LEG, CHAINS, BENT], ids=["leg", "chains", "bent"])
 def test_they_are_the_same_equations(text: str) -> None:
     mechanics = in_absolute_angles(load_text(text, "model.yaml"))
     assert mechanics is not None
