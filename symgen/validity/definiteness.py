@@ -89,10 +89,12 @@ def definite_beside_rows(model: Model) -> bool:
     scaled = [[x / Fraction(weight) for x in row] for row, weight in zip(rows, weights, strict=True)]
     holding = matmul(graph, transpose(rows, n), tuple(map(tuple, scaled)), n)
     held = tuple(tuple(map(add, *pair)) for pair in zip(mechanics.mass_matrix, holding, strict=True))
-    pairs = zip(Cholesky(graph, mechanics.mass_matrix).pivots, Cholesky(graph, held).pivots, strict=True)
-    least = smallest(mechanics, [own / other for own, other in pairs])[0]
+    own, beside = Cholesky(graph, mechanics.mass_matrix).pivots, Cholesky(graph, held).pivots
+    definite = not any(pivot.is_zero for pivot in own)
+    if definite:
+        definite = smallest(mechanics, [x / y for x, y in zip(own, beside, strict=True)])[0] > SMALLEST
     graph.dissolve()
-    return least > SMALLEST
+    return definite
 
 
 def _indefinite(mechanics: System) -> Indefinite | None:

@@ -204,8 +204,11 @@ def body_equations(model: Model, generic: Genericity, turned: bool) -> tuple[Sys
     if held is None or (generic.rank < generic.r and not held.apart(rows)):
         return None
     # where no row may hold what has no mass, pivots vanish only where the motion is not determined
-    definite = definite_by_frames if held.others(len(rows)) else definite_along_motion
-    if not definite(mechanics, factor) and not definite_beside_rows(model):
+    if held.others(len(rows)):
+        definite = definite_by_frames(mechanics, factor) or definite_beside_rows(model)
+    else:
+        definite = definite_along_motion(mechanics, factor)
+    if not definite:
         return None
     return mechanics, BodyEquations(mechanics, factor, held, generic.rank, turned)
 
