@@ -58,7 +58,7 @@ Status 0 means within 16 units, and a status means that a measure is below its t
 inputs along the constraints, with rows of length 1, in the model's coordinates and in such as have equal inertias, or
 of the mass matrix along the constraints in these. Every model is taken towards each of its singular sets in half
 decades down to 1e-15, and each of its masses and lengths, and all of them at random, up to nine decades from what they
-are.
+are. [Random models](random-models.md) are held against the same rule.
 
 """
 
