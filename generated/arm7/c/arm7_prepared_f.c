@@ -689,7 +689,7 @@ arm7_prepared_f arm7_prepare_f(const arm7_params_f *p) {
 
 arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7], const float u[7], const arm7_prepared_f *p, float qdd[7]) {
     const float d_5 = p->value[1];
-    if (ARM7_RARELY_F(!(71.0f >= d_5))) {
+    if (ARM7_RARELY_F(!(40.0f >= d_5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float d_7 = p->value[2];
@@ -720,6 +720,10 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     if (ARM7_RARELY_F(!(850.0f >= I_yy3))) {
         return ARM7_PARAMETER_RANGE;
     }
+    const float I_zz3 = p->value[18];
+    if (ARM7_RARELY_F(!(37000.0f >= I_zz3))) {
+        return ARM7_PARAMETER_RANGE;
+    }
     const float m_4 = p->value[22];
     if (ARM7_RARELY_F(!(150000.0f >= m_4))) {
         return ARM7_PARAMETER_RANGE;
@@ -738,6 +742,10 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     }
     const float I_yy4 = p->value[27];
     if (ARM7_RARELY_F(!(2400.0f >= I_yy4))) {
+        return ARM7_PARAMETER_RANGE;
+    }
+    const float I_zz4 = p->value[28];
+    if (ARM7_RARELY_F(!(34000.0f >= I_zz4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_5 = p->value[32];
@@ -764,6 +772,10 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     if (ARM7_RARELY_F(!(270.0f >= I_yy5))) {
         return ARM7_PARAMETER_RANGE;
     }
+    const float I_zz5 = p->value[38];
+    if (ARM7_RARELY_F(!(12000.0f >= I_zz5))) {
+        return ARM7_PARAMETER_RANGE;
+    }
     const float m_6 = p->value[42];
     if (ARM7_RARELY_F(!(560.0f >= m_6))) {
         return ARM7_PARAMETER_RANGE;
@@ -788,6 +800,10 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     if (ARM7_RARELY_F(!(51.0f >= I_yy6))) {
         return ARM7_PARAMETER_RANGE;
     }
+    const float I_zz6 = p->value[48];
+    if (ARM7_RARELY_F(!(12000.0f >= I_zz6))) {
+        return ARM7_PARAMETER_RANGE;
+    }
     const float m_7 = p->value[52];
     if (ARM7_RARELY_F(!(16.0f >= m_7))) {
         return ARM7_PARAMETER_RANGE;
@@ -810,6 +826,10 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     }
     const float I_yy7 = p->value[57];
     if (ARM7_RARELY_F(!(27.0f >= I_yy7))) {
+        return ARM7_PARAMETER_RANGE;
+    }
+    const float I_zz7 = p->value[58];
+    if (ARM7_RARELY_F(!(6700.0f >= I_zz7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float q_2 = q[1];
@@ -1632,7 +1652,6 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t998 = t15 * t997;
     const float t999 = t978 - t998;
     const float t1000 = t962 - t999;
-    const float I_zz7 = p->value[58];
     const float t1001 = I_zz7 * t1000;
     const float t1002 = t961 + t1001;
     const float t1003 = t937 * t15;
@@ -1859,7 +1878,6 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1211 = t1207 - t1210;
     const float t1212 = t1127 - t1168;
     const float t1213 = I_xy6 * t1212;
-    const float I_zz6 = p->value[48];
     const float t1214 = I_zz6 * t1011;
     const float t1215 = p->value[141];
     const float t1216 = t1006 * t1215;
@@ -1960,7 +1978,6 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1306 = I_yz5 * t1009;
     const float t1307 = p->value[144];
     const float t1308 = t976 * t1307;
-    const float I_zz5 = p->value[38];
     const float t1309 = I_zz5 * t975;
     const float t1310 = t1308 + t1309;
     const float t1311 = t1306 - t1310;
@@ -2072,7 +2089,6 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1412 = I_xy4 * t1411;
     const float t1413 = p->value[147];
     const float t1414 = t979 * t1413;
-    const float I_zz4 = p->value[28];
     const float t1415 = I_zz4 * t984;
     const float t1416 = t1414 + t1415;
     const float t1417 = I_yz4 * t974;
@@ -2162,7 +2178,6 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t1496 = I_xy3 * t1495;
     const float t1497 = p->value[150];
     const float t1498 = t964 * t1497;
-    const float I_zz3 = p->value[18];
     const float t1499 = I_zz3 * t894;
     const float t1500 = t1498 - t1499;
     const float t1501 = I_yz3 * t983;

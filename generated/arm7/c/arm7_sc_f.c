@@ -872,7 +872,7 @@ arm7_status arm7_inverse_dynamics_sc_f(const arm7_trig_f *sc, const float q[7], 
 arm7_status arm7_forward_dynamics_sc_f(const arm7_trig_f *sc, const float q[7], const float qd[7], const float u[7], const arm7_params_f *p, float qdd[7]) {
     (void)q;
     const float d_5 = p->d_5;
-    if (ARM7_RARELY_F(!(71.0f >= d_5))) {
+    if (ARM7_RARELY_F(!(40.0f >= d_5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float d_7 = p->d_7;
@@ -903,6 +903,10 @@ arm7_status arm7_forward_dynamics_sc_f(const arm7_trig_f *sc, const float q[7], 
     if (ARM7_RARELY_F(!(850.0f >= I_yy3))) {
         return ARM7_PARAMETER_RANGE;
     }
+    const float I_zz3 = p->I_zz3;
+    if (ARM7_RARELY_F(!(37000.0f >= I_zz3))) {
+        return ARM7_PARAMETER_RANGE;
+    }
     const float m_4 = p->m_4;
     if (ARM7_RARELY_F(!(150000.0f >= m_4))) {
         return ARM7_PARAMETER_RANGE;
@@ -921,6 +925,10 @@ arm7_status arm7_forward_dynamics_sc_f(const arm7_trig_f *sc, const float q[7], 
     }
     const float I_yy4 = p->I_yy4;
     if (ARM7_RARELY_F(!(2400.0f >= I_yy4))) {
+        return ARM7_PARAMETER_RANGE;
+    }
+    const float I_zz4 = p->I_zz4;
+    if (ARM7_RARELY_F(!(34000.0f >= I_zz4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_5 = p->m_5;
@@ -948,6 +956,10 @@ arm7_status arm7_forward_dynamics_sc_f(const arm7_trig_f *sc, const float q[7], 
     if (ARM7_RARELY_F(!(270.0f >= I_yy5))) {
         return ARM7_PARAMETER_RANGE;
     }
+    const float I_zz5 = p->I_zz5;
+    if (ARM7_RARELY_F(!(12000.0f >= I_zz5))) {
+        return ARM7_PARAMETER_RANGE;
+    }
     const float m_6 = p->m_6;
     if (ARM7_RARELY_F(!(560.0f >= m_6))) {
         return ARM7_PARAMETER_RANGE;
@@ -973,6 +985,10 @@ arm7_status arm7_forward_dynamics_sc_f(const arm7_trig_f *sc, const float q[7], 
     if (ARM7_RARELY_F(!(51.0f >= I_yy6))) {
         return ARM7_PARAMETER_RANGE;
     }
+    const float I_zz6 = p->I_zz6;
+    if (ARM7_RARELY_F(!(12000.0f >= I_zz6))) {
+        return ARM7_PARAMETER_RANGE;
+    }
     const float m_7 = p->m_7;
     if (ARM7_RARELY_F(!(16.0f >= m_7))) {
         return ARM7_PARAMETER_RANGE;
@@ -996,6 +1012,10 @@ arm7_status arm7_forward_dynamics_sc_f(const arm7_trig_f *sc, const float q[7], 
     }
     const float I_yy7 = p->I_yy7;
     if (ARM7_RARELY_F(!(27.0f >= I_yy7))) {
+        return ARM7_PARAMETER_RANGE;
+    }
+    const float I_zz7 = p->I_zz7;
+    if (ARM7_RARELY_F(!(6700.0f >= I_zz7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_2 = p->m_2;
@@ -1039,7 +1059,6 @@ arm7_status arm7_forward_dynamics_sc_f(const arm7_trig_f *sc, const float q[7], 
     const float t47 = I_xz7 - t46;
     const float t48 = c_x7 * t45;
     const float t49 = t40 + t48;
-    const float I_zz7 = p->I_zz7;
     const float t50 = I_zz7 + t49;
     const float t51 = t47 / t50;
     const float t52 = t47 * t51;
@@ -1160,7 +1179,6 @@ arm7_status arm7_forward_dynamics_sc_f(const arm7_trig_f *sc, const float q[7], 
     const float t162 = t156 + t161;
     const float t163 = d_7 * t162;
     const float t164 = c_x6 * t119;
-    const float I_zz6 = p->I_zz6;
     const float t165 = I_zz6 + t68;
     const float t166 = t164 + t165;
     const float t167 = t163 + t166;
@@ -1204,7 +1222,6 @@ arm7_status arm7_forward_dynamics_sc_f(const arm7_trig_f *sc, const float q[7], 
     const float t200 = t196 - t199;
     const float t201 = c_x5 * t194;
     const float t202 = t34 + t201;
-    const float I_zz5 = p->I_zz5;
     const float t203 = I_zz5 + t202;
     const float t204 = sin_q_6 * t172;
     const float t205 = t204 + t184;
@@ -1409,7 +1426,6 @@ arm7_status arm7_forward_dynamics_sc_f(const arm7_trig_f *sc, const float q[7], 
     const float t398 = t392 + t397;
     const float t399 = d_5 * t398;
     const float t400 = c_x4 * t353;
-    const float I_zz4 = p->I_zz4;
     const float t401 = I_zz4 + t339;
     const float t402 = t400 + t401;
     const float t403 = t399 + t402;
@@ -1450,7 +1466,6 @@ arm7_status arm7_forward_dynamics_sc_f(const arm7_trig_f *sc, const float q[7], 
     const float t433 = c_y3 * t430;
     const float t434 = c_x3 * t28;
     const float t435 = t433 + t434;
-    const float I_zz3 = p->I_zz3;
     const float t436 = I_zz3 + t435;
     const float t437 = sin_q_4 * t408;
     const float t438 = t420 + t437;

@@ -3525,7 +3525,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse(const double q[6], con
     const double t172 = t72 * t72;
     const double t174 = t29 * t29;
     const double t180 = t77 * t77;
-    const double t181 = t22 * t22;
+    const double t182 = t22 * t22;
     const double t171 = t44 * t44;
     const double t173 = t42 * t42;
     const double t175 = t173 + t174;
@@ -3533,7 +3533,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse(const double q[6], con
     const double t177 = t172 + t176;
     const double t178 = t171 + t177;
     const double t179 = t48 * t48;
-    const double t182 = t38 * t38;
+    const double t181 = t38 * t38;
     const double t183 = t181 + t182;
     const double t184 = t19 * t183;
     const double t185 = t180 + t184;
@@ -3541,7 +3541,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse(const double q[6], con
     const double t187 = t63 * t63;
     const double t188 = t180 + t187;
     const double t189 = t32 * t32;
-    const double t190 = t181 + t189;
+    const double t190 = t182 + t189;
     const double t191 = t19 * t190;
     const double t192 = t188 + t191;
     const double t193 = t59 * t59;
@@ -4784,7 +4784,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_matrix(const double q[6], c
     const double t26 = l_1 * t20;
     const double t28 = t26 + t27;
     const double t172 = t28 * t28;
-    const double t173 = t14 * t14;
+    const double t174 = t14 * t14;
     const double t10 = sine[0];
     const double t23 = l_1 * t10;
     const double t25 = t23 + t24;
@@ -4804,7 +4804,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_matrix(const double q[6], c
     const double t169 = t164 + t168;
     const double t170 = t163 + t169;
     const double t171 = t25 * t25;
-    const double t174 = t12 * t12;
+    const double t173 = t12 * t12;
     const double t175 = t173 + t174;
     const double t176 = t73 * t175;
     const double t177 = t172 + t176;
@@ -4812,7 +4812,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_matrix(const double q[6], c
     const double t179 = t35 * t35;
     const double t180 = t172 + t179;
     const double t181 = t16 * t16;
-    const double t182 = t173 + t181;
+    const double t182 = t174 + t181;
     const double t183 = t73 * t182;
     const double t184 = t180 + t183;
     const double t185 = t31 * t31;
@@ -5235,8 +5235,8 @@ static RAPKM_2RRR_RR_APART rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_
     const double t230 = t223 + t229;
     const double t231 = t104 * t104;
     const double t232 = t124 * t124;
-    const double t233 = t14 * t14;
-    const double t234 = t12 * t12;
+    const double t233 = t12 * t12;
+    const double t234 = t14 * t14;
     const double t235 = t233 + t234;
     const double t236 = t201 * t235;
     const double t237 = t232 + t236;
@@ -5244,7 +5244,7 @@ static RAPKM_2RRR_RR_APART rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_
     const double t239 = t111 * t111;
     const double t240 = t232 + t239;
     const double t241 = t16 * t16;
-    const double t242 = t233 + t241;
+    const double t242 = t234 + t241;
     const double t243 = t201 * t242;
     const double t244 = t240 + t243;
     const double t245 = t108 * t108;
@@ -5589,7 +5589,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement(const double q[6], cons
     const double t69 = t17 * t8;
     const double t70 = t18 * t7;
     const double t71 = t69 + t70;
-    const double t75 = t71 * t71;
+    const double t76 = t71 * t71;
     const double t14 = cosine[3];
     const double t16 = cosine[4];
     const double t22 = t14 * t16;
@@ -5632,7 +5632,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement(const double q[6], cons
     const double t65 = l_2 * t64;
     const double t66 = t61 + t65;
     const double t67 = t66 * t66;
-    const double t76 = t64 * t64;
+    const double t75 = t64 * t64;
     const double t77 = t75 + t76;
     const double t78 = t54 * t77;
     const double t79 = t74 + t78;
@@ -5643,7 +5643,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement(const double q[6], cons
     const double t84 = t83 * t83;
     const double t85 = t74 + t84;
     const double t86 = t28 * t28;
-    const double t87 = t75 + t86;
+    const double t87 = t76 + t86;
     const double t88 = t54 * t87;
     const double t89 = t85 + t88;
     const double t90 = l_1 * t14;
@@ -8611,7 +8611,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix(const double q[6], const 
     const double t65 = l_1 * t7;
     const double t67 = t65 + t66;
     const double t68 = t67 * t67;
-    const double t69 = t24 * t24;
+    const double t70 = t24 * t24;
     const double t16 = cosine[4];
     const double t17 = sine[5];
     const double t32 = t16 * t17;
@@ -8639,7 +8639,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix(const double q[6], const 
     const double t56 = t50 + t55;
     const double t57 = t46 + t56;
     const double t64 = t63 * t63;
-    const double t70 = t61 * t61;
+    const double t69 = t61 * t61;
     const double t71 = t69 + t70;
     const double t72 = t51 * t71;
     const double t73 = t68 + t72;
@@ -8647,7 +8647,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix(const double q[6], const 
     const double t78 = t77 * t77;
     const double t79 = t68 + t78;
     const double t80 = t34 * t34;
-    const double t81 = t69 + t80;
+    const double t81 = t70 + t80;
     const double t82 = t51 * t81;
     const double t83 = t79 + t82;
     const double t87 = t86 * t86;
@@ -9256,7 +9256,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix(const double q[6], co
     const double t177 = t72 * t72;
     const double t179 = t45 * t45;
     const double t185 = t78 * t78;
-    const double t186 = t38 * t38;
+    const double t187 = t38 * t38;
     const double t176 = t27 * t27;
     const double t178 = t25 * t25;
     const double t180 = t178 + t179;
@@ -9264,7 +9264,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix(const double q[6], co
     const double t182 = t177 + t181;
     const double t183 = t176 + t182;
     const double t184 = t31 * t31;
-    const double t187 = t21 * t21;
+    const double t186 = t21 * t21;
     const double t188 = t186 + t187;
     const double t189 = t34 * t188;
     const double t190 = t185 + t189;
@@ -9272,7 +9272,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix(const double q[6], co
     const double t192 = t60 * t60;
     const double t193 = t185 + t192;
     const double t194 = t48 * t48;
-    const double t195 = t186 + t194;
+    const double t195 = t187 + t194;
     const double t196 = t34 * t195;
     const double t197 = t193 + t196;
     const double t198 = t56 * t56;
@@ -9884,7 +9884,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix(const double q[6], con
     const double t22 = t9 * t12;
     const double t23 = t10 * t11;
     const double t24 = t22 + t23;
-    const double t69 = t24 * t24;
+    const double t70 = t24 * t24;
     const double t14 = cosine[3];
     const double t16 = cosine[4];
     const double t25 = t14 * t16;
@@ -9927,7 +9927,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix(const double q[6], con
     const double t62 = l_2 * t61;
     const double t63 = t58 + t62;
     const double t64 = t63 * t63;
-    const double t70 = t61 * t61;
+    const double t69 = t61 * t61;
     const double t71 = t69 + t70;
     const double t72 = t51 * t71;
     const double t73 = t68 + t72;
@@ -9938,7 +9938,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix(const double q[6], con
     const double t78 = t77 * t77;
     const double t79 = t68 + t78;
     const double t80 = t34 * t34;
-    const double t81 = t69 + t80;
+    const double t81 = t70 + t80;
     const double t82 = t51 * t81;
     const double t83 = t79 + t82;
     const double t84 = l_1 * t14;
@@ -14406,7 +14406,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_singularity(const double q[6], const rapkm_2r
     const double t65 = t63 + t64;
     const double t66 = t65 * t65;
     const double t67 = t20 * t20;
-    const double t68 = t32 + t67;
+    const double t68 = t67 + t32;
     const double t69 = t31 * t68;
     const double t70 = t28 + t69;
     const double t71 = t66 + t70;

@@ -3512,7 +3512,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse_f(const float q[6], co
     const float t172 = t72 * t72;
     const float t174 = t29 * t29;
     const float t180 = t77 * t77;
-    const float t181 = t22 * t22;
+    const float t182 = t22 * t22;
     const float t171 = t44 * t44;
     const float t173 = t42 * t42;
     const float t175 = t173 + t174;
@@ -3520,7 +3520,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse_f(const float q[6], co
     const float t177 = t172 + t176;
     const float t178 = t171 + t177;
     const float t179 = t48 * t48;
-    const float t182 = t38 * t38;
+    const float t181 = t38 * t38;
     const float t183 = t181 + t182;
     const float t184 = t19 * t183;
     const float t185 = t180 + t184;
@@ -3528,7 +3528,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse_f(const float q[6], co
     const float t187 = t63 * t63;
     const float t188 = t180 + t187;
     const float t189 = t32 * t32;
-    const float t190 = t181 + t189;
+    const float t190 = t182 + t189;
     const float t191 = t19 * t190;
     const float t192 = t188 + t191;
     const float t193 = t59 * t59;
@@ -4771,7 +4771,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_matrix_f(const float q[6], 
     const float t26 = l_1 * t20;
     const float t28 = t26 + t27;
     const float t172 = t28 * t28;
-    const float t173 = t14 * t14;
+    const float t174 = t14 * t14;
     const float t10 = sine[0];
     const float t23 = l_1 * t10;
     const float t25 = t23 + t24;
@@ -4791,7 +4791,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_matrix_f(const float q[6], 
     const float t169 = t164 + t168;
     const float t170 = t163 + t169;
     const float t171 = t25 * t25;
-    const float t174 = t12 * t12;
+    const float t173 = t12 * t12;
     const float t175 = t173 + t174;
     const float t176 = t73 * t175;
     const float t177 = t172 + t176;
@@ -4799,7 +4799,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_matrix_f(const float q[6], 
     const float t179 = t35 * t35;
     const float t180 = t172 + t179;
     const float t181 = t16 * t16;
-    const float t182 = t173 + t181;
+    const float t182 = t174 + t181;
     const float t183 = t73 * t182;
     const float t184 = t180 + t183;
     const float t185 = t31 * t31;
@@ -5222,8 +5222,8 @@ static RAPKM_2RRR_RR_APART_F rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_contro
     const float t230 = t223 + t229;
     const float t231 = t104 * t104;
     const float t232 = t124 * t124;
-    const float t233 = t14 * t14;
-    const float t234 = t12 * t12;
+    const float t233 = t12 * t12;
+    const float t234 = t14 * t14;
     const float t235 = t233 + t234;
     const float t236 = t201 * t235;
     const float t237 = t232 + t236;
@@ -5231,7 +5231,7 @@ static RAPKM_2RRR_RR_APART_F rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_contro
     const float t239 = t111 * t111;
     const float t240 = t232 + t239;
     const float t241 = t16 * t16;
-    const float t242 = t233 + t241;
+    const float t242 = t234 + t241;
     const float t243 = t201 * t242;
     const float t244 = t240 + t243;
     const float t245 = t108 * t108;
@@ -5576,7 +5576,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement_f(const float q[6], con
     const float t69 = t17 * t8;
     const float t70 = t18 * t7;
     const float t71 = t69 + t70;
-    const float t75 = t71 * t71;
+    const float t76 = t71 * t71;
     const float t14 = cosine[3];
     const float t16 = cosine[4];
     const float t22 = t14 * t16;
@@ -5619,7 +5619,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement_f(const float q[6], con
     const float t65 = l_2 * t64;
     const float t66 = t61 + t65;
     const float t67 = t66 * t66;
-    const float t76 = t64 * t64;
+    const float t75 = t64 * t64;
     const float t77 = t75 + t76;
     const float t78 = t54 * t77;
     const float t79 = t74 + t78;
@@ -5630,7 +5630,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement_f(const float q[6], con
     const float t84 = t83 * t83;
     const float t85 = t74 + t84;
     const float t86 = t28 * t28;
-    const float t87 = t75 + t86;
+    const float t87 = t76 + t86;
     const float t88 = t54 * t87;
     const float t89 = t85 + t88;
     const float t90 = l_1 * t14;
@@ -8598,7 +8598,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix_f(const float q[6], const
     const float t65 = l_1 * t7;
     const float t67 = t65 + t66;
     const float t68 = t67 * t67;
-    const float t69 = t24 * t24;
+    const float t70 = t24 * t24;
     const float t16 = cosine[4];
     const float t17 = sine[5];
     const float t32 = t16 * t17;
@@ -8626,7 +8626,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix_f(const float q[6], const
     const float t56 = t50 + t55;
     const float t57 = t46 + t56;
     const float t64 = t63 * t63;
-    const float t70 = t61 * t61;
+    const float t69 = t61 * t61;
     const float t71 = t69 + t70;
     const float t72 = t51 * t71;
     const float t73 = t68 + t72;
@@ -8634,7 +8634,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix_f(const float q[6], const
     const float t78 = t77 * t77;
     const float t79 = t68 + t78;
     const float t80 = t34 * t34;
-    const float t81 = t69 + t80;
+    const float t81 = t70 + t80;
     const float t82 = t51 * t81;
     const float t83 = t79 + t82;
     const float t87 = t86 * t86;
@@ -9243,7 +9243,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix_f(const float q[6], c
     const float t177 = t72 * t72;
     const float t179 = t45 * t45;
     const float t185 = t78 * t78;
-    const float t186 = t38 * t38;
+    const float t187 = t38 * t38;
     const float t176 = t27 * t27;
     const float t178 = t25 * t25;
     const float t180 = t178 + t179;
@@ -9251,7 +9251,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix_f(const float q[6], c
     const float t182 = t177 + t181;
     const float t183 = t176 + t182;
     const float t184 = t31 * t31;
-    const float t187 = t21 * t21;
+    const float t186 = t21 * t21;
     const float t188 = t186 + t187;
     const float t189 = t34 * t188;
     const float t190 = t185 + t189;
@@ -9259,7 +9259,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix_f(const float q[6], c
     const float t192 = t60 * t60;
     const float t193 = t185 + t192;
     const float t194 = t48 * t48;
-    const float t195 = t186 + t194;
+    const float t195 = t187 + t194;
     const float t196 = t34 * t195;
     const float t197 = t193 + t196;
     const float t198 = t56 * t56;
@@ -9871,7 +9871,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix_f(const float q[6], co
     const float t22 = t9 * t12;
     const float t23 = t10 * t11;
     const float t24 = t22 + t23;
-    const float t69 = t24 * t24;
+    const float t70 = t24 * t24;
     const float t14 = cosine[3];
     const float t16 = cosine[4];
     const float t25 = t14 * t16;
@@ -9914,7 +9914,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix_f(const float q[6], co
     const float t62 = l_2 * t61;
     const float t63 = t58 + t62;
     const float t64 = t63 * t63;
-    const float t70 = t61 * t61;
+    const float t69 = t61 * t61;
     const float t71 = t69 + t70;
     const float t72 = t51 * t71;
     const float t73 = t68 + t72;
@@ -9925,7 +9925,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix_f(const float q[6], co
     const float t78 = t77 * t77;
     const float t79 = t68 + t78;
     const float t80 = t34 * t34;
-    const float t81 = t69 + t80;
+    const float t81 = t70 + t80;
     const float t82 = t51 * t81;
     const float t83 = t79 + t82;
     const float t84 = l_1 * t14;
@@ -14393,7 +14393,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_singularity_f(const float q[6], const rapkm_2
     const float t65 = t63 + t64;
     const float t66 = t65 * t65;
     const float t67 = t20 * t20;
-    const float t68 = t32 + t67;
+    const float t68 = t67 + t32;
     const float t69 = t31 * t68;
     const float t70 = t28 + t69;
     const float t71 = t66 + t70;
