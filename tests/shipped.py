@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+
+import pytest
+from _pytest.mark import ParameterSet
 
 from symgen.backends.backend import backend
 from symgen.generation.results import Options, Result
@@ -36,6 +39,13 @@ NAMES = (
 SWEPT = tuple(name for name in NAMES if name != "rapkm_two_drives")
 SCALARS: tuple[Scalar, ...] = ("float64", "float32")
 LONG = 500  # statements
+# Kernels of parallel robots take as long as those of all others, and are made of the same statements.
+LONGEST = ("rapkm_2rrr_rr", "rapkm_two_drives")
+
+
+def sparing(names: Iterable[str], beyond: Container[str] = LONGEST) -> list[ParameterSet]:
+    """Names as parameters of tests; those `beyond` are members of the campaign of tests."""
+    return [pytest.param(name, marks=pytest.mark.campaign if name in beyond else ()) for name in names]
 
 
 @cache

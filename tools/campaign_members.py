@@ -16,12 +16,17 @@ CORES = ("arm-none-eabi-gcc", "qemu-system-arm", "riscv64-unknown-elf-gcc", "qem
 PRODUCT = ("symgen", "templates", "models", "pyproject.toml")
 # What in tests/ has tests of the mark `campaign`, and the tools they need; a part of each class stays in `make test`.
 TESTED = {
+    "backends": ("gcc",),
     "growth": (),
+    "ir": (),
     "mechanics": ("gcc",),
+    "methods": ("gcc",),
+    "model": (),
     "package": ("cmake", "arm-none-eabi-gcc", "riscv64-unknown-elf-gcc"),
     "proof": ("frama-c", "gappa", "gcc", "clang", "cppcheck", "clang-tidy"),
     "stress": ("gcc",),
     "test_generated.py": ("gcc", "g++", "clang", "clang++"),
+    "toolchain": ("gcc", "g++", "clang", "arm-none-eabi-gcc", "riscv64-unknown-elf-gcc"),
     "verify": ("gcc",),
     "witness": (),
     "zoo": ("gcc",),

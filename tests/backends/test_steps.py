@@ -73,7 +73,8 @@ def same(found: list[float], wanted: list[float]) -> bool:
 
 @pytest.mark.toolchain
 @pytest.mark.parametrize("scalar", shipped.SCALARS)
-@pytest.mark.parametrize(("name", "level"), [(MODELS[0], "-O0"), *((name, "-O2") for name in MODELS)])
+@pytest.mark.parametrize("level", ["-O0", "-O2"])
+@pytest.mark.parametrize("name", shipped.sparing(MODELS))
 def test_c(tool: Callable[[str], str], tmp_path: Path, name: str, scalar: Scalar, level: str) -> None:
     """One state at a time, and many, without a warning; nothing is prepared, no sines are given."""
     model, made = shipped.model(name), program(name, scalar)

@@ -75,7 +75,7 @@ def test_the_kernel_is_that_of_the_form(form: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("form", ["minor", "schur_qr", "shifted", "kkt"])
+@pytest.mark.parametrize("form", ["minor", "schur_qr", "shifted", pytest.param("kkt", marks=pytest.mark.campaign)])
 def test_multipliers_by_the_form_asked_for_are_verified(form: str, tmp_path: Path) -> None:
     assert form in FORMS["multipliers"]
     asked = ("--form", f"multipliers={form}", "--form", f"forward_dynamics={form}")

@@ -8,6 +8,7 @@ import math
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -18,8 +19,10 @@ from symgen.backends.backend import Variant
 from symgen.backends.c import backend
 from symgen.backends.c.plain import emit_c
 from symgen.cli.main import main
+from symgen.generation.results import Options
 from symgen.ir.kernel import Program
 from symgen.model.model import Model
+from symgen.simulate import command
 from symgen.simulate.animation import animation
 from symgen.simulate.scene import Scene
 
@@ -36,8 +39,10 @@ def rows(folder: Path, name: str) -> list[dict[str, float]]:
 
 
 @pytest.fixture
-def out(tmp_path: Path, tool: Callable[[str], str]) -> Path:
+def out(tmp_path: Path, tool: Callable[[str], str], monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder; what is simulated is verified at few states."""
     tool("gcc")
+    monkeypatch.setattr(command, "Options", partial(Options, states=8))
     return tmp_path
 
 
@@ -114,8 +119,11 @@ def test_kernels_that_verification_rejects_are_not_integrated(
     assert not list(out.iterdir())
 
 
-def test_what_was_verified_is_told(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    options = ("--duration", "0.1", "--start", "x_dot=1", "--out", str(out))
+def test_what_was_verified_is_told(
+    tool: Callable[[str], str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    tool("gcc")
+    options = ("--duration", "0.1", "--start", "x_dot=1", "--out", str(tmp_path))
     assert main(["simulate", str(MODELS / "skate.yaml"), *options]) == 0
     assert re.search(r"verified at 64 states, off by [0-9.]+ units of 16", capsys.readouterr().out)
 

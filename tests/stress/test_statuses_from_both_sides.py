@@ -9,7 +9,7 @@ from dataclasses import replace
 from functools import cache
 
 import pytest
-from shipped import NAMES, model
+from shipped import NAMES, model, sparing
 from test_families import reference
 
 from symgen.generation.runnable import SCALARS, STRESSED, Kernels, rounded_state
@@ -28,7 +28,7 @@ CONSTRAINT = {"rapkm_2rrr_rr", "rapkm_two_drives"}
 ACTUATION = {"rapkm_2rrr_rr", "rapkm_two_drives", "rear_car", "slider_crank"}
 
 
-@pytest.fixture(scope="module", params=NAMES)
+@pytest.fixture(scope="module", params=sparing(NAMES))
 def kernels(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Kernels:
     name: str = request.param
     return Kernels(model(name), tmp_path_factory.mktemp(name), STRESSED)

@@ -55,18 +55,24 @@ def test_bits_are_those_of_the_host(tool: Callable[[str], str], tmp_path: Path, 
     assert core != "cortex-m4f" or own.undefined == ()
 
 
+@pytest.fixture(scope="module")
+def emitted(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder with the C."""
+    path, out = recorded(tmp_path_factory.mktemp("emitted"), WIDE)
+    assert main([str(path), "--only", "c", "--recorded", str(out), "--quiet", "--out", str(out)]) == 0
+    return out / NAME / "c"
+
+
 @pytest.mark.toolchain
 @pytest.mark.parametrize("level", [level for level in LEVELS if level != "-O0"])
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
 def test_no_compiler_makes_a_call_of_a_table(
-    tool: Callable[[str], str], tmp_path: Path, level: str, compiler: str
+    tool: Callable[[str], str], emitted: Path, tmp_path: Path, level: str, compiler: str
 ) -> None:
     for name in ("arm-none-eabi-gcc", "arm-none-eabi-nm", compiler):
         tool(name)
-    path, out = recorded(tmp_path, WIDE)
-    assert main([str(path), "--only", "c", "--recorded", str(out), "--quiet", "--out", str(out)]) == 0
-    shop = Workshop(tmp_path / "shop", BY_NAME["cortex-m4f"])
-    shop.write({name: (out / NAME / "c" / name).read_text() for name in (f"{NAME}_f.c", f"{NAME}_f.h")})
+    shop = Workshop(tmp_path, BY_NAME["cortex-m4f"])
+    shop.write({name: (emitted / name).read_text() for name in (f"{NAME}_f.c", f"{NAME}_f.h")})
     assert "_steps_f(" in (shop.folder / f"{NAME}_f.c").read_text()
     made = shop.compile(f"{NAME}_f.c", level, "gcc" if compiler == "gcc" else "clang")
     told = run(["arm-none-eabi-nm", "-u", str(made)]).stdout

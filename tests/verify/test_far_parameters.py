@@ -14,7 +14,7 @@ from symgen.generation.draft import draft_of
 from symgen.generation.notices import notices
 from symgen.generation.parameter_bounds import ParameterBounds
 from symgen.generation.recorded import as_recorded
-from symgen.generation.results import Options
+from symgen.generation.results import Options, Result
 from symgen.ir.bounded import Bound
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Program, Scalar, Statement, Status
 from symgen.model.load import load_model
@@ -62,6 +62,11 @@ def crane(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("crane") / "crane.yaml"
     path.write_text(CRANE, encoding="utf-8")
     return path
+
+
+@pytest.fixture(scope="module")
+def made(crane: Path) -> Result:
+    return generate(crane, Options(parts=("c",)), lambda _: None)
 
 
 @pytest.fixture(scope="module")
@@ -194,36 +199,34 @@ def test_what_is_0_at_every_state_has_no_bound(tmp_path: Path) -> None:
     assert "k" not in found
 
 
-def test_status_0_means_a_result_within_the_tolerance_however_large_the_mass(crane: Path, expected: Expected) -> None:
-    result = generate(crane, Options(parts=("c",)), lambda _: None)
-    program = result.programs["float64"]
+def test_status_0_means_a_result_within_the_tolerance_however_large_the_mass(made: Result, expected: Expected) -> None:
+    program = made.programs["float64"]
     kernel = next(one for one in program.kernels if one.name == MULTIPLIERS)
-    place = next(k for k, p in enumerate(result.model.parameters) if p.name == MASS)
+    place = next(k for k, p in enumerate(made.model.parameters) if p.name == MASS)
     found = {Status.OK: 0, Status.PARAMETER_RANGE: 0}
     dice = random.Random("masses")
     for sample in expected.drawn:
         parameters = list(map(float, sample.state.parameters))
         parameters[place] *= 10 ** dice.uniform(-9, 9)
         state = replace(sample.state, parameters=tuple(parameters))
-        (made,) = outcomes(kernel, program.sincos, "float64", [state])
-        found[Status(made.status)] += 1
-        if not made.status:
+        (outcome,) = outcomes(kernel, program.sincos, "float64", [state])
+        found[Status(outcome.status)] += 1
+        if not outcome.status:
             truth = expectations(expected.reference, state, [MULTIPLIERS], "float64", "far")[MULTIPLIERS]
-            assert truth.in_units(truth.distance(made.entries)) <= FACTOR
+            assert truth.in_units(truth.distance(outcome.entries)) <= FACTOR
     assert min(found.values()) > 2
 
 
-def test_a_bound_is_recorded_told_and_taken_up_again(crane: Path, tmp_path: Path) -> None:
-    result = generate(crane, Options(), lambda _: None)
-    record = json.loads(result.files["derivation.json"])
+def test_a_bound_is_recorded_told_and_taken_up_again(made: Result, tmp_path: Path) -> None:
+    record = json.loads(made.files["derivation.json"])
     low, high = record["kernels"][MULTIPLIERS]["bounds"]["float64"][MASS]
     assert low is None
     assert "PARAMETER_RANGE" in record["kernels"][MULTIPLIERS]["statuses"]
-    assert f"{MASS} <= {high:g}" in str(result.files["c/crane.h"])
+    assert f"{MASS} <= {high:g}" in str(made.files["c/crane.h"])
     (tmp_path / "crane").mkdir()
-    (tmp_path / "crane" / "derivation.json").write_text(str(result.files["derivation.json"]), encoding="utf-8")
-    again = as_recorded(result.model, result.model.outputs, Options(measured=tmp_path))
-    assert again.written == result.programs
+    (tmp_path / "crane" / "derivation.json").write_text(str(made.files["derivation.json"]), encoding="utf-8")
+    again = as_recorded(made.model, made.model.outputs, Options(measured=tmp_path))
+    assert again.written == made.programs
 
 
 def test_a_type_that_is_left_out_has_no_bounds(crane: Path, expected: Expected) -> None:

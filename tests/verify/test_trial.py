@@ -98,7 +98,7 @@ def _derived(result: Result) -> Any:
     return json.loads(result.files["derivation.json"])
 
 
-@pytest.mark.parametrize("factor", [Fraction(0), Fraction(2**21)])
+@pytest.mark.parametrize("factor", [pytest.param(Fraction(0), marks=pytest.mark.campaign), Fraction(2**21)])
 def test_the_same_kernels_are_written(
     factor: Fraction, ladder: Path, written: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
