@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -129,7 +130,8 @@ def test_each_model_is_in_the_campaigns_and_all_that_they_read_exists() -> None:
     assert models <= {one.name for one in members if one.campaign in ("stress", "mechanisms")}
     assert [path for one in members for path in one.files if not (ROOT / path).exists()] == []
     tests = ((path, path.relative_to(ROOT / "tests")) for path in (ROOT / "tests").rglob("test_*.py"))
-    marked = {f"tests/{there.parts[0]}" for path, there in tests if f"mark.{MARK}" in path.read_text("utf-8")}
+    marks = re.compile(rf"mark\.{MARK}\b|\bsparing\(")
+    marked = {f"tests/{there.parts[0]}" for path, there in tests if marks.search(path.read_text("utf-8"))}
     assert marked == {one.files[-1] for one in members if one.campaign == "tests"}
     record = read_record(ROOT)
     known = {(campaign, name) for campaign, found in record.items() for name in found}

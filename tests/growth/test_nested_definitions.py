@@ -27,7 +27,7 @@ LINES = {
     "sums": "{before}/2 + {before}/3",
 }
 # All go the same way; what differs is what rewriting and closed forms make of them.
-FEW = ("roots", "sums")
+FEW = ("roots",)
 
 
 def definitions(count: int, line: str, first: str) -> str:

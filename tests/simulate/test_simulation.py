@@ -25,6 +25,7 @@ from symgen.model.model import Model
 from symgen.simulate import command
 from symgen.simulate.animation import animation
 from symgen.simulate.scene import Scene
+from symgen.verify import compile as compiling
 
 MODELS = ROOT / "models"
 
@@ -40,8 +41,9 @@ def rows(folder: Path, name: str) -> list[dict[str, float]]:
 
 @pytest.fixture
 def out(tmp_path: Path, tool: Callable[[str], str], monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder; what is simulated is verified at few states."""
+    """A folder; what is simulated is verified at few states, compiled as it stands: the bits are the same."""
     tool("gcc")
+    monkeypatch.setattr(compiling, "FLAGS", (*compiling.FLAGS, *compiling.PLAIN))
     monkeypatch.setattr(command, "Options", partial(Options, states=8))
     return tmp_path
 

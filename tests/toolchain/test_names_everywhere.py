@@ -124,11 +124,11 @@ def places_text(name: str, names: Sequence[str]) -> str:
     )
 
 
-def made(folder: Path, text: str, name: str = "model") -> Path:
-    """The folder with the C and the Python of a model text."""
+def made(folder: Path, text: str, name: str, part: str) -> Path:
+    """The folder with the C and another part of a model text."""
     path = folder / f"{name}.yaml"
     path.write_text(text)
-    result = generate(path, Options(parts=("c", "python", "package"), verify=False), lambda _: None)
+    result = generate(path, Options(parts=("c", part), verify=False), lambda _: None)
     for file, content in result.files.items():
         (folder / name / file).parent.mkdir(parents=True, exist_ok=True)
         (folder / name / file).write_text(str(content))
@@ -163,9 +163,9 @@ def hurting(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with models that have every name as a parameter, and every name in another place."""
     folder = tmp_path_factory.mktemp("hurting")
     for number, names in enumerate(groups(12)):
-        made(folder, parameters_text(f"parameters{number}", names), f"parameters{number}")
+        made(folder, parameters_text(f"parameters{number}", names), f"parameters{number}", "python")
     for number, names in enumerate(groups(6)):
-        made(folder, places_text(f"places{number}", names), f"places{number}")
+        made(folder, places_text(f"places{number}", names), f"places{number}", "python")
     return folder
 
 
@@ -208,7 +208,7 @@ def neighbours(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("neighbours")
     for name in SIDE_BY_SIDE:
         text = places_text(name, words("alpha beta gain share lift push"))
-        made(folder, text + "constraints:\n  geometric: {row: sin(alpha) - beta}\noutputs: all\n", name)
+        made(folder, text + "constraints:\n  geometric: {row: sin(alpha) - beta}\noutputs: all\n", name, "package")
     return folder
 
 
