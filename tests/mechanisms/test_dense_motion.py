@@ -58,6 +58,7 @@ def test_a_form_that_was_asked_for_says_nothing(tmp_path: Path) -> None:
 
 def test_inertias_that_prove_nothing_ask_for_their_ranges(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(articulated, "definite_by_frames", lambda *_: False)
+    monkeypatch.setattr(articulated, "definite_beside_rows", lambda *_: False)
     # without rows G is definite wherever the motion is determined
     assert notices(tmp_path) == []
     (told,) = notices(tmp_path, "constraints: {geometric: {gear: a_1 - 2*a_2}}\n")
