@@ -76,6 +76,12 @@ def definite_beside_rows(model: Model) -> bool:
     mass, one of G vanishes beside its own of H.  W makes rows as large as the inertia that they act on.
     """
     mechanics = System(model)
+    definite = _definite_beside_rows(mechanics)
+    mechanics.graph.dissolve()
+    return definite
+
+
+def _definite_beside_rows(mechanics: System) -> bool:
     graph, n, rows = mechanics.graph, mechanics.n, mechanics.constraint_jacobian
     entries = _largest(mechanics, [*flatten(mechanics.mass_matrix), *flatten(rows)])
     sizes = [entries[i * n + i] for i in range(n)]
@@ -90,11 +96,9 @@ def definite_beside_rows(model: Model) -> bool:
     holding = matmul(graph, transpose(rows, n), tuple(map(tuple, scaled)), n)
     held = tuple(tuple(map(add, *pair)) for pair in zip(mechanics.mass_matrix, holding, strict=True))
     own, beside = Cholesky(graph, mechanics.mass_matrix).pivots, Cholesky(graph, held).pivots
-    definite = not any(pivot.is_zero for pivot in own)
-    if definite:
-        definite = smallest(mechanics, [x / y for x, y in zip(own, beside, strict=True)])[0] > SMALLEST
-    graph.dissolve()
-    return definite
+    if any(pivot.is_zero for pivot in own):
+        return False
+    return smallest(mechanics, [x / y for x, y in zip(own, beside, strict=True)])[0] > SMALLEST
 
 
 def _indefinite(mechanics: System) -> Indefinite | None:
