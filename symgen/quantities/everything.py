@@ -14,8 +14,8 @@ from typing import TypeVar
 from symgen.runtime.effort import SCALAR, TooLongError, at_most, done, worth_trying
 
 MAIN = ("inverse_dynamics", "forward_dynamics", "multipliers")
-# Counted cost of all quantities together: what takes a minute to print, to compile and to verify.
-OPERATIONS_OF_ALL = 100_000
+# Counted cost of all quantities together: what takes under a minute to derive, to verify and to compile.
+OPERATIONS_OF_ALL = 70_000
 # Counted cost of one quantity along a way that loses digits: with twice as many it takes some twenty times as long.
 WIDE_OPERATIONS = 4_000
 # The same for accelerations and multipliers, which may take more of that than the others.
