@@ -9,8 +9,10 @@ than there is: within a power of ten, the reference has to find the loss too.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from itertools import chain, islice
 from math import floor, log10
 
 import numpy as np
@@ -18,6 +20,7 @@ import numpy as np
 from symgen.ir.bounded import Bound
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.runtime.activity import working
+from symgen.verify.compile import Outcome
 from symgen.verify.expected import Expected
 from symgen.verify.far_errors import Far, FarErrors
 from symgen.verify.interpreted import outcomes
@@ -40,6 +43,14 @@ STATES = 4
 HELD, MOST = 4_000_000, 60_000_000
 # Up to this power the reference judges so many of the worst.
 JUDGED_UP_TO, JUDGED = 1.0, 2
+
+
+@dataclass(frozen=True)
+class _Tried:
+    """A state, and what a kernel gives there."""
+
+    state: State
+    outcome: Outcome
 
 
 class FarParameters:
@@ -86,18 +97,18 @@ class FarParameters:
         far = _in_digits(most * 10.0**high, up=False) if high is not None and most else None
         return None if near is None and far is None else Bound(declared.name, near, far)
 
-    def is_lost(self, kernel: Kernel, program: Program, far: Far) -> bool:
-        """Whether the reference finds a state, in seven digits, at which a kernel loses more than is allowed."""
-        for place, given in enumerate(far.rounded):
-            state = State(*(tuple(given[name]) for name in ("q", "qd", "qdd", "u", "p")))
-            (found,) = outcomes(kernel, program.sincos, program.scalar, [state])
-            try:
-                made = expectations(self._reference, state, [kernel.name], program.scalar, f"far {place}")[kernel.name]
-            except ReferenceValueError:
-                continue
-            if found.valid and made.in_units(made.distance(found.entries)) > FACTOR:
-                return True
-        return False
+    def tried(self, kernel: Kernel, program: Program, far: Far) -> list[_Tried]:
+        """What a kernel gives at states in seven digits."""
+        states = [State(*(tuple(given[name]) for name in ("q", "qd", "qdd", "u", "p"))) for given in far.rounded]
+        return list(map(_Tried, states, outcomes(kernel, program.sincos, program.scalar, states)))
+
+    def is_lost(self, quantity: str, scalar: Scalar, tried: _Tried) -> bool:
+        """Whether the reference finds that more is lost than is allowed."""
+        try:
+            made = expectations(self._reference, tried.state, [quantity], scalar, "far")[quantity]
+        except ReferenceValueError:
+            return False
+        return tried.outcome.valid and made.in_units(made.distance(tried.outcome.entries)) > FACTOR
 
     @cached_property
     def _leading(self) -> frozenset[int]:
@@ -168,36 +179,55 @@ class _Bounds:
     def _of(
         self, scalar: Scalar, read: Sequence[int], first: Mapping[tuple[int, int], float], lost: Far
     ) -> Iterator[Bound]:
+        steps = self._steps(scalar, lost)
         for index in read:
-            own = lost.only(lost.parameters == index)
             low, high = (
-                self._power(scalar, own.only(own.powers * sign > 0), sign, first[index, sign])
-                if (index, sign) in first
-                else None
+                self._power(scalar, index, sign, steps, first[index, sign]) if (index, sign) in first else None
                 for sign in SIDES
             )
             if (bound := self._far.bound(index, low, high)) is not None:
                 yield bound
 
-    def _power(self, scalar: Scalar, lost: Far, sign: int, last: float) -> float:
+    def _steps(self, scalar: Scalar, lost: Far) -> dict[tuple[int, float], list[_Tried]]:
+        """Of each parameter and power of ten there is the worst states, tried together where the reference judges."""
+        worst: dict[tuple[int, float], list[int]] = {}
+        for place, step in enumerate(zip(lost.parameters.tolist(), lost.powers.tolist(), strict=True)):
+            at = worst.setdefault(step, [])
+            if abs(step[1]) <= JUDGED_UP_TO and len(at) < JUDGED:
+                at.append(place)
+        judged = lost.only(np.array([place for at in worst.values() for place in at], dtype=int))
+        kernel, program = self._kernels[scalar], self._programs[scalar]
+        tried = chain.from_iterable(self._far.tried(kernel, program, part) for part in self._parts(judged))
+        return {step: list(islice(tried, len(at))) for step, at in worst.items()}
+
+    def _power(
+        self, scalar: Scalar, index: int, sign: int, steps: Mapping[tuple[int, float], Sequence[_Tried]], last: float
+    ) -> float:
         """The power of ten up to which nothing is lost on one side, where something is at the `last`."""
-        powers: list[float] = sorted(set(np.abs(lost.powers).tolist()))
+        quantity, found = self._kernels[scalar].name, last
+        powers = sorted((sign * power for which, power in steps if which == index and sign * power > 0), reverse=True)
+        # from outside: where nothing is lost nothing is further in
         for power in powers:
-            worst = lost.only(np.abs(lost.powers) == power).only(slice(JUDGED))
-            if power > JUDGED_UP_TO or self._far.is_lost(self._kernels[scalar], self._programs[scalar], worst):
-                return sign * max(min(power, last) - QUARTER, QUARTER)
-        return sign * last
+            worst = steps[index, sign * power]
+            if power <= JUDGED_UP_TO and not any(self._far.is_lost(quantity, scalar, tried) for tried in worst):
+                break
+            found = max(min(power, last) - QUARTER, QUARTER)
+        return sign * found
 
     def _lost(self, far: Far) -> dict[Scalar, Far]:
         """By scalar type, what of it seems to lose more than is allowed, the worst first."""
-        held = max(1, HELD // self._size)
-        parts = [self._errors.units(far.only(slice(start, start + held))) for start in range(0, len(far), held)]
+        parts = [self._errors.units(part) for part in self._parts(far)]
         found = {}
         for scalar in self._kernels:
             units = np.concatenate([np.zeros(0), *(part[scalar] for part in parts)])
             order = np.argsort(-units, kind="stable")
             found[scalar] = far.only(order[units[order] > FACTOR])
         return found
+
+    def _parts(self, far: Far) -> Iterator[Far]:
+        """As many states at a time as may be held."""
+        held = max(1, HELD // self._size)
+        return (far.only(slice(start, start + held)) for start in range(0, len(far), held))
 
 
 def _nearest(far: Far) -> dict[tuple[int, int], float]:
