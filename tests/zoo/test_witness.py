@@ -280,6 +280,27 @@ def test_what_rounding_leaves_of_a_row_that_is_zero_is_no_row() -> None:
     assert abs(held[1][0]) == 1
 
 
+LINK_AS_ROD = """
+model: link_as_rod
+coordinates: {a: {unit: rad}, b: {unit: rad}}
+definitions: {x: 0.5*cos(a), y: 0.5*sin(a), x_tip: x + 0.18*cos(b), y_tip: y + 0.18*sin(b)}
+kinetic_energy: 0.3*a_dot**2 + 0.2*b_dot**2
+constraints:
+  geometric:
+    rod: 1e6*((x_tip - x)**2 + (y_tip - y)**2 - 0.0324)
+    hold: x - 0.25
+    again: (1e6*((x_tip - x)**2 + (y_tip - y)**2 - 0.0324)) + 200*(x - 0.25)
+"""
+
+
+def test_a_rod_between_the_ends_of_a_link_is_no_row_in_small_units() -> None:
+    """Rounding leaves 1e-11 of its gradient, which is 0 (draw 2901:824)."""
+    witness, start = Witness(LINK_AS_ROD), {"a": 1.047, "b": 0.4}
+    states, ranks = Walker(witness._system, witness._evaluate, start, Dice("rod")).states({}, 6)
+    assert len(states) == 6
+    assert ranks.constraints == 1
+
+
 def test_powers_of_what_may_be_zero() -> None:
     """The square of a speed that is 0 but for its digits is a number."""
     balls = Balls()

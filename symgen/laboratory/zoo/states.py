@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -26,6 +26,8 @@ SHORT, STRAY = 1e-4, 1e3
 DEPENDENT = 1e-6
 # how far rows, inputs and masses are apart at states that are compared, unless the model has none of the kind
 REGULAR = 1e-3
+# places beside the start, further for each coordinate, where functions that are 0 there are 0 everywhere
+ASIDE = Fraction(1, 70), Fraction(-1, 90)
 # a walk stays about as near as the ranges that the documentation takes for granted
 FURTHEST = 3.2
 
@@ -50,6 +52,7 @@ class Walker:
         self._floats = Floats()
         self._balls = Balls()
         self._ranges = system.blocks.get("ranges") or {}
+        self._voids: frozenset[int] | None = None
 
     def states(self, parameters: Mapping[str, float], count: int) -> tuple[list[State], Ranks]:
         """So many regular states, fewer where they are hard to find; and the generic ranks that were met."""
@@ -145,7 +148,25 @@ class Walker:
         rates = qd if qd is not None else [0.0] * len(q)
         values = {**parameters, **dict(zip(self._system.coordinates, map(float, q), strict=True))}
         values |= dict(zip(self._system.rate_names, map(float, rates), strict=True))
-        return self._evaluate(values, self._floats)
+        at, void = self._evaluate(values, self._floats), self._void(parameters)
+        rows = [[0.0] * at.n if i in void else row for i, row in enumerate(at.rows)]
+        residual = [0.0 if i in void else x for i, x in enumerate(at.residual)]
+        return replace(at, rows=rows, residual=residual)
+
+    def _void(self, parameters: Mapping[str, float]) -> frozenset[int]:
+        """The rows that are 0 beside V, too: what rounding leaves of one in small units is longer than another row."""
+        if self._voids is None:
+            number, names = self._balls.number, self._system.coordinates
+            found = set(range(len(self._system.rows)))
+            with precision():
+                fixed = {name: number(Fraction(value)) for name, value in parameters.items()}
+                fixed |= dict.fromkeys(self._system.rate_names, number(Fraction(0)))
+                for aside in ASIDE:
+                    exact = [number(Fraction(float(x)) + (1 + k) * aside) for k, x in enumerate(self._start)]
+                    at = self._evaluate({**fixed, **dict(zip(names, exact, strict=True))}, self._balls)
+                    found = {i for i in found if all(x.is_finite() and x.contains(0) for x in at.rows[i])}
+            self._voids = frozenset(found)
+        return self._voids
 
     def closed(self, q: Any, parameters: Mapping[str, float]) -> Any:
         """The nearest configuration that satisfies the geometric rows, to the last digits; None where there is none."""
