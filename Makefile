@@ -75,15 +75,16 @@ firmware: $(VENV)/installed
 	$(RECORDED) run firmware
 
 # Random systems through the whole command, each ending looked at: a chunk of a campaign, or as much as fits in a time.
+# What fails is made small and is a test from then on.
 ZOO_SEED ?= $(shell git rev-list --count HEAD)
 ZOO_FIRST ?= 0
 ZOO_DRAWS ?= 1000
 ZOO_SECONDS ?= 0
 zoo: $(VENV)/installed
 	$(BIN)/python -m symgen.laboratory.zoo --seed $(ZOO_SEED) --first $(ZOO_FIRST) --draws $(ZOO_DRAWS) --seconds $(ZOO_SECONDS) \
-	    --out build/zoo
+	    --out build/zoo --cases tests/zoo/cases
 
-# A failing draw made small and kept as a test: make zoo-case ZOO_SEED=3 ZOO_FIRST=14 CASE=name
+# The same of one draw, under a name: make zoo-case ZOO_SEED=3 ZOO_FIRST=14 CASE=name
 zoo-case: $(VENV)/installed
 	$(BIN)/python -m symgen.laboratory.zoo --seed $(ZOO_SEED) --first $(ZOO_FIRST) --store tests/zoo/cases/$(CASE).yaml --out build/zoo
 

@@ -8,14 +8,15 @@ from pathlib import Path
 import pytest
 
 from symgen.laboratory.zoo import campaign, command
-from symgen.laboratory.zoo.campaign import Campaign, judge, one_draw
-from symgen.laboratory.zoo.cases import read_case
-from symgen.laboratory.zoo.describe import Terms, read_description, summands
+from symgen.laboratory.zoo.campaign import MOST_SECONDS, Campaign, judge, one_draw, shrunk
+from symgen.laboratory.zoo.cases import case_of, read_case
+from symgen.laboratory.zoo.describe import Description, Terms, read_description, summands
 from symgen.laboratory.zoo.families import FAMILIES, draw
 from symgen.laboratory.zoo.records import Record, read_records, summary, write_record
+from symgen.laboratory.zoo.refusals import NOT_TOLD
 from symgen.laboratory.zoo.run import Run
 from symgen.laboratory.zoo.urdf_file import expanded
-from symgen.laboratory.zoo.verdict import FAILED, VERIFIED, Verdict
+from symgen.laboratory.zoo.verdict import FAILED, REFUSED, VERIFIED, Verdict
 from symgen.model.load import load_text
 
 RIGHT = Record(1, 0, "disc", VERIFIED, "", "", 2.0, 100)
@@ -98,6 +99,41 @@ def test_a_failing_draw_leaves_its_file_and_a_small_case(ends, tmp_path: Path) -
     large, small = Path(record.file).read_text(), Path(record.file).with_name("case.yaml").read_text()
     assert "# expected: verified" in small
     assert len(small) < len(large) / 2
+
+
+def test_a_campaign_makes_its_failures_small_and_keeps_them_as_tests(ends, tmp_path: Path, monkeypatch) -> None:
+    ends(Run(2, "", "symgen: internal error: odd\n", 1, 1))
+    # processes of a pool would not have the replaced command
+    monkeypatch.setattr(command, "run_campaign", lambda one, given, indices, *_: [one(given, k)[0] for k in indices])
+    cases = tmp_path / "cases"
+    cases.mkdir()
+    given = ["zoo", "--seed", "1", "--draws", "1", "--family", "geared", "--out", str(tmp_path), "--cases", str(cases)]
+    monkeypatch.setattr("sys.argv", given)
+    assert command.main() == 1
+    assert [path.name for path in cases.iterdir()] == ["1_0.yaml"]
+    kept = read_case(cases / "1_0.yaml")
+    assert (kept.found, kept.expected) == ("internal error: odd at ?", VERIFIED)
+    assert len(kept.model) < len(draw(1, 0, "geared").text) / 2
+
+
+def test_what_takes_long_is_made_small_in_few_runs(monkeypatch, tmp_path: Path) -> None:
+    late, runs = Verdict(FAILED, "time", "deriving ..."), []
+
+    def instead(candidate: Description, _model: Path) -> tuple[Verdict, float, float]:
+        runs.append(candidate)
+        return late, MOST_SECONDS / 4, 1
+
+    monkeypatch.setattr(campaign, "judge", instead)
+    description = draw(1, 0, "planar_energies")
+    small = shrunk(description, late, tmp_path / "small.yaml", 80)
+    assert len(runs) == 5
+    assert small == runs[-1]
+
+
+def test_a_mistake_that_was_not_told_is_kept_with_the_mistake(tmp_path: Path) -> None:
+    description, verdict = draw(1, 0, "geared"), Verdict(FAILED, NOT_TOLD)
+    assert shrunk(description, verdict, tmp_path / "small.yaml", 80) == description
+    assert case_of(description, verdict).expected == REFUSED
 
 
 def test_a_draw_that_ends_well_leaves_nothing(ends, tmp_path: Path, monkeypatch) -> None:

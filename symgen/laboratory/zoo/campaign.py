@@ -17,11 +17,14 @@ from symgen.laboratory.zoo.cases import case_of
 from symgen.laboratory.zoo.describe import Description
 from symgen.laboratory.zoo.families import draw
 from symgen.laboratory.zoo.records import Record
-from symgen.laboratory.zoo.refusals import judged
+from symgen.laboratory.zoo.refusals import NOT_TOLD, judged
 from symgen.laboratory.zoo.run import run_command
 from symgen.laboratory.zoo.shrink import shrink
 from symgen.laboratory.zoo.verdict import FAILED, REFUSED, Verdict, verdict_of, without_numbers
 from symgen.laboratory.zoo.witness import check
+
+# CPU seconds that making a failing draw small may take: one that takes too long each time would take hours
+MOST_SECONDS = 300.0
 
 Tell = Callable[[str], None]
 Told = TypeVar("Told")
@@ -29,12 +32,16 @@ Told = TypeVar("Told")
 
 @dataclass(frozen=True)
 class Campaign:
-    """Which draws, where their files go, how many runs a failing one is made small in (0: not at all)."""
+    """Which draws, where their files go, how many runs a failing one is made small in (0: not at all).
+
+    The small one is kept as a case in `cases`, or beside the draw's own files.
+    """
 
     seed: int
     folder: Path
     family: str = ""
     shrinking: int = 0
+    cases: Path | None = None
 
 
 def write(description: Description, model: Path) -> None:
@@ -82,12 +89,14 @@ def one_draw(campaign: Campaign, index: int) -> tuple[Record, str]:
         campaign.seed, index, description.family, verdict.ending, verdict.kind, verdict.signature, round(cpu, 1),
         round(megabytes), str(model) if verdict.failed else "",
     )  # fmt: skip
+    told = f"{record.ending} {record.kind} {record.signature} ({record.cpu} s, {record.megabytes} MB)"
     if not verdict.failed:
         shutil.rmtree(model.parent, ignore_errors=True)
     elif campaign.shrinking:
         small = shrunk(description, verdict, model.with_name("small.yaml"), campaign.shrinking)
-        model.with_name("case.yaml").write_text(case_of(small, verdict).text, encoding="utf-8")
-    told = f"{record.ending} {record.kind} {record.signature} ({record.cpu} s, {record.megabytes} MB)"
+        kept = campaign.cases / f"{model.parent.name}.yaml" if campaign.cases else model.with_name("case.yaml")
+        kept.write_text(case_of(small, verdict).text, encoding="utf-8")
+        told += f"; kept as {kept}"
     return record, f"{record.seed}:{index} {record.family}: {' '.join(told.split())}"
 
 
@@ -126,10 +135,17 @@ def usual_jobs() -> int:
 
 
 def shrunk(description: Description, verdict: Verdict, model: Path, most: int) -> Description:
-    """The draw made small, still with the same ending."""
+    """The draw made small, still with the same ending; a mistake that was not told stays as it is, lest it be lost."""
+    spent = 0.0
+    if verdict.kind == NOT_TOLD:
+        return description
 
     def fails(candidate: Description) -> bool:
-        other = judge(candidate, model)[0]
+        nonlocal spent
+        if spent > MOST_SECONDS:
+            return False
+        other, cpu, _ = judge(candidate, model)
+        spent += cpu
         # what takes too long need not stop at the same step
         alike = other.signature == verdict.signature or other.kind in ("time", "memory", "no end")
         return alike and other.kind == verdict.kind

@@ -8,7 +8,8 @@ from pathlib import Path
 
 from symgen.laboratory.zoo.describe import Description
 from symgen.laboratory.zoo.dice import exact
-from symgen.laboratory.zoo.verdict import VERIFIED, Verdict
+from symgen.laboratory.zoo.refusals import NOT_TOLD
+from symgen.laboratory.zoo.verdict import REFUSED, VERIFIED, Verdict
 
 FOUND, EXPECTED, START = "# found by the zoo: ", "# expected: ", "# start: "
 
@@ -29,8 +30,9 @@ class Case:
         return f"{FOUND}{self.found}\n{EXPECTED}{self.expected}\n{START}{told}\n{self.model}"
 
 
-def case_of(description: Description, verdict: Verdict, expected: str = VERIFIED) -> Case:
-    """The case of a failure."""
+def case_of(description: Description, verdict: Verdict) -> Case:
+    """The case of a failure: a mistake that was not told must be refused, all else verified."""
+    expected = REFUSED if verdict.kind == NOT_TOLD else VERIFIED
     return Case(f"{verdict.kind}: {verdict.signature}", expected, dict(description.start), description.text)
 
 

@@ -16,7 +16,7 @@ from symgen.laboratory.zoo.features import ALL, features
 from symgen.laboratory.zoo.records import read_records, summary, write_record
 from symgen.laboratory.zoo.sweep_campaign import one_sweep, table
 
-# how many runs a failing draw is made small in, unless another number is given
+# how many runs a failing draw is made small in at most, unless another number is given
 RUNS = 80
 
 
@@ -29,7 +29,12 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=0, help="no new draw after so many seconds (0: no limit)")
     parser.add_argument("--jobs", type=int, default=usual_jobs(), help="draws at a time (default: one a processor)")
     parser.add_argument("--family", choices=sorted(FAMILIES), default="")
-    parser.add_argument("--shrink", type=int, default=0, metavar="RUNS", help="make failing draws small")
+    parser.add_argument(
+        "--shrink", type=int, default=RUNS, metavar="RUNS", help="make failing draws small in so many runs (0: do not)"
+    )
+    parser.add_argument(
+        "--cases", type=Path, metavar="FOLDER", help="where small failing draws are kept (default: beside the draws)"
+    )
     parser.add_argument("--out", type=Path, default=Path("build/zoo"))
     parser.add_argument("--show", action="store_true", help="print the model file of the first draw and run nothing")
     parser.add_argument("--count", action="store_true", help="count what the draws have, and run nothing")
@@ -59,7 +64,7 @@ def main() -> int:
     given.out.mkdir(parents=True, exist_ok=True)
     path = given.out / f"{given.seed}_{given.first}.jsonl"
     path.unlink(missing_ok=True)
-    campaign = Campaign(given.seed, given.out, given.family, given.shrink)
+    campaign = Campaign(given.seed, given.out, given.family, given.shrink, given.cases)
     indices = range(given.first, given.first + given.draws)
     if given.sweeps:
         return _sweep(campaign, indices, path, given)
@@ -88,9 +93,8 @@ def _one(description: Description, name: str, given: argparse.Namespace) -> int:
     model = given.out / name / f"{name}.yaml"
     verdict = judge(description, model)[0]
     _tell(f"{name}: {verdict.ending} {verdict.kind} {verdict.signature}")
-    runs = given.shrink or (RUNS if given.store else 0)
-    if verdict.failed and runs:
-        case = case_of(shrunk(description, verdict, model.with_name("small.yaml"), runs), verdict)
+    if verdict.failed and given.shrink:
+        case = case_of(shrunk(description, verdict, model.with_name("small.yaml"), given.shrink), verdict)
         if given.store:
             given.store.write_text(case.text, encoding="utf-8")
         else:

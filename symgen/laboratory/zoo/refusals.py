@@ -9,6 +9,7 @@ from symgen.laboratory.zoo.drawn import Drawn
 from symgen.laboratory.zoo.urdf_file import expanded
 from symgen.laboratory.zoo.verdict import FAILED, REFUSED, Verdict
 
+NOT_TOLD = "mistake not told"
 # what symgen says of a system as a whole, and what must be so then
 REASONS: dict[str, Callable[[Drawn], bool]] = {
     "the accelerations are undetermined": lambda drawn: drawn.undetermined,
@@ -21,7 +22,7 @@ def judged(description: Description, verdict: Verdict) -> Verdict:
     """The verdict, a failure where a legal draw was refused, or a mistake that was drawn on purpose was not told."""
     mistaken = MISTAKE in description.marks
     if mistaken and not verdict.failed and verdict.ending != REFUSED:
-        return Verdict(FAILED, "mistake not told", verdict.signature)
+        return Verdict(FAILED, NOT_TOLD, verdict.signature)
     if verdict.ending != REFUSED or mistaken:
         return verdict
     for words, is_true in REASONS.items():
