@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -21,7 +22,8 @@ FIRST = "parameter_named_memcpy"
     "path",
     [pytest.param(path, id=path.stem, marks=() if path.stem == FIRST else pytest.mark.campaign) for path in CASES],
 )
-def test_a_case_ends_as_it_must(path: Path, tmp_path: Path) -> None:
+def test_a_case_ends_as_it_must(path: Path, tmp_path: Path, tool: Callable[[str], str]) -> None:
+    tool("gcc")
     case = read_case(path)
     model = tmp_path / "zoo.yaml"
     model.write_text(case.model)

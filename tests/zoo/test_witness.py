@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
 
@@ -131,8 +132,9 @@ def test_other_python_is_not_read(text: str) -> None:
 
 
 @pytest.fixture(scope="module")
-def generated(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def generated(tmp_path_factory: pytest.TempPathFactory, tool: Callable[[str], str]) -> Path:
     """The folder of the cart, verified."""
+    tool("gcc")
     folder = tmp_path_factory.mktemp("cart")
     (folder / "cart.yaml").write_text(SYSTEM)
     run = run_command(folder / "cart.yaml", folder / "out")
