@@ -106,7 +106,6 @@ def test_a_campaign_makes_its_failures_small_and_keeps_them_as_tests(ends, tmp_p
     # processes of a pool would not have the replaced command
     monkeypatch.setattr(command, "run_campaign", lambda one, given, indices, *_: [one(given, k)[0] for k in indices])
     cases = tmp_path / "cases"
-    cases.mkdir()
     given = ["zoo", "--seed", "1", "--draws", "1", "--family", "geared", "--out", str(tmp_path), "--cases", str(cases)]
     monkeypatch.setattr("sys.argv", given)
     assert command.main() == 1

@@ -95,6 +95,7 @@ def one_draw(campaign: Campaign, index: int) -> tuple[Record, str]:
     elif campaign.shrinking:
         small = shrunk(description, verdict, model.with_name("small.yaml"), campaign.shrinking)
         kept = campaign.cases / f"{model.parent.name}.yaml" if campaign.cases else model.with_name("case.yaml")
+        kept.parent.mkdir(parents=True, exist_ok=True)
         kept.write_text(case_of(small, verdict).text, encoding="utf-8")
         told += f"; kept as {kept}"
     return record, f"{record.seed}:{index} {record.family}: {' '.join(told.split())}"
