@@ -115,6 +115,17 @@ def test_a_campaign_makes_its_failures_small_and_keeps_them_as_tests(ends, tmp_p
     assert len(kept.model) < len(draw(1, 0, "geared").text) / 2
 
 
+@pytest.mark.parametrize("installed", [True, False])
+def test_trees_that_are_compared_with_one_witness_only_are_told(
+    installed: bool, tmp_path: Path, monkeypatch, capsys
+) -> None:
+    monkeypatch.setattr(command, "find_spec", lambda _: object() if installed else None)
+    monkeypatch.setattr(command, "run_campaign", lambda *_: [RIGHT])
+    monkeypatch.setattr("sys.argv", ["zoo", "--draws", "1", "--out", str(tmp_path)])
+    assert command.main() == 0
+    assert ("Pinocchio is not installed" in capsys.readouterr().err) != installed
+
+
 def test_what_takes_long_is_made_small_in_few_runs(monkeypatch, tmp_path: Path) -> None:
     late, runs = Verdict(FAILED, "time", "deriving ..."), []
 

@@ -6,6 +6,7 @@ import argparse
 import sys
 import time
 from collections import Counter
+from importlib.util import find_spec
 from pathlib import Path
 
 from symgen.laboratory.zoo.campaign import Campaign, judge, one_draw, run_campaign, shrunk, usual_jobs
@@ -64,6 +65,8 @@ def main() -> int:
     given.out.mkdir(parents=True, exist_ok=True)
     path = given.out / f"{given.seed}_{given.first}.jsonl"
     path.unlink(missing_ok=True)
+    if find_spec("pinocchio") is None:
+        _tell("Pinocchio is not installed (`make robots`): trees are compared with the zoo's own witness alone")
     campaign = Campaign(given.seed, given.out, given.family, given.shrink, given.cases)
     indices = range(given.first, given.first + given.draws)
     if given.sweeps:
