@@ -16,7 +16,7 @@ from symgen.model.expressions.walk import exact_value, names_in
 from symgen.model.file.reading import entries, items, member, text_of
 from symgen.model.file.scope import PARAMETERS, Scope
 from symgen.model.file.source import MappingNode, Node, ScalarNode
-from symgen.model.kinematics.formulas import Form, Formula, Formulas
+from symgen.model.kinematics.formulas import ExpressionArithmetic, ExpressionNumber, Form
 from symgen.model.kinematics.walk import Kinematics
 from symgen.model.mechanism import AXES, PLACES, WORLD, ZERO, Component, Mechanism, Quaternion, component, is_component
 from symgen.model.model import ConstraintRow, Coordinate, Definition
@@ -48,8 +48,8 @@ class Rows:
         defaults: Mapping[str, float],
     ) -> None:
         self._scope, self._defaults = scope, defaults
-        self._formulas = Formulas(coordinates, {definition.name: definition.value for definition in known})
-        self._kinematics: Kinematics[Formula, Form] = Kinematics(mechanism, self._formulas)
+        self._formulas = ExpressionArithmetic(coordinates, {definition.name: definition.value for definition in known})
+        self._kinematics: Kinematics[ExpressionNumber, Form] = Kinematics(mechanism, self._formulas)
 
     def of_loops(self, tree: MappingNode) -> Iterator[ConstraintRow]:
         """The rows that close the loops."""

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from symgen.diagnostics import Mistake, Notice, Span
 from symgen.model.checks.masses import check_masses
-from symgen.model.configurations.assembly import Assembly, Place
+from symgen.model.configurations.assembly import Assembly, RankedConfiguration
 from symgen.model.configurations.branches import Open
 from symgen.model.configurations.dense import Rows, rank
 from symgen.model.configurations.mechanics import NumericSystem
@@ -117,7 +117,9 @@ def _far_start(
         )
 
 
-def _moved(mechanics: NumericSystem, place: Place, declared: Mapping[str, float]) -> list[tuple[str, float, float]]:
+def _moved(
+    mechanics: NumericSystem, place: RankedConfiguration, declared: Mapping[str, float]
+) -> list[tuple[str, float, float]]:
     """The coordinates whose declared start is far from a configuration, with both values."""
     return [
         (c.name, declared[c.name], value)
@@ -153,7 +155,7 @@ def _other_branches(mechanics: NumericSystem, assembly: Assembly, span: Span | N
         )
 
 
-def _shown(mechanics: NumericSystem, place: Place) -> str:
+def _shown(mechanics: NumericSystem, place: RankedConfiguration) -> str:
     """The first coordinates of a configuration."""
     pairs = zip(mechanics.coordinates, place.q, strict=True)
     shown = [f"{c.name} = {value:.3g}" for c, value in pairs][:MOST_SHOWN]

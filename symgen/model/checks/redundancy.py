@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from symgen.diagnostics import Mistake, Notice
 from symgen.model.checks.feasibility import SAMPLES
-from symgen.model.configurations.assembly import Assembly, Place
+from symgen.model.configurations.assembly import Assembly, RankedConfiguration
 from symgen.model.configurations.dense import Rows, rank
 from symgen.model.configurations.mechanics import NumericSystem
 from symgen.model.expressions.names import counted
@@ -68,7 +68,7 @@ def _check_direction(
         yield Mistake(f"`limits` need {one}: {why}", remedy, allocation.span)
 
 
-def _dense(mechanics: NumericSystem, place: Place, inputs: tuple[Input, ...]) -> tuple[Rows, Rows]:
+def _dense(mechanics: NumericSystem, place: RankedConfiguration, inputs: tuple[Input, ...]) -> tuple[Rows, Rows]:
     """B and the columns of M at a configuration."""
     columns = mechanics.columns(place.q, inputs)
     return mechanics.jacobian(place.q), [[column.get(j, 0.0) for j in range(len(place.q))] for column in columns]

@@ -15,7 +15,7 @@ class Ranks:
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class RankedConfiguration:
     """A configuration on the geometric constraints and the ranks there."""
 
     q: tuple[float, ...]
@@ -38,10 +38,10 @@ class Assembly:
     """
 
     ranks: Ranks
-    places: tuple[Place, ...]
-    others: tuple[Place, ...] = ()
+    places: tuple[RankedConfiguration, ...]
+    others: tuple[RankedConfiguration, ...] = ()
     bound: tuple[int, int] = (0, 0)
-    start: Place | None = None
+    start: RankedConfiguration | None = None
     regular: bool = True
     tied: tuple[str, ...] = ()
     losing: tuple[int, ...] = ()

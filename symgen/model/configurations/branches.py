@@ -20,8 +20,8 @@ from dataclasses import replace
 from itertools import islice
 
 from symgen.model.checks.shaken import Shaken
-from symgen.model.configurations.assembly import Assembly, Place, Ranks
-from symgen.model.configurations.closing import CLOSED, Closer, Loop, row_unit
+from symgen.model.configurations.assembly import Assembly, RankedConfiguration, Ranks
+from symgen.model.configurations.closing import CLOSED, Closer, KinematicLoop, row_unit
 from symgen.model.configurations.dense import null_space
 from symgen.model.configurations.mechanics import NumericSystem
 from symgen.model.configurations.sparse import NEGLIGIBLE, PLAIN, Row, Scales, clear_rank, pivots, typical
@@ -84,14 +84,18 @@ class _Search:
             return self._open()
         # where sizes differ too much no rank is clear-cut: then what is not negligible counts
         for plain in (PLAIN, NEGLIGIBLE):
-            places = [Place(q, ranks) for q in configurations if (ranks := self._ranks(q, plain)) is not None]
+            places = [
+                RankedConfiguration(q, ranks)
+                for q in configurations
+                if (ranks := self._ranks(q, plain)) is not None
+            ]
             if places:
                 found = self._chosen(places, configurations[0])
                 losing = () if found.regular else self._losing(found.places[0])
                 return replace(found, held=self._held(found), losing=losing, units=self._units_of(found))
         return None
 
-    def _losing(self, place: Place) -> tuple[int, ...]:
+    def _losing(self, place: RankedConfiguration) -> tuple[int, ...]:
         """The rows that take part in what B lacks of its rank at a singular configuration."""
         r = len(self._mechanics.constraints)
         rows = self._scales.scaled(self._rows(place.q) or [{}] * r)[:r]
@@ -231,7 +235,7 @@ class _Search:
                 yield q
                 if (ranks := self._ranks(q)) is not None:
                     reached.append(ranks)
-                    regular = regular or self._is_regular(Place(q, ranks))
+                    regular = regular or self._is_regular(RankedConfiguration(q, ranks))
             enough = number + 1 >= FEWEST_STARTS
             if enough and len(found) >= ENOUGH and self._at_bound(reached):
                 return
@@ -269,8 +273,8 @@ class _Search:
             turned.append(x + turns * math.tau if x + turns * math.tau <= high else x)
         return tuple(turned) if self._closer.rest(turned) <= CLOSED else q
 
-    def _chosen(self, places: Sequence[Place], first: tuple[float, ...]) -> Assembly:
-        kinds: dict[Ranks, list[Place]] = {}
+    def _chosen(self, places: Sequence[RankedConfiguration], first: tuple[float, ...]) -> Assembly:
+        kinds: dict[Ranks, list[RankedConfiguration]] = {}
         for place in places:
             kinds.setdefault(place.ranks, []).append(place)
         if not self._r_geometric:
@@ -298,19 +302,19 @@ class _Search:
             count = Counter(place.ranks for place in places)
             ranks = rigid[0] if rigid else max(count, key=lambda kind: (count[kind], kind.constraints, kind.actuation))
         others = tuple(place for kind, place in branch.items() if kind != ranks)
-        singular = None if start_is_regular else Place(first, begin.ranks if begin else Ranks(0, 0, 0))
+        singular = None if start_is_regular else RankedConfiguration(first, begin.ranks if begin else Ranks(0, 0, 0))
         these = kinds[ranks]
         if singular is not None:
             these = sorted(these, key=self._nearness)
         return Assembly(ranks, tuple(these), others, self._bound, singular, bool(branch))
 
-    def _nearness(self, place: Place) -> float:
+    def _nearness(self, place: RankedConfiguration) -> float:
         """How near a configuration is to a drop of rank: the less the smallest pivot, the more."""
         rows = self._rows(place.q)
         found = None if rows is None else pivots(self._scales.scaled(rows))
         return -min(found or [0.0])
 
-    def _is_regular(self, place: Place) -> bool:
+    def _is_regular(self, place: RankedConfiguration) -> bool:
         """Whether the ranks stay as they are where a step along an admissible direction leads."""
         q = place.q
         direction = self._closer.along(q, [self._random.gauss(0, 1) for _ in q])
@@ -319,7 +323,7 @@ class _Search:
         longest = max(map(abs, direction))
         return longest >= STEPS[0] and any(self._stays(place, direction, step / longest, step) for step in STEPS)
 
-    def _stays(self, place: Place, direction: Sequence[float], share: float, step: float) -> bool:
+    def _stays(self, place: RankedConfiguration, direction: Sequence[float], share: float, step: float) -> bool:
         """Whether a step along an admissible direction leads to a configuration of the same ranks close by.
 
         Beside a pose at which motion ends rows are closed but for the square of the distance, so that their rest has
@@ -349,7 +353,7 @@ class _Search:
             held = {j for j in held if all(abs(motion[j]) < HELD for motion in motions)}
         return tuple(sorted(held))
 
-    def _along(self, place: Place) -> list[Place]:
+    def _along(self, place: RankedConfiguration) -> list[RankedConfiguration]:
         """A walk along a branch, with shorter steps where it is bent more."""
         found, stride = [place], STRIDE
         for _ in range(3 * WALK):
@@ -360,12 +364,12 @@ class _Search:
             pairs = zip(found[-1].q, direction, self._widths, strict=True)
             closed = self._closer.close([x + stride * a / longest * w for x, a, w in pairs])
             if not closed.open and self._ranks(closed.q) == place.ranks:
-                found.append(Place(closed.q, place.ranks))
+                found.append(RankedConfiguration(closed.q, place.ranks))
             else:
                 stride /= 4
         return found
 
-    def _in_ranges(self, place: Place) -> bool:
+    def _in_ranges(self, place: RankedConfiguration) -> bool:
         """Whether every coordinate lies in its range, but for a hundredth of its width."""
         for x, c in zip(place.q, self._mechanics.coordinates, strict=True):
             low, high = map(float, c.range)
@@ -377,7 +381,7 @@ class _Search:
     def _open(self) -> Open | None:
         """The widest gap at the nearest configuration, of a loop that never closes."""
         self._random = random.Random(SEED)
-        nearest: dict[Loop, tuple[float, list[float]]] = {}
+        nearest: dict[KinematicLoop, tuple[float, list[float]]] = {}
         for guess, _ in islice(self._guesses(()), FEWEST_STARTS):
             closed = self._closer.close(guess)
             for loop in self._closer.loops:

@@ -38,7 +38,7 @@ def row_unit(entries: Iterable[float]) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class Loop:
+class KinematicLoop:
     """Rows that hang together, and the coordinates they touch."""
 
     rows: tuple[int, ...]
@@ -50,7 +50,7 @@ class Closed:
     """Where an iteration ended: q, and the loops that stay open."""
 
     q: tuple[float, ...]
-    open: tuple[Loop, ...]
+    open: tuple[KinematicLoop, ...]
 
 
 class Closer:
@@ -62,18 +62,18 @@ class Closer:
             1 / max((value * widths[j] for j, value in row.items()), default=0.0) if any(row.values()) else 1.0
             for row in lengths
         ]
-        self.loops = tuple(Loop(rows, columns) for rows, columns in groups(lengths, len(widths)))
+        self.loops = tuple(KinematicLoop(rows, columns) for rows, columns in groups(lengths, len(widths)))
         self.effort = 0
 
     def close(
-        self, q: Sequence[float], loops: Sequence[Loop] | None = None, held: Collection[int] = frozenset()
+        self, q: Sequence[float], loops: Sequence[KinematicLoop] | None = None, held: Collection[int] = frozenset()
     ) -> Closed:
         """The configuration that is reached from q, loop by loop; `held` coordinates stay where they are."""
         place = list(q)
         still = tuple(loop for loop in (self.loops if loops is None else loops) if not self._close(place, loop, held))
         return Closed(tuple(place), still)
 
-    def gaps(self, q: Sequence[float], loop: Loop) -> list[float]:
+    def gaps(self, q: Sequence[float], loop: KinematicLoop) -> list[float]:
         """The values of the rows of a loop, in their own units; NaN outside of a domain."""
         try:
             return self._residuals(q, loop.rows)[0]
@@ -123,7 +123,7 @@ class Closer:
             ],
         )
 
-    def _close(self, q: list[float], loop: Loop, held: Collection[int]) -> bool:
+    def _close(self, q: list[float], loop: KinematicLoop, held: Collection[int]) -> bool:
         """Whether the loop closes; q ends where the iteration does."""
         state = self._scaled(q, loop.rows, held)
         if state is None:

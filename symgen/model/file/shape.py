@@ -21,7 +21,7 @@ class Text:
 
 
 @dataclass(frozen=True, slots=True)
-class Formula:
+class ExpressionShape:
     """An expression of the model language; a number is one too."""
 
 
@@ -42,7 +42,7 @@ class Listing:
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class TableShape:
     """Names chosen by the user, each with an `entry`, at least `least` of them."""
 
     entry: Shape
@@ -51,7 +51,7 @@ class Table:
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class Key:
     """One key of a record, and what it is for."""
 
     key: str
@@ -61,11 +61,11 @@ class Field:
 
 
 @dataclass(frozen=True, slots=True)
-class Record:
+class RecordShape:
     """Fixed keys."""
 
     what: str
-    fields: tuple[Field, ...]
+    fields: tuple[Key, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,16 +79,16 @@ class Either:
 class Variants:
     """One of several records, told apart by the key that only it has; the last where none is there."""
 
-    records: tuple[tuple[str, Record], ...]
+    records: tuple[tuple[str, RecordShape], ...]
 
 
-Shape: TypeAlias = Text | Formula | Word | Listing | Table | Record | Either | Variants
+Shape: TypeAlias = Text | ExpressionShape | Word | Listing | TableShape | RecordShape | Either | Variants
 
 
 def check_shape(shape: Shape, node: Node, what: str) -> Iterator[Mistake]:
     """Every place where the tree under `node` is not of that shape; `what` names the node in messages."""
     match shape:
-        case Text() | Formula() | Word():
+        case Text() | ExpressionShape() | Word():
             if not isinstance(node, ScalarNode):
                 yield _wrong_kind(shape, node, what)
             else:
@@ -98,12 +98,12 @@ def check_shape(shape: Shape, node: Node, what: str) -> Iterator[Mistake]:
                 yield _wrong_kind(shape, node, what)
             else:
                 yield from _check_listing(shape, node, what)
-        case Table():
+        case TableShape():
             if not isinstance(node, MappingNode):
                 yield _wrong_kind(shape, node, what)
             else:
                 yield from _check_table(shape, node, what)
-        case Record():
+        case RecordShape():
             if not isinstance(node, MappingNode):
                 yield _wrong_kind(shape, node, what)
             else:
@@ -124,14 +124,14 @@ def json_schema_of(shape: Shape) -> JsonSchema:
     match shape:
         case Text():
             return {"type": ["string", "number"]}
-        case Formula():
+        case ExpressionShape():
             return {"type": ["string", "number"]}
         case Word(choices=choices):
             return {"enum": list(choices)} if choices else {"type": "string"}
         case Listing(item=item, least=least, most=most):
             schema: JsonSchema = {"type": "array", "items": json_schema_of(item), "minItems": least}
             return schema if most is None else {**schema, "maxItems": most}
-        case Table(entry=entry, least=least, entries_may_be_empty=may_be_empty):
+        case TableShape(entry=entry, least=least, entries_may_be_empty=may_be_empty):
             value = json_schema_of(entry)
             return {
                 "type": "object",
@@ -139,7 +139,7 @@ def json_schema_of(shape: Shape) -> JsonSchema:
                 "additionalProperties": {"anyOf": [value, {"type": "null"}]} if may_be_empty else value,
                 "minProperties": least,
             }
-        case Record(fields=fields):
+        case RecordShape(fields=fields):
             return {
                 "type": "object",
                 "properties": {
@@ -154,7 +154,7 @@ def json_schema_of(shape: Shape) -> JsonSchema:
             return {"anyOf": [json_schema_of(record) for _, record in records]}
 
 
-def _check_scalar(shape: Text | Formula | Word, node: ScalarNode, what: str) -> Iterator[Mistake]:
+def _check_scalar(shape: Text | ExpressionShape | Word, node: ScalarNode, what: str) -> Iterator[Mistake]:
     if not node.value.strip():
         yield Mistake(f"{what} has no value", _due(shape), node.span)
     elif isinstance(shape, Text):
@@ -193,7 +193,7 @@ def _check_listing(shape: Listing, node: SequenceNode, what: str) -> Iterator[Mi
         yield from check_shape(shape.item, item, f"an entry of {what}")
 
 
-def _check_table(shape: Table, node: MappingNode, what: str) -> Iterator[Mistake]:
+def _check_table(shape: TableShape, node: MappingNode, what: str) -> Iterator[Mistake]:
     if len(node.entries) < shape.least:
         yield Mistake(f"{what} is empty", "give at least one entry", node.span)
     for key, value in node.entries:
@@ -202,7 +202,7 @@ def _check_table(shape: Table, node: MappingNode, what: str) -> Iterator[Mistake
             yield from check_shape(shape.entry, value, f"`{key.value}`")
 
 
-def _check_record(shape: Record, node: MappingNode) -> Iterator[Mistake]:
+def _check_record(shape: RecordShape, node: MappingNode) -> Iterator[Mistake]:
     known = {field.key: field for field in shape.fields}
     for key, value in node.entries:
         if key.value in known:
@@ -233,13 +233,13 @@ def _due(shape: Shape) -> str:
     match shape:
         case Text() | Word():
             return "write a text, on one line or as a block"
-        case Formula():
+        case ExpressionShape():
             return f"write a number or an expression; {QUOTING}"
         case Listing():
             return "write a list in [ ], or one entry a line with `- `"
-        case Table():
+        case TableShape():
             return "write `name: value`, one a line"
-        case Record(fields=fields):
+        case RecordShape(fields=fields):
             return f"write a mapping with the keys {', '.join(field.key for field in fields)}"
         case Either(shapes=shapes):
             return "; or ".join(_due(one) for one in shapes)
@@ -249,7 +249,7 @@ def _due(shape: Shape) -> str:
 
 def _node_types(shape: Shape) -> type[ScalarNode] | type[SequenceNode] | type[MappingNode]:
     match shape:
-        case Text() | Formula() | Word():
+        case Text() | ExpressionShape() | Word():
             return ScalarNode
         case Listing():
             return SequenceNode

@@ -13,7 +13,7 @@ from symgen.model.expressions.combine import minus, plus, times
 from symgen.model.expressions.expression import Expression, Name, Number, Power
 from symgen.model.expressions.walk import exact_value, names_in
 from symgen.model.kinematics.components import components_in, definitions_before_frames, printed_formulas
-from symgen.model.kinematics.formulas import Form, Formula, Formulas, coefficients, rate_of
+from symgen.model.kinematics.formulas import ExpressionArithmetic, ExpressionNumber, Form, coefficients, rate_of
 from symgen.model.kinematics.triples import Rates, Triple, applied, inner
 from symgen.model.kinematics.walk import Kinematics
 from symgen.model.mechanism import NO_MECHANISM, WORLD, ZERO, component, is_component
@@ -44,8 +44,8 @@ class _Writer:
     def __init__(self, model: Model, more: tuple[str, ...] = ()) -> None:
         self.model, self.more = model, more
         self.before = definitions_before_frames(model)
-        self.formulas = Formulas(model.coordinates, {d.name: d.value for d in self.before})
-        self.kinematics: Kinematics[Formula, Form] = Kinematics(model.mechanism, self.formulas)
+        self.formulas = ExpressionArithmetic(model.coordinates, {d.name: d.value for d in self.before})
+        self.kinematics: Kinematics[ExpressionNumber, Form] = Kinematics(model.mechanism, self.formulas)
 
     def written(self) -> Model:
         model, formulas = self.model, self.formulas
@@ -118,8 +118,8 @@ class _Writer:
             return rate_of(self.kinematics.component_rate(one))
         return self.kinematics.component(one).expression
 
-    def _named_rates(self, name: str, rates: Rates[Form]) -> Triple[Formula]:
-        x, y, z = (self.formulas.named(name, Formula(rate_of(form))) for form in rates)
+    def _named_rates(self, name: str, rates: Rates[Form]) -> Triple[ExpressionNumber]:
+        x, y, z = (self.formulas.named(name, ExpressionNumber(rate_of(form))) for form in rates)
         return x, y, z
 
     def _input(self, one: Input) -> Input:
@@ -139,7 +139,7 @@ class _Writer:
             return self.kinematics.component_rate(one) if one.is_rate else None
         coordinate = name.removesuffix("_dot")
         known = any(coordinate == c.name for c in self.model.coordinates)
-        return {coordinate: Formula(ONE)} if known and coordinate != name else None
+        return {coordinate: ExpressionNumber(ONE)} if known and coordinate != name else None
 
     def _forces(self) -> tuple[AppliedForce, ...]:
         total = {force.coordinate: force.expression for force in self.model.applied_forces}

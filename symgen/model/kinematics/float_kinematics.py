@@ -16,7 +16,7 @@ Form: TypeAlias = dict[int, float]
 """Coefficients of the rates by the number of the coordinate."""
 
 
-class Floats:
+class FloatArithmetic:
     """The arithmetic of `Kinematics` in floats; raises ArithmeticError or ValueError outside a domain."""
 
     def __init__(self, gradients: Gradients) -> None:
@@ -57,7 +57,7 @@ class FloatKinematics:
 
     def __init__(self, mechanism: Mechanism, gradients: Gradients) -> None:
         self._mechanism, self._index = mechanism, gradients.index
-        self._arithmetic = Floats(gradients)
+        self._arithmetic = FloatArithmetic(gradients)
         self._kinematics: Kinematics[float, Form] = Kinematics(mechanism, self._arithmetic, False)
         self._places: dict[tuple[str, str], tuple[Triple[float], Rates[Form]]] = {}
 

@@ -19,32 +19,32 @@ FUNCTIONS: dict[str, FunctionName] = {"sin": "sin", "cos": "cos", "sqrt": "sqrt"
 
 
 @dataclass(frozen=True, slots=True)
-class Formula:
+class ExpressionNumber:
     """An expression with arithmetic."""
 
     expression: Expression
 
-    def __add__(self, other: Formula) -> Formula:
-        return Formula(plus(self.expression, other.expression))
+    def __add__(self, other: ExpressionNumber) -> ExpressionNumber:
+        return ExpressionNumber(plus(self.expression, other.expression))
 
-    def __sub__(self, other: Formula) -> Formula:
-        return Formula(minus(self.expression, other.expression))
+    def __sub__(self, other: ExpressionNumber) -> ExpressionNumber:
+        return ExpressionNumber(minus(self.expression, other.expression))
 
-    def __mul__(self, other: Formula) -> Formula:
-        return Formula(times(self.expression, other.expression))
+    def __mul__(self, other: ExpressionNumber) -> ExpressionNumber:
+        return ExpressionNumber(times(self.expression, other.expression))
 
-    def __truediv__(self, other: Formula) -> Formula:
-        return Formula(divided(self.expression, other.expression))
+    def __truediv__(self, other: ExpressionNumber) -> ExpressionNumber:
+        return ExpressionNumber(divided(self.expression, other.expression))
 
-    def __neg__(self) -> Formula:
-        return Formula(negated(self.expression))
+    def __neg__(self) -> ExpressionNumber:
+        return ExpressionNumber(negated(self.expression))
 
 
-Form: TypeAlias = dict[str, Formula]
+Form: TypeAlias = dict[str, ExpressionNumber]
 """Coefficients of the rates by coordinate."""
 
 
-class Formulas:
+class ExpressionArithmetic:
     """The arithmetic of `Kinematics` in expressions; what is compound gets a name in `definitions`."""
 
     def __init__(self, coordinates: tuple[Coordinate, ...], known: Mapping[str, Expression]) -> None:
@@ -53,16 +53,16 @@ class Formulas:
         self.definitions: list[Definition] = []
         self._slopes: dict[tuple[str, str], Expression] = {}
 
-    def value(self, expression: Expression) -> Formula:
+    def value(self, expression: Expression) -> ExpressionNumber:
         """The expression itself."""
-        return Formula(expression)
+        return ExpressionNumber(expression)
 
     def rate(self, expression: Expression) -> Form:
         """Its gradient."""
         used = self._names_below(expression)
         nested = [name for name in self._known if name in used]
         gradient = {name: self._slope(expression, name, nested) for name in self._coordinates if name in used}
-        return {name: Formula(slope) for name, slope in gradient.items() if exact_value(slope) != 0}
+        return {name: ExpressionNumber(slope) for name, slope in gradient.items() if exact_value(slope) != 0}
 
     def _slope(self, expression: Expression, name: str, nested: Iterable[str]) -> Expression:
         """The derivative by a coordinate; `nested` are the definitions below the expression, in the order of use.
@@ -80,38 +80,40 @@ class Formulas:
                 slope = derivative(self._known[one], of)
                 number = exact_value(slope)
                 self._slopes[one, name] = (
-                    self.named(f"slope.{one}.{name}", Formula(slope)).expression if number is None else Number(number)
+                    self.named(f"slope.{one}.{name}", ExpressionNumber(slope)).expression
+                    if number is None
+                    else Number(number)
                 )
         return derivative(expression, of)
 
-    def number(self, value: int) -> Formula:
+    def number(self, value: int) -> ExpressionNumber:
         """A whole number."""
-        return Formula(Number(Fraction(value)))
+        return ExpressionNumber(Number(Fraction(value)))
 
-    def function(self, name: str, operand: Formula) -> Formula:
+    def function(self, name: str, operand: ExpressionNumber) -> ExpressionNumber:
         """sin, cos or sqrt."""
-        return Formula(Call(FUNCTIONS[name], (operand.expression,)))
+        return ExpressionNumber(Call(FUNCTIONS[name], (operand.expression,)))
 
-    def combination(self, terms: Iterable[tuple[Formula, Form]]) -> Form:
+    def combination(self, terms: Iterable[tuple[ExpressionNumber, Form]]) -> Form:
         """Sum of products, each compound coefficient named."""
         total: Form = {}
         for factor, form in terms:
             for name, coefficient in form.items():
-                total[name] = total.get(name, Formula(ZERO)) + factor * coefficient
+                total[name] = total.get(name, ExpressionNumber(ZERO)) + factor * coefficient
         return {
             name: self.named(f"rate.{name}", coefficient)
             for name, coefficient in total.items()
             if exact_value(coefficient.expression) != 0
         }
 
-    def named(self, name: str, value: Formula, /) -> Formula:
+    def named(self, name: str, value: ExpressionNumber, /) -> ExpressionNumber:
         """A name for the value, unless it is as short as a name."""
         match value.expression:
             case Number() | Pi() | Name() | Negation(operand=Number() | Pi() | Name()):
                 return value
         name = f"{name}.{len(self.definitions)}"
         self.definitions.append(Definition(name, value.expression))
-        return Formula(Name(name))
+        return ExpressionNumber(Name(name))
 
     def _names_below(self, expression: Expression) -> set[str]:
         found: set[str] = set()
@@ -137,10 +139,10 @@ def coefficients(
     velocity: Expression,
     rates_of_name: Callable[[str], Form | None],
     definitions: Mapping[str, Expression],
-    combination: Callable[[Iterable[tuple[Formula, Form]]], Form],
+    combination: Callable[[Iterable[tuple[ExpressionNumber, Form]]], Form],
 ) -> Form:
     """The coefficients of an expression that is linear in the rates; `rates_of_name` has those of names."""
-    one, minus_one = Formula(Number(Fraction(1))), Formula(Number(Fraction(-1)))
+    one, minus_one = ExpressionNumber(Number(Fraction(1))), ExpressionNumber(Number(Fraction(-1)))
 
     def of(part: Expression) -> Form:
         match part:
@@ -152,9 +154,9 @@ def coefficients(
             case Binary(operator="+" | "-" as operator, left=left, right=right):
                 return combination([(one, of(left)), (one if operator == "+" else minus_one, of(right))])
             case Binary(operator="*", left=left, right=right):
-                return combination([(Formula(right), of(left)), (Formula(left), of(right))])
+                return combination([(ExpressionNumber(right), of(left)), (ExpressionNumber(left), of(right))])
             case Binary(operator="/", left=left, right=right):
-                return combination([(Formula(divided(one.expression, right)), of(left))])
+                return combination([(ExpressionNumber(divided(one.expression, right)), of(left))])
             case Number() | Pi() | Call():
                 return {}
             case _:

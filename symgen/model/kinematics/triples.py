@@ -9,7 +9,7 @@ from symgen.model.expressions.expression import Expression
 from symgen.model.mechanism import Vector3
 
 
-class Place(Protocol):
+class FieldElement(Protocol):
     """Numbers that can be added, multiplied and divided."""
 
     def __add__(self, other: Self, /) -> Self: ...
@@ -19,7 +19,7 @@ class Place(Protocol):
     def __neg__(self) -> Self: ...
 
 
-P = TypeVar("P", bound=Place)
+P = TypeVar("P", bound=FieldElement)
 V = TypeVar("V")
 Triple: TypeAlias = tuple[P, P, P]
 Rates: TypeAlias = tuple[V, V, V]

@@ -16,8 +16,8 @@ from symgen.model.file.scope import Scope
 from symgen.model.file.source import MappingNode, Node, ScalarNode, SequenceNode
 from symgen.model.mechanism import WORLD
 from symgen.model.urdf.bodies import body_entries, carried_links, placed_links
-from symgen.model.urdf.names import Names
-from symgen.model.urdf.numbers import Quantity, angle_text, written
+from symgen.model.urdf.names import RobotNames
+from symgen.model.urdf.numbers import WrittenNumber, angle_text, written
 from symgen.model.urdf.robot import ENDINGS, Origin, Robot, UrdfJoint
 
 Entry = tuple[ScalarNode, Node]
@@ -26,7 +26,7 @@ TYPES = {"continuous": "revolute"}
 TURNS = ("x", "y", "z")
 
 
-def with_robot(scope: Scope, tree: MappingNode, robot: Robot, names: Names, span: Span) -> MappingNode:
+def with_robot(scope: Scope, tree: MappingNode, robot: Robot, names: RobotNames, span: Span) -> MappingNode:
     """The tree of the model file with the robot's frames, joints, bodies, friction, ranges and rows of mimics."""
     frames: list[Entry] = []
     joints: list[Entry] = []
@@ -65,7 +65,7 @@ def ranged_names(tree: MappingNode) -> set[str]:
     return own | {key.value for key, node in entries(tree.get("coordinates")) if member(node, "range") is not None}
 
 
-def _motion(joint: UrdfJoint, names: Names) -> Entry:
+def _motion(joint: UrdfJoint, names: RobotNames) -> Entry:
     """The frame of a fixed joint, or the joint with its coordinates."""
     span, child = joint.span, names.frames[joint.child]
     parent = (_text("parent", span), _text(names.frames[joint.parent], span))
@@ -115,7 +115,7 @@ def _axis(joint: UrdfJoint) -> Node:
     return SequenceNode(tuple(scaled), joint.span)
 
 
-def _bodies(scope: Scope, tree: MappingNode, robot: Robot, names: Names) -> Iterable[Entry]:
+def _bodies(scope: Scope, tree: MappingNode, robot: Robot, names: RobotNames) -> Iterable[Entry]:
     taken = {key.value: key.span for key, _ in entries(tree.get("bodies"))}
     places = placed_links(robot)
     for carrier, links in carried_links(places).items():
@@ -129,7 +129,7 @@ def _bodies(scope: Scope, tree: MappingNode, robot: Robot, names: Names) -> Iter
         yield _text(name, made[1]), made[0]
 
 
-def _friction(scope: Scope, tree: MappingNode, joints: list[UrdfJoint], names: Names) -> Iterable[Entry]:
+def _friction(scope: Scope, tree: MappingNode, joints: list[UrdfJoint], names: RobotNames) -> Iterable[Entry]:
     """Damping and dry friction, unless the model file says otherwise for the coordinate."""
     width = member(tree.get("urdf"), "friction_width")
     own = {key.value for key, _ in entries(tree.get("friction"))}
@@ -154,7 +154,7 @@ def _friction(scope: Scope, tree: MappingNode, joints: list[UrdfJoint], names: N
         yield _text(name, joint.span), MappingNode(tuple(parts), joint.span, True)
 
 
-def _ranges(tree: MappingNode, joints: list[UrdfJoint], names: Names) -> Iterable[Entry]:
+def _ranges(tree: MappingNode, joints: list[UrdfJoint], names: RobotNames) -> Iterable[Entry]:
     """Limits of position, velocity and acceleration, unless the model file gives the range itself."""
     own = ranged_names(tree)
     for joint in joints:
@@ -174,7 +174,7 @@ def _ranges(tree: MappingNode, joints: list[UrdfJoint], names: Names) -> Iterabl
                 yield _text(key, span), SequenceNode((low, high), span)
 
 
-def _mimics(joints: list[UrdfJoint], names: Names) -> Iterable[Entry]:
+def _mimics(joints: list[UrdfJoint], names: RobotNames) -> Iterable[Entry]:
     for joint in joints:
         mimic = joint.mimic
         if mimic is None:
@@ -193,7 +193,7 @@ def _is_placed(tree: MappingNode, root: str) -> bool:
     return root in children or root in {key.value for key, _ in entries(tree.get("frames"))}
 
 
-def _number(value: Quantity | None, span: Span) -> Node:
+def _number(value: WrittenNumber | None, span: Span) -> Node:
     return _text("0", span) if value is None else value.node
 
 

@@ -42,7 +42,7 @@ class Solid:
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class LinkPose:
     """Where a link sits in the axes of the link that carries it."""
 
     carrier: str
@@ -50,12 +50,12 @@ class Place:
     axes: Matrix
 
 
-def placed_links(robot: Robot) -> dict[str, Place]:
+def placed_links(robot: Robot) -> dict[str, LinkPose]:
     """Every link, parents first; a link that moves by itself, and the root, carry themselves."""
     held: dict[str, list[UrdfJoint]] = {}
     for joint in robot.joints.values():
         held.setdefault(joint.parent, []).append(joint)
-    places = {robot.root: Place(robot.root, NOWHERE, IDENTITY)}
+    places = {robot.root: LinkPose(robot.root, NOWHERE, IDENTITY)}
     waiting = [robot.root]
     for name in waiting:
         place = places[name]
@@ -63,13 +63,13 @@ def placed_links(robot: Robot) -> dict[str, Place]:
             waiting.append(joint.child)
             if joint.kind == "fixed":
                 shift = added(place.shift, applied(place.axes, joint.origin.shift))
-                places[joint.child] = Place(place.carrier, shift, product(place.axes, joint.origin.axes))
+                places[joint.child] = LinkPose(place.carrier, shift, product(place.axes, joint.origin.axes))
             else:
-                places[joint.child] = Place(joint.child, NOWHERE, IDENTITY)
+                places[joint.child] = LinkPose(joint.child, NOWHERE, IDENTITY)
     return {name: places[name] for name in robot.links}
 
 
-def carried_links(places: dict[str, Place]) -> dict[str, list[str]]:
+def carried_links(places: dict[str, LinkPose]) -> dict[str, list[str]]:
     """For each carrier the links that move with it: itself first."""
     groups: dict[str, list[str]] = {}
     for name, place in places.items():
@@ -90,7 +90,7 @@ def judge_links(robot: Robot) -> Iterator[Notice]:
         yield Notice(found.message, found.span)
 
 
-def body_entries(robot: Robot, links: list[str], places: dict[str, Place]) -> tuple[Node, Span] | None:
+def body_entries(robot: Robot, links: list[str], places: dict[str, LinkPose]) -> tuple[Node, Span] | None:
     """The body of links that move together, in the axes of the first; None without mass and inertia."""
     solids: list[Solid] = []
     inertials: list[Inertial] = []

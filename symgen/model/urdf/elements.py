@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from symgen.diagnostics import Mistake, Span
 from symgen.model.expressions.names import did_you_mean
-from symgen.model.urdf.numbers import MAXIMUM_DIGITS, MAXIMUM_EXPONENT, Quantity, quantity
+from symgen.model.urdf.numbers import MAXIMUM_DIGITS, MAXIMUM_EXPONENT, WrittenNumber, read_number
 from symgen.model.urdf.robot import KINDS, Inertial, Link, Mimic, Origin, Robot, UrdfJoint
 from symgen.model.urdf.xml import Element
 
@@ -118,7 +118,7 @@ class _Reading:
             self._attributes(part, ("link",))
             ends.append(self._text(part, "link", f"the {end} of the joint `{name}`"))
         origin, axis = self._origin(element), self._only(element, "axis")
-        direction: tuple[Quantity, ...] = ()
+        direction: tuple[WrittenNumber, ...] = ()
         if axis is not None:
             self._attributes(axis, ("xyz",))
             direction = self._vector(axis, "xyz", f"the axis of the joint `{name}`")
@@ -148,7 +148,7 @@ class _Reading:
         xyz, rpy = (self._vector(part, key, f"`{key}` of the origin") for key in ("xyz", "rpy"))
         return Origin(xyz, rpy)
 
-    def _numbers(self, element: Element, tag: str, keys: tuple[str, ...], joint: str) -> dict[str, Quantity]:
+    def _numbers(self, element: Element, tag: str, keys: tuple[str, ...], joint: str) -> dict[str, WrittenNumber]:
         part = self._only(element, tag)
         if part is None:
             return {}
@@ -210,27 +210,27 @@ class _Reading:
             self.wrong(f"{what} has no `{key}`", f'add {key}="..."', element.span)
         return text
 
-    def _number(self, element: Element, key: str, what: str, needed: bool = False) -> Quantity | None:
+    def _number(self, element: Element, key: str, what: str, needed: bool = False) -> WrittenNumber | None:
         text = element.attributes.get(key)
         if text is None:
             if needed:
                 self.wrong(f"{what} has no `{key}`", f'add {key}="..."', element.span)
             return None
-        value = quantity(text.strip(), element.place(key))
+        value = read_number(text.strip(), element.place(key))
         if value is None:
             remedy = f"write a decimal number, of at most {MAXIMUM_DIGITS} digits and within 1e{MAXIMUM_EXPONENT}"
             self.wrong(f"`{key}` of {what} is `{text[:40]}`", remedy, element.place(key))
         return value
 
-    def _vector(self, element: Element, key: str, what: str) -> tuple[Quantity, ...]:
+    def _vector(self, element: Element, key: str, what: str) -> tuple[WrittenNumber, ...]:
         text = element.attributes.get(key)
         if text is None:
             return ()
-        entries: list[Quantity] = []
+        entries: list[WrittenNumber] = []
         start = 0
         for part in text.split():
             start = text.index(part, start)
-            value = quantity(part, element.place(key, start, len(part)))
+            value = read_number(part, element.place(key, start, len(part)))
             start += len(part)
             if value is not None:
                 entries.append(value)

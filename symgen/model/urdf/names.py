@@ -19,14 +19,14 @@ from symgen.model.urdf.robot import ENDINGS, Robot
 
 
 @dataclass(frozen=True, slots=True)
-class Names:
+class RobotNames:
     """Coordinates of joints (before their endings) and frames of links, by their names in the robot description."""
 
     coordinates: dict[str, str] = field(hash=False)
     frames: dict[str, str] = field(hash=False)
 
 
-def read_names(scope: Scope, node: Node | None, robot: Robot, key_span: Span) -> Names:
+def read_names(scope: Scope, node: Node | None, robot: Robot, key_span: Span) -> RobotNames:
     """The names; those that are none, or that two things share, are mistakes that say how to choose others."""
     moving = {name: joint.span for name, joint in robot.joints.items() if joint.kind != "fixed"}
     links = {name: link.span for name, link in robot.links.items()}
@@ -44,7 +44,7 @@ def read_names(scope: Scope, node: Node | None, robot: Robot, key_span: Span) ->
     if changed:
         message = f"names of the URDF with characters that names of a model cannot have: {', '.join(changed)}"
         scope.notices.append(Notice(printable(message), key_span))
-    return Names(coordinates, frames)
+    return RobotNames(coordinates, frames)
 
 
 def _chosen(scope: Scope, node: Node | None, known: dict[str, Span], what: str) -> dict[str, str]:

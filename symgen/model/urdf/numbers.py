@@ -31,7 +31,7 @@ IDENTITY: Matrix = (
 
 
 @dataclass(frozen=True, slots=True)
-class Quantity:
+class WrittenNumber:
     """A number of the file: its exact value, as it is written, and where."""
 
     value: Fraction
@@ -44,12 +44,12 @@ class Quantity:
         return ScalarNode(self.text, self.span, self.text, False)
 
 
-def quantity(text: str, span: Span) -> Quantity | None:
+def read_number(text: str, span: Span) -> WrittenNumber | None:
     """The number; None for what is none, or is beyond what expressions of the model language may hold."""
     match = _NUMBER.fullmatch(text)
     if match is None or len(match.group(1)) > MAXIMUM_DIGITS or abs(int(match.group(2) or 0)) > MAXIMUM_EXPONENT:
         return None
-    return Quantity(Fraction(text), text.removeprefix("+"), span)
+    return WrittenNumber(Fraction(text), text.removeprefix("+"), span)
 
 
 def written(value: Fraction) -> str:
@@ -58,20 +58,20 @@ def written(value: Fraction) -> str:
     return short if short != "-0" else "0"
 
 
-def quarters(angle: Quantity) -> int | None:
+def quarters(angle: WrittenNumber) -> int | None:
     """The number of quarter turns that an angle stands for; None for any other angle."""
     turns = float(angle.value) / (math.pi / 2)
     near = round(turns)
     return near if abs(turns - near) * (math.pi / 2) < QUARTER_TOLERANCE else None
 
 
-def angle_text(angle: Quantity) -> str:
+def angle_text(angle: WrittenNumber) -> str:
     """The angle as an expression: quarter turns with pi."""
     turns = quarters(angle)
     return angle.text if turns is None else {0: "0", 1: "pi/2", -1: "-pi/2"}.get(turns, f"{turns}*pi/2")
 
 
-def turn(axis: int, angle: Quantity) -> Matrix:
+def turn(axis: int, angle: WrittenNumber) -> Matrix:
     """The matrix of a turn about x, y or z (0, 1, 2); exact for quarter turns."""
     turns = quarters(angle)
     if turns is None:

@@ -14,7 +14,7 @@ from symgen.model.urdf.bodies import judge_links
 from symgen.model.urdf.checks import check_joints, find_root
 from symgen.model.urdf.elements import GEOMETRY, read_robot
 from symgen.model.urdf.names import read_names
-from symgen.model.urdf.numbers import Quantity, quarters
+from symgen.model.urdf.numbers import WrittenNumber, quarters
 from symgen.model.urdf.robot import Robot
 from symgen.model.urdf.xml import MAXIMUM_CHARACTERS, parse_xml
 
@@ -130,7 +130,7 @@ def _notices(robot: Robot, span: Span) -> list[Notice]:
     return notices
 
 
-def _idle(kind: str, limits: dict[str, Quantity], dynamics: dict[str, Quantity], mimics: bool) -> str:
+def _idle(kind: str, limits: dict[str, WrittenNumber], dynamics: dict[str, WrittenNumber], mimics: bool) -> str:
     """What a joint of this kind has no use for."""
     found = []
     if kind in ("fixed", "planar", "floating") and any(value.value for value in limits.values()):
@@ -149,5 +149,5 @@ def _listed(robot: Robot, key: str) -> str:
     return ", ".join(f"{name} {bound.text}" for name, bound in bounds if bound is not None and bound.value > 0)
 
 
-def _is_zero(value: Quantity | None) -> bool:
+def _is_zero(value: WrittenNumber | None) -> bool:
     return value is not None and value.value == 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from symgen.diagnostics import Span
-from symgen.model.urdf.numbers import IDENTITY, Matrix, Quantity, Vector, product, turn
+from symgen.model.urdf.numbers import IDENTITY, Matrix, Vector, WrittenNumber, product, turn
 
 # the joints that move, with the endings of their coordinates behind the joint's name
 ENDINGS: dict[str, tuple[str, ...]] = {
@@ -22,8 +22,8 @@ KINDS = (*ENDINGS, "fixed")
 class Origin:
     """A shift, then turns by yaw about z, pitch about the new y, roll about the newest x."""
 
-    xyz: tuple[Quantity, ...] = ()
-    rpy: tuple[Quantity, ...] = ()
+    xyz: tuple[WrittenNumber, ...] = ()
+    rpy: tuple[WrittenNumber, ...] = ()
 
     @property
     def shift(self) -> Vector:
@@ -47,8 +47,8 @@ class Inertial:
     """Mass, place of the centre of mass, and the tensor about it (xx, yy, zz, xy, xz, yz) in the axes there."""
 
     origin: Origin
-    mass: Quantity
-    tensor: tuple[Quantity, ...]
+    mass: WrittenNumber
+    tensor: tuple[WrittenNumber, ...]
     span: Span
 
 
@@ -66,8 +66,8 @@ class Mimic:
     """A joint's coordinate is multiplier * (that of `joint`) + offset."""
 
     joint: str
-    multiplier: Quantity | None
-    offset: Quantity | None
+    multiplier: WrittenNumber | None
+    offset: WrittenNumber | None
     span: Span
 
 
@@ -80,9 +80,9 @@ class UrdfJoint:
     parent: str
     child: str
     origin: Origin
-    axis: tuple[Quantity, ...]
-    limits: dict[str, Quantity] = field(hash=False)
-    dynamics: dict[str, Quantity] = field(hash=False)
+    axis: tuple[WrittenNumber, ...]
+    limits: dict[str, WrittenNumber] = field(hash=False)
+    dynamics: dict[str, WrittenNumber] = field(hash=False)
     mimic: Mimic | None
     span: Span
 

@@ -18,7 +18,7 @@ MAXIMUM_ELEMENTS = 20_000
 
 
 @dataclass(frozen=True, slots=True)
-class Document:
+class XmlDocument:
     """The text of a file and its name in messages."""
 
     text: str = field(repr=False)
@@ -40,7 +40,7 @@ class Element:
 
     tag: str
     attributes: dict[str, str]
-    document: Document = field(repr=False)
+    document: XmlDocument = field(repr=False)
     offset: int
     children: list[Element] = field(default_factory=list)
     text: str = ""
@@ -78,7 +78,7 @@ def parse_xml(text: str, file: str) -> Element | Mistake:
         return Mistake(message, "remove what does not belong to the mechanism", Span(1, 1, 2, file))
     lines = text.replace("\r\n", "\n").replace("\r", "\n")
     starts = (0, *(match.end() for match in re.finditer("\n", lines)))
-    reading = _Reading(Document(lines, file, starts))
+    reading = _Reading(XmlDocument(lines, file, starts))
     try:
         return reading.root()
     except _RefusedError:
@@ -99,7 +99,7 @@ def parse_xml(text: str, file: str) -> Element | Mistake:
 class _Reading:
     """One pass of expat over a document."""
 
-    def __init__(self, document: Document) -> None:
+    def __init__(self, document: XmlDocument) -> None:
         self.document = document
         self.mistake: Mistake | None = None
         self._open: list[Element] = []
