@@ -100,9 +100,9 @@ def _form(form: MethodChoice | None) -> dict[str, Any] | None:
         return None
     return {
         "name": form.way,
-        "valid_at_every_regular_state": form.verdict.admitted,
-        "because": form.verdict.explanation,
-        "singular": [{"where_zero": s.where_zero, "for_example": dict(s.state)} for s in form.verdict.singular],
+        "valid_at_every_regular_state": form.validity.admitted,
+        "because": form.validity.explanation,
+        "singular": [{"where_zero": s.where_zero, "for_example": dict(s.state)} for s in form.validity.singular],
         "forms": [{"name": name, "counted_cost": weight, "remark": remark} for name, weight, remark in form.others],
     }
 

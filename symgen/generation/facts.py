@@ -30,7 +30,7 @@ def _failing_forms(draft: Draft) -> tuple[tuple[str, str], ...]:
     derivations = draft.derivations
     form, methods = derivations.form, derivations.methods
     remarks = list(invalid_forms(derivations, ()))
-    if form is not None and methods is not None and form.verdict.admitted:
+    if form is not None and methods is not None and form.validity.admitted:
         others = methods.failing() or form.failed
         remarks += ((f"form {name} of u", f"{why}; it is made if asked for (--form {name})") for name, why in others)
     # articulated inertias are taken only where G is definite, and then no form fails
@@ -50,9 +50,9 @@ def invalid_forms(derivations: Selection, failed: tuple[tuple[str, str], ...]) -
     asked = ((("u", form),) if form is not None else ()) + derivations.named
     return (
         *(
-            (f"validity of {quantity} at every regular state", f"form {one.way}: {one.verdict.explanation}")
+            (f"validity of {quantity} at every regular state", f"form {one.way}: {one.validity.explanation}")
             for quantity, one in asked
-            if not one.verdict.admitted
+            if not one.validity.admitted
         ),
-        *((f"form {name} of u", why) for name, why in failed if form is not None and form.verdict.admitted),
+        *((f"form {name} of u", why) for name, why in failed if form is not None and form.validity.admitted),
     )

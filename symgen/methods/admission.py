@@ -34,7 +34,7 @@ class Singular:
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class Validity:
     """How many denominators are proved harmless, how many were searched in vain, and which are singular.
 
     `theorem` says why none has to be looked at, where that is known of a method as a whole.  `lost` says that a
@@ -80,10 +80,10 @@ class ByTheorem:
 
     theorem: str
 
-    def validity(self, workspace: Workspace, candidate: Candidate, first_only: bool) -> Verdict:
+    def validity(self, workspace: Workspace, candidate: Candidate, first_only: bool) -> Validity:
         """By theorem."""
         del workspace, candidate, first_only
-        return Verdict(0, 0, (), self.theorem)
+        return Validity(0, 0, (), self.theorem)
 
     def least_cost(self, system: MethodInput) -> int:
         """Nothing is known before it is built."""
@@ -119,9 +119,9 @@ class OfInputs:
         del quantity
         return self.solved(workspace)
 
-    def validity(self, workspace: Workspace, candidate: Candidate, first_only: bool) -> Verdict:
+    def validity(self, workspace: Workspace, candidate: Candidate, first_only: bool) -> Validity:
         """Whether it is valid at every regular state, in single precision too."""
-        found = verdict(candidate, self.measures(workspace, candidate), first_only)
+        found = validity_of(candidate, self.measures(workspace, candidate), first_only)
         guards = candidate.derived.guards
         if found.admitted and guards and not distinguishable(guards, workspace.generic.n, workspace.points):
             return replace(found, lost=True)
@@ -132,8 +132,8 @@ class OfInputs:
         return self.least(system)
 
 
-def verdict(candidate: Candidate, measures: Sequence[Scalar], first_only: bool = False) -> Verdict:
-    """The verdict on the divisors of a candidate; with `first_only` one singular denominator is enough."""
+def validity_of(candidate: Candidate, measures: Sequence[Scalar], first_only: bool = False) -> Validity:
+    """What is known of the divisors of a candidate; with `first_only` one singular denominator is enough."""
     system = candidate.system
     proof = proof_for(system, measures)
     left = sorted(proof.unproved(candidate.divisors), key=lambda divisor: divisor.size)
@@ -156,4 +156,4 @@ def verdict(candidate: Candidate, measures: Sequence[Scalar], first_only: bool =
                     break
             else:
                 searched += 1
-    return Verdict(proved, searched, tuple(singular))
+    return Validity(proved, searched, tuple(singular))

@@ -15,7 +15,7 @@ from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost, topological
 
 if TYPE_CHECKING:
-    from symgen.methods.admission import Verdict
+    from symgen.methods.admission import Validity
     from symgen.methods.workspace import Workspace
 
 INPUTS = "inverse_dynamics"
@@ -54,7 +54,7 @@ class Method(Protocol):
     def build(self, workspace: Workspace, quantity: str) -> Candidate | str:
         """The quantity, or why this system does not have it by this method."""
 
-    def validity(self, workspace: Workspace, candidate: Candidate, first_only: bool) -> Verdict:
+    def validity(self, workspace: Workspace, candidate: Candidate, first_only: bool) -> Validity:
         """Whether it is valid at every regular state; with `first_only` one place where it is not is enough."""
 
     def least_cost(self, system: MethodInput) -> int:

@@ -14,7 +14,7 @@ from typing import TypeAlias
 
 from symgen.mechanics.genericity import Genericity, genericity
 from symgen.mechanics.system import System
-from symgen.methods.admission import FAILS, Verdict
+from symgen.methods.admission import FAILS, Validity
 from symgen.methods.forward_dynamics.minor_motion import CANCELLATION_WORTH
 from symgen.methods.graphs import derived_on
 from symgen.methods.method import INPUTS, Candidate, solved_for_u
@@ -42,7 +42,7 @@ class MethodChoice:
     """The method taken, why it is valid or where it is not, and what is known of the others (name, cost, remark)."""
 
     way: str
-    verdict: Verdict
+    validity: Validity
     others: tuple[tuple[str, int, str], ...]
 
     @property
@@ -62,7 +62,7 @@ class Methods:
     def __init__(self, model: Model, generic: Genericity) -> None:
         self.workspace = Workspace(model, generic)
         self._candidates: dict[tuple[str, str], Candidate | str] = {}
-        self._verdicts: dict[tuple[str, str], Verdict] = {}
+        self._validities: dict[tuple[str, str], Validity] = {}
 
     def candidate(self, quantity: str, name: str) -> Candidate | str:
         """A quantity by the method of a name, or why this system does not have it."""
@@ -72,7 +72,7 @@ class Methods:
             self._candidates[key] = made if isinstance(made, str) else replace(made, name=name)
         return self._candidates[key]
 
-    def verdict(self, candidate: Candidate, first_only: bool = False) -> Verdict:
+    def validity(self, candidate: Candidate, first_only: bool = False) -> Validity:
         """Whether a candidate may be chosen by itself."""
         return method(candidate.derived.name, candidate.name).validity(self.workspace, candidate, first_only)
 
@@ -83,8 +83,8 @@ class Methods:
         found = self.candidate(quantity, name)
         if isinstance(found, str):
             return found
-        verdict = self.verdict(found)
-        return found, MethodChoice(name, verdict, ((name, found.weight, verdict.explanation),))
+        validity = self.validity(found)
+        return found, MethodChoice(name, validity, ((name, found.weight, validity.explanation),))
 
     def failing(self) -> tuple[tuple[str, str], ...]:
         """The methods of u among those that are chosen by themselves that fail at regular states, and where each does.
@@ -96,21 +96,21 @@ class Methods:
         if min(bounds, default=0) > LONGEST_EXAMINED:
             return ()
         made = [one for row in rows if isinstance(one := self.candidate(INPUTS, row.name), Candidate)]
-        verdicts = [(one.name, self.verdict(one)) for one in made if not self._is_admitted(one)]
-        return tuple((name, found.explanation) for name, found in verdicts if not found.admitted)
+        validities = [(one.name, self.validity(one)) for one in made if not self._is_admitted(one)]
+        return tuple((name, found.explanation) for name, found in validities if not found.admitted)
 
     def _is_admitted(self, candidate: Candidate) -> bool:
         """Whether it was found valid already."""
         key = candidate.derived.name, candidate.name
-        return key in self._verdicts and self._verdicts[key].admitted
+        return key in self._validities and self._validities[key].admitted
 
     def compared(self, quantity: str, taken: str) -> MethodChoice | None:
         """Every method of a quantity by counted cost, with `taken` as the name of the one taken; None without any."""
         made = [one for row in methods(quantity) if isinstance(one := self.candidate(quantity, row.name), Candidate)]
         if not made:
             return None
-        known = sorted((one.weight, one.name, self.verdict(one)) for one in made)
-        chosen = next((verdict for _, name, verdict in known if name == taken), known[0][2])
+        known = sorted((one.weight, one.name, self.validity(one)) for one in made)
+        chosen = next((validity for _, name, validity in known if name == taken), known[0][2])
         return MethodChoice(taken, chosen, tuple((name, weight, one.explanation) for weight, name, one in known))
 
     def settle(self) -> None:
@@ -123,19 +123,19 @@ class Methods:
         if not made:
             return "this system has none of the forms that are chosen by themselves"
         weights = {name: one.weight for name, one in made.items()}
-        best, verdicts = cheapest(made.values(), self._first_verdict, lambda one: weights[one.name])
+        best, validities = cheapest(made.values(), self._first_validity, lambda one: weights[one.name])
         remarks = dict.fromkeys(made, "not examined, because it is not cheaper")
-        remarks |= {name: found.explanation for name, found in verdicts.items()}
+        remarks |= {name: found.explanation for name, found in validities.items()}
         shorter = self._factored(best) if "minor" in made else None
         if shorter is not None:
             weights[FACTORED] = weight = shorter.weight
-            found = verdicts[FACTORED] = self.verdict(shorter, first_only=True)
+            found = validities[FACTORED] = self.validity(shorter, first_only=True)
             remarks[FACTORED] = found.explanation
             worth = CANCELLATION_WORTH if best.name == "minor" else 0
             if found.admitted and weight < weights[best.way] * (1 + worth):
                 best = shorter
         others = tuple((name, weights[name], remarks[name]) for name in sorted(weights, key=lambda n: (weights[n], n)))
-        return best, MethodChoice(best.way, verdicts[best.way], others)
+        return best, MethodChoice(best.way, validities[best.way], others)
 
     def _built(self, quantity: str) -> dict[str, Candidate]:
         """The methods that may be the cheapest: those that cannot fall below a valid first one are not derived.
@@ -152,7 +152,7 @@ class Methods:
             if isinstance(one, str):
                 continue
             made[row.name] = one
-            if row is first and self._first_verdict(one).admitted:
+            if row is first and self._first_validity(one).admitted:
                 limit = max(one.weight, _factoring_limit(one))
         if not made or last.load().least_cost(self._counted) < min(one.weight for one in made.values()):
             one = self.candidate(quantity, last.name)
@@ -160,12 +160,12 @@ class Methods:
                 made[last.name] = one
         return made
 
-    def _first_verdict(self, candidate: Candidate) -> Verdict:
-        """The verdict on a method by name, decided once."""
+    def _first_validity(self, candidate: Candidate) -> Validity:
+        """That of a method by name, decided once."""
         key = candidate.derived.name, candidate.name
-        if key not in self._verdicts:
-            self._verdicts[key] = self.verdict(candidate, first_only=True)
-        return self._verdicts[key]
+        if key not in self._validities:
+            self._validities[key] = self.validity(candidate, first_only=True)
+        return self._validities[key]
 
     def _factored(self, best: Candidate) -> Candidate | None:
         """The minor form multiplied out and factored, where it is short enough to compete.
@@ -189,20 +189,20 @@ class Methods:
 
 
 def cheapest(
-    candidates: Iterable[Candidate], validity: Callable[[Candidate], Verdict], weight: Callable[[Candidate], Weight]
-) -> tuple[Candidate, dict[str, Verdict]]:
-    """The valid candidate of least weight, and the verdicts on it and on those before it; the first of equals.
+    candidates: Iterable[Candidate], validity: Callable[[Candidate], Validity], weight: Callable[[Candidate], Weight]
+) -> tuple[Candidate, dict[str, Validity]]:
+    """The valid candidate of least weight, with the validity of it and of those before it; the first of equals.
 
     In double precision one whose denominators are lost in single precision may do; a status where it is singular is
     told, and better than nothing at all.
     """
     order = sorted(candidates, key=weight)
-    verdicts: dict[str, Verdict] = {}
+    validities: dict[str, Validity] = {}
     for one in order:
-        verdicts[one.way] = validity(one)
-        if verdicts[one.way].admitted:
-            return one, verdicts
-    return next((one for one in order if verdicts[one.way].lost), order[0]), verdicts
+        validities[one.way] = validity(one)
+        if validities[one.way].admitted:
+            return one, validities
+    return next((one for one in order if validities[one.way].lost), order[0]), validities
 
 
 def _factoring_limit(best: Candidate) -> int:

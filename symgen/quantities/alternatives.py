@@ -110,10 +110,10 @@ class Alternatives:
         candidate = self._methods.candidate(quantity, name)
         if isinstance(candidate, str):
             return None
-        verdict = self._methods.verdict(candidate, first_only=True)
-        if verdict.singular:
+        validity = self._methods.validity(candidate, first_only=True)
+        if validity.singular:
             return None
-        known = MethodChoice(name, verdict, ((name, candidate.weight, verdict.explanation),))
+        known = MethodChoice(name, validity, ((name, candidate.weight, validity.explanation),))
         choice = Choice(quantity, name, known.costs, name if quantity in MOTIONS else "")
         return self._alone(derived_on(mechanics.graph, candidate), choice, mechanics, known)
 

@@ -10,7 +10,7 @@ from functools import partial
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.mechanics.system import System
-from symgen.methods.admission import Verdict
+from symgen.methods.admission import Validity
 from symgen.methods.derivation import Derivation
 from symgen.methods.forward_dynamics.absolute import brought_back, in_absolute_angles
 from symgen.methods.forward_dynamics.minor_motion import CANCELLATION_WORTH, LARGEST_DELTA
@@ -34,7 +34,7 @@ ABSOLUTE = "householder in absolute angles"
 ARTICULATED = "articulated inertias"
 WAYS = {BY_FRAMES: ARTICULATED}
 MOST_WORTH = 1 + CANCELLATION_WORTH
-VALID = Verdict(0, 0, (), "along null spaces only ranks are divided by")
+VALID = Validity(0, 0, (), "along null spaces only ranks are divided by")
 
 
 class Candidates:
@@ -129,9 +129,9 @@ class Candidates:
         outputs = self._mechanics.factoring.shorten(minors.derived.outputs, kept)
         return replace(minors, derived=replace(minors.derived, outputs=outputs), along="factored")
 
-    def _validity(self, one: Candidate) -> Verdict:
+    def _validity(self, one: Candidate) -> Validity:
         """Of a method; along a null space only ranks are divided by."""
-        return self._methods.verdict(one, first_only=True) if one.name else VALID
+        return self._methods.validity(one, first_only=True) if one.name else VALID
 
     def _weight(self, one: Candidate) -> Fraction:
         return cost(scalars(one.derived)).weight * cost_factor(one.name, self._mechanics)

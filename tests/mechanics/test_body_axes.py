@@ -126,10 +126,10 @@ def test_the_cheapest_form_is_that_in_body_axes() -> None:
     made = methods.candidate(INPUTS, "elimination")
     assert isinstance(made, Candidate)
     assert isinstance(made.system.mechanics, BodyAxes)
-    verdict = methods.verdict(made)
-    assert verdict.admitted
+    validity = methods.validity(made)
+    assert validity.admitted
     # a search for zeros would take seconds
-    assert not verdict.searched
+    assert not validity.searched
     count = cost(made.derived.outputs)
     assert count.additive + count.multiplications <= 600
 

@@ -72,7 +72,7 @@ def test_a_form_is_found_where_components_of_inputs_vanish_in_turn() -> None:
     methods = Methods(model, genericity(System(model)))
     made = methods.candidate(INPUTS, "minor")
     assert isinstance(made, Candidate)
-    assert methods.verdict(made).singular == ()
+    assert methods.validity(made).singular == ()
 
 
 def test_the_number_of_products_decides() -> None:

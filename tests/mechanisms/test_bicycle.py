@@ -105,4 +105,4 @@ def test_forms_that_float32_would_refuse_everywhere_are_told_apart() -> None:
     assert standing == {"elimination": True, "minor": True, "nullspace": False}
     nullspace = made["nullspace"]
     assert isinstance(nullspace, Candidate)
-    assert methods.verdict(nullspace).explanation == LOST
+    assert methods.validity(nullspace).explanation == LOST

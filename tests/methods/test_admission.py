@@ -16,7 +16,7 @@ from shipped import NAMES, model
 from symgen.mechanics.genericity import Genericity, genericity
 from symgen.mechanics.never_zero import Definite
 from symgen.mechanics.system import System
-from symgen.methods.admission import verdict
+from symgen.methods.admission import validity_of
 from symgen.methods.comparisons.printed import printed_form
 from symgen.methods.method import INPUTS, Candidate
 from symgen.methods.selection import Methods
@@ -55,7 +55,7 @@ def test_a_fixed_partition_of_the_rapkm_is_rejected(drives: tuple[int, int]) -> 
     # N_B is divided by B B^T only, the first pivots
     of_inputs = tuple(divisor for divisor in made.divisors if divisor.size > 10_000)
     assert len(of_inputs) >= 2
-    found = verdict(replace(made, divisors=of_inputs), measures("rapkm_2rrr_rr"), first_only=True)
+    found = validity_of(replace(made, divisors=of_inputs), measures("rapkm_2rrr_rr"), first_only=True)
     assert not found.admitted
     # at the state found (28)'s determinant has vanished while the ranks of B and M~ are beyond doubt
     third = ({0, 1, 2} - set(drives)).pop()
@@ -71,8 +71,8 @@ def test_the_form_chosen_is_admitted_and_the_cheapest_of_those(name: str) -> Non
     found = Methods(model(name), generic(name)).choose(INPUTS)
     assert not isinstance(found, str)
     chosen, choice = found
-    assert choice.verdict.admitted
-    assert choice.verdict.searched == 0  # proofs are enough for the shipped models
+    assert choice.validity.admitted
+    assert choice.validity.searched == 0  # proofs are enough for the shipped models
     # the methods on whole matrices count more, so that leaving them out of the choice costs nothing
     methods = Methods(model(name), generic(name))
     for other in ("printed", "weighted", "kkt"):
@@ -85,9 +85,9 @@ def test_a_null_space_basis_of_the_rapkm_is_offered_with_its_singular_set() -> N
     found = Methods(model("rapkm_2rrr_rr"), generic("rapkm_2rrr_rr")).choose(INPUTS, "nullspace")
     assert not isinstance(found, str)
     _, choice = found
-    assert not choice.verdict.admitted
-    assert choice.verdict.explanation.startswith("this form is singular where")
-    assert any("sin(" in entry.where_zero for entry in choice.verdict.singular)
+    assert not choice.validity.admitted
+    assert choice.validity.explanation.startswith("this form is singular where")
+    assert any("sin(" in entry.where_zero for entry in choice.validity.singular)
 
 
 def test_a_form_that_does_not_apply_says_why() -> None:
@@ -103,10 +103,10 @@ def test_a_cheaper_form_with_a_pole_is_not_chosen() -> None:
     graph = made.system.mechanics.graph
     pole = graph.trig("cos", graph.symbol("theta"))
     spoiled = replace(made, divisors=(*made.divisors, pole))
-    found = methods.verdict(spoiled)
+    found = methods.validity(spoiled)
     assert not found.admitted
     assert found.singular[0].where_zero == "cos(theta)"
-    assert methods.verdict(made).admitted
+    assert methods.validity(made).admitted
 
 
 def test_rules_of_proof() -> None:

@@ -104,7 +104,7 @@ def test_a_new_method_of_u_is_chosen_where_it_counts_least(drums: Model, monkeyp
     after = derive_quantities(drums, drums.outputs)
     assert ways(after) == ways(before) | {INPUTS: NAME}
     assert after.form is not None
-    assert after.form.verdict.admitted
+    assert after.form.validity.admitted
     assert same(before, after)
 
 

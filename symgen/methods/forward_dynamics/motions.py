@@ -16,7 +16,7 @@ from fractions import Fraction
 from symgen.linear_algebra.null_spaces import has_few_minors
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
-from symgen.methods.admission import DECIMALS, ByTheorem, Singular, Verdict
+from symgen.methods.admission import DECIMALS, ByTheorem, Singular, Validity
 from symgen.methods.derivation import Derivation
 from symgen.methods.forward_dynamics.motion import Motion
 from symgen.methods.graphs import forget_others
@@ -75,12 +75,12 @@ class AlongNullSpace(ByTheorem):
         """q_ddot or lambda on a graph that both have in common, or why the system does not have them so."""
         return _shared(workspace, self, self._alone, quantity)
 
-    def validity(self, workspace: Workspace, candidate: Candidate, first_only: bool) -> Verdict:
+    def validity(self, workspace: Workspace, candidate: Candidate, first_only: bool) -> Validity:
         """A theorem, or the state at which G is not definite."""
         del workspace, first_only
         found = indefinite(candidate.system.mechanics) if self.free else None
         singular = () if found is None else (_singular(candidate.system.mechanics, found),)
-        return Verdict(0, 0, singular, "" if singular else self.theorem)
+        return Validity(0, 0, singular, "" if singular else self.theorem)
 
     def _alone(self, workspace: Workspace) -> tuple[System, Motion] | str:
         generic = workspace.generic
@@ -153,7 +153,7 @@ def failing_motions(mechanics: System) -> tuple[tuple[str, str], ...]:
     found = indefinite(mechanics)
     if found is None:
         return ()
-    why = Verdict(0, 0, (_singular(mechanics, found),)).explanation
+    why = Validity(0, 0, (_singular(mechanics, found),)).explanation
     made = ((row.name, row.load()) for row in methods(MOTIONS[0]))
     return tuple((name, why) for name, one in made if isinstance(one, AlongNullSpace) and one.free)
 
