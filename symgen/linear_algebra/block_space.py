@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from symgen.linear_algebra.blocks import Component, components
+from symgen.linear_algebra.blocks import ConnectedComponent, components
 from symgen.linear_algebra.exterior import ActuationForms
 from symgen.linear_algebra.guards import Guard
 from symgen.linear_algebra.null_spaces import (
@@ -28,7 +28,7 @@ from symgen.symbolic.scalar import Graph, Scalar
 class _Part:
     """One block: where its rows and coordinates stand, and its own null space."""
 
-    places: Component
+    places: ConnectedComponent
     space: NullSpace
 
     def of_coordinates(self, x: Vector) -> Vector:
@@ -107,7 +107,7 @@ class BlockSpace:
         return HouseholderSpace(self.graph, self.rows, self.n).listed_actuation(inputs, degree)
 
 
-def _space(graph: Graph, rows: Matrix, places: Component) -> NullSpace:
+def _space(graph: Graph, rows: Matrix, places: ConnectedComponent) -> NullSpace:
     own = tuple(tuple(rows[i][j] for j in places.columns) for i in places.rows)
     width, rank = len(places.columns), len(places.rows)
     return MinorSpace(graph, own, width, rank) if has_few_minors(own, rank) else HouseholderSpace(graph, own, width)

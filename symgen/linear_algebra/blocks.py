@@ -10,7 +10,7 @@ from symgen.symbolic.matrix import Matrix
 
 
 @dataclass(frozen=True, slots=True)
-class Component:
+class ConnectedComponent:
     """Rows and coordinates (by their places) that do not meet the others."""
 
     rows: tuple[int, ...]
@@ -18,7 +18,7 @@ class Component:
 
 
 @dataclass(frozen=True, slots=True)
-class Block:
+class ConstraintBlock:
     """A component by names, with its generic rank; delta = coordinates less rank is its share of the freedom."""
 
     rows: tuple[str, ...]
@@ -45,7 +45,7 @@ class Block:
                 return f"{minors} minors or Householder reflections, by counted cost"
 
 
-def components(b: Matrix) -> Iterator[Component]:
+def components(b: Matrix) -> Iterator[ConnectedComponent]:
     """The components in the order of their first rows; a row without entries is one by itself."""
     remaining = set(range(len(b)))
     while remaining:
@@ -57,9 +57,10 @@ def components(b: Matrix) -> Iterator[Component]:
             more = {i for i in remaining if any(not b[i][j].is_zero for j in touched)} | members
             grown, members = more != members, more
         remaining -= members
-        yield Component(tuple(sorted(members)), tuple(sorted(touched)))
+        yield ConnectedComponent(tuple(sorted(members)), tuple(sorted(touched)))
 
 
-def named(component: Component, rows: Sequence[str], coordinates: Sequence[str], rank: int) -> Block:
+def named(component: ConnectedComponent, rows: Sequence[str], coordinates: Sequence[str], rank: int) -> ConstraintBlock:
     """The block of a component."""
-    return Block(tuple(rows[i] for i in component.rows), tuple(coordinates[j] for j in component.columns), rank)
+    touched = tuple(coordinates[j] for j in component.columns)
+    return ConstraintBlock(tuple(rows[i] for i in component.rows), touched, rank)

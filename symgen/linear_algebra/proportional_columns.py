@@ -66,7 +66,7 @@ class Across:
 
 
 @dataclass(frozen=True, slots=True)
-class Family:
+class ColumnFamily:
     """Columns that are c_j times the first of them."""
 
     members: tuple[int, ...]
@@ -87,7 +87,7 @@ def _square(values: Sequence[Fraction]) -> Fraction:
     return sum((x * x for x in values), Fraction(0))
 
 
-def families(rows: Matrix, n: int) -> tuple[Family, ...]:
+def families(rows: Matrix, n: int) -> tuple[ColumnFamily, ...]:
     """The columns that are not 0, gathered by their directions, in the order of their first members.
 
     Points in double precision find what may be proportional; equal functions decide.
@@ -113,7 +113,7 @@ def families(rows: Matrix, n: int) -> tuple[Family, ...]:
                 own.append({j: Fraction(1)})
         found += own
     found.sort(key=lambda family: next(iter(family)))
-    return tuple(Family(tuple(family), tuple(family.values())) for family in found)
+    return tuple(ColumnFamily(tuple(family), tuple(family.values())) for family in found)
 
 
 def _values(columns: Sequence[Vector]) -> list[list[list[float]]]:
@@ -144,7 +144,7 @@ def _is_multiple(column: Vector, first: Vector, factor: Fraction) -> bool:
     return all(y is x * factor for x, y in zip(first, column, strict=True))
 
 
-def constant_part(families: Sequence[Family], n: int) -> tuple[Across, ...]:
+def constant_part(families: Sequence[ColumnFamily], n: int) -> tuple[Across, ...]:
     """Orthogonal vectors that complete the families to a basis, so that both together have a determinant above 0."""
     vectors = [
         Across(family.members[:count], family.factors[:count])
@@ -174,12 +174,12 @@ def _is_turned_over(vectors: Sequence[dict[int, Fraction]]) -> bool:
     return turned
 
 
-def folded(row: Vector, families: Sequence[Family]) -> Vector:
+def folded(row: Vector, families: Sequence[ColumnFamily]) -> Vector:
     """A row of B along the families: one entry each, |c| times that of the first member."""
     return tuple(row[family.members[0]] * _length(row[0].graph, family) for family in families)
 
 
-def _length(graph: Graph, vector: Family | Across) -> Scalar:
+def _length(graph: Graph, vector: ColumnFamily | Across) -> Scalar:
     square = vector.square
     root = Fraction(isqrt(square.numerator), isqrt(square.denominator))
     return graph.const(root) if root * root == square else graph.function("sqrt", (graph.const(square),))
@@ -192,7 +192,13 @@ class FamilySpace(HouseholderSpace):
     """
 
     def __init__(
-        self, graph: Graph, rows: Matrix, n: int, rank: int, families: Sequence[Family], locked: Sequence[int] = ()
+        self,
+        graph: Graph,
+        rows: Matrix,
+        n: int,
+        rank: int,
+        families: Sequence[ColumnFamily],
+        locked: Sequence[int] = (),
     ) -> None:
         self.graph, self.rows, self.n, self.rank, self.locked = graph, rows, n, rank, locked
         self.delta = n - rank

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from math import comb
 
-from symgen.linear_algebra.blocks import Block, Component, components, named
+from symgen.linear_algebra.blocks import ConnectedComponent, ConstraintBlock, components, named
 from symgen.mechanics.genericity import Genericity, configurations, rank
 from symgen.mechanics.system import System
 from symgen.model.expressions.names import counted
@@ -38,7 +38,7 @@ class Structure:
 
     actuation: str
     free_coordinates: tuple[str, ...]
-    blocks: tuple[Block, ...]
+    blocks: tuple[ConstraintBlock, ...]
     dependent_rows: tuple[str, ...]
     decisions: tuple[Decision, ...]
 
@@ -71,7 +71,7 @@ def _rows_in_order(mechanics: System) -> list[ConstraintRow]:
     return [*(row for row in rows if row.kind == "geometric"), *(row for row in rows if row.kind == "nonholonomic")]
 
 
-def _ranked(mechanics: System, generic: Genericity) -> tuple[tuple[Block, ...], tuple[str, ...]]:
+def _ranked(mechanics: System, generic: Genericity) -> tuple[tuple[ConstraintBlock, ...], tuple[str, ...]]:
     """The blocks with their generic ranks, and the rows that can be left out without lowering the rank (Remark 7)."""
     n, r = mechanics.n, mechanics.r
     rows = [row.name for row in _rows_in_order(mechanics)]
@@ -93,7 +93,7 @@ def _ranked(mechanics: System, generic: Genericity) -> tuple[tuple[Block, ...], 
     return tuple(blocks), dependent
 
 
-def _rank(b: Sequence[Sequence[float]], part: Component) -> int:
+def _rank(b: Sequence[Sequence[float]], part: ConnectedComponent) -> int:
     found = rank([b[i] for i in part.rows])
     return -1 if found is None else found
 
@@ -102,7 +102,7 @@ def _constraint_decisions(
     mechanics: System,
     generic: Genericity,
     free: tuple[str, ...],
-    blocks: tuple[Block, ...],
+    blocks: tuple[ConstraintBlock, ...],
     dependent: tuple[str, ...],
 ) -> Iterator[Decision]:
     if generic.r == 0:

@@ -31,7 +31,7 @@ class Use(IntEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class MethodRow:
     """A method by the name that `--form` and derivation.json give it."""
 
     name: str
@@ -45,15 +45,17 @@ def _load(place: str, name: str) -> Method:
     return method
 
 
-def _method(name: str, quantities: tuple[str, ...], place: str, implementation: str, use: Use = Use.CHOSEN) -> Row:
-    return Row(name, quantities, partial(_load, place, implementation), use)
+def _method(
+    name: str, quantities: tuple[str, ...], place: str, implementation: str, use: Use = Use.CHOSEN
+) -> MethodRow:
+    return MethodRow(name, quantities, partial(_load, place, implementation), use)
 
 
 _U, _MOTION, _PROJECTOR = ("inverse_dynamics",), ("forward_dynamics", "multipliers"), ("nullspace_projector",)
 _WEIGHTED = ("weighted_pseudoinverse", "weighted_nullspace_projector")
 
 # Of methods that count alike the first is taken.
-METHODS: tuple[Row, ...] = (
+METHODS: tuple[MethodRow, ...] = (
     _method("elimination", _U, "inverse_dynamics.forces_eliminated", "ELIMINATION"),
     _method("minor", _U, "inverse_dynamics.along_spaces", "MINOR"),
     _method("nullspace", _U, "inverse_dynamics.nullspace", "NULLSPACE"),
@@ -78,7 +80,7 @@ METHODS: tuple[Row, ...] = (
 NAMED = (*_U, *_MOTION, *_PROJECTOR)
 
 
-def methods(quantity: str, most: Use = Use.COMPARISON) -> tuple[Row, ...]:
+def methods(quantity: str, most: Use = Use.COMPARISON) -> tuple[MethodRow, ...]:
     """The methods of a quantity up to a use, in the order of the table."""
     return tuple(row for row in METHODS if quantity in row.quantities and row.use <= most)
 

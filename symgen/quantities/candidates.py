@@ -24,7 +24,7 @@ from symgen.methods.spaces import derivations
 from symgen.methods.system import MethodInput
 from symgen.model.model import Model
 from symgen.model.quantities import PARTITION
-from symgen.quantities.catalogue import Entry, by_blocks, derive, derived_from
+from symgen.quantities.catalogue import CatalogueEntry, by_blocks, derive, derived_from
 from symgen.quantities.everything import Everything
 from symgen.runtime.activity import working
 from symgen.symbolic.traverse import cost
@@ -53,7 +53,7 @@ class Candidates:
         self._absolute = _in_absolute_angles(model, generic) if need else None
         self._motions: dict[str, dict[str, Motion]] = {}
 
-    def cheapest(self, entry: Entry) -> tuple[Candidate, dict[str, int]] | None:
+    def cheapest(self, entry: CatalogueEntry) -> tuple[Candidate, dict[str, int]] | None:
         """The one that is taken, and the counted cost of all by way; None where each takes too long."""
         made = self._of(entry)
         if not made:
@@ -72,7 +72,7 @@ class Candidates:
                 best = shorter
         return best, costs
 
-    def _of(self, entry: Entry) -> dict[str, Candidate]:
+    def _of(self, entry: CatalogueEntry) -> dict[str, Candidate]:
         alone = self._alone.get(entry.name, {})
         # where minors are not listed, no other method is derived to be counted: they grow faster than these
         if alone and self._generic.r > 0 and self._generic.delta > LARGEST_DELTA:
@@ -90,7 +90,7 @@ class Candidates:
         least = min((cost(scalars(one.derived)).weight for one in alone.values()), default=None)
         return {**self._everything.derived(entry.name, ways, least), **self._brought(alone)}
 
-    def _along(self, entry: Entry, way: str, derivation: Derivation) -> Candidate:
+    def _along(self, entry: CatalogueEntry, way: str, derivation: Derivation) -> Candidate:
         """A quantity along a null space, q_ddot and lambda by the method that counts least there."""
         if entry.name not in MOTIONS:
             return Candidate(self._system, derive(entry, derivation), along=way)
@@ -102,7 +102,7 @@ class Candidates:
         best, _ = cheapest(made, self._validity, lambda one: (one.name == "nullspace", self._weight(one)))
         return replace(best, along=way)
 
-    def _moving(self, entry: Entry, name: str, derivation: Derivation, motion: Motion) -> Candidate:
+    def _moving(self, entry: CatalogueEntry, name: str, derivation: Derivation, motion: Motion) -> Candidate:
         found = derived_from(entry, derivation, motion.part(entry.name), lambda _: motion.guards)
         return Candidate(self._system, found, name=name)
 

@@ -17,7 +17,7 @@ from symgen.symbolic.matrix import Vector, flatten
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class CatalogueEntry:
     """How one quantity is derived along a null space: its scalars, and what they divide by.
 
     Without `outputs` it is derived by the methods that `symgen.methods.table` has for it.
@@ -127,7 +127,7 @@ _DERIVED: dict[str, tuple[Callable[[Derivation], Vector] | None, Callable[[Deriv
     "point_position": (lambda d: d.mechanics.bodies.point_position, _none),
     "point_jacobian": (lambda d: flatten(d.mechanics.bodies.point_jacobian), _none),
 }
-CATALOGUE = tuple(Entry(row, *_DERIVED[row.name]) for row in QUANTITIES)
+CATALOGUE = tuple(CatalogueEntry(row, *_DERIVED[row.name]) for row in QUANTITIES)
 BY_NAME = {entry.name: entry for entry in CATALOGUE}
 
 
@@ -138,24 +138,24 @@ def sizes(model: Model, generic: Genericity) -> dict[str, int]:
     return {"n": generic.n, "r": generic.r, "r_g": geometric, "m": generic.m, "delta": generic.delta, "points": points}
 
 
-def missing(entry: Entry, model: Model, generic: Genericity) -> str | None:
+def missing(entry: CatalogueEntry, model: Model, generic: Genericity) -> str | None:
     """Why this system does not have a quantity, or None."""
     return lacking(entry.row, model, generic.delta, generic.alpha)
 
 
-def by_blocks(entry: Entry) -> bool:
+def by_blocks(entry: CatalogueEntry) -> bool:
     """Whether a quantity depends on the null space through N_B and B^+ alone, which blocks of B do not couple."""
     return entry.guards is _constraint
 
 
-def derive(entry: Entry, derivation: Derivation) -> Quantity:
+def derive(entry: CatalogueEntry, derivation: Derivation) -> Quantity:
     """A quantity along one null space."""
     assert entry.outputs is not None
     return derived_from(entry, derivation, entry.outputs(derivation), entry.guards)
 
 
 def derived_from(
-    entry: Entry, derivation: Derivation, outputs: Vector, guards: Callable[[Derivation], tuple[Guard, ...]]
+    entry: CatalogueEntry, derivation: Derivation, outputs: Vector, guards: Callable[[Derivation], tuple[Guard, ...]]
 ) -> Quantity:
     """The quantity of these outputs with its guards, where it depends on anything."""
     shape = entry.shape(sizes(derivation.mechanics.model, derivation.generic))

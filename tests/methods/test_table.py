@@ -15,7 +15,7 @@ from symgen.methods.forward_dynamics.motion import Motion
 from symgen.methods.forward_dynamics.motions import AlongNullSpace
 from symgen.methods.method import INPUTS, MOTIONS, Candidate, Method, solved_for_u
 from symgen.methods.selection import Methods
-from symgen.methods.table import METHODS, NAMED, Row, Use
+from symgen.methods.table import METHODS, NAMED, MethodRow, Use
 from symgen.methods.workspace import Workspace
 from symgen.model.load import load_text
 from symgen.model.model import Model
@@ -82,7 +82,7 @@ def motion_of_one_wheel(derivation: Derivation) -> Motion:
 def register(
     monkeypatch: pytest.MonkeyPatch, quantities: tuple[str, ...], method: Method, use: Use = Use.CHOSEN
 ) -> None:
-    monkeypatch.setattr(table, "METHODS", (*METHODS, Row(NAME, quantities, lambda: method, use)))
+    monkeypatch.setattr(table, "METHODS", (*METHODS, MethodRow(NAME, quantities, lambda: method, use)))
 
 
 def ways(selection: Selection) -> dict[str, str]:

@@ -16,7 +16,7 @@ from symgen.linear_algebra.refinement import Solution
 from symgen.mechanics.quaternion_joints import QuaternionJoint, quaternion_joint
 from symgen.mechanics.system import System
 from symgen.methods.forward_dynamics.motion import Problem
-from symgen.methods.forward_dynamics.schur import Elimination, Factor
+from symgen.methods.forward_dynamics.schur import Factor, SchurElimination
 from symgen.model.expressions.expression import Expression, Number
 from symgen.model.expressions.walk import names_in
 from symgen.model.mechanism import Frame, Quaternion
@@ -145,7 +145,7 @@ class LengthsApart:
         self._places = [joint.length for joint in held.joints]
         self._couplings = {i: [columns[i][j] for j in self._places] for i in self._others}
         along = [self._without_lengths(columns[i]) for i in self._others]
-        self._rest = Elimination(_Rest(problem, self._others), factor, along, rank - len(held.rows))
+        self._rest = SchurElimination(_Rest(problem, self._others), factor, along, rank - len(held.rows))
 
     @property
     def guards(self) -> tuple[Guard, ...]:

@@ -49,7 +49,7 @@ class SchurQR:
         self._graph = problem.graph
         self._factor = OrderedCholesky(problem.graph, problem.mass_matrix) if factor is None else factor
         columns = [self._factor.lowered(row) for row in problem.rows]
-        self._elimination = Elimination(problem, self._factor, columns, rank)
+        self._elimination = SchurElimination(problem, self._factor, columns, rank)
 
     def motion(self, force: Vector, bias: Vector) -> Motion:
         """The solution of G q_ddot + B^T lambda = f, B q_ddot = -a."""
@@ -70,7 +70,7 @@ def schur_qr(problem: Problem, rank: int, factor: Factor | None = None) -> Motio
     return SchurQR(problem, rank, factor).motion(problem.force, problem.bias)
 
 
-class Elimination:
+class SchurElimination:
     """x + A lambda = L^-1 f, A^T D^-1 x = -a, refined once; `columns` are those of A.
 
     `guards` are the denominators.

@@ -30,7 +30,7 @@ from symgen.symbolic.traverse import cost
 
 
 @dataclass(slots=True, eq=False)
-class Row:
+class LinearEquation:
     """One equation: coefficients of unknowns, and the right-hand side."""
 
     coefficients: dict[int, Scalar]
@@ -53,12 +53,12 @@ class Elimination:
         columns = [*self._cancelled(primitive), *mechanics.inputs]
         self.inputs = range(len(rows), len(columns))
         self.core = [
-            Row({j: column[i] for j, column in enumerate(columns) if not column[i].is_zero}, force[i])
+            LinearEquation({j: column[i] for j, column in enumerate(columns) if not column[i].is_zero}, force[i])
             for i in range(mechanics.n)
         ]
         self._unknowns = len(columns)
-        self._points: dict[int, Row] = {}
-        self._explicit: list[tuple[int, Row]] = []
+        self._points: dict[int, LinearEquation] = {}
+        self._explicit: list[tuple[int, LinearEquation]] = []
         self._tested: list[Scalar] = []
         self._moments = [[self.core[j] for j in angles] for angles, _ in mechanics.turnings]
         self.multipliers_alone: Matrix = ()
@@ -168,7 +168,7 @@ class Elimination:
                     for j in members:
                         del row.coefficients[j]
                     row.coefficients[total] = first
-            self._points[total] = Row({total: one, **dict.fromkeys(members, -one)}, self._graph.zero)
+            self._points[total] = LinearEquation({total: one, **dict.fromkeys(members, -one)}, self._graph.zero)
 
     def _leave_single_inputs(self) -> None:
         """Inputs of one row only, so that the rows without inputs decide on directions."""
@@ -222,19 +222,21 @@ class Elimination:
                 self.core.remove(row)
             self.core += [along, across]
 
-    def _turned(self, first: Row, second: Row, f: Scalar, g: Scalar) -> tuple[Row, Row]:
+    def _turned(
+        self, first: LinearEquation, second: LinearEquation, f: Scalar, g: Scalar
+    ) -> tuple[LinearEquation, LinearEquation]:
         """(f first + g second, f second - g first)."""
         zero = self._graph.zero
         rights = [first.right * f + second.right * g, second.right * f - first.right * g]
         shorter = [self._mechanics.factoring.cancelled(x) if x.size <= LONGEST_CANCELLED else x for x in rights]
-        along, across = Row({}, shorter[0]), Row({}, shorter[1])
+        along, across = LinearEquation({}, shorter[0]), LinearEquation({}, shorter[1])
         for name in sorted({*first.coefficients, *second.coefficients}):
             a, b = first.coefficients.get(name, zero), second.coefficients.get(name, zero)
             self._put(along, name, a * f + b * g)
             self._put(across, name, b * f - a * g)
         return along, across
 
-    def _put(self, row: Row, name: int, value: Scalar) -> None:
+    def _put(self, row: LinearEquation, name: int, value: Scalar) -> None:
         if value.size <= LONGEST_CANCELLED:
             value = self._mechanics.factoring.cancelled(value)
         if value.is_zero:
@@ -288,7 +290,7 @@ class Elimination:
 
     def _turn_back(self) -> None:
         """Solves rows A x = b with an orthogonal A, all entries of which may vary: x = A^T b."""
-        together: dict[tuple[int, ...], list[Row]] = {}
+        together: dict[tuple[int, ...], list[LinearEquation]] = {}
         for row in self.core:
             together.setdefault(tuple(sorted(row.coefficients)), []).append(row)
         for names, rows in together.items():
@@ -296,11 +298,11 @@ class Elimination:
                 for name in names:
                     value = self._graph.sum(row.coefficients[name] * row.right for row in rows)
                     value = self._mechanics.factoring.cancelled(value) if value.size <= LONGEST_CANCELLED else value
-                    self.core.append(Row({name: self._graph.one}, value))
+                    self.core.append(LinearEquation({name: self._graph.one}, value))
                 for row in rows:
                     self.core.remove(row)
 
-    def _is_orthogonal(self, names: Sequence[int], rows: Sequence[Row]) -> bool:
+    def _is_orthogonal(self, names: Sequence[int], rows: Sequence[LinearEquation]) -> bool:
         columns = [[row.coefficients[name] for row in rows] for name in names]
         products = {(i, j): dot(self._graph, columns[i], columns[j]) for i in range(len(names)) for j in range(i + 1)}
         return all(value.is_one if i == j else value.is_zero for (i, j), value in products.items())
@@ -318,7 +320,7 @@ class Elimination:
                 left[k] = row
         return multipliers_alone(left, self._safe, self._graph.zero)
 
-    def _solves(self, row: Row) -> bool:
+    def _solves(self, row: LinearEquation) -> bool:
         """One unknown with a safe pivot; an input is left for the end instead where no other row needs it."""
         if len(row.coefficients) != 1:
             return False
@@ -326,7 +328,7 @@ class Elimination:
         needed = name not in self.inputs or any(name in other.coefficients for other in self.core if other is not row)
         return needed and self._safe(pivot)
 
-    def _solve(self, row: Row) -> None:
+    def _solve(self, row: LinearEquation) -> None:
         ((name, pivot),) = row.coefficients.items()
         self.core.remove(row)
         if name in self.inputs:
@@ -340,11 +342,11 @@ class Elimination:
             if coefficient is not None:
                 other.right = other.right - coefficient * value
 
-    def _leave(self, name: int, row: Row) -> None:
+    def _leave(self, name: int, row: LinearEquation) -> None:
         self.core.remove(row)
         self._explicit.append((name, row))
 
-    def _occurs_here_only(self, row: Row) -> list[int]:
+    def _occurs_here_only(self, row: LinearEquation) -> list[int]:
         others = [*(other for other in self.core if other is not row), *self._pending()]
         return [
             name
@@ -352,14 +354,16 @@ class Elimination:
             if self._safe(pivot) and not any(name in other.coefficients for other in others)
         ]
 
-    def _pending(self) -> list[Row]:
+    def _pending(self) -> list[LinearEquation]:
         """The rows of points, before they join the core."""
         return [row for row in self._points.values() if row not in self.core and not self._left(row)]
 
-    def _left(self, row: Row) -> bool:
+    def _left(self, row: LinearEquation) -> bool:
         return any(row is other for _, other in self._explicit)
 
-    def _rest(self, coefficients: dict[int, Scalar], values: dict[int, Scalar], row: Row, homogeneous: bool) -> Scalar:
+    def _rest(
+        self, coefficients: dict[int, Scalar], values: dict[int, Scalar], row: LinearEquation, homogeneous: bool
+    ) -> Scalar:
         products = self._graph.products
         content = self.content(list(coefficients.values()))
         taken = self._graph.sum(products.quotient(c, content) * values[j] for j, c in coefficients.items())
