@@ -28,14 +28,14 @@ from symgen.closedform.algebra.minors import (
 from symgen.closedform.algebra.quotient import Matrix, Quotient, polynomial, quotient
 from symgen.closedform.algebra.ring import TrigRing
 from symgen.closedform.mechanics import ExactSystem, load, time_derivative
-from symgen.closedform.structure import Structure
+from symgen.closedform.structure import RankStructure
 from symgen.model.model import Model
 
 
 class Exact:
     """Exact matrices of a model over the field of fractions of its ring."""
 
-    def __init__(self, model: Model, mechanics: ExactSystem, structure: Structure) -> None:
+    def __init__(self, model: Model, mechanics: ExactSystem, structure: RankStructure) -> None:
         self.model = model
         self.mechanics = mechanics
         self.structure = structure

@@ -16,7 +16,7 @@ from symgen.closedform.mechanics import ExactSystem, make_translator
 from symgen.closedform.points import DIGITS, generic_points
 from symgen.closedform.singular import SingularSet, derive_singular_sets
 from symgen.closedform.spelling import Speller
-from symgen.closedform.structure import Integrability, Structure, derive_integrability, derive_structure
+from symgen.closedform.structure import Integrability, RankStructure, derive_integrability, derive_structure
 from symgen.closedform.structured import (
     Structured,
     structured_control_pseudoinverse,
@@ -62,7 +62,7 @@ class ClosedForms:
 
     model: str
     forms: Mapping[str, ClosedForm]
-    structure: Structure
+    structure: RankStructure
     null_space: ImmutableDenseMatrix | None
     integrability: tuple[Integrability, ...]
     singular_sets: tuple[SingularSet, ...]

@@ -75,7 +75,7 @@ def _working_precision() -> AbstractContextManager[None]:
     return precision
 
 
-class Point:
+class RingPoint:
     """Values of all variables of a ring, ready to evaluate its elements."""
 
     def __init__(self, mechanics: ExactSystem, values: Mapping[str, mpf]) -> None:
@@ -161,7 +161,7 @@ def parameter_values(model: Model) -> dict[str, mpf]:
     return values
 
 
-def generic_points(model: Model, mechanics: ExactSystem, count: int, on_constraints: bool = True) -> list[Point]:
+def generic_points(model: Model, mechanics: ExactSystem, count: int, on_constraints: bool = True) -> list[RingPoint]:
     """Points at the default parameters, random (but the same every time) in everything else; on V by default.
 
     Fewer than `count` when Newton's method does not reach V or expressions have no real value.  They lie near the
@@ -175,7 +175,7 @@ def generic_points(model: Model, mechanics: ExactSystem, count: int, on_constrai
     if on_constraints and known is not None and (known.has_branches or mechanics.residual):
         names = [c.name for c in model.coordinates]
         starts = [dict(zip(names, map(Fraction, place.q), strict=True)) for place in known.places]
-    points: list[Point] = []
+    points: list[RingPoint] = []
     for attempt in range(6 * count):
         if len(points) == count:
             break
@@ -188,7 +188,7 @@ def generic_points(model: Model, mechanics: ExactSystem, count: int, on_constrai
         for name in mechanics.ring.variables:
             values.setdefault(name, mpf(source.uniform(-2, 2)))
         try:
-            point = _onto_constraints(model, mechanics, values) if on_constraints else Point(mechanics, values)
+            point = _onto_constraints(model, mechanics, values) if on_constraints else RingPoint(mechanics, values)
         except (ValueError, ArithmeticError):
             continue
         if point is not None:
@@ -196,17 +196,17 @@ def generic_points(model: Model, mechanics: ExactSystem, count: int, on_constrai
     return points
 
 
-def _onto_constraints(model: Model, mechanics: ExactSystem, values: dict[str, mpf]) -> Point | None:
+def _onto_constraints(model: Model, mechanics: ExactSystem, values: dict[str, mpf]) -> RingPoint | None:
     """A point on V beside `values`; None where no way leads there, ArithmeticError where it leads far away."""
     if not mechanics.residual:
-        return Point(mechanics, values)
+        return RingPoint(mechanics, values)
     names = [c.name for c in model.coordinates]
     units = _units(model)[: len(mechanics.residual)]
     rows = mechanics.jacobian[: len(units)]
     farthest = FARTHEST * max(1.0, *(abs(float(values[name])) for name in names))
 
-    def at(x: list[flint.arb]) -> Point:
-        return Point(mechanics, values | dict(zip(names, map(_as_mpf, x), strict=True)))
+    def at(x: list[flint.arb]) -> RingPoint:
+        return RingPoint(mechanics, values | dict(zip(names, map(_as_mpf, x), strict=True)))
 
     def evaluate(x: list[flint.arb]) -> Evaluated:
         if any(abs(float(value)) > farthest for value in x):

@@ -23,7 +23,7 @@ from symgen.closedform.algebra.substitution import substitute
 from symgen.closedform.exact import Exact
 from symgen.closedform.forms import ClosedForms, dynamic_names
 from symgen.closedform.manifold import Manifold
-from symgen.closedform.points import Point, generic_points
+from symgen.closedform.points import RingPoint, generic_points
 from symgen.closedform.singular import essential_factors
 from symgen.closedform.spelling import Speller
 from symgen.model.expressions.expression import Expression
@@ -90,12 +90,12 @@ class _Judge:
         self.manifold = Manifold(model, exact)
 
     @cached_property
-    def points(self) -> list[Point]:
+    def points(self) -> list[RingPoint]:
         """Points on V at 40 digits."""
         return generic_points(self.model, self.exact.mechanics, 3)
 
     @cached_property
-    def free_points(self) -> list[Point]:
+    def free_points(self) -> list[RingPoint]:
         """Points anywhere at 40 digits."""
         return generic_points(self.model, self.exact.mechanics, 3, on_constraints=False)
 
@@ -207,7 +207,7 @@ class _Judge:
             return _Finding(ON_MANIFOLD, "; it vanishes on V as checked at 40 digits")
         return _Finding(MISPRINTED, f"; {self._sample(projected[0])} on the constraint manifold")
 
-    def _vanishes(self, value: Quotient, points: Sequence[Point]) -> bool:
+    def _vanishes(self, value: Quotient, points: Sequence[RingPoint]) -> bool:
         for point in points:
             scale = sum((abs(point.polynomial(_single(value, m))) for m in value.numerator), mpf(0))
             if abs(point.polynomial(value.numerator)) > ZERO_AT_40_DIGITS * scale:

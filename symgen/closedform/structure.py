@@ -9,7 +9,7 @@ from symgen.closedform.algebra.limits import TooLargeError
 from symgen.closedform.algebra.matrices import dot, multiply, null_space, transpose
 from symgen.closedform.algebra.quotient import Matrix, Quotient
 from symgen.closedform.mechanics import ExactSystem
-from symgen.closedform.points import Point, rank
+from symgen.closedform.points import RingPoint, rank
 from symgen.closedform.spelling import Speller
 from symgen.model.model import Model
 from symgen.records import dataclass
@@ -19,7 +19,7 @@ LONGEST_CURVATURE = 12
 
 
 @dataclass(frozen=True, slots=True)
-class Structure:
+class RankStructure:
     """Generic ranks and what follows from them (paper, sections 2 and 4.1)."""
 
     geometric_rank: int
@@ -39,7 +39,7 @@ class Integrability:
     explanation: str
 
 
-def derive_structure(model: Model, mechanics: ExactSystem, points: list[Point]) -> Structure:
+def derive_structure(model: Model, mechanics: ExactSystem, points: list[RingPoint]) -> RankStructure:
     """Ranks at points of V; the largest one over the points is the generic one."""
     geometric = len(mechanics.residual)
     geometric_rank = constraint_rank = actuation_degree = 0
@@ -52,7 +52,7 @@ def derive_structure(model: Model, mechanics: ExactSystem, points: list[Point]) 
             joined = jacobian + [list(column) for column in zip(*point.matrix(mechanics.control), strict=True)]
             actuation_degree = max(actuation_degree, rank(joined) - own)
     freedom = model.n - constraint_rank
-    return Structure(
+    return RankStructure(
         geometric_rank=geometric_rank,
         constraint_rank=constraint_rank,
         local_freedom=model.n - geometric_rank,

@@ -28,7 +28,7 @@ def overview(report: ReportInput) -> str:
     lines += _section("singular sets", _singular(report))
     lines += _section(
         "published equations",
-        [f"{model.published[v.position].equation}: {v.verdict}. {v.proof}" for v in report.verdicts],
+        [f"{model.published[v.position].equation}: {v.verdict}. {v.explanation}" for v in report.verdicts],
     )
     printed = [name for name, form in report.forms.items() if form.matrix is not None]
     lines += _section("closed forms (name one to see it)", [", ".join(printed)])

@@ -6,21 +6,13 @@ from collections.abc import Mapping
 from dataclasses import field
 
 from symgen.closedform.forms import ClosedForm
+from symgen.closedform.published import Verdict
 from symgen.closedform.singular import SingularSet
-from symgen.closedform.structure import Integrability, Structure
+from symgen.closedform.structure import Integrability, RankStructure
 from symgen.model.model import Model
 from symgen.records import dataclass
 from symgen.report.proof import ProofFacts
 from symgen.report.targets import TargetCore
-
-
-@dataclass(frozen=True, slots=True)
-class Verdict:
-    """The verdict on one entry of the model's `published` block (by position), with the line of proof."""
-
-    position: int
-    verdict: str
-    proof: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +56,7 @@ class ReportInput:
     model: Model
     version: str
     forms: Mapping[str, ClosedForm]
-    structure: Structure
+    structure: RankStructure
     integrability: tuple[Integrability, ...] = ()
     singular_sets: tuple[SingularSet, ...] = ()
     skipped: tuple[tuple[str, str], ...] = ()

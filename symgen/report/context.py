@@ -8,7 +8,7 @@ from typing import Any
 from symgen.closedform.forms import ClosedForm
 from symgen.model.model import Model
 from symgen.report.content import ReportInput
-from symgen.report.document import Block, Paragraph, Reference, Text, displayed
+from symgen.report.document import Block, FormulaReference, Paragraph, Text, displayed
 from symgen.report.mathematics.from_sympy import (
     ACCELERATION,
     COORDINATE,
@@ -94,7 +94,7 @@ class Context:
             {self._defined[symbol.name] for symbol, _ in form.intermediates if symbol.name in self._defined}
         )
         self._defined |= {symbol.name: label for symbol, _ in new}
-        known = say(" and".join([" {}"] * len(earlier)), *map(Reference, earlier))
+        known = say(" and".join([" {}"] * len(earlier)), *map(FormulaReference, earlier))
         if not new:
             return [Paragraph((*say("With the intermediate expressions of"), *known))]
         opening = "With the intermediate expressions" if not earlier else "With the intermediate expressions of"

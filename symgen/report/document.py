@@ -29,7 +29,7 @@ class InlineCode:
 
 
 @dataclass(frozen=True, slots=True)
-class Reference:
+class FormulaReference:
     """The number of a labelled formula."""
 
     label: str
@@ -42,7 +42,7 @@ class Emphasis:
     text: str
 
 
-Inline: TypeAlias = str | InlineMath | InlineCode | Reference | Emphasis
+Inline: TypeAlias = str | InlineMath | InlineCode | FormulaReference | Emphasis
 Text: TypeAlias = tuple[Inline, ...]
 
 

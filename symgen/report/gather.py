@@ -9,7 +9,7 @@ from symgen import __version__
 from symgen.closedform.forms import derive_closed_forms
 from symgen.closedform.published import decide_published
 from symgen.model.model import Model
-from symgen.report.content import Chart, ErrorRow, ReportInput, Verdict, Verification
+from symgen.report.content import Chart, ErrorRow, ReportInput, Verification
 from symgen.report.facts import Facts
 from symgen.report.proof import ProofFacts
 from symgen.report.targets import TargetCore
@@ -29,7 +29,7 @@ def gather(model: Model, facts: Facts) -> ReportInput:
         singular_sets=forms.singular_sets,
         skipped=facts.skipped,
         operation_counts={name: asdict(count) for name, count in counts.items()},
-        verdicts=tuple(Verdict(v.position, v.verdict, v.explanation) for v in decide_published(model, forms)),
+        verdicts=decide_published(model, forms),
         notices=tuple(notice.message for notice in model.notices),
     )
 

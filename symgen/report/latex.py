@@ -3,7 +3,17 @@
 from __future__ import annotations
 
 from symgen.backends.render import render
-from symgen.report.document import Document, Emphasis, Figure, InlineCode, InlineMath, Reference, Section, Table, Text
+from symgen.report.document import (
+    Document,
+    Emphasis,
+    Figure,
+    FormulaReference,
+    InlineCode,
+    InlineMath,
+    Section,
+    Table,
+    Text,
+)
 from symgen.report.markup import Markup
 from symgen.report.mathematics.latex import GREEK, RELATIONS, latex_math
 from symgen.report.mathematics.layout import Layout, Row
@@ -127,6 +137,6 @@ def _text_width(text: Text) -> float:
                 width += page_width(node)
             case InlineCode(text=inside) | Emphasis(text=inside):
                 width += 0.53 * len(inside)
-            case Reference():
+            case FormulaReference():
                 width += 1.8
     return width

@@ -11,12 +11,12 @@ from symgen.report.document import (
     Emphasis,
     Figure,
     Formula,
+    FormulaReference,
     Inline,
     InlineCode,
     InlineMath,
     Items,
     Paragraph,
-    Reference,
     Table,
     Text,
 )
@@ -63,7 +63,7 @@ class Markup(ABC):
                 return self.code(text)
             case Emphasis(text=text):
                 return self.emphasis(text)
-            case Reference(label=label):
+            case FormulaReference(label=label):
                 return self.reference(self._numbers[label])
 
     @abstractmethod

@@ -6,11 +6,11 @@ from typing import TypeAlias
 
 from symgen.report.document import (
     Emphasis,
+    FormulaReference,
     Inline,
     InlineCode,
     InlineMath,
     Paragraph,
-    Reference,
     Text,
 )
 from symgen.report.mathematics.layout import (
@@ -28,7 +28,7 @@ from symgen.report.mathematics.layout import (
     Sum,
 )
 
-Slot: TypeAlias = str | Layout | InlineCode | Emphasis | Reference
+Slot: TypeAlias = str | Layout | InlineCode | Emphasis | FormulaReference
 
 
 def say(pattern: str, *slots: Slot) -> Text:
@@ -38,7 +38,7 @@ def say(pattern: str, *slots: Slot) -> Text:
         raise ValueError(f"{len(slots)} slots for {len(pieces) - 1} places: {pattern}")
     parts: list[Inline] = [pieces[0]]
     for slot, piece in zip(slots, pieces[1:], strict=True):
-        parts.append(slot if isinstance(slot, (str, InlineCode, Emphasis, Reference)) else InlineMath(slot))
+        parts.append(slot if isinstance(slot, (str, InlineCode, Emphasis, FormulaReference)) else InlineMath(slot))
         parts.append(piece)
     return tuple(part for part in parts if part != "")
 

@@ -18,7 +18,7 @@ from symgen.model.model import Model
 from symgen.output.write import write_files
 from symgen.pipeline import generate
 from symgen.simulate.animation import animation
-from symgen.simulate.integrate import Trajectory, consistent_start, integrate
+from symgen.simulate.integrate import SimulatedMotion, consistent_start, integrate
 from symgen.simulate.plant import QUANTITIES, Plant, PlantError
 from symgen.simulate.scene import scene
 from symgen.simulate.tables import motion_chart, motion_csv
@@ -142,7 +142,7 @@ def _known(path: Path, option: str, values: Mapping[str, float], names: list[str
             raise WrongUseError(f"{path}: --{option}: unknown name {name!r}; {remedy}")
 
 
-def _summary(model: Model, motion: Trajectory) -> list[str]:
+def _summary(model: Model, motion: SimulatedMotion) -> list[str]:
     totals = [t + u for t, u in motion.energy]
     scale = max(max(abs(t), abs(u)) for t, u in motion.energy) or 1.0
     gained = totals[-1] - totals[0]

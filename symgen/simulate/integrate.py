@@ -17,7 +17,7 @@ CLOSED = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
-class Trajectory:
+class SimulatedMotion:
     """Frames of a motion: times (s), q, q_dot, (T, U), largest constraint violation; why it stopped early, if so."""
 
     times: tuple[float, ...]
@@ -47,7 +47,7 @@ def integrate(
     u: Sequence[float],
     times: Sequence[float],
     progress: Callable[[float], None],
-) -> Trajectory:
+) -> SimulatedMotion:
     """The motion at `times`; where a kernel has no result any more it ends there."""
     n = plant.model.n
 
@@ -76,7 +76,7 @@ def integrate(
         step = float(max(np.diff(solved.t)))
         frames.append((end, tuple(q), tuple(qd)))
         progress(end)
-    return Trajectory(
+    return SimulatedMotion(
         times=tuple(frame[0] for frame in frames),
         q=tuple(frame[1] for frame in frames),
         qd=tuple(frame[2] for frame in frames),

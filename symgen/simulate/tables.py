@@ -10,13 +10,13 @@ from matplotlib.figure import Figure
 from symgen.model.model import Model
 from symgen.paths.drawing import STYLE, STYLES
 from symgen.paths.line_chart import COLOURS
-from symgen.simulate.integrate import Trajectory
+from symgen.simulate.integrate import SimulatedMotion
 
 WIDTH, PANEL_HEIGHT = 6.4, 2.4  # inches
 MOST_CURVES = 8
 
 
-def motion_csv(model: Model, motion: Trajectory) -> str:
+def motion_csv(model: Model, motion: SimulatedMotion) -> str:
     """One line a frame: t, coordinates, rates, T, U and the largest violation of a constraint."""
     names = [c.name for c in model.coordinates], [c.rate for c in model.coordinates]
     lines = [",".join(("t", *names[0], *names[1], "kinetic_energy", "potential_energy", "constraint_violation"))]
@@ -26,7 +26,7 @@ def motion_csv(model: Model, motion: Trajectory) -> str:
     return "\n".join(lines) + "\n"
 
 
-def motion_chart(model: Model, motion: Trajectory) -> str:
+def motion_chart(model: Model, motion: SimulatedMotion) -> str:
     """SVG: coordinates by unit, energies, and the violation of the constraints where there are any."""
     units = list(dict.fromkeys(c.unit or "1" for c in model.coordinates))
     panels = [(f"coordinates in {unit}", [i for i, c in enumerate(model.coordinates) if (c.unit or "1") == unit])

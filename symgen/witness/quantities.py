@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import casadi
 
+from symgen.model.configurations.assembly import Ranks
 from symgen.model.model import Model
 from symgen.witness.allocation import allocated
 from symgen.witness.lagrange import Lagrange, along
 from symgen.witness.linear import compound, pseudoinverse, solve
-from symgen.witness.ranks import Ranks
 
 PROJECTION_STEPS = 2
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import islice
 
 import casadi
 import numpy as np
 
+from symgen.model.configurations.assembly import Ranks
 from symgen.model.model import Model
 from symgen.witness.configurations import RANK_TOLERANCE, Array, configurations
 from symgen.witness.lagrange import Lagrange
@@ -17,17 +17,8 @@ POINTS = 6
 TRIALS = 60
 
 
-@dataclass(frozen=True, slots=True)
-class Ranks:
-    """Ranks that hold almost everywhere on V: of B, of its geometric rows, and of M̃ = N M (degree of actuation)."""
-
-    constraints: int
-    geometric: int
-    actuation: int
-
-
 def generic_ranks(model: Model, lagrange: Lagrange) -> Ranks:
-    """The largest ranks met at random admissible configurations, default parameters; ValueError if none is found."""
+    """The largest ranks met at random admissible configurations, default parameters; ValueError if there is none."""
     matrices = casadi.Function("matrices", [lagrange.q, lagrange.p], [lagrange.jacobian, lagrange.control])
     parameters = default_parameters(model)
     geometric_rows = lagrange.residual.shape[0]

@@ -12,7 +12,7 @@ from sympy import Add, Matrix, Mul, Symbol, cos, sin
 
 from symgen.closedform.algebra.substitution import substitute
 from symgen.closedform.forms import ClosedForm, ClosedForms, derive_closed_forms
-from symgen.closedform.points import Point, generic_points
+from symgen.closedform.points import RingPoint, generic_points
 from symgen.closedform.spelling import spell_expression
 from symgen.model.load import load_model, load_text
 from symgen.model.model import Model, PublishedMatrix
@@ -31,7 +31,7 @@ def derive(text: str) -> tuple[Model, ClosedForms]:
     return model, derive_closed_forms(model)
 
 
-def evaluate(form: ClosedForm, point: Point) -> mpmath.matrix:
+def evaluate(form: ClosedForm, point: RingPoint) -> mpmath.matrix:
     """The printed matrix at a point, intermediates included."""
     assert form.matrix is not None
     values = {Symbol(name): sympy.Float(value, 50) for name, value in point.values.items()}

@@ -12,7 +12,7 @@ from symgen.generation.runnable import Kernels
 from symgen.mechanics.system import System
 from symgen.model.configurations.mechanics import default_values
 from symgen.model.load import load_model
-from symgen.simulate.integrate import Trajectory, consistent_start, integrate
+from symgen.simulate.integrate import SimulatedMotion, consistent_start, integrate
 from symgen.simulate.plant import QUANTITIES, Plant
 from symgen.symbolic.evaluate import Evaluator
 
@@ -20,7 +20,7 @@ MODELS = {name: ROOT / "models" / f"{name}.yaml" for name in ("rolling_disc", "g
 MODELS["floating_body"] = Path(__file__).parent / "floating_body.yaml"
 
 
-def free_motion(name: str, folder: Path, duration: float, rates: dict[str, float]) -> Trajectory:
+def free_motion(name: str, folder: Path, duration: float, rates: dict[str, float]) -> SimulatedMotion:
     model = load_model(MODELS[name])
     plant = Plant(model, tuple(default_values(model.parameters).values()), Kernels(model, folder, QUANTITIES))
     q = [float(dict(model.configuration).get(c.name, 0)) for c in model.coordinates]

@@ -13,7 +13,7 @@ from symgen.closedform.algebra.matrices import determinant, multiply, transpose
 from symgen.closedform.algebra.quotient import Quotient
 from symgen.closedform.forms import ClosedForms, derive_closed_forms
 from symgen.closedform.manifold import Manifold
-from symgen.closedform.points import Point
+from symgen.closedform.points import RingPoint
 from symgen.closedform.published import IDENTICAL, MISPRINTED, ON_MANIFOLD, Verdict, decide_published
 from symgen.model.expressions.expression import Binary, Call, Expression, Negation, Number, Power
 from symgen.model.load import load_model
@@ -267,7 +267,7 @@ def test_45_as_printed_is_not_in_the_kernel() -> None:
     printed = tuple(tuple(translator.value(entry) for entry in row) for row in item.value)
     product = multiply(exact.ring, exact.mechanics.jacobian, printed)
     values = {"theta": 0.3, "phi": 0.2, "L": 1.7}
-    point = Point(exact.mechanics, {name: mpf(v) for name, v in values.items()})
+    point = RingPoint(exact.mechanics, {name: mpf(v) for name, v in values.items()})
     numbers = [[float(x) for x in row] for row in point.matrix(product)]
     assert numbers[0] == pytest.approx([0.591, 0], abs=1e-3)
     assert numbers[1] == pytest.approx([1.230, -0.271], abs=1e-3)

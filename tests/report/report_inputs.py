@@ -7,9 +7,10 @@ from functools import cache
 from pathlib import Path
 
 from symgen.closedform.forms import derive_closed_forms
+from symgen.closedform.published import Verdict
 from symgen.model.load import load_model
 from symgen.report.compose import compose
-from symgen.report.content import Chart, ErrorRow, ReportInput, Verdict, Verification
+from symgen.report.content import Chart, ErrorRow, ReportInput, Verification
 from symgen.report.document import Document
 
 HERE = Path(__file__).parent
@@ -33,7 +34,8 @@ def report_input(name: str) -> ReportInput:
         skipped=(("potential forces", "the potential energy is constant"), ("constraint_residual", "empty")),
         operation_counts={"mass_matrix": {"add": 2, "mul": 5, "div": 0, "sqrt": 0, "sincos": 1, "other": 0}},
         verdicts=tuple(
-            Verdict(k, ("identical", "misprinted")[k % 2], "a < b & c") for k in range(len(model.published))
+            Verdict(k, item.equation, "", ("identical", "misprinted")[k % 2], None, "a < b & c")
+            for k, item in enumerate(model.published)
         ),
         notices=("a notice with <angle> brackets & $dollars$",),
     )

@@ -12,12 +12,13 @@ import pytest
 from shipped import NAMES
 from witness_models import EXTRA
 
+from symgen.model.configurations.assembly import Ranks
 from symgen.model.load import load_model, load_text
 from symgen.model.model import Model
 from symgen.witness.casadi_derivation import witness_functions
 from symgen.witness.configurations import configurations
 from symgen.witness.lagrange import differentiate
-from symgen.witness.ranks import Ranks, generic_ranks
+from symgen.witness.ranks import generic_ranks
 from symgen.witness.translate import default_parameters
 
 MODELS = Path(__file__).parents[2] / "models"

@@ -24,7 +24,7 @@ Combination: TypeAlias = tuple[tuple[Expression, Fraction], ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Argument:
+class SineArgument:
     """The argument of a sine: a combination of base angles plus a number of quarter turns."""
 
     combination: Combination
@@ -39,7 +39,7 @@ class AngleBasis:
     in_atoms: Mapping[Expression, tuple[int, ...]]
     units: Mapping[Expression, Fraction]
 
-    def multiples(self, argument: Argument) -> tuple[int, ...]:
+    def multiples(self, argument: SineArgument) -> tuple[int, ...]:
         """How often each atom enters an argument that was seen when the basis was chosen."""
         total = [0] * len(self.atoms)
         for base, coefficient in argument.combination:
@@ -71,7 +71,7 @@ def rational_constant(expression: Expression) -> Fraction | None:
             return None
 
 
-def read_argument(expression: Expression, definitions: LinearDefinitions) -> Argument:
+def read_argument(expression: Expression, definitions: LinearDefinitions) -> SineArgument:
     """Split a sine's argument into base angles and quarter turns."""
     terms: dict[Expression, Fraction] = {}
     turns = _collect(expression, Fraction(1), definitions, terms)
@@ -82,8 +82,8 @@ def read_argument(expression: Expression, definitions: LinearDefinitions) -> Arg
         turns = Fraction(quotient)
     combination = tuple((base, factor) for base, factor in terms.items() if factor != 0)
     if any(abs(f.numerator) > LARGEST_MULTIPLE or f.denominator > LARGEST_MULTIPLE for _, f in combination):
-        return Argument(((expression, Fraction(1)),), 0)
-    return Argument(combination, int(turns))
+        return SineArgument(((expression, Fraction(1)),), 0)
+    return SineArgument(combination, int(turns))
 
 
 def _collect(
@@ -164,7 +164,7 @@ class LinearDefinitions:
         return self._known[name]
 
 
-def choose_basis(preferred: Iterable[Argument], others: Iterable[Argument]) -> AngleBasis:
+def choose_basis(preferred: Iterable[SineArgument], others: Iterable[SineArgument]) -> AngleBasis:
     """Atoms that span all arguments, taken from `preferred` (single angles first), then `others`, then base angles."""
     preferred, others = tuple(preferred), tuple(others)
     units: dict[Expression, Fraction] = {}

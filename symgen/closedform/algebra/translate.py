@@ -9,8 +9,8 @@ from sympy.polys.rings import PolyElement
 
 from symgen.closedform.algebra.angles import (
     AngleBasis,
-    Argument,
     LinearDefinitions,
+    SineArgument,
     choose_basis,
     read_argument,
     trigonometric_arguments,
@@ -46,9 +46,9 @@ class Translator:
         self._slopes: dict[tuple[int, str], Quotient] = {}
         self._last: tuple[PolyElement, frozenset[int]] | None = None
 
-    def _scan(self, expressions: Iterable[Expression], atoms: dict[Expression, Opaque]) -> list[Argument]:
+    def _scan(self, expressions: Iterable[Expression], atoms: dict[Expression, Opaque]) -> list[SineArgument]:
         """Angle arguments and opaque atoms of the expressions, of everything they name and of their derivatives."""
-        found: list[Argument] = []
+        found: list[SineArgument] = []
         pending = list(expressions)
         seen: set[Expression] = set()
         while pending:

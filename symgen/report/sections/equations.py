@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symgen.report.context import Context
-from symgen.report.document import Block, Reference, Section, displayed
+from symgen.report.document import Block, FormulaReference, Section, displayed
 from symgen.report.mathematics.layout import (
     Accent,
     Fenced,
@@ -89,7 +89,7 @@ def _motion(context: Context) -> Layout:
 def _mass(context: Context) -> list[Block]:
     quadratic = equals(T, Product((HALF, transposed(qd), G, qd)))
     return [
-        paragraph("Writing the kinetic energy {} as {} gives", Reference("T"), quadratic),
+        paragraph("Writing the kinetic energy {} as {} gives", FormulaReference("T"), quadratic),
         *context.quantity("mass_matrix", "G"),
     ]
 
@@ -128,7 +128,7 @@ def _potential(context: Context) -> list[Block]:
 def _jacobian(context: Context) -> list[Block]:
     kinds = {row.kind for row in context.model.constraints}
     velocity = equals(juxtaposed(B, qd), ZERO)
-    references = [Reference(f"constraints_{kind}") for kind in ("geometric", "nonholonomic") if kind in kinds]
+    references = [FormulaReference(f"constraints_{kind}") for kind in ("geometric", "nonholonomic") if kind in kinds]
     pattern = {
         frozenset({"geometric"}): "The time derivative of {} is {}, paper (1), with the coefficient matrix",
         frozenset({"nonholonomic"}): "The constraints {} read {}, paper (1), with the coefficient matrix",
@@ -147,6 +147,6 @@ def _jacobian(context: Context) -> list[Block]:
         blocks += context.quantity("constraint_jacobian_dot", "Bdot")
     if "geometric" in kinds:
         blocks.append(
-            paragraph("The left-hand sides of {} are collected in {}.", Reference("constraints_geometric"), g)
+            paragraph("The left-hand sides of {} are collected in {}.", FormulaReference("constraints_geometric"), g)
         )
     return blocks

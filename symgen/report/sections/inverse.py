@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symgen.report.context import Context
-from symgen.report.document import Block, Reference, Section, displayed
+from symgen.report.document import Block, FormulaReference, Section, displayed
 from symgen.report.mathematics.layout import Fenced, Layout
 from symgen.report.prose import (
     NB,
@@ -148,7 +148,7 @@ def _projected_control(context: Context) -> list[Block]:
 def _inputs_written_out(context: Context) -> list[Block]:
     if context.matrix("inverse_dynamics") is None or not context.full:
         return (
-            [paragraph("The generated code evaluates {} without forming {} or any inverse.", Reference("u"), NB)]
+            [paragraph("The generated code evaluates {} without forming {} or any inverse.", FormulaReference("u"), NB)]
             if context.model.r
             else []
         )

@@ -1,7 +1,8 @@
-"""The section on published formulas: what is printed, the verdict, its proof, and the corrected form."""
+"""The section on published formulas: what is printed, the verdict, why, and the corrected form."""
 
 from __future__ import annotations
 
+from symgen.closedform.published import Verdict
 from symgen.model.expressions.expression import Expression
 from symgen.model.model import (
     Published,
@@ -9,7 +10,6 @@ from symgen.model.model import (
     PublishedMatrix,
     PublishedSingularSet,
 )
-from symgen.report.content import Verdict
 from symgen.report.context import Context, sentence
 from symgen.report.document import Block, Formula, InlineMath, Section, Table, Text, displayed
 from symgen.report.mathematics.from_expression import expression_layout
@@ -30,7 +30,7 @@ def published(context: Context) -> tuple[Section, ...]:
             say("{}", item.equation),
             _subject(item),
             say("{}", verdicts[k].verdict),
-            say("{}", sentence(verdicts[k].proof)),
+            say("{}", sentence(verdicts[k].explanation)),
         )
         for k, item in items
         if k in verdicts
