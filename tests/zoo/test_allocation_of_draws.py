@@ -6,12 +6,12 @@ from fractions import Fraction
 
 from symgen.laboratory.zoo.allocation import directed, members, preloads
 from symgen.laboratory.zoo.fields import Balls, precision
-from symgen.laboratory.zoo.kkt import Numbers, inverse_dynamics, split
+from symgen.laboratory.zoo.kkt import EquationValues, inverse_dynamics, split
 from symgen.laboratory.zoo.linear import determinant, transposed
 
 # one mass, driven by three forces along it
-AT = Numbers([[2.0]], [], [[1.0, 2.0, -1.0]], [0.5], [], [])
-PAIR = Numbers([[2.0]], [], [[1.0, 1.0]], [0.0], [], [])
+AT = EquationValues([[2.0]], [], [[1.0, 2.0, -1.0]], [0.5], [], [])
+PAIR = EquationValues([[2.0]], [], [[1.0, 1.0]], [0.0], [], [])
 LOAD = 2.0 * 3.0 + 0.5
 
 

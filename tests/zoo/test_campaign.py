@@ -12,15 +12,15 @@ from symgen.laboratory.zoo.campaign import MOST_SECONDS, Campaign, judge, one_dr
 from symgen.laboratory.zoo.cases import case_of, read_case
 from symgen.laboratory.zoo.describe import Description, Terms, read_description, summands
 from symgen.laboratory.zoo.families import FAMILIES, draw
-from symgen.laboratory.zoo.records import Record, read_records, summary, write_record
+from symgen.laboratory.zoo.records import DrawRecord, read_records, summary, write_record
 from symgen.laboratory.zoo.refusals import NOT_TOLD
-from symgen.laboratory.zoo.run import Run
+from symgen.laboratory.zoo.run import CommandRun
 from symgen.laboratory.zoo.urdf_file import expanded
-from symgen.laboratory.zoo.verdict import FAILED, REFUSED, VERIFIED, Verdict
+from symgen.laboratory.zoo.verdict import FAILED, REFUSED, VERIFIED, DrawVerdict
 from symgen.model.load import load_text
 
-RIGHT = Record(1, 0, "disc", VERIFIED, "", "", 2.0, 100)
-WRONG = Record(1, 1, "bennett", FAILED, "internal error", "KeyError at run", 3.5, 90, "there.yaml")
+RIGHT = DrawRecord(1, 0, "disc", VERIFIED, "", "", 2.0, 100)
+WRONG = DrawRecord(1, 1, "bennett", FAILED, "internal error", "KeyError at run", 3.5, 90, "there.yaml")
 
 
 @pytest.mark.parametrize("family", FAMILIES)
@@ -37,7 +37,7 @@ def test_summands_stand_outside_of_brackets() -> None:
 
 
 def test_chunks_are_summed_up(tmp_path: Path) -> None:
-    for name, record in (("a", WRONG), ("b", RIGHT), ("b", Record(1, 1, "bennett", VERIFIED, "", "", 4.0, 95))):
+    for name, record in (("a", WRONG), ("b", RIGHT), ("b", DrawRecord(1, 1, "bennett", VERIFIED, "", "", 4.0, 95))):
         write_record(tmp_path / name, record)
     assert "1 failed" in summary(read_records([tmp_path / "a"]))
     told = summary(read_records([tmp_path / "a", tmp_path / "b"]))
@@ -64,8 +64,8 @@ def test_a_draw_is_shown(monkeypatch, capsys) -> None:
 def ends(monkeypatch):
     """The command replaced by an ending, without files."""
 
-    def use(run: Run) -> None:
-        def instead(_model: Path, folder: Path) -> Run:
+    def use(run: CommandRun) -> None:
+        def instead(_model: Path, folder: Path) -> CommandRun:
             folder.mkdir(parents=True, exist_ok=True)
             return run
 
@@ -75,13 +75,13 @@ def ends(monkeypatch):
 
 
 def test_a_run_that_writes_nothing_is_no_success(ends, tmp_path: Path) -> None:
-    ends(Run(0, "", "", 1, 1))
+    ends(CommandRun(0, "", "", 1, 1))
     verdict, _, _ = judge(draw(1, 1, "geared"), tmp_path / "zoo.yaml")
     assert (verdict.ending, verdict.kind) == (FAILED, "nothing written")
 
 
 def test_what_breaks_the_witness_is_a_failure_of_the_draw(ends, tmp_path: Path) -> None:
-    ends(Run(0, "", "", 1, 1))
+    ends(CommandRun(0, "", "", 1, 1))
     made = tmp_path / "zoo" / "zoo"
     made.mkdir(parents=True)
     (made / "derivation.json").write_text("{}")
@@ -92,7 +92,7 @@ def test_what_breaks_the_witness_is_a_failure_of_the_draw(ends, tmp_path: Path) 
 
 
 def test_a_failing_draw_leaves_its_file_and_a_small_case(ends, tmp_path: Path) -> None:
-    ends(Run(2, "", "symgen: internal error: odd\n", 1, 1))
+    ends(CommandRun(2, "", "symgen: internal error: odd\n", 1, 1))
     record, told = one_draw(Campaign(1, tmp_path, "car_with_trailers", shrinking=150), 0)
     assert record.failed
     assert "internal error" in told
@@ -102,7 +102,7 @@ def test_a_failing_draw_leaves_its_file_and_a_small_case(ends, tmp_path: Path) -
 
 
 def test_a_campaign_makes_its_failures_small_and_keeps_them_as_tests(ends, tmp_path: Path, monkeypatch) -> None:
-    ends(Run(2, "", "symgen: internal error: odd\n", 1, 1))
+    ends(CommandRun(2, "", "symgen: internal error: odd\n", 1, 1))
     # processes of a pool would not have the replaced command
     monkeypatch.setattr(command, "run_campaign", lambda one, given, indices, *_: [one(given, k)[0] for k in indices])
     cases = tmp_path / "cases"
@@ -111,7 +111,7 @@ def test_a_campaign_makes_its_failures_small_and_keeps_them_as_tests(ends, tmp_p
     assert command.main() == 1
     assert [path.name for path in cases.iterdir()] == ["1_0.yaml"]
     kept = read_case(cases / "1_0.yaml")
-    assert (kept.found, kept.expected) == ("internal error: odd at ?", VERIFIED)
+    assert (kept.failure, kept.expected) == ("internal error: odd at ?", VERIFIED)
     assert len(kept.model) < len(draw(1, 0, "geared").text) / 2
 
 
@@ -127,9 +127,9 @@ def test_trees_that_are_compared_with_one_witness_only_are_told(
 
 
 def test_what_takes_long_is_made_small_in_few_runs(monkeypatch, tmp_path: Path) -> None:
-    late, runs = Verdict(FAILED, "time", "deriving ..."), []
+    late, runs = DrawVerdict(FAILED, "time", "deriving ..."), []
 
-    def instead(candidate: Description, _model: Path) -> tuple[Verdict, float, float]:
+    def instead(candidate: Description, _model: Path) -> tuple[DrawVerdict, float, float]:
         runs.append(candidate)
         return late, MOST_SECONDS / 4, 1
 
@@ -141,27 +141,27 @@ def test_what_takes_long_is_made_small_in_few_runs(monkeypatch, tmp_path: Path) 
 
 
 def test_a_mistake_that_was_not_told_is_kept_with_the_mistake(tmp_path: Path) -> None:
-    description, verdict = draw(1, 0, "geared"), Verdict(FAILED, NOT_TOLD)
+    description, verdict = draw(1, 0, "geared"), DrawVerdict(FAILED, NOT_TOLD)
     assert shrunk(description, verdict, tmp_path / "small.yaml", 80) == description
     assert case_of(description, verdict).expected == REFUSED
 
 
 def test_a_draw_that_ends_well_leaves_nothing(ends, tmp_path: Path, monkeypatch) -> None:
-    ends(Run(0, "", "", 1, 1))
-    monkeypatch.setattr(campaign, "_witnessed", lambda *_: (Verdict(VERIFIED), ""))
+    ends(CommandRun(0, "", "", 1, 1))
+    monkeypatch.setattr(campaign, "_witnessed", lambda *_: (DrawVerdict(VERIFIED), ""))
     record, _ = one_draw(Campaign(1, tmp_path, "disc"), 0)
     assert not record.failed
     assert not list(tmp_path.iterdir())
 
 
 def test_a_draw_is_made_small_and_kept(ends, tmp_path: Path, monkeypatch) -> None:
-    ends(Run(2, "", "symgen: internal error: odd\n", 1, 1))
+    ends(CommandRun(2, "", "symgen: internal error: odd\n", 1, 1))
     case, out = tmp_path / "case.yaml", tmp_path / "out"
     given = ["zoo", "--seed", "1", "--first", "2", "--family", "robot_files", "--store", str(case), "--out", str(out)]
     monkeypatch.setattr("sys.argv", given)
     assert command.main() == 1
     kept = read_case(case)
-    assert kept.found.startswith("internal error")
+    assert kept.failure.startswith("internal error")
     assert "urdf" not in kept.model
     drawn = draw(1, 2, "robot_files")
     assert len(kept.model) < len(drawn.text + drawn.files["robot.urdf"]) / 2

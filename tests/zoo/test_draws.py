@@ -16,16 +16,16 @@ from symgen.laboratory.zoo.endings import independent
 from symgen.laboratory.zoo.families import FAMILIES, draw
 from symgen.laboratory.zoo.fields import Floats
 from symgen.laboratory.zoo.mechanics import equations
-from symgen.laboratory.zoo.reader import System
+from symgen.laboratory.zoo.reader import SystemReader
 from symgen.laboratory.zoo.sketch import Sketch
 from symgen.laboratory.zoo.urdf_file import expanded
 
 DRAWS = range(3)
 
 
-def numbers(description: Description) -> tuple[System, list[float], np.ndarray, np.ndarray]:
+def numbers(description: Description) -> tuple[SystemReader, list[float], np.ndarray, np.ndarray]:
     """Residuals, B and G at the start, read back from the text."""
-    system = System(expanded(yaml.load(description.text, Loader=yaml.BaseLoader), description.files))
+    system = SystemReader(expanded(yaml.load(description.text, Loader=yaml.BaseLoader), description.files))
     found = equations(system)
     values = {**description.start, **{name: 0.1 * k for k, name in enumerate(system.rate_names, 1)}}
     for name, node in system.parameters.items():

@@ -11,9 +11,9 @@ from symgen.laboratory.zoo import run as running
 from symgen.laboratory.zoo.cases import case_of, read_case
 from symgen.laboratory.zoo.describe import Description, Terms
 from symgen.laboratory.zoo.families import draw
-from symgen.laboratory.zoo.run import Run, run_command
+from symgen.laboratory.zoo.run import CommandRun, run_command
 from symgen.laboratory.zoo.shrink import frozen, shrink, substituted
-from symgen.laboratory.zoo.verdict import NOTICED, REFUSED, VERIFIED, Verdict, verdict_of
+from symgen.laboratory.zoo.verdict import NOTICED, REFUSED, VERIFIED, DrawVerdict, verdict_of
 
 MISTAKE = """zoo.yaml:12:5: `a` of something in m
    12 | x: exp(a)
@@ -34,21 +34,21 @@ WITHHELD = "zoo.yaml: verification failed, nothing is written\n  C float64, G: e
 @pytest.mark.parametrize(
     ("run", "ending", "kind"),
     [
-        (Run(0, "", "zoo: reading\n", 1, 1), VERIFIED, ""),
-        (Run(0, "", "zoo.yaml: notice: one thing\n", 1, 1), NOTICED, ""),
-        (Run(1, "", MISTAKE, 1, 1), REFUSED, ""),
-        (Run(1, "", MISTAKE.replace(".yaml", ".urdf"), 1, 1), REFUSED, ""),
-        (Run(1, "", "zoo.yaml: no\n", 1, 1), "failed", UNPLACED),
-        (Run(1, "", WITHOUT_REMEDY, 1, 1), "failed", UNPLACED),
-        (Run(1, "", UNTRUE, 1, 1), "failed", "refused without reason"),
-        (Run(2, "", "symgen: internal error: x\n", 1, 1), "failed", "internal error"),
-        (Run(1, "", WITHHELD, 1, 1), "failed", "verification"),
-        (Run(1, "", LEFT_OUT, 1, 1), "failed", "left out"),
-        (Run(-9, "", "", 61, 1, "time"), "failed", "time"),
-        (Run(-11, "", "", 1, 1), "failed", "signal"),
+        (CommandRun(0, "", "zoo: reading\n", 1, 1), VERIFIED, ""),
+        (CommandRun(0, "", "zoo.yaml: notice: one thing\n", 1, 1), NOTICED, ""),
+        (CommandRun(1, "", MISTAKE, 1, 1), REFUSED, ""),
+        (CommandRun(1, "", MISTAKE.replace(".yaml", ".urdf"), 1, 1), REFUSED, ""),
+        (CommandRun(1, "", "zoo.yaml: no\n", 1, 1), "failed", UNPLACED),
+        (CommandRun(1, "", WITHOUT_REMEDY, 1, 1), "failed", UNPLACED),
+        (CommandRun(1, "", UNTRUE, 1, 1), "failed", "refused without reason"),
+        (CommandRun(2, "", "symgen: internal error: x\n", 1, 1), "failed", "internal error"),
+        (CommandRun(1, "", WITHHELD, 1, 1), "failed", "verification"),
+        (CommandRun(1, "", LEFT_OUT, 1, 1), "failed", "left out"),
+        (CommandRun(-9, "", "", 61, 1, "time"), "failed", "time"),
+        (CommandRun(-11, "", "", 1, 1), "failed", "signal"),
     ],
 )  # fmt: skip
-def test_endings(run: Run, ending: str, kind: str) -> None:
+def test_endings(run: CommandRun, ending: str, kind: str) -> None:
     verdict = verdict_of(run)
     assert (verdict.ending, verdict.kind) == (ending, kind)
 
@@ -60,7 +60,7 @@ def test_a_signature_knows_the_place_and_no_numbers() -> None:
 KeyError: 'a_1 absolute'
 symgen: internal error: this is a fault of symgen, not of the model.
 """
-    assert verdict_of(Run(2, "", text, 1, 1)).signature == "KeyError: `.` at run in symbolic/evaluate.py"
+    assert verdict_of(CommandRun(2, "", text, 1, 1)).signature == "KeyError: `.` at run in symbolic/evaluate.py"
 
 
 @pytest.fixture
@@ -132,6 +132,6 @@ def test_names_are_replaced_as_words() -> None:
 
 
 def test_a_stored_case_is_read_as_it_was(tmp_path: Path) -> None:
-    case = case_of(draw(5, 1, "bennett"), Verdict("failed", "internal error", "KeyError: `.` at run"))
+    case = case_of(draw(5, 1, "bennett"), DrawVerdict("failed", "internal error", "KeyError: `.` at run"))
     (tmp_path / "case.yaml").write_text(case.text)
     assert read_case(tmp_path / "case.yaml") == case

@@ -11,7 +11,7 @@ from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.families import draw
 from symgen.laboratory.zoo.fields import Floats
 from symgen.laboratory.zoo.pinocchio_trees import SAME, disagreement
-from symgen.laboratory.zoo.reader import System
+from symgen.laboratory.zoo.reader import SystemReader
 from symgen.laboratory.zoo.urdf_file import expanded
 
 robot_packages.pinocchio()
@@ -21,7 +21,7 @@ def compared(index: int, family: str = "tree_bodies") -> float | None:
     """The disagreement on a drawn tree."""
     description = draw(21, index, family)
     blocks = yaml.load(description.text, Loader=yaml.BaseLoader)
-    system = System(expanded(blocks, description.files))
+    system = SystemReader(expanded(blocks, description.files))
     values: dict[str, float] = {}
     for name, node in system.parameters.items():
         values[name] = system.tape.evaluate([node], values, Floats())[0]

@@ -6,7 +6,7 @@ import pytest
 
 from symgen.laboratory.zoo.describe import MISTAKE, Description
 from symgen.laboratory.zoo.refusals import judged
-from symgen.laboratory.zoo.verdict import NOTICED, REFUSED, VERIFIED, Verdict
+from symgen.laboratory.zoo.verdict import NOTICED, REFUSED, VERIFIED, DrawVerdict
 
 FREE = {
     "model": "zoo",
@@ -47,7 +47,7 @@ SINGULAR = "only singular configurations were found, such as x = #"
     ],
 )
 def test_a_refusal_is_looked_at(blocks: dict, start: dict, told: str, is_true: bool) -> None:
-    verdict = judged(Description("", blocks, start), Verdict(REFUSED, signature=told))
+    verdict = judged(Description("", blocks, start), DrawVerdict(REFUSED, signature=told))
     assert (verdict.ending == REFUSED) == is_true
     assert verdict.kind == ("" if is_true else "refused without reason")
     assert verdict.signature == told
@@ -56,6 +56,6 @@ def test_a_refusal_is_looked_at(blocks: dict, start: dict, told: str, is_true: b
 @pytest.mark.parametrize("ending", [VERIFIED, NOTICED])
 def test_a_mistake_that_is_not_told_is_a_failure(ending: str) -> None:
     mistaken = Description("", FREE, HELD, (MISTAKE,))
-    assert judged(mistaken, Verdict(ending)).kind == "mistake not told"
-    assert not judged(mistaken, Verdict(REFUSED, signature="`.` is reserved")).failed
-    assert not judged(Description("", FREE, HELD), Verdict(ending)).failed
+    assert judged(mistaken, DrawVerdict(ending)).kind == "mistake not told"
+    assert not judged(mistaken, DrawVerdict(REFUSED, signature="`.` is reserved")).failed
+    assert not judged(Description("", FREE, HELD), DrawVerdict(ending)).failed

@@ -16,11 +16,11 @@ from symgen.laboratory.zoo.campaign import Campaign
 from symgen.laboratory.zoo.describe import read_description
 from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.generated import Answer, Target
-from symgen.laboratory.zoo.kkt import Ranks
-from symgen.laboratory.zoo.states import State, rounded
+from symgen.laboratory.zoo.kkt import GenericRanks
+from symgen.laboratory.zoo.states import FloatState, rounded
 from symgen.laboratory.zoo.sweep_campaign import one_sweep, record_of, table, write_violations
 from symgen.laboratory.zoo.sweeps import ANSWERED, BEYOND, UNEXPLAINED, Led, compared, sweep
-from symgen.laboratory.zoo.witness import Comparison, Witness
+from symgen.laboratory.zoo.witness import JudgedResult, Witness
 
 FOUR_BAR = """
 model: four_bar
@@ -105,10 +105,10 @@ configuration: {x: 0.4}
 """
 
 
-def kernel(scalar: str, change: Callable[[State, float], Answer]) -> Target:
+def kernel(scalar: str, change: Callable[[FloatState, float], Answer]) -> Target:
     """u of the slide, as `change` has it."""
 
-    def call(_quantity: str, state: State, _count: int) -> Answer:
+    def call(_quantity: str, state: FloatState, _count: int) -> Answer:
         m, k = state.parameters
         exact = m * state.qdd[0] + k * state.q[0]
         return change(state, rounded((exact,), scalar)[0])
@@ -124,7 +124,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def swept(folder: Path, monkeypatch: pytest.MonkeyPatch, change: Callable[[State, float], Answer]) -> sweeps.Swept:
+def swept(folder: Path, monkeypatch: pytest.MonkeyPatch, change: Callable[[FloatState, float], Answer]) -> sweeps.Swept:
     """The sweep of a kernel of the slide."""
     both = [kernel(scalar, change) for scalar in ("float64", "float32")]
     monkeypatch.setattr(sweeps, "targets", lambda *_: both)
@@ -140,7 +140,7 @@ def test_an_honest_kernel_violates_nothing(folder: Path, monkeypatch: pytest.Mon
 
 
 def test_an_error_with_status_0_is_found(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def wrong(state: State, u: float) -> Answer:
+    def wrong(state: FloatState, u: float) -> Answer:
         return Answer(0, (u * (1 + (1e-4 if state.parameters[0] > 1e6 else 0)),))
 
     found = swept(folder, monkeypatch, wrong)
@@ -166,16 +166,16 @@ def test_a_status_beside_a_singular_set_is_not(folder: Path, monkeypatch: pytest
     witness = Witness(SLIDE)
     witness.opened(folder)
     monkeypatch.setattr(sweeps, "targets", lambda *_: [kernel("float64", lambda *_: Answer(2, ()))])
-    state = State((0.4,), (0.1,), (0.2,), (1.0,), (3.0, 2.0))
+    state = FloatState((0.4,), (0.1,), (0.2,), (1.0,), (3.0, 2.0))
     for distance, unexplained in ((1.0, 1), (1e-6, 0)):
-        found = compared(witness, folder, "slide", [Led("lengths", "beside", state, Ranks(0, 1), distance)])
+        found = compared(witness, folder, "slide", [Led("lengths", "beside", state, GenericRanks(0, 1), distance)])
         assert found.of("constraint rank") == 1
         assert found.of(UNEXPLAINED) == unexplained
 
 
 @pytest.mark.parametrize(("units", "outcome"), [(2.0, [ANSWERED, BEYOND]), (0.5, [ANSWERED])])
 def test_the_tolerance_is_that_of_regular_states_wherever_it_is_met(units: float, outcome: list[str]) -> None:
-    assert list(sweeps._outcomes(Comparison(0, units, 3e4, 1e-12, False), True)) == outcome
+    assert list(sweeps._outcomes(JudgedResult(0, units, 3e4, 1e-12, False), True)) == outcome
 
 
 def test_records_are_told_and_summed_up(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -18,10 +18,10 @@ from symgen.laboratory.zoo.fields import Balls, Floats, precision
 from symgen.laboratory.zoo.generated import Answer
 from symgen.laboratory.zoo.linear import basis
 from symgen.laboratory.zoo.mechanics import equations
-from symgen.laboratory.zoo.reader import System
+from symgen.laboratory.zoo.reader import SystemReader
 from symgen.laboratory.zoo.run import run_command
 from symgen.laboratory.zoo.states import Walker
-from symgen.laboratory.zoo.tape import Program, Tape
+from symgen.laboratory.zoo.tape import NodeProgram, NodeTape
 from symgen.laboratory.zoo.witness import Witness
 from symgen.pipeline import generate
 
@@ -57,7 +57,7 @@ VALUES = {"x": 0.3, "a": 0.6, "x_dot": -0.4, "a_dot": 1.1, "m": 2.0, "l": 0.7, "
 
 def flat(text: str) -> list[float]:
     """All entries of the equations of motion."""
-    system = System(yaml.load(text, Loader=yaml.BaseLoader))
+    system = SystemReader(yaml.load(text, Loader=yaml.BaseLoader))
     return system.tape.evaluate(equations(system).flat, VALUES, Floats())
 
 
@@ -82,7 +82,7 @@ def test_bodies_and_energies_give_the_same_equations() -> None:
 
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_derivatives_of_every_function(name: str) -> None:
-    tape = Tape()
+    tape = NodeTape()
     text = "atan2(z/3 + 1, z*z - 2)" if name == "atan2" else f"{name}(z/3 + 0.2*z**(3/2) - 0.1)/z"
     node = read_expression(tape, text, tape.symbol)
     (by_sweep,) = tape.gradient(node, ["z"])
@@ -105,9 +105,9 @@ def test_derivatives_of_every_function(name: str) -> None:
 
 
 def test_equal_numbers_of_a_file_are_rounded_each_alone() -> None:
-    tape = Tape()
+    tape = NodeTape()
     node = read_expression(tape, "0.3*x - 0.3*y + 2*x - 2*y", tape.symbol)
-    program = Program(tape, [node])
+    program = NodeProgram(tape, [node])
     assert [literal.value for literal in program.literals] == [Fraction(3, 10)] * 2
     first, second = program.literals
     values = {"x": 1.0, "y": 1.0}
@@ -116,7 +116,7 @@ def test_equal_numbers_of_a_file_are_rounded_each_alone() -> None:
 
 
 def test_literals_are_exact() -> None:
-    tape = Tape()
+    tape = NodeTape()
     node = read_expression(tape, "0.1 + 2**-1*x", tape.symbol)
     assert {each.number for each in tape.nodes} >= {Fraction(1, 10), Fraction(2)}
     assert tape.evaluate([node], {"x": 0.0}, Floats()) == [0.1]
@@ -126,7 +126,7 @@ def test_literals_are_exact() -> None:
     "text", ["__import__('os')", "x.__class__.y", "[x]", "x if x else x", "x**y", "open(x)", "x + 'a'"]
 )
 def test_other_python_is_not_read(text: str) -> None:
-    tape = Tape()
+    tape = NodeTape()
     with pytest.raises((NotReadError, ValueError, KeyError)):
         read_expression(tape, text, {"x": tape.symbol("x"), "y": tape.symbol("y")}.__getitem__)
 
@@ -194,7 +194,7 @@ configuration: {z: -0.05}
 
 def test_a_wheel_that_could_lift_is_held() -> None:
     """Rows in the order of the documentation: the height first, then along; nothing is said across the plane."""
-    system = System(yaml.load(WHEEL, Loader=yaml.BaseLoader))
+    system = SystemReader(yaml.load(WHEEL, Loader=yaml.BaseLoader))
     assert [row.name for row in system.rows] == ["ground_height", "ground_along"]
     found = equations(system)
     values = dict.fromkeys((*system.coordinates, *system.rate_names), 0.2)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from symgen.laboratory.zoo.kkt import Numbers, internal_force
+from symgen.laboratory.zoo.kkt import EquationValues, internal_force
 from symgen.laboratory.zoo.linear import Vector
 
 # Of an internal force of norm 1, what rounding in balls leaves of an input that takes no part in it.
@@ -33,7 +33,7 @@ def preloads(inputs: Sequence[str], block: Mapping[str, Any], values: Mapping[st
 
 
 def directed(
-    at: Numbers, u: Vector, inputs: Sequence[str], block: Mapping[str, Any], values: Mapping[str, Any], one: Any
+    at: EquationValues, u: Vector, inputs: Sequence[str], block: Mapping[str, Any], values: Mapping[str, Any], one: Any
 ) -> Vector:
     """u with the internal force of one preload and of the limits added: c z.
 

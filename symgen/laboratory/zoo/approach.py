@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from symgen.laboratory.zoo.dice import Dice
-from symgen.laboratory.zoo.kkt import Numbers, Ranks, distances
+from symgen.laboratory.zoo.kkt import EquationValues, GenericRanks, distances
 from symgen.laboratory.zoo.linear import NOTHING
 from symgen.laboratory.zoo.states import FURTHEST, Walker, null_space
 
@@ -31,7 +31,7 @@ class Approach:
     """
 
     def __init__(
-        self, walker: Walker, parameters: Mapping[str, float], ranks: Ranks, scattered: Sequence[Any]
+        self, walker: Walker, parameters: Mapping[str, float], ranks: GenericRanks, scattered: Sequence[Any]
     ) -> None:
         self._walker, self._parameters, self._ranks = walker, parameters, ranks
         self._scattered = scattered
@@ -50,7 +50,7 @@ class Approach:
             return None
 
     @staticmethod
-    def _lengths(at: Numbers) -> Any:
+    def _lengths(at: EquationValues) -> Any:
         return np.linalg.norm(np.array(at.rows, dtype=float).reshape(-1, at.n), axis=1)
 
     def nearest(self, kind: str, count: int) -> list[Any]:

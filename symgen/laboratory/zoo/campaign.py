@@ -16,18 +16,18 @@ from typing import TypeVar
 from symgen.laboratory.zoo.cases import case_of
 from symgen.laboratory.zoo.describe import Description
 from symgen.laboratory.zoo.families import draw
-from symgen.laboratory.zoo.records import Record
+from symgen.laboratory.zoo.records import DrawRecord
 from symgen.laboratory.zoo.refusals import NOT_TOLD, judged
 from symgen.laboratory.zoo.run import run_command
 from symgen.laboratory.zoo.shrink import shrink
-from symgen.laboratory.zoo.verdict import FAILED, REFUSED, Verdict, verdict_of, without_numbers
+from symgen.laboratory.zoo.verdict import FAILED, REFUSED, DrawVerdict, verdict_of, without_numbers
 from symgen.laboratory.zoo.witness import check
 
 # CPU seconds that making a failing draw small may take: one that takes too long each time would take hours
 MOST_SECONDS = 300.0
 
-Tell = Callable[[str], None]
-Told = TypeVar("Told")
+Show = Callable[[str], None]
+Recorded = TypeVar("Recorded")
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ def write(description: Description, model: Path) -> None:
         (model.parent / name).write_text(text, encoding="utf-8")
 
 
-def judge(description: Description, model: Path) -> tuple[Verdict, float, float]:
+def judge(description: Description, model: Path) -> tuple[DrawVerdict, float, float]:
     """Writes the model file, runs the command beside it and looks at the numbers; verdict, CPU seconds, megabytes."""
     write(description, model)
     folder = model.with_suffix("")
@@ -64,28 +64,29 @@ def judge(description: Description, model: Path) -> tuple[Verdict, float, float]
     return verdict, run.cpu, run.megabytes
 
 
-def _witnessed(description: Description, folder: Path, verdict: Verdict) -> tuple[Verdict, str]:
+def _witnessed(description: Description, folder: Path, verdict: DrawVerdict) -> tuple[DrawVerdict, str]:
     """What the numbers make of a verdict, and what there is to say about it."""
     made = folder / str(description.blocks["model"])
     if not (made / "derivation.json").exists():
-        return Verdict(FAILED, "nothing written"), ""
+        return DrawVerdict(FAILED, "nothing written"), ""
     try:
         checked = check(description, made)
     except Exception as fault:  # a draw on which the witness itself breaks must not end a campaign of a thousand
-        return Verdict(FAILED, "fault of the zoo", without_numbers(f"{type(fault).__name__}: {fault}")), f"{fault!r}\n"
+        signature = without_numbers(f"{type(fault).__name__}: {fault}")
+        return DrawVerdict(FAILED, "fault of the zoo", signature), f"{fault!r}\n"
     if checked.findings:
         first = checked.findings[0]
         told = "".join(f"{finding.text}\n" for finding in checked.findings)
-        return Verdict(FAILED, first.kind, without_numbers(first.text)), told
+        return DrawVerdict(FAILED, first.kind, without_numbers(first.text)), told
     return (verdict, "") if checked.states else (replace(verdict, signature="no state to compare"), "")
 
 
-def one_draw(campaign: Campaign, index: int) -> tuple[Record, str]:
+def one_draw(campaign: Campaign, index: int) -> tuple[DrawRecord, str]:
     """A draw from its number to its record, and a line about it."""
     description = draw(campaign.seed, index, campaign.family)
     model = campaign.folder / f"{campaign.seed}_{index}" / "zoo.yaml"
     verdict, cpu, megabytes = judge(description, model)
-    record = Record(
+    record = DrawRecord(
         campaign.seed, index, description.family, verdict.ending, verdict.kind, verdict.signature, round(cpu, 1),
         round(megabytes), str(model) if verdict.failed else "",
     )  # fmt: skip
@@ -102,13 +103,13 @@ def one_draw(campaign: Campaign, index: int) -> tuple[Record, str]:
 
 
 def run_campaign(
-    one: Callable[[Campaign, int], tuple[Told, str]],
+    one: Callable[[Campaign, int], tuple[Recorded, str]],
     campaign: Campaign,
     indices: Iterable[int],
     seconds: float,
     jobs: int,
-    tell: Tell,
-) -> Iterator[Told]:
+    show: Show,
+) -> Iterator[Recorded]:
     """Draws until they or the seconds (0: no limit) are used up, `jobs` at a time, in the order in which they end.
 
     `one` makes a record and a line of one of them.
@@ -116,7 +117,7 @@ def run_campaign(
     began = time.monotonic()
     waiting = iter(indices)
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-        running: set[Future[tuple[Told, str]]] = set()
+        running: set[Future[tuple[Recorded, str]]] = set()
         while True:
             late = bool(seconds) and time.monotonic() - began > seconds
             for index in islice(waiting, 0 if late else jobs - len(running)):
@@ -126,7 +127,7 @@ def run_campaign(
             done, running = wait(running, return_when=FIRST_COMPLETED)
             for future in done:
                 record, line = future.result()
-                tell(line)
+                show(line)
                 yield record
 
 
@@ -135,7 +136,7 @@ def usual_jobs() -> int:
     return os.cpu_count() or 1
 
 
-def shrunk(description: Description, verdict: Verdict, model: Path, most: int) -> Description:
+def shrunk(description: Description, verdict: DrawVerdict, model: Path, most: int) -> Description:
     """The draw made small, still with the same ending; a mistake that was not told stays as it is, lest it be lost."""
     spent = 0.0
     if verdict.kind == NOT_TOLD:

@@ -9,16 +9,16 @@ from pathlib import Path
 from symgen.laboratory.zoo.describe import Description
 from symgen.laboratory.zoo.dice import exact
 from symgen.laboratory.zoo.refusals import NOT_TOLD
-from symgen.laboratory.zoo.verdict import REFUSED, VERIFIED, Verdict
+from symgen.laboratory.zoo.verdict import REFUSED, VERIFIED, DrawVerdict
 
-FOUND, EXPECTED, START = "# found by the zoo: ", "# expected: ", "# start: "
+FAILURE, EXPECTED, START = "# found by the zoo: ", "# expected: ", "# start: "
 
 
 @dataclass(frozen=True)
-class Case:
+class StoredCase:
     """A model file, how it failed once, what it must end as, and a configuration on the branch that is meant."""
 
-    found: str
+    failure: str
     expected: str
     start: dict[str, float]
     model: str
@@ -26,23 +26,23 @@ class Case:
     @property
     def text(self) -> str:
         """The file as it is stored: the model behind three lines of comment."""
-        told = ", ".join(f"{name} = {exact(value)}" for name, value in self.start.items())
-        return f"{FOUND}{self.found}\n{EXPECTED}{self.expected}\n{START}{told}\n{self.model}"
+        start = ", ".join(f"{name} = {exact(value)}" for name, value in self.start.items())
+        return f"{FAILURE}{self.failure}\n{EXPECTED}{self.expected}\n{START}{start}\n{self.model}"
 
 
-def case_of(description: Description, verdict: Verdict) -> Case:
+def case_of(description: Description, verdict: DrawVerdict) -> StoredCase:
     """The case of a failure: a mistake that was not told must be refused, all else verified."""
     expected = REFUSED if verdict.kind == NOT_TOLD else VERIFIED
-    return Case(f"{verdict.kind}: {verdict.signature}", expected, dict(description.start), description.text)
+    return StoredCase(f"{verdict.kind}: {verdict.signature}", expected, dict(description.start), description.text)
 
 
-def read_case(path: Path) -> Case:
+def read_case(path: Path) -> StoredCase:
     """A stored case."""
     text = path.read_text(encoding="utf-8")
     values = re.findall(r"(\w+) = ([^,\n]+)", _line(text, START))
     start = {name: float(value) for name, value in values}
-    model = "\n".join(line for line in text.splitlines() if not line.startswith((FOUND, EXPECTED, START)))
-    return Case(_line(text, FOUND), _line(text, EXPECTED), start, model + "\n")
+    model = "\n".join(line for line in text.splitlines() if not line.startswith((FAILURE, EXPECTED, START)))
+    return StoredCase(_line(text, FAILURE), _line(text, EXPECTED), start, model + "\n")
 
 
 def _line(text: str, begin: str) -> str:

@@ -66,14 +66,14 @@ def main() -> int:
     path = given.out / f"{given.seed}_{given.first}.jsonl"
     path.unlink(missing_ok=True)
     if find_spec("pinocchio") is None:
-        _tell("Pinocchio is not installed (`make robots`): trees are compared with the zoo's own witness alone")
+        _show("Pinocchio is not installed (`make robots`): trees are compared with the zoo's own witness alone")
     campaign = Campaign(given.seed, given.out, given.family, given.shrink, given.cases)
     indices = range(given.first, given.first + given.draws)
     if given.sweeps:
         return _sweep(campaign, indices, path, given)
     began = time.monotonic()
     records = []
-    for record in run_campaign(one_draw, campaign, indices, given.seconds, given.jobs, _tell):
+    for record in run_campaign(one_draw, campaign, indices, given.seconds, given.jobs, _show):
         write_record(path, record)
         records.append(record)
     print(summary(records))
@@ -84,7 +84,7 @@ def main() -> int:
 def _sweep(campaign: Campaign, indices: range, path: Path, given: argparse.Namespace) -> int:
     """Sweeps the draws and prints the totals; 1 where one of them violates the rule of statuses."""
     records = []
-    for record in run_campaign(one_sweep, campaign, indices, given.seconds, given.jobs, _tell):
+    for record in run_campaign(one_sweep, campaign, indices, given.seconds, given.jobs, _show):
         write_record(path, record)
         records.append(record)
     print(table(records))
@@ -95,7 +95,7 @@ def _one(description: Description, name: str, given: argparse.Namespace) -> int:
     """Judges one system; where it fails it is made small, and stored or printed as a case."""
     model = given.out / name / f"{name}.yaml"
     verdict = judge(description, model)[0]
-    _tell(f"{name}: {verdict.ending} {verdict.kind} {verdict.signature}")
+    _show(f"{name}: {verdict.ending} {verdict.kind} {verdict.signature}")
     if verdict.failed and given.shrink:
         case = case_of(shrunk(description, verdict, model.with_name("small.yaml"), given.shrink), verdict)
         if given.store:
@@ -113,5 +113,5 @@ def _count(seed: int, indices: range, family: str) -> int:
     return int(any(not count[feature] for feature in ALL))
 
 
-def _tell(line: str) -> None:
+def _show(line: str) -> None:
     print(line, file=sys.stderr, flush=True)

@@ -6,13 +6,13 @@ import math
 from typing import Any
 
 from symgen.laboratory.zoo.dice import exact
-from symgen.laboratory.zoo.draw_parts import MAIN_AXES, Numbers, Part, chain_of, depth
+from symgen.laboratory.zoo.draw_parts import MAIN_AXES, DrawnPart, Numbers, chain_of, depth
 from symgen.laboratory.zoo.sketch import Sketch
 
 ROWS = {"distance": 1, "point": 3, "spherical": 3, "planar": 3, "cylindrical": 4, "revolute": 5, "prismatic": 5}
 
 
-def closed_at(sketch: Sketch, parts: list[Part]) -> set[int]:
+def closed_at(sketch: Sketch, parts: list[DrawnPart]) -> set[int]:
     """The parts of which a loop holds a point or a direction."""
     ends = {end for loop in sketch.block("loops").values() for end in loop["between"]}
     frames = {sketch.block("points").get(end, {}).get("frame", end) for end in ends}
@@ -51,7 +51,7 @@ def carried(sketch: Sketch, place: Numbers, frame: str) -> list[str]:
     return [exact(0.0 if abs(part) < 1e-15 else part) for part in parts]
 
 
-def planar_loop(sketch: Sketch, parts: list[Part], index: int, room: int) -> int:
+def planar_loop(sketch: Sketch, parts: list[DrawnPart], index: int, room: int) -> int:
     """The tip of a chain held by a rod (1 row) or, where `room` for 2 rows is left, mostly in a point; the rows."""
     dice = sketch.dice
     deep = [k for k in range(len(parts)) if depth(parts, k) >= 3] or [len(parts) - 1]
@@ -81,7 +81,7 @@ def flat(sketch: Sketch, axis: str) -> bool:
     return any(entry.get("axis") == axis and entry["type"] == "revolute" for entry in sketch.block("joints").values())
 
 
-def spatial_loop(sketch: Sketch, parts: list[Part], index: int, free: int) -> int:
+def spatial_loop(sketch: Sketch, parts: list[DrawnPart], index: int, free: int) -> int:
     """A loop of any kind that leaves at least one of `free` degrees of freedom; how many rows it has."""
     dice = sketch.dice
     fitting = [kind for kind, rows in ROWS.items() if rows < free]

@@ -7,12 +7,12 @@ from typing import Any
 from symgen.laboratory.zoo.describe import Terms
 from symgen.laboratory.zoo.dice import decimal
 from symgen.laboratory.zoo.draw_closures import add_point
-from symgen.laboratory.zoo.draw_parts import MAIN_AXES, Part
+from symgen.laboratory.zoo.draw_parts import MAIN_AXES, DrawnPart
 from symgen.laboratory.zoo.draw_potentials import potentials
 from symgen.laboratory.zoo.sketch import Sketch
 
 
-def elements(sketch: Sketch, parts: list[Part], plane: str) -> None:
+def elements(sketch: Sketch, parts: list[DrawnPart], plane: str) -> None:
     """Springs, friction, forces, rotors."""
     dice = sketch.dice
     single = [part.coordinates[0] for part in parts if part.kind in ("revolute", "prismatic")]
@@ -47,7 +47,7 @@ def elements(sketch: Sketch, parts: list[Part], plane: str) -> None:
         _energies(sketch, parts, plane)
 
 
-def _energies(sketch: Sketch, parts: list[Part], plane: str) -> None:
+def _energies(sketch: Sketch, parts: list[DrawnPart], plane: str) -> None:
     """Energies that are written out, added to those of the bodies."""
     dice = sketch.dice
     angles = [part.coordinates[0] for part in parts if part.kind == "revolute"]
@@ -65,7 +65,7 @@ def _energies(sketch: Sketch, parts: list[Part], plane: str) -> None:
         sketch.blocks["kinetic_energy"] = Terms((f"{dice.number(0.01, 0.5, 2)}/2*{rate}**2",))
 
 
-def inputs(sketch: Sketch, parts: list[Part], freedom: int) -> None:
+def inputs(sketch: Sketch, parts: list[DrawnPart], freedom: int) -> None:
     """Too few, enough or too many, of every kind."""
     dice = sketch.dice
     count = max(0, freedom + dice.weighted({-2: 1, -1: 2, 0: 6, 1: 2, 2: 1}))
@@ -78,7 +78,7 @@ def inputs(sketch: Sketch, parts: list[Part], freedom: int) -> None:
         sketch.block("inputs")[sketch.name(f"u_{k}")] = entry
 
 
-def _force(sketch: Sketch, parts: list[Part], k: int) -> dict[str, Any]:
+def _force(sketch: Sketch, parts: list[DrawnPart], k: int) -> dict[str, Any]:
     dice = sketch.dice
     part = dice.choice(parts)
     direction = ["0", "0", "0"]

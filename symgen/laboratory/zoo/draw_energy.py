@@ -13,7 +13,7 @@ from symgen.laboratory.zoo.sketch import Sketch
 
 
 @dataclass(frozen=True)
-class Link:
+class DrawnLink:
     """A link that was drawn: its coordinate, angle and places as texts."""
 
     coordinate: str
@@ -44,7 +44,7 @@ def planar_energies(dice: Dice) -> Description:
     return finish(sketch)
 
 
-def _tree(sketch: Sketch, count: int) -> list[Link]:
+def _tree(sketch: Sketch, count: int) -> list[DrawnLink]:
     dice = sketch.dice
     absolute = dice.chance(0.5)
     if count > 2:
@@ -53,7 +53,7 @@ def _tree(sketch: Sketch, count: int) -> list[Link]:
     shared = sketch.parameter("l", dice.length()) if equal else ""
     massless = dice.chance(0.12)
     gravity = sketch.parameter("g", "9.81") if dice.chance(0.8) else "0"
-    links: list[Link] = []
+    links: list[DrawnLink] = []
     kinetic: list[str] = []
     potential: list[str] = []
     for k in range(1, count + 1):
@@ -85,7 +85,7 @@ def _tree(sketch: Sketch, count: int) -> list[Link]:
             sketch.definition(f"{axis}_{k}", joined([*([place] if place != "0" else []), f"{length}*{wave}({angle})"]))
             for axis, place, wave in zip("xy", base, ("cos", "sin"), strict=True)
         )
-        links.append(Link(coordinate, parent, slides, angle, turning, base, (tip[0], tip[1]), length))
+        links.append(DrawnLink(coordinate, parent, slides, angle, turning, base, (tip[0], tip[1]), length))
         weightless = massless and k < count and dice.chance(0.4)
         if weightless:
             continue
@@ -103,7 +103,7 @@ def _tree(sketch: Sketch, count: int) -> list[Link]:
     return links
 
 
-def _velocity(sketch: Sketch, links: list[Link], index: int, share: str) -> tuple[str, str]:
+def _velocity(sketch: Sketch, links: list[DrawnLink], index: int, share: str) -> tuple[str, str]:
     """The velocity of the point at a share of a link, summed along its chain."""
     parts: tuple[list[str], list[str]] = [], []
     current, factor = index, "" if share == "1" else f"{share}*"
@@ -130,7 +130,7 @@ def joined(terms: list[str]) -> str:
     return text
 
 
-def _loop(sketch: Sketch, links: list[Link], index: int) -> int:
+def _loop(sketch: Sketch, links: list[DrawnLink], index: int) -> int:
     """One loop more: a tip at the ground, on a line, on another tip, or at the end of a rod; how many rows it has."""
     dice = sketch.dice
     # a chain that is long enough to move when it is closed, and now and then any
@@ -171,12 +171,12 @@ def _loop(sketch: Sketch, links: list[Link], index: int) -> int:
     return 2 if kind in ("ground", "meet") else 1
 
 
-def _depth(links: list[Link], index: int) -> int:
+def _depth(links: list[DrawnLink], index: int) -> int:
     """How many links lead from the ground to a tip."""
     return 0 if index < 0 else 1 + _depth(links, links[index].parent)
 
 
-def _potentials(sketch: Sketch, links: list[Link]) -> None:
+def _potentials(sketch: Sketch, links: list[DrawnLink]) -> None:
     """Springs and stranger potentials."""
     dice = sketch.dice
     link = dice.choice(links)
@@ -209,7 +209,7 @@ def _surplus(sketch: Sketch) -> None:
     rows[sketch.name("again")] = text
 
 
-def _inputs(sketch: Sketch, links: list[Link]) -> None:
+def _inputs(sketch: Sketch, links: list[DrawnLink]) -> None:
     """Too few, enough or too many inputs."""
     dice = sketch.dice
     rows = len((sketch.blocks.get("constraints") or {}).get("geometric") or {})
@@ -224,7 +224,7 @@ def _inputs(sketch: Sketch, links: list[Link]) -> None:
         sketch.block("inputs")[sketch.name(f"u_{k}")] = {"acts_on": column}
 
 
-def _column(sketch: Sketch, links: list[Link]) -> dict[str, str]:
+def _column(sketch: Sketch, links: list[DrawnLink]) -> dict[str, str]:
     dice = sketch.dice
     index = dice.whole(0, len(links) - 1)
     link = links[index]
@@ -253,5 +253,5 @@ def _column(sketch: Sketch, links: list[Link]) -> dict[str, str]:
     return column
 
 
-def _carries(links: list[Link], index: int) -> bool:
+def _carries(links: list[DrawnLink], index: int) -> bool:
     return any(link.parent == index and links[index].coordinate in link.turning for link in links)

@@ -14,7 +14,7 @@ Numbers = list[float]
 
 
 @dataclass(frozen=True)
-class Part:
+class DrawnPart:
     """A moving frame: its joint's type and coordinates, its parent and where its tip is on it."""
 
     frame: str
@@ -36,12 +36,12 @@ class Style:
     sparse: bool = False
 
 
-def norms(parts: list[Part]) -> int:
+def norms(parts: list[DrawnPart]) -> int:
     """How many rows hold quaternions."""
     return sum(part.kind in ("spherical", "floating") for part in parts)
 
 
-def grown(sketch: Sketch, style: Style, coordinates: int, first: str) -> list[Part]:
+def grown(sketch: Sketch, style: Style, coordinates: int, first: str) -> list[DrawnPart]:
     """Joints and bodies until there are so many coordinates."""
     dice = sketch.dice
     sketch.name.take(("world",))
@@ -51,7 +51,7 @@ def grown(sketch: Sketch, style: Style, coordinates: int, first: str) -> list[Pa
     down = f"{sign}{sketch.parameter('g', '9.81')}"
     if not dice.chance(0.1):
         sketch.blocks["gravity"] = [down if axis == direction else "0" for axis in MAIN_AXES]
-    parts: list[Part] = []
+    parts: list[DrawnPart] = []
     while (have := sum(len(part.coordinates) for part in parts)) < coordinates:
         fitting = [kind for kind in style.kinds if have + DIMENSIONS[kind] <= max(coordinates, DIMENSIONS[kind])]
         kind = first if first and not parts else dice.choice(fitting)
@@ -64,7 +64,7 @@ def grown(sketch: Sketch, style: Style, coordinates: int, first: str) -> list[Pa
     return parts
 
 
-def weighted(sketch: Sketch, style: Style, parts: list[Part], held: set[int]) -> None:
+def weighted(sketch: Sketch, style: Style, parts: list[DrawnPart], held: set[int]) -> None:
     """Bodies for most ends that have none; `held` are parts of which a loop holds a point.
 
     A free end without mass moves without effort, which is refused, and rightly; rods without mass close loops often.
@@ -77,7 +77,7 @@ def weighted(sketch: Sketch, style: Style, parts: list[Part], held: set[int]) ->
             sketch.block("bodies")[part.frame] = _body(sketch, style, k + 1, part.tip)
 
 
-def carried_along(sketch: Sketch) -> Part | None:
+def carried_along(sketch: Sketch) -> DrawnPart | None:
     """Now and then, all that is drawn stands on a frame that moves itself, as the arm of an excavator does.
 
     The other draws stay what they were: what this needs is thrown with dice of its own.
@@ -95,10 +95,10 @@ def carried_along(sketch: Sketch) -> Part | None:
     sketch.start[coordinate] = round(dice.uniform(0.2, 0.8), 2)
     sketch.block("bodies")[joint] = {"mass": "12", "inertia": dict.fromkeys(("xx", "yy", "zz"), "0.8")}
     sketch.mark("loop on a frame that moves")
-    return Part(joint, kind, (coordinate,), -1, ("0", "0", "0"))
+    return DrawnPart(joint, kind, (coordinate,), -1, ("0", "0", "0"))
 
 
-def _part(sketch: Sketch, style: Style, parts: list[Part], parent: int, kind: str) -> Part:
+def _part(sketch: Sketch, style: Style, parts: list[DrawnPart], parent: int, kind: str) -> DrawnPart:
     dice = sketch.dice
     k = len(parts) + 1
     entry: dict[str, Any] = {"type": kind}
@@ -130,7 +130,7 @@ def _part(sketch: Sketch, style: Style, parts: list[Part], parent: int, kind: st
     tip = _tip(sketch, style, k)
     if not dice.chance(style.massless) or not parts:
         sketch.block("bodies")[frame] = _body(sketch, style, k, tip)
-    return Part(frame, kind, names, parent, tip)
+    return DrawnPart(frame, kind, names, parent, tip)
 
 
 def _axis(dice: Dice, style: Style, kind: str) -> Any:
@@ -196,12 +196,12 @@ def _body(sketch: Sketch, style: Style, k: int, tip: tuple[str, str, str]) -> di
     return body
 
 
-def depth(parts: list[Part], index: int) -> int:
+def depth(parts: list[DrawnPart], index: int) -> int:
     """How many coordinates move a part: its own and those of the parts that carry it."""
     return 0 if index < 0 else len(parts[index].coordinates) + depth(parts, parts[index].parent)
 
 
-def chain_of(parts: list[Part], index: int) -> set[int]:
+def chain_of(parts: list[DrawnPart], index: int) -> set[int]:
     """A part and all that carry it, by their indices."""
     found = set()
     while index >= 0:

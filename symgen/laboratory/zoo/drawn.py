@@ -10,11 +10,11 @@ import numpy as np
 
 from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.fields import Floats
-from symgen.laboratory.zoo.kkt import Evaluator, Numbers
+from symgen.laboratory.zoo.kkt import EquationEvaluator, EquationValues
 from symgen.laboratory.zoo.mechanics import equations
-from symgen.laboratory.zoo.reader import System
+from symgen.laboratory.zoo.reader import SystemReader
 from symgen.laboratory.zoo.states import Walker, normalized, null_space, rank_of
-from symgen.laboratory.zoo.tape import Program
+from symgen.laboratory.zoo.tape import NodeProgram
 
 # what rounding leaves at a start that was measured in floats
 ROUNDING = 1e-9
@@ -25,9 +25,9 @@ class Drawn:
     """A model's equations at the configuration that was drawn, and at others that satisfy the constraints."""
 
     def __init__(self, blocks: Mapping[str, Any], start: Mapping[str, float]) -> None:
-        self.system = System(blocks)
+        self.system = SystemReader(blocks)
         found = equations(self.system)
-        self._evaluate = Evaluator(Program(self.system.tape, found.flat), found)
+        self._evaluate = EquationEvaluator(NodeProgram(self.system.tape, found.flat), found)
         self.start = {name: start.get(name, 0.0) for name in self.system.coordinates}
 
     @cached_property
@@ -39,17 +39,17 @@ class Drawn:
         return values
 
     @cached_property
-    def places(self) -> list[Numbers]:
+    def places(self) -> list[EquationValues]:
         """The equations at the start and at configurations that a walk along the constraints reaches."""
         walker = Walker(self.system, self._evaluate, self.start, Dice("places"))
         return [self.at_start, *(self.at(q) for q in walker.points(self.parameters, PLACES))]
 
     @cached_property
-    def at_start(self) -> Numbers:
+    def at_start(self) -> EquationValues:
         """The equations at the start, at rest."""
         return self.at(list(self.start.values()))
 
-    def at(self, q: Any) -> Numbers:
+    def at(self, q: Any) -> EquationValues:
         """The equations at a configuration, at rest."""
         values = {**self.parameters, **dict(zip(self.system.coordinates, map(float, q), strict=True))}
         values |= dict.fromkeys(self.system.rate_names, 0.0)
@@ -91,7 +91,7 @@ class Drawn:
         return all(_massless_motion(at) for at in self.places)
 
 
-def reached(at: Numbers) -> Any:
+def reached(at: EquationValues) -> Any:
     """What each input does along the constraints, in columns of length 1 at most."""
     control = np.array(at.control, dtype=float).reshape(at.n, -1)
     if not control.size:
@@ -100,17 +100,17 @@ def reached(at: Numbers) -> Any:
     return null_space(at).T @ (control / np.where(lengths > 0, lengths, 1))
 
 
-def rank_at(at: Numbers) -> int:
+def rank_at(at: EquationValues) -> int:
     """The rank of the constraints at one configuration."""
     return rank_of(normalized(np.array(at.rows, dtype=float).reshape(-1, at.n)), ROUNDING)
 
 
-def _reach(at: Numbers) -> int:
+def _reach(at: EquationValues) -> int:
     moved = reached(at)
     return rank_of(moved, ROUNDING, absolute=True) if moved.size else 0
 
 
-def _massless_motion(at: Numbers) -> bool:
+def _massless_motion(at: EquationValues) -> bool:
     free = null_space(at)
     mass = np.array(at.mass, dtype=float)
     along = free.T @ mass @ free

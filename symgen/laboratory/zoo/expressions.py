@@ -6,7 +6,7 @@ import ast
 from collections.abc import Callable
 from fractions import Fraction
 
-from symgen.laboratory.zoo.tape import Node, Tape
+from symgen.laboratory.zoo.tape import Node, NodeTape
 
 FUNCTIONS = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sqrt", "exp", "log", "sinh", "cosh", "tanh")
 Lookup = Callable[[str], Node]
@@ -16,7 +16,7 @@ class NotReadError(ValueError):
     """The witness does not know this part of the language."""
 
 
-def read_expression(tape: Tape, text: str, lookup: Lookup) -> Node:
+def read_expression(tape: NodeTape, text: str, lookup: Lookup) -> Node:
     """The expression as a node; `lookup` gives the node of a name such as `l` or `tip.vx`."""
     source = " ".join(text.split())
     try:
@@ -27,7 +27,7 @@ def read_expression(tape: Tape, text: str, lookup: Lookup) -> Node:
 
 
 class _Reader:
-    def __init__(self, tape: Tape, source: str, lookup: Lookup) -> None:
+    def __init__(self, tape: NodeTape, source: str, lookup: Lookup) -> None:
         self._tape, self._source, self._lookup = tape, source, lookup
 
     def node(self, tree: ast.expr) -> Node:

@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 from symgen.laboratory.zoo.expressions import NotReadError
-from symgen.laboratory.zoo.tape import Node, Tape
+from symgen.laboratory.zoo.tape import Node, NodeTape
 
 Vector = tuple[Node, Node, Node]
 Matrix = tuple[Vector, Vector, Vector]
@@ -78,10 +78,10 @@ def product(a: Matrix, b: Matrix) -> Matrix:
     return tuple((dot(row, columns[0]), dot(row, columns[1]), dot(row, columns[2])) for row in a)  # type: ignore[return-value]
 
 
-class Frames:
+class FramePoses:
     """Poses of the frames of a file, worked out as they are asked for; `rate` differentiates along the motion."""
 
-    def __init__(self, tape: Tape, relative: Mapping[str, Relative], rate: Callable[[Node], Node]) -> None:
+    def __init__(self, tape: NodeTape, relative: Mapping[str, Relative], rate: Callable[[Node], Node]) -> None:
         self._tape, self._relative, self._rate = tape, relative, rate
         zero, one = tape.zero, tape.one
         self.still: Vector = (zero, zero, zero)
@@ -180,7 +180,7 @@ class Frames:
         )
 
 
-def read_frames(tape: Tape, blocks: Mapping[str, Any], read: Read) -> dict[str, Relative]:
+def read_frames(tape: NodeTape, blocks: Mapping[str, Any], read: Read) -> dict[str, Relative]:
     """The frames of the blocks `frames` and `joints`."""
     found: dict[str, Relative] = {}
     for name, entry in (blocks.get("frames") or {}).items():
@@ -207,7 +207,7 @@ def joint_coordinates(entry: Mapping[str, Any]) -> list[str]:
     return [entry["coordinate"]] if "coordinate" in entry else list(entry.get("coordinates", ()))
 
 
-def _joint(tape: Tape, entry: Mapping[str, Any], read: Read) -> tuple[Relative, Relative]:
+def _joint(tape: NodeTape, entry: Mapping[str, Any], read: Read) -> tuple[Relative, Relative]:
     """The frame that the fixed turns of a joint lead to, and what moves on it."""
     kind = entry["type"]
     at = read_vector(tape, entry.get("at"), read)
@@ -231,7 +231,7 @@ def _joint(tape: Tape, entry: Mapping[str, Any], read: Read) -> tuple[Relative, 
     raise NotReadError(f"a joint of type {kind}")
 
 
-def read_vector(tape: Tape, given: Sequence[str] | None, read: Read) -> Vector:
+def read_vector(tape: NodeTape, given: Sequence[str] | None, read: Read) -> Vector:
     """Three expressions; zero where there are none."""
     if given is None:
         return tape.zero, tape.zero, tape.zero
@@ -239,7 +239,7 @@ def read_vector(tape: Tape, given: Sequence[str] | None, read: Read) -> Vector:
     return x, y, z
 
 
-def unit_axis(tape: Tape, given: Any, read: Read) -> Vector:
+def unit_axis(tape: NodeTape, given: Any, read: Read) -> Vector:
     """x, y, z or three expressions, with length 1."""
     zero, one = tape.zero, tape.one
     if isinstance(given, str):

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from symgen.laboratory.zoo.states import State
+from symgen.laboratory.zoo.states import FloatState
 
 ARGUMENTS = {
     "inverse_dynamics": ("q", "qd", "qdd"),
@@ -43,7 +43,7 @@ class Target:
     scalar: str
     quantities: tuple[str, ...]
     parameters: tuple[str, ...]
-    call: Callable[[str, State, int], Answer]
+    call: Callable[[str, FloatState, int], Answer]
 
 
 def targets(folder: Path, model: str) -> list[Target]:
@@ -57,7 +57,7 @@ def targets(folder: Path, model: str) -> list[Target]:
     return found
 
 
-def _given(quantity: str, state: State) -> list[tuple[float, ...]]:
+def _given(quantity: str, state: FloatState) -> list[tuple[float, ...]]:
     """The arguments of a kernel; a model without inputs has none."""
     values = [getattr(state, name) for name in ARGUMENTS[quantity]]
     return [value for value in values if value is not state.u or value]
@@ -72,7 +72,7 @@ def _python(path: Path) -> Target:
     spec.loader.exec_module(module)
     names = tuple(getattr(module.Parameters, "__dataclass_fields__", {}))
 
-    def call(quantity: str, state: State, _count: int) -> Answer:
+    def call(quantity: str, state: FloatState, _count: int) -> Answer:
         values = dict(zip(names, state.parameters, strict=True))
         try:
             result = getattr(module, quantity)(*_given(quantity, state), p=module.Parameters(**values))
@@ -98,7 +98,7 @@ def _c(folder: Path, model: str, scalar: str, suffix: str) -> Target:
     def array(values: Sequence[float]) -> Any:
         return (number * max(1, len(values)))(*values)
 
-    def call(quantity: str, state: State, count: int) -> Answer:
+    def call(quantity: str, state: FloatState, count: int) -> Answer:
         function = getattr(loaded, f"{model}_{quantity}{suffix}")
         function.restype = ctypes.c_int
         out = array([0.0] * count)

@@ -24,11 +24,11 @@ from symgen.laboratory.zoo.linear import (
     transposed,
 )
 from symgen.laboratory.zoo.mechanics import Equations
-from symgen.laboratory.zoo.tape import Program, Written
+from symgen.laboratory.zoo.tape import FileNumber, NodeProgram
 
 
 @dataclass(frozen=True)
-class Ranks:
+class GenericRanks:
     """Generic ranks: of the constraints, and of the inputs on what they leave free."""
 
     constraints: int
@@ -36,7 +36,7 @@ class Ranks:
 
 
 @dataclass(frozen=True)
-class Numbers:
+class EquationValues:
     """The equations of motion at a state."""
 
     mass: Matrix
@@ -52,17 +52,17 @@ class Numbers:
         return len(self.mass)
 
 
-class Evaluator:
+class EquationEvaluator:
     """Numbers of a model's equations at any state."""
 
-    def __init__(self, program: Program, equations: Equations) -> None:
+    def __init__(self, program: NodeProgram, equations: Equations) -> None:
         self.program = program
         self._n, self._r = len(equations.mass), len(equations.rows)
         self._m = len(equations.control[0]) if equations.control else 0
 
     def __call__(
-        self, values: Mapping[str, Any], field: Any, literals: Mapping[Written, Any] | None = None
-    ) -> Numbers:
+        self, values: Mapping[str, Any], field: Any, literals: Mapping[FileNumber, Any] | None = None
+    ) -> EquationValues:
         """At these values of coordinates, rates and parameters."""
         n, r, m = self._n, self._r, self._m
         flat = iter(self.program.run(values, field, literals))
@@ -70,7 +70,7 @@ class Evaluator:
         def matrix(rows: int, columns: int) -> Matrix:
             return [[next(flat) for _ in range(columns)] for _ in range(rows)]
 
-        return Numbers(matrix(n, n), matrix(r, n), matrix(n, m), matrix(1, n)[0], matrix(1, r)[0], list(flat))
+        return EquationValues(matrix(n, n), matrix(r, n), matrix(n, m), matrix(1, n)[0], matrix(1, r)[0], list(flat))
 
 
 def onto_rows(rows: Matrix, residual: Vector, rank: int) -> Vector:
@@ -84,7 +84,7 @@ def onto_rows(rows: Matrix, residual: Vector, rank: int) -> Vector:
 
 
 @dataclass(frozen=True)
-class Split:
+class DirectionSplit:
     """The directions that the rows hold and those that they leave free; `pivots` tell how far the rows are apart."""
 
     held: Matrix
@@ -92,19 +92,19 @@ class Split:
     pivots: list[float]
 
 
-def split(at: Numbers, rank: int, one: Any) -> Split:
+def split(at: EquationValues, rank: int, one: Any) -> DirectionSplit:
     """Of the constraints at a state."""
     held, pivots = basis(at.rows, rank)
-    return Split(held, complement(held, at.n, one), pivots)
+    return DirectionSplit(held, complement(held, at.n, one), pivots)
 
 
-def _along(at: Numbers, parts: Split) -> tuple[Matrix, list[float]]:
+def _along(at: EquationValues, parts: DirectionSplit) -> tuple[Matrix, list[float]]:
     """The inputs along the free directions, and their lengths in all: less is left of them where they lose rank."""
     columns = transposed(at.control, len(at.control[0]))
     return [times(columns, direction) for direction in parts.free], [size(column) for column in columns]
 
 
-def distances(at: Numbers, ranks: Ranks, one: Any) -> dict[str, float]:
+def distances(at: EquationValues, ranks: GenericRanks, one: Any) -> dict[str, float]:
     """What tells how far rows, inputs and masses are from a drop of rank, 0 to 1, of those that there are."""
     parts = split(at, ranks.constraints, one)
     found = {"rows": _smallest(parts.pivots, ranks.constraints)} if ranks.constraints else {}
@@ -122,8 +122,8 @@ def _smallest(pivots: Sequence[float], rank: int) -> float:
 
 
 def inverse_dynamics(
-    at: Numbers,
-    parts: Split,
+    at: EquationValues,
+    parts: DirectionSplit,
     accelerations: Vector,
     rank: int,
     weights: Sequence[Any] | None = None,
@@ -146,7 +146,7 @@ def inverse_dynamics(
     return u, pivots
 
 
-def internal_force(at: Numbers, weights: Sequence[Any]) -> Vector:
+def internal_force(at: EquationValues, weights: Sequence[Any]) -> Vector:
     """The direction in which inputs move nothing, with z^T W z = 1; for one input more than degrees of freedom."""
     m = len(weights)
     columns = [*transposed(at.control, m), *at.rows]
@@ -158,7 +158,7 @@ def internal_force(at: Numbers, weights: Sequence[Any]) -> Vector:
     return [minor / length for minor in minors]
 
 
-def motion(at: Numbers, parts: Split, u: Vector) -> tuple[Vector, Vector, list[float]]:
+def motion(at: EquationValues, parts: DirectionSplit, u: Vector) -> tuple[Vector, Vector, list[float]]:
     """Accelerations, multipliers, and what tells how well the masses determine them."""
     push = [f - b for f, b in zip(times(at.control, u) if u else [0] * at.n, at.bias, strict=True)]
     along = [[inner(row, direction) for direction in parts.held] for row in at.rows]
@@ -181,7 +181,7 @@ def motion(at: Numbers, parts: Split, u: Vector) -> tuple[Vector, Vector, list[f
     return accelerations, multipliers, pivots
 
 
-def _inside(at: Numbers, parts: Split) -> Matrix:
+def _inside(at: EquationValues, parts: DirectionSplit) -> Matrix:
     """The masses along the free directions."""
     moved = [times(at.mass, direction) for direction in parts.free]
     return [[inner(x, direction) for direction in parts.free] for x in moved]

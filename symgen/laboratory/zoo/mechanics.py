@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from symgen.laboratory.zoo.frames import Vector, cross, dot, transposed, turned
-from symgen.laboratory.zoo.reader import System
+from symgen.laboratory.zoo.reader import SystemReader
 from symgen.laboratory.zoo.tape import Node
 
 
@@ -32,7 +32,7 @@ class Equations:
         )
 
 
-def equations(system: System) -> Equations:
+def equations(system: SystemReader) -> Equations:
     """Lagrange's equations for energies that are written out, Newton's and Euler's, projected, for bodies."""
     tape, names, rates = system.tape, system.coordinates, system.rate_names
     n = len(names)
@@ -73,13 +73,13 @@ def equations(system: System) -> Equations:
     )
 
 
-def constraint_jacobian(system: System) -> tuple[tuple[Node, ...], ...]:
+def constraint_jacobian(system: SystemReader) -> tuple[tuple[Node, ...], ...]:
     """The rows of the constraints, alone."""
     tape, names, rates = system.tape, system.coordinates, system.rate_names
     return tuple(tuple(tape.gradient(row.value, names if row.geometric else rates)) for row in system.rows)
 
 
-def _partial(system: System, vector: Vector, rate: str) -> Vector:
+def _partial(system: SystemReader, vector: Vector, rate: str) -> Vector:
     """The derivative of a velocity with respect to one rate."""
     tape = system.tape
     x, y, z = (tape.derivative(part, {rate: tape.one}, f"by {rate}") for part in vector)

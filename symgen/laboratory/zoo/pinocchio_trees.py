@@ -18,7 +18,7 @@ from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.fields import Floats
 from symgen.laboratory.zoo.frames import joint_coordinates, read_vector, unit_axis
 from symgen.laboratory.zoo.mechanics import equations
-from symgen.laboratory.zoo.reader import System
+from symgen.laboratory.zoo.reader import SystemReader
 from symgen.laboratory.zoo.urdf_file import expanded
 
 ALONE = ("gravity", "parameters", "definitions", "frames", "joints", "bodies", "coordinates")
@@ -42,7 +42,7 @@ def disagreement(
     except ModuleNotFoundError:
         return None
     alone = {name: block for name, block in expanded(given, files or {}).items() if name in ALONE}
-    system = System(alone)
+    system = SystemReader(alone)
     if len(system.coordinates) != sum(len(joint_coordinates(entry)) for entry in alone["joints"].values()):
         return None
     if "urdf" in given:
@@ -67,7 +67,7 @@ def _file_of(entry: Any) -> str:
     return str(entry if isinstance(entry, str) else entry["file"])
 
 
-def _apart(tree: _Tree, system: System, parameters: Mapping[str, float], dice: Dice) -> float:
+def _apart(tree: _Tree, system: SystemReader, parameters: Mapping[str, float], dice: Dice) -> float:
     """At one state."""
     n = len(system.coordinates)
     q, qd = (np.array([dice.uniform(-1.5, 1.5) for _ in range(n)]) for _ in range(2))
@@ -141,7 +141,7 @@ class _Tree:
         return rates.T @ mass @ rates, rates.T @ (bias + mass @ drift)
 
 
-def _robot(pinocchio: Any, system: System, parameters: Mapping[str, float], text: str) -> _Tree:
+def _robot(pinocchio: Any, system: SystemReader, parameters: Mapping[str, float], text: str) -> _Tree:
     """A URDF as Pinocchio reads it."""
     model = pinocchio.buildModelFromXML(text)
     names = system.coordinates
@@ -155,7 +155,7 @@ def _robot(pinocchio: Any, system: System, parameters: Mapping[str, float], text
 class _Joints:
     """The joints of a file as Pinocchio's: one for each coordinate, or for each quaternion."""
 
-    def __init__(self, pinocchio: Any, system: System, parameters: Mapping[str, float]) -> None:
+    def __init__(self, pinocchio: Any, system: SystemReader, parameters: Mapping[str, float]) -> None:
         self._pin, self._system, self._parameters = pinocchio, system, parameters
         self._model = pinocchio.Model()
         self._parts: list[_Part] = []

@@ -11,7 +11,7 @@ from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.expressions import NotReadError, read_expression
 from symgen.laboratory.zoo.fields import Floats
 from symgen.laboratory.zoo.frames import (
-    Frames,
+    FramePoses,
     Matrix,
     Relative,
     Vector,
@@ -26,7 +26,7 @@ from symgen.laboratory.zoo.frames import (
     transposed,
     turned,
 )
-from symgen.laboratory.zoo.tape import Node, Tape
+from symgen.laboratory.zoo.tape import Node, NodeTape
 
 # configurations at which an identity is looked at, and what rounding leaves of it
 TRIES, ROUNDING = 4, 1e-12
@@ -36,7 +36,7 @@ TURNING = {"wx": 0, "wy": 1, "wz": 2}
 
 
 @dataclass(frozen=True)
-class Row:
+class ConstraintEquation:
     """A constraint: `value` is zero, or its coefficients of the rates are."""
 
     name: str
@@ -45,11 +45,11 @@ class Row:
 
 
 @dataclass
-class System:
+class SystemReader:
     """What a file says, before any mechanics: everything by name, worked out as it is asked for."""
 
     blocks: Mapping[str, Any]
-    tape: Tape = field(default_factory=Tape)
+    tape: NodeTape = field(default_factory=NodeTape)
     _definitions: dict[str, Node] = field(default_factory=dict)
     _places: dict[str, Vector] = field(default_factory=dict)
 
@@ -76,10 +76,10 @@ class System:
         return tuple(self.blocks.get("inputs") or {})
 
     @cached_property
-    def frames(self) -> Frames:
+    def frames(self) -> FramePoses:
         """Poses of the frames."""
         relative: dict[str, Relative] = read_frames(self.tape, self.blocks, self.read)
-        return Frames(self.tape, relative, self.rate)
+        return FramePoses(self.tape, relative, self.rate)
 
     def rate(self, node: Node) -> Node:
         """The derivative along the motion, without what accelerations add."""
@@ -180,40 +180,41 @@ class System:
         return length, dot(apart, minus(self.velocity(other), self.velocity(one))) / length
 
     @cached_property
-    def rows(self) -> tuple[Row, ...]:
+    def rows(self) -> tuple[ConstraintEquation, ...]:
         """All constraints: those of the file, joints, loops, wheels; of wheels none that always hold."""
         given = self.blocks.get("constraints") or {}
-        found = [Row(name, True, self.read(text)) for name, text in (given.get("geometric") or {}).items()]
+        geometric, nonholonomic = given.get("geometric") or {}, given.get("nonholonomic") or {}
+        found = [ConstraintEquation(name, True, self.read(text)) for name, text in geometric.items()]
         for name, entry in (self.blocks.get("loops") or {}).items():
             found += self._loop(name, entry)
         found += self._norms()
         wheels = [row for name, entry in (self.blocks.get("rolling") or {}).items() for row in self._wheel(name, entry)]
         wheels = [row for row in wheels if row.value.number != 0]
         found += [row for row in wheels if row.geometric]
-        found += [Row(name, False, self.read(text)) for name, text in (given.get("nonholonomic") or {}).items()]
+        found += [ConstraintEquation(name, False, self.read(text)) for name, text in nonholonomic.items()]
         found += [row for row in wheels if not row.geometric]
         return tuple(found)
 
-    def _norms(self) -> list[Row]:
+    def _norms(self) -> list[ConstraintEquation]:
         found = []
         for name, entry in (self.blocks.get("joints") or {}).items():
             if entry["type"] in ("spherical", "floating"):
                 parts = [self.read(part) for part in joint_coordinates(entry)[-4:]]
                 value = self.tape.sum(part * part for part in parts) - self.tape.one
-                found.append(Row(f"{name}_norm", True, value))
+                found.append(ConstraintEquation(f"{name}_norm", True, value))
         return found
 
-    def _loop(self, name: str, entry: Mapping[str, Any]) -> list[Row]:
+    def _loop(self, name: str, entry: Mapping[str, Any]) -> list[ConstraintEquation]:
         kind = entry["type"]
         one, other = entry["between"]
         apart = minus(self.place(one), self.place(other))
         if kind == "distance":
             length = self.read(entry["length"])
-            return [Row(f"{name}_length", True, dot(apart, apart) - length * length)]
+            return [ConstraintEquation(f"{name}_length", True, dot(apart, apart) - length * length)]
         plane = transposed(self.frames.pose(self.frames.plane_of(self._frame(one), self._frame(other))).axes)
         if kind in ("point", "spherical"):
             in_plane = turned(plane, apart)
-            return [Row(f"{name}_{axis}", True, in_plane[index]) for axis, index in PLACES.items()]
+            return [ConstraintEquation(f"{name}_{axis}", True, in_plane[index]) for axis, index in PLACES.items()]
         axis = PLACES[entry.get("axis", "z")]
         across = [index for index in range(3) if index != axis]
         here, there = transposed(self.frames.pose(one).axes), transposed(self.frames.pose(other).axes)
@@ -226,18 +227,18 @@ class System:
         }[kind]
         held = turned(plane if along and beside else there, apart)
         rows = [
-            Row(f"{name}_{letter}", True, held[index])
+            ConstraintEquation(f"{name}_{letter}", True, held[index])
             for letter, index in PLACES.items()
             if (beside if index in across else along)
         ]
         letters = "xyz"
         if tilted:
-            rows += [Row(f"{name}_tilt_{letters[k]}", True, dot(there[k], here[axis])) for k in across]
+            rows += [ConstraintEquation(f"{name}_tilt_{letters[k]}", True, dot(there[k], here[axis])) for k in across]
         if turn:
-            rows.append(Row(f"{name}_turn", True, dot(there[across[0]], here[across[1]])))
+            rows.append(ConstraintEquation(f"{name}_turn", True, dot(there[across[0]], here[across[1]])))
         return rows
 
-    def _wheel(self, name: str, entry: Mapping[str, Any]) -> list[Row]:
+    def _wheel(self, name: str, entry: Mapping[str, Any]) -> list[ConstraintEquation]:
         """No slip at the lowest point of the wheel, and its height.
 
         In the axes of the frame that carries the wheel where that stays upright and the axle level, else of the world.
@@ -255,8 +256,12 @@ class System:
         if self._vanishes(axle[2]) and self._vanishes(carrier[2][2] - tape.one):
             slip = turned(carrier, slip)
         height = pose.origin[2] - radius * side
-        rows = [] if self._still(height) else [Row(f"{name}_height", True, height)]
-        return [*rows, Row(f"{name}_along", False, slip[0]), Row(f"{name}_across", False, slip[1])]
+        rows = [] if self._still(height) else [ConstraintEquation(f"{name}_height", True, height)]
+        return [
+            *rows,
+            ConstraintEquation(f"{name}_along", False, slip[0]),
+            ConstraintEquation(f"{name}_across", False, slip[1]),
+        ]
 
     def _still(self, node: Node) -> bool:
         """Whether a value is the same in every configuration."""
@@ -299,7 +304,7 @@ class System:
         return self._stretch(*entry["between"])
 
     @cached_property
-    def bodies(self) -> tuple[Body, ...]:
+    def bodies(self) -> tuple[RigidBody, ...]:
         """Masses and tensors in the world."""
         found = []
         for name, given in (self.blocks.get("bodies") or {}).items():
@@ -309,7 +314,7 @@ class System:
             xx, yy, zz, xy, xz, yz = (tensor.get(key, self.tape.zero) for key in ("xx", "yy", "zz", "xy", "xz", "yz"))
             centre = self.frames.place(frame, read_vector(self.tape, entry.get("com"), self.read))
             mass = self.read(entry["mass"]) if "mass" in entry else self.tape.zero
-            found.append(Body(frame, mass, centre, ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))))
+            found.append(RigidBody(frame, mass, centre, ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))))
         return tuple(found)
 
     @cached_property
@@ -335,7 +340,7 @@ class System:
 
 
 @dataclass(frozen=True)
-class Body:
+class RigidBody:
     """A body: its frame, mass, centre in the world, tensor about the centre in the axes of the frame."""
 
     frame: str

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Record:
+class DrawRecord:
     """One draw: where it comes from, how it ended, what it took."""
 
     seed: int
@@ -41,18 +41,18 @@ def write_record(path: Path, record: DataclassInstance) -> None:
         lines.write(json.dumps(asdict(record)) + "\n")
 
 
-def read_records(paths: Iterable[Path]) -> list[Record]:
+def read_records(paths: Iterable[Path]) -> list[DrawRecord]:
     """The records of some chunks; of a draw that was run twice the later one."""
-    found: dict[tuple[int, int, str], Record] = {}
+    found: dict[tuple[int, int, str], DrawRecord] = {}
     for path in paths:
         for line in path.read_text(encoding="utf-8").splitlines():
             given: dict[str, Any] = json.loads(line)
-            record = Record(**given)
+            record = DrawRecord(**given)
             found[record.seed, record.index, record.family] = record
     return list(found.values())
 
 
-def summary(records: list[Record]) -> str:
+def summary(records: list[DrawRecord]) -> str:
     """Counts by family and ending, the failures by kind, the largest draws."""
     if not records:
         return "no draws"

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from symgen.laboratory.zoo.describe import MISTAKE, Description
 from symgen.laboratory.zoo.drawn import Drawn
 from symgen.laboratory.zoo.urdf_file import expanded
-from symgen.laboratory.zoo.verdict import FAILED, REFUSED, Verdict
+from symgen.laboratory.zoo.verdict import FAILED, REFUSED, DrawVerdict
 
 NOT_TOLD = "mistake not told"
 # what symgen says of a system as a whole, and what must be so then
@@ -18,15 +18,15 @@ REASONS: dict[str, Callable[[Drawn], bool]] = {
 }
 
 
-def judged(description: Description, verdict: Verdict) -> Verdict:
+def judged(description: Description, verdict: DrawVerdict) -> DrawVerdict:
     """The verdict, a failure where a legal draw was refused, or a mistake that was drawn on purpose was not told."""
     mistaken = MISTAKE in description.marks
     if mistaken and not verdict.failed and verdict.ending != REFUSED:
-        return Verdict(FAILED, NOT_TOLD, verdict.signature)
+        return DrawVerdict(FAILED, NOT_TOLD, verdict.signature)
     if verdict.ending != REFUSED or mistaken:
         return verdict
     for words, is_true in REASONS.items():
         if words in verdict.signature:
             drawn = Drawn(expanded(description.blocks, description.files), description.start)
-            return verdict if is_true(drawn) else Verdict(FAILED, "refused without reason", verdict.signature)
-    return Verdict(FAILED, "refused without reason", verdict.signature)
+            return verdict if is_true(drawn) else DrawVerdict(FAILED, "refused without reason", verdict.signature)
+    return DrawVerdict(FAILED, "refused without reason", verdict.signature)

@@ -23,7 +23,7 @@ TICKS = os.sysconf("SC_CLK_TCK")
 
 
 @dataclass(frozen=True)
-class Run:
+class CommandRun:
     """How a run of the command ended: exit code (negative: a signal), what it said, what it took.
 
     `cpu` and `megabytes` are those of the command and all its children; the memory is that of all of them together.
@@ -37,7 +37,7 @@ class Run:
     ended: str = ""
 
 
-def run_command(model: Path, folder: Path, cpu: float = CPU_SECONDS, megabytes: float = MEGABYTES) -> Run:
+def run_command(model: Path, folder: Path, cpu: float = CPU_SECONDS, megabytes: float = MEGABYTES) -> CommandRun:
     """`symgen MODEL` into `folder`, verification included.
 
     `ended` says why a run was ended from here: time, memory or no end.
@@ -65,7 +65,7 @@ def run_command(model: Path, folder: Path, cpu: float = CPU_SECONDS, megabytes: 
         out.seek(0)
         err.seek(0)
         code, said, complained = process.returncode, out.read(), err.read()
-    return Run(code, said, complained, max(spent, watch.cpu), watch.megabytes, watch.ended)
+    return CommandRun(code, said, complained, max(spent, watch.cpu), watch.megabytes, watch.ended)
 
 
 def _limited(cpu: float, megabytes: float) -> Callable[[], None]:

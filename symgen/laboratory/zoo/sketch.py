@@ -12,7 +12,7 @@ from symgen.laboratory.zoo.dice import Dice, decimal, exact
 from symgen.laboratory.zoo.fields import Floats
 from symgen.laboratory.zoo.mechanics import constraint_jacobian
 from symgen.laboratory.zoo.names import Namer
-from symgen.laboratory.zoo.reader import System
+from symgen.laboratory.zoo.reader import SystemReader
 from symgen.laboratory.zoo.tape import Node
 from symgen.laboratory.zoo.urdf_file import expanded
 
@@ -75,10 +75,10 @@ class Sketch:
 
     def measured(self, text: str) -> float:
         """What an expression is at the start."""
-        system = System(expanded(self.blocks, self.files))
+        system = SystemReader(expanded(self.blocks, self.files))
         return self.values(system, [system.read(text)])[0]
 
-    def values(self, system: System, nodes: list[Node]) -> list[float]:
+    def values(self, system: SystemReader, nodes: list[Node]) -> list[float]:
         """Numbers of nodes at the start."""
         floats = Floats()
         values: dict[str, float] = {**self.start, **dict.fromkeys((f"{name}_dot" for name in self.start), 0.0)}
@@ -88,18 +88,18 @@ class Sketch:
 
     def place(self, owner: str) -> list[float]:
         """Where a point or the origin of a frame is at the start."""
-        system = System(expanded(self.blocks, self.files))
+        system = SystemReader(expanded(self.blocks, self.files))
         return self.values(system, list(system.place(owner)))
 
     def axes(self, frame: str) -> list[list[float]]:
         """The attitude of a frame at the start, as rows of its matrix."""
-        system = System(expanded(self.blocks, self.files))
+        system = SystemReader(expanded(self.blocks, self.files))
         flat = self.values(system, [entry for row in system.frames.pose(frame).axes for entry in row])
         return [flat[0:3], flat[3:6], flat[6:9]]
 
     def rows(self, away: float = 0.0) -> Any:
         """Rows of length 1 of the constraint Jacobian at the start, or at a place that is about so far away from it."""
-        system = System(expanded(self.blocks, self.files))
+        system = SystemReader(expanded(self.blocks, self.files))
         rows = constraint_jacobian(system)
         values = {name: value + self.dice.uniform(-away, away) for name, value in self.start.items()}
         values |= dict.fromkeys(system.rate_names, 0.0)

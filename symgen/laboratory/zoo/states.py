@@ -12,9 +12,9 @@ import numpy as np
 
 from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.fields import Balls, Floats, precision
-from symgen.laboratory.zoo.kkt import Evaluator, Numbers, Ranks, onto_rows
+from symgen.laboratory.zoo.kkt import EquationEvaluator, EquationValues, GenericRanks, onto_rows
 from symgen.laboratory.zoo.linear import NOTHING
-from symgen.laboratory.zoo.reader import System
+from symgen.laboratory.zoo.reader import SystemReader
 
 STEPS = 30
 REFINEMENTS = 3
@@ -33,7 +33,7 @@ FURTHEST = 3.2
 
 
 @dataclass(frozen=True)
-class State:
+class FloatState:
     """q, rates, accelerations, inputs and parameters as floats."""
 
     q: tuple[float, ...]
@@ -46,7 +46,9 @@ class State:
 class Walker:
     """Finds states of a system near a configuration."""
 
-    def __init__(self, system: System, evaluate: Evaluator, start: Mapping[str, float], dice: Dice) -> None:
+    def __init__(
+        self, system: SystemReader, evaluate: EquationEvaluator, start: Mapping[str, float], dice: Dice
+    ) -> None:
         self._system, self._evaluate, self._dice = system, evaluate, dice
         self._start = np.array([start.get(name, 0.0) for name in system.coordinates])
         self._floats = Floats()
@@ -54,12 +56,12 @@ class Walker:
         self._ranges = system.blocks.get("ranges") or {}
         self._voids: frozenset[int] | None = None
 
-    def states(self, parameters: Mapping[str, float], count: int) -> tuple[list[State], Ranks]:
+    def states(self, parameters: Mapping[str, float], count: int) -> tuple[list[FloatState], GenericRanks]:
         """So many regular states, fewer where they are hard to find; and the generic ranks that were met."""
         points = self.points(parameters, 3 * count + 6)
         if self._stuck(points, parameters):
-            return [], Ranks(0, 0)
-        ranks = Ranks(
+            return [], GenericRanks(0, 0)
+        ranks = GenericRanks(
             max((self._rank(self.numbers(q, parameters)) for q in points), default=0),
             max((self._reached(self.numbers(q, parameters)) for q in points), default=0),
         )
@@ -143,7 +145,7 @@ class Walker:
     def _number(self, text: str) -> float:
         return float(self._system.tape.evaluate([self._system.read(text)], {}, self._floats)[0])
 
-    def numbers(self, q: Any, parameters: Mapping[str, float], qd: Any = None) -> Numbers:
+    def numbers(self, q: Any, parameters: Mapping[str, float], qd: Any = None) -> EquationValues:
         """The equations of motion in floats."""
         rates = qd if qd is not None else [0.0] * len(q)
         values = {**parameters, **dict(zip(self._system.coordinates, map(float, q), strict=True))}
@@ -220,11 +222,11 @@ class Walker:
         return null_space(at)
 
     @staticmethod
-    def _rank(at: Numbers, threshold: float = SAME) -> int:
+    def _rank(at: EquationValues, threshold: float = SAME) -> int:
         return rank_of(normalized(np.array(at.rows, dtype=float).reshape(-1, at.n)), threshold)
 
     @staticmethod
-    def _reached(at: Numbers, threshold: float = SAME) -> int:
+    def _reached(at: EquationValues, threshold: float = SAME) -> int:
         control = np.array(at.control, dtype=float).reshape(at.n, -1)
         if not control.size:
             return 0
@@ -234,7 +236,7 @@ class Walker:
         control[:, idle], lengths[idle] = 0, 1
         return rank_of((null_space(at).T @ (control / lengths)).T, threshold, absolute=True)
 
-    def state(self, q: Any, parameters: Mapping[str, float], rank: int | None = None) -> State:
+    def state(self, q: Any, parameters: Mapping[str, float], rank: int | None = None) -> FloatState:
         """A state with admissible rates and accelerations at a configuration, `rank` being that of the rows."""
         free = null_space(self.numbers(q, parameters), rank)
         spread = [self._dice.uniform(-1.5, 1.5) for _ in range(free.shape[1])]
@@ -244,7 +246,7 @@ class Walker:
         if moving.drift:
             qdd = qdd - self._inverse(moving.rows, rank) @ np.array(moving.drift)
         u = [self._dice.uniform(-8, 8) for _ in self._system.inputs]
-        return State(*(tuple(map(float, part)) for part in (q, qd, qdd, u, parameters.values())))
+        return FloatState(*(tuple(map(float, part)) for part in (q, qd, qdd, u, parameters.values())))
 
     @staticmethod
     def _inverse(rows: Any, rank: int | None) -> Any:
@@ -261,7 +263,7 @@ def normalized(rows: Any) -> Any:
     return rows[lengths > NOTHING] / lengths[lengths > NOTHING, None]
 
 
-def null_space(at: Numbers, rank: int | None = None) -> Any:
+def null_space(at: EquationValues, rank: int | None = None) -> Any:
     """Orthonormal columns that span the velocities which the constraints allow, of this rank where it is known."""
     rows: Any = normalized(np.array(at.rows, dtype=float).reshape(-1, at.n))
     if not rows.size:

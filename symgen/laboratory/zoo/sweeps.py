@@ -15,9 +15,9 @@ from symgen.laboratory.zoo.describe import Description
 from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.expressions import NotReadError
 from symgen.laboratory.zoo.generated import targets
-from symgen.laboratory.zoo.kkt import Ranks
-from symgen.laboratory.zoo.states import State, Walker
-from symgen.laboratory.zoo.witness import ALLOWED, CERTAIN, Comparison, Witness
+from symgen.laboratory.zoo.kkt import GenericRanks
+from symgen.laboratory.zoo.states import FloatState, Walker
+from symgen.laboratory.zoo.witness import ALLOWED, CERTAIN, JudgedResult, Witness
 
 # regular states that are led on, and how many of them are looked at in a decade
 STARTS, PER_DECADE = 3, 2
@@ -47,8 +47,8 @@ class Led:
 
     kind: str
     where: str
-    state: State
-    ranks: Ranks
+    state: FloatState
+    ranks: GenericRanks
     distance: float = 1.0
 
 
@@ -60,8 +60,8 @@ class Violation:
     where: str
     target: str
     quantity: str
-    comparison: Comparison
-    state: State
+    comparison: JudgedResult
+    state: FloatState
 
     @property
     def text(self) -> str:
@@ -123,7 +123,7 @@ def compared(witness: Witness, folder: Path, model: str, led: Iterable[Led]) -> 
     return Swept(dict(counts), tuple(violations))
 
 
-def _outcomes(found: Comparison | None, far: bool) -> Iterator[str]:
+def _outcomes(found: JudgedResult | None, far: bool) -> Iterator[str]:
     if found is None:
         yield UNKNOWN
     elif found.status:
@@ -137,7 +137,7 @@ def _outcomes(found: Comparison | None, far: bool) -> Iterator[str]:
 
 
 def _towards(
-    walker: Walker, parameters: Mapping[str, float], starts: Sequence[State], ranks: Ranks, seed: object
+    walker: Walker, parameters: Mapping[str, float], starts: Sequence[FloatState], ranks: GenericRanks, seed: object
 ) -> Iterator[Led]:
     """Towards where rows, inputs and masses lose rank, from each start, down to where that leads.
 
@@ -158,7 +158,11 @@ def _towards(
 
 
 def _scaled(
-    walker: Walker, parameters: Mapping[str, float], starts: Sequence[State], ranks: Ranks, names: Sequence[str]
+    walker: Walker,
+    parameters: Mapping[str, float],
+    starts: Sequence[FloatState],
+    ranks: GenericRanks,
+    names: Sequence[str],
 ) -> Iterator[Led]:
     """Each of these parameters far from its value, at a regular state where the loops still close."""
     for start in starts[:1]:

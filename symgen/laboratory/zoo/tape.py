@@ -15,7 +15,7 @@ ZERO, ONE, TWO = Fraction(0), Fraction(1), Fraction(2)
 
 
 @dataclass(frozen=True)
-class Written:
+class FileNumber:
     """A number that stands in a file, and which of its numbers it is: two that are equal are rounded each alone."""
 
     value: Fraction
@@ -27,7 +27,7 @@ class Node:
 
     __slots__ = ("args", "index", "op", "payload", "tape")
 
-    def __init__(self, tape: Tape, index: int, op: str, args: tuple[Node, ...], payload: object) -> None:
+    def __init__(self, tape: NodeTape, index: int, op: str, args: tuple[Node, ...], payload: object) -> None:
         self.tape, self.index, self.op, self.args, self.payload = tape, index, op, args, payload
 
     def __add__(self, other: Node) -> Node:
@@ -50,12 +50,12 @@ class Node:
         """The value of a literal, None for everything else."""
         if self.op != "number":
             return None
-        payload = self.payload.value if isinstance(self.payload, Written) else self.payload
+        payload = self.payload.value if isinstance(self.payload, FileNumber) else self.payload
         assert isinstance(payload, Fraction)
         return payload
 
 
-class Tape:
+class NodeTape:
     """Nodes in the order they were made; equal ones are one."""
 
     def __init__(self) -> None:
@@ -81,7 +81,7 @@ class Tape:
         """A number of the file; one that is not whole is a node of its own each time."""
         if value.denominator == 1:
             return self.number(value)
-        return self._node("number", (), Written(value, len(self.nodes)))
+        return self._node("number", (), FileNumber(value, len(self.nodes)))
 
     def pi(self) -> Node:
         """The number pi."""
@@ -241,20 +241,20 @@ class Tape:
 
     def evaluate(self, outputs: Sequence[Node], values: Mapping[str, Any], field: Any) -> list[Any]:
         """Values of nodes in the arithmetic of `field` (see `fields`)."""
-        return Program(self, outputs).run(values, field)
+        return NodeProgram(self, outputs).run(values, field)
 
 
-class Program:
+class NodeProgram:
     """What must be computed for some outputs, in order."""
 
-    def __init__(self, tape: Tape, outputs: Sequence[Node]) -> None:
+    def __init__(self, tape: NodeTape, outputs: Sequence[Node]) -> None:
         self._steps = [
             (node.index, node.op, tuple(arg.index for arg in node.args), node.payload) for node in tape.reached(outputs)
         ]
         self._outputs = [node.index for node in outputs]
-        self.literals = tuple(payload for _, _, _, payload in self._steps if isinstance(payload, Written))
+        self.literals = tuple(payload for _, _, _, payload in self._steps if isinstance(payload, FileNumber))
 
-    def run(self, values: Mapping[str, Any], field: Any, literals: Mapping[Written, Any] | None = None) -> list[Any]:
+    def run(self, values: Mapping[str, Any], field: Any, literals: Mapping[FileNumber, Any] | None = None) -> list[Any]:
         """Values of the outputs; `literals` replaces numbers of the file."""
         found: dict[int, Any] = {}
         functions = field.functions
@@ -271,7 +271,7 @@ class Program:
             elif op == "symbol":
                 value = values[payload]  # type: ignore[index]
             elif op == "number":
-                if isinstance(payload, Written):
+                if isinstance(payload, FileNumber):
                     value = moved[payload] if payload in moved else field.number(payload.value)
                 else:
                     value = field.number(payload)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from symgen.laboratory.zoo.run import Run
+from symgen.laboratory.zoo.run import CommandRun
 
 VERIFIED, NOTICED, REFUSED, FAILED = "verified", "verified with a notice", "refused", "failed"
 # file:line:column: message, excerpt, marker, remedy
@@ -25,7 +25,7 @@ UNTRUE = (
 
 
 @dataclass(frozen=True)
-class Verdict:
+class DrawVerdict:
     """An ending, the kind of failure, and a signature that does not depend on names and numbers."""
 
     ending: str
@@ -38,27 +38,27 @@ class Verdict:
         return self.ending == FAILED
 
 
-def verdict_of(run: Run) -> Verdict:
+def verdict_of(run: CommandRun) -> DrawVerdict:
     """What the exit code and the messages say."""
     if run.ended:
-        return Verdict(FAILED, run.ended, _last_line(run.err, "reading the model"))
+        return DrawVerdict(FAILED, run.ended, _last_line(run.err, "reading the model"))
     if "Traceback (most recent call last)" in run.err or "internal error" in run.err:
-        return Verdict(FAILED, "internal error", _fault(run.err))
+        return DrawVerdict(FAILED, "internal error", _fault(run.err))
     if run.code < 0:
-        return Verdict(FAILED, "signal", str(-run.code))
+        return DrawVerdict(FAILED, "signal", str(-run.code))
     if run.code == 0:
         notices = [line for line in run.err.splitlines() if "notice" in line]
-        return Verdict(NOTICED if notices else VERIFIED)
+        return DrawVerdict(NOTICED if notices else VERIFIED)
     if left_out := LEFT_OUT.search(run.err):
         # the rest is written, and the user is told what to do; but the quantity was asked for and the state is regular
-        return Verdict(FAILED, "left out", f"{left_out[1]}: {without_numbers(left_out[2])}"[:150])
+        return DrawVerdict(FAILED, "left out", f"{left_out[1]}: {without_numbers(left_out[2])}"[:150])
     if "verification failed" in run.err:
-        return Verdict(FAILED, "verification", _withheld(run.err))
+        return DrawVerdict(FAILED, "verification", _withheld(run.err))
     if run.code == 1 and (placed := PLACED.search(run.err)):
         untrue = any(words in placed["message"] for words in UNTRUE)
         told = without_numbers(placed["message"])
-        return Verdict(FAILED, "refused without reason", told) if untrue else Verdict(REFUSED, signature=told)
-    return Verdict(
+        return DrawVerdict(FAILED, "refused without reason", told) if untrue else DrawVerdict(REFUSED, signature=told)
+    return DrawVerdict(
         FAILED, "message without a place or remedy", without_numbers(_last_line(run.err, "nothing was said"))
     )
 

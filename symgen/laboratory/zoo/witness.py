@@ -18,12 +18,12 @@ from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.expressions import NotReadError
 from symgen.laboratory.zoo.fields import Balls, Floats, precision
 from symgen.laboratory.zoo.generated import Answer, Target, targets
-from symgen.laboratory.zoo.kkt import Evaluator, Ranks, Split, inverse_dynamics, motion, split
+from symgen.laboratory.zoo.kkt import DirectionSplit, EquationEvaluator, GenericRanks, inverse_dynamics, motion, split
 from symgen.laboratory.zoo.mechanics import equations
 from symgen.laboratory.zoo.pinocchio_trees import SAME, disagreement
-from symgen.laboratory.zoo.reader import System
-from symgen.laboratory.zoo.states import State, Walker, rounded
-from symgen.laboratory.zoo.tape import Program, Written
+from symgen.laboratory.zoo.reader import SystemReader
+from symgen.laboratory.zoo.states import FloatState, Walker, rounded
+from symgen.laboratory.zoo.tape import FileNumber, NodeProgram
 from symgen.laboratory.zoo.urdf_file import expanded
 
 STATES = 20
@@ -65,7 +65,7 @@ class Truth:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class JudgedResult:
     """One result beside the truth: a status, or the error in units of what is allowed and relative to the truth.
 
     `clear` is how well the state determines the result; where that is `certain` there is no reason for the status.
@@ -91,9 +91,9 @@ class Witness:
         given: Mapping[str, Any] = yaml.load(text, Loader=yaml.BaseLoader)
         self._given, self._files = given, files or {}
         blocks = expanded(given, self._files)
-        self._system = System(blocks)
+        self._system = SystemReader(blocks)
         self._equations = equations(self._system)
-        self._evaluate = Evaluator(Program(self._system.tape, self._equations.flat), self._equations)
+        self._evaluate = EquationEvaluator(NodeProgram(self._system.tape, self._equations.flat), self._equations)
         self._seed = seed
         told = {name: float(value) for name, value in (blocks.get("configuration") or {}).items()}
         self._start = {**told, **(start or {})}
@@ -131,12 +131,12 @@ class Witness:
 
     def opened(self, folder: Path) -> list[str]:
         """The parameters of what was generated in a folder, which is compared from now on."""
-        told = self._told(folder)
-        numbers = told.get("parameters_as_numbers", ())
+        derivation = self._derivation(folder)
+        numbers = derivation.get("parameters_as_numbers", ())
         members = [name for name in (*self._system.parameters, *self._allocation()) if name not in numbers]
         self._runtime = [name in members for name in (*self._system.parameters, *self._allocation())]
         self._rows = self._rows_of(folder)
-        self._spanned = int(told["sizes"]["alpha"])
+        self._spanned = int(derivation["sizes"]["alpha"])
         return members
 
     def walker(self) -> Walker:
@@ -163,16 +163,16 @@ class Witness:
         return values
 
     @staticmethod
-    def _told(folder: Path) -> dict[str, Any]:
-        told: dict[str, Any] = json.loads((folder / "derivation.json").read_bytes())
-        return told
+    def _derivation(folder: Path) -> dict[str, Any]:
+        derivation: dict[str, Any] = json.loads((folder / "derivation.json").read_bytes())
+        return derivation
 
     def _rows_of(self, folder: Path) -> Sequence[int]:
         """The rows that the files have multipliers of: those that hold in every configuration are left out there."""
-        told = self._told(folder)
-        names = {name for block in told["blocks"] for name in block["rows"]}
+        derivation = self._derivation(folder)
+        names = {name for block in derivation["blocks"] for name in block["rows"]}
         kept = [index for index, row in enumerate(self._system.rows) if row.name in names]
-        return kept if len(kept) == told["sizes"]["r"] else range(len(self._system.rows))
+        return kept if len(kept) == derivation["sizes"]["r"] else range(len(self._system.rows))
 
     def _allocation(self) -> dict[str, float]:
         return members(self._system.blocks.get("allocation") or {}, self._float)
@@ -180,7 +180,9 @@ class Witness:
     def _float(self, text: str) -> float:
         return float(self._system.tape.evaluate([self._system.read(text)], {}, Floats())[0])
 
-    def _compared(self, target: Target, quantity: str, state: State, ranks: Ranks) -> tuple[float, Finding | None]:
+    def _compared(
+        self, target: Target, quantity: str, state: FloatState, ranks: GenericRanks
+    ) -> tuple[float, Finding | None]:
         """The error of one result in units of what is allowed, and what is wrong with it."""
         found = self.compare(target, quantity, state, ranks)
         if found is None:
@@ -197,10 +199,11 @@ class Witness:
         )
         return found.units, Finding("witness: number", told)
 
-    def compare(self, target: Target, quantity: str, state: State, ranks: Ranks) -> Comparison | None:
+    def compare(self, target: Target, quantity: str, state: FloatState, ranks: GenericRanks) -> JudgedResult | None:
         """One result beside the truth, None where there is no truth."""
         scalar = target.scalar
-        given = State(*(rounded(part, scalar) for part in (state.q, state.qd, state.qdd, state.u, state.parameters)))
+        parts = (state.q, state.qd, state.qdd, state.u, state.parameters)
+        given = FloatState(*(rounded(part, scalar) for part in parts))
         with precision():
             truth = self._truth(quantity, given, ranks)
             if truth is None:
@@ -213,14 +216,15 @@ class Witness:
                 if quantity == "inverse_dynamics" and ranks.actuation < self._spanned:
                     # the branch that was drawn is told to be one on which inputs lose rank
                     certain = answer.status != ACTUATION_RANK
-                return Comparison(answer.status, 0.0, 0.0, truth.clear, certain)
+                return JudgedResult(answer.status, 0.0, 0.0, truth.clear, certain)
             units = self._units(answer, truth, quantity, given, ranks, EPS[scalar])
         apart = _norm([a - b for a, b in zip(answer.value, exact, strict=True)])
-        return Comparison(0, units, apart / (_norm(exact) or 1.0), truth.clear, False)
+        return JudgedResult(0, units, apart / (_norm(exact) or 1.0), truth.clear, False)
 
-    def unit(self, quantity: str, state: State, ranks: Ranks, scalar: str) -> float:
+    def unit(self, quantity: str, state: FloatState, ranks: GenericRanks, scalar: str) -> float:
         """The most that roundings of the inputs change a result, as a share of it; infinite where there is none."""
-        given = State(*(rounded(part, scalar) for part in (state.q, state.qd, state.qdd, state.u, state.parameters)))
+        parts = (state.q, state.qd, state.qdd, state.u, state.parameters)
+        given = FloatState(*(rounded(part, scalar) for part in parts))
         dice, moved = Dice("perturbations", self._seed), 0.0
         with precision():
             truth = self._truth(quantity, given, ranks)
@@ -232,7 +236,9 @@ class Witness:
             size = _norm([float(x.mid()) for x in truth.value])
         return moved / size if size else 0.0 if not moved else math.inf
 
-    def _units(self, answer: Answer, truth: Truth, quantity: str, state: State, ranks: Ranks, eps: float) -> float:
+    def _units(
+        self, answer: Answer, truth: Truth, quantity: str, state: FloatState, ranks: GenericRanks, eps: float
+    ) -> float:
         """The error over what is allowed; what rounding the inputs does is worked out only where it is needed."""
         if not all(map(math.isfinite, answer.value)) or len(answer.value) != len(truth.value):
             return math.inf
@@ -250,7 +256,7 @@ class Witness:
         return error / allowed if allowed else (math.inf if error else 0.0)
 
     def _truth(
-        self, quantity: str, state: State, ranks: Ranks, moved: tuple[Dice, float] | None = None
+        self, quantity: str, state: FloatState, ranks: GenericRanks, moved: tuple[Dice, float] | None = None
     ) -> Truth | None:
         """The quantity in balls; where `moved` is given, of a state that is one rounding away."""
         number = self._balls.number
@@ -263,7 +269,7 @@ class Witness:
         values = {name: ball(x) for name, x in zip(names, (*state.q, *state.qd), strict=True)}
         parameters = [ball(x) for x in state.parameters]
         values |= dict(zip((*self._system.parameters, *self._allocation()), parameters, strict=True))
-        literals: dict[Written, Any] | None = None
+        literals: dict[FileNumber, Any] | None = None
         if moved:
             literals = {
                 literal: number(literal.value + _sign(moved[0]) * Fraction(moved[1]) * literal.value)
@@ -286,7 +292,7 @@ class Witness:
         return Truth([multipliers[index] for index in self._rows], clear)
 
     def _inputs(
-        self, at: Any, parts: Split, accelerations: list[Any], ranks: Ranks, values: Mapping[str, Any]
+        self, at: Any, parts: DirectionSplit, accelerations: list[Any], ranks: GenericRanks, values: Mapping[str, Any]
     ) -> Truth | None:
         """u, as the model's allocation says."""
         one = self._balls.number(Fraction(1))
