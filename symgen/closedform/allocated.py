@@ -12,13 +12,20 @@ from symgen.closedform.algebra.minors import left_inverse_terms, permutation_sig
 from symgen.closedform.algebra.quotient import polynomial
 from symgen.closedform.exact import Exact
 from symgen.closedform.spelling import Speller
-from symgen.closedform.structured import LONGEST_LOAD, MOST_NAMED_MINORS, Naming, Structured, label, name_minors
+from symgen.closedform.structured import (
+    LONGEST_LOAD,
+    MOST_NAMED_MINORS,
+    NamedMatrix,
+    Naming,
+    label,
+    name_minors,
+)
 from symgen.model.model import Allocation
 
 Named = list[tuple[Symbol, Expr]]
 
 
-def structured_allocation(exact: Exact, speller: Speller, taken: frozenset[str], allocation: Allocation) -> Structured:
+def structured_allocation(exact: Exact, speller: Speller, taken: frozenset[str], allocation: Allocation) -> NamedMatrix:
     """u (m x 1): weighted Cramer sums over the minors Delta_J, then the share of the internal force.
 
     For full actuation.  Raises TooLargeError where there is too much to list.
@@ -39,7 +46,7 @@ def structured_allocation(exact: Exact, speller: Speller, taken: frozenset[str],
     if len(first) > MOST_NAMED_MINORS:
         raise TooLargeError(f"{len(first)} minors")
     loads = [(symbol, meaning) for symbol, meaning in forces if symbol in used]
-    return Structured(ImmutableDenseMatrix(inputs), (*loads, *first, *parts))
+    return NamedMatrix(ImmutableDenseMatrix(inputs), (*loads, *first, *parts))
 
 
 def _by_input(names: Sequence[str], given: Sequence[tuple[str, str]], absent: Expr) -> list[Expr]:

@@ -18,7 +18,7 @@ from symgen.closedform.singular import SingularSet, derive_singular_sets
 from symgen.closedform.spelling import Speller
 from symgen.closedform.structure import Integrability, RankStructure, derive_integrability, derive_structure
 from symgen.closedform.structured import (
-    Structured,
+    NamedMatrix,
     structured_control_pseudoinverse,
     structured_inverse_dynamics,
     structured_projected_control,
@@ -216,7 +216,7 @@ class _Writer:
     def _actuation_forms(self, projector: ClosedForm) -> Iterable[ClosedForm]:
         """M, N_B M, its pseudoinverse and u."""
         exact, speller, taken = self.exact, self.speller, self.taken
-        shown = None if projector.matrix is None else Structured(projector.matrix, projector.intermediates)
+        shown = None if projector.matrix is None else NamedMatrix(projector.matrix, projector.intermediates)
         yield self._direct("control_matrix", lambda: exact.mechanics.control)
         yield self._direct(
             "projected_control_matrix",
@@ -237,7 +237,7 @@ class _Writer:
             yield self._allocated(self.model.allocation)
             return
         left = pseudoinverse.matrix
-        known = None if left is None else Structured(left, pseudoinverse.intermediates)
+        known = None if left is None else NamedMatrix(left, pseudoinverse.intermediates)
         yield self._direct(
             "inverse_dynamics",
             lambda: exact.inverse_dynamics,
@@ -277,7 +277,7 @@ class _Writer:
         quantity: str,
         build: Callable[[], Matrix],
         formula: str = "",
-        structured: Callable[[], Structured] | None = None,
+        structured: Callable[[], NamedMatrix] | None = None,
         work: Callable[[], int] | None = None,
     ) -> ClosedForm:
         """The matrix written out when it is short, else in named minors, else only the formula with the reason."""

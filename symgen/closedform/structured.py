@@ -61,7 +61,7 @@ class Naming:
 
 
 @dataclass(frozen=True, slots=True)
-class Structured:
+class NamedMatrix:
     """A matrix in named intermediates, listed in order of use."""
 
     matrix: ImmutableDenseMatrix
@@ -83,7 +83,7 @@ def name_minors(exact: Exact, naming: Naming) -> list[Mapping[tuple[int, ...], E
     ]
 
 
-def structured_projector(exact: Exact, speller: Speller, taken: frozenset[str]) -> Structured:
+def structured_projector(exact: Exact, speller: Speller, taken: frozenset[str]) -> NamedMatrix:
     """N_B = sum_K Phi_K Phi_K^T / Sigma_Phi with every Phi_J as a product of its factors.
 
     Raises TooLargeError when there are too many minors to list.
@@ -112,7 +112,7 @@ def structured_projector(exact: Exact, speller: Speller, taken: frozenset[str]) 
     return _finish(entries, naming, [(total, meaning)])
 
 
-def structured_control_pseudoinverse(exact: Exact, speller: Speller, taken: frozenset[str]) -> Structured:
+def structured_control_pseudoinverse(exact: Exact, speller: Speller, taken: frozenset[str]) -> NamedMatrix:
     """M~^+ = sum_J Delta_J v_L / Sigma_Delta, L = J without the input of the row; Delta_J as products of factors."""
     naming = Naming(speller, taken)
     name_minors(exact, naming)
@@ -136,13 +136,15 @@ def structured_control_pseudoinverse(exact: Exact, speller: Speller, taken: froz
     return _finish(entries, naming, [(total, squares)])
 
 
-def structured_projected_control(exact: Exact, speller: Speller, projector: Structured) -> Structured:
+def structured_projected_control(exact: Exact, speller: Speller, projector: NamedMatrix) -> NamedMatrix:
     """N_B M with N_B in named minors."""
     control = [[speller.quotient(e) for e in row] for row in exact.mechanics.control]
-    return Structured(_product(projector.matrix, control), projector.intermediates)
+    return NamedMatrix(_product(projector.matrix, control), projector.intermediates)
 
 
-def structured_inverse_dynamics(exact: Exact, speller: Speller, left: Structured, taken: frozenset[str]) -> Structured:
+def structured_inverse_dynamics(
+    exact: Exact, speller: Speller, left: NamedMatrix, taken: frozenset[str]
+) -> NamedMatrix:
     """u = M~^+ tau with the load tau = G qdd + C qd + Q - Q_a as named intermediates."""
     naming = Naming(speller, taken)
     symbols = [naming.symbol(f"tau_{i + 1}") for i in range(exact.model.n)]
@@ -157,7 +159,7 @@ def structured_inverse_dynamics(exact: Exact, speller: Speller, left: Structured
         for symbol, (entry,) in zip(symbols, exact.load, strict=True)
         if entry and symbol in used
     )
-    return Structured(matrix, (*named, *left.intermediates))
+    return NamedMatrix(matrix, (*named, *left.intermediates))
 
 
 def structured_pseudoinverse(exact: Exact, speller: Speller, taken: frozenset[str]) -> tuple[tuple[Symbol, Expr], ...]:
@@ -188,7 +190,7 @@ def _product(left: ImmutableDenseMatrix, right: Sequence[Sequence[Expr]]) -> Imm
     )
 
 
-def _finish(entries: Sequence[Sequence[Expr]], naming: Naming, sums: Iterable[tuple[Symbol, Expr]]) -> Structured:
+def _finish(entries: Sequence[Sequence[Expr]], naming: Naming, sums: Iterable[tuple[Symbol, Expr]]) -> NamedMatrix:
     """Keep the intermediates that the matrix and the sums use."""
     matrix = ImmutableDenseMatrix(entries)
     last = tuple(sums)
@@ -200,4 +202,4 @@ def _finish(entries: Sequence[Sequence[Expr]], naming: Naming, sums: Iterable[tu
     length = sum(1 for _, meaning in named for _ in preorder_traversal(meaning))
     if length > LONGEST_MINORS:
         raise TooLargeError(f"minors with {length} symbols and operations")
-    return Structured(matrix, (*named, *last))
+    return NamedMatrix(matrix, (*named, *last))

@@ -31,7 +31,7 @@ NOTHING: Mapping[str, Six] = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True)
-class Yielding:
+class ArticulatedCoordinate:
     """One coordinate of a frame: its direction, the inertia met along it, and that inertia over the pivot."""
 
     coordinate: int
@@ -67,7 +67,7 @@ class ArticulatedFactor:
         # by frame: its coordinates, and the motions they give the frame in its axes; unit twists where it moves freely
         unit = {name: joint.directions(dict(directions[name]), self.graph) for name, joint in self._free.items()}
         self.directions = directions | unit
-        self._yielding: dict[str, list[Yielding]] = {}
+        self._yielding: dict[str, list[ArticulatedCoordinate]] = {}
         self._resisting: dict[str, Matrix] = {}
         sizes = self.sizes()
         pivots: dict[int, Scalar] = {}
@@ -77,14 +77,14 @@ class ArticulatedFactor:
         for name in reversed(self.frames):
             inertia = self._resisting[name] = inertias[name]
             rigid = self.own_inertia(name)
-            yielding: list[Yielding] = []
+            yielding: list[ArticulatedCoordinate] = []
             for coordinate, direction in reversed(self.directions[name]):
                 rotor = self.rotors.get(coordinate, self.graph.zero)
                 met = self._times(inertia, direction)
                 pivot = self._dot(direction, met) + rotor
                 share = tuple(x if x.is_zero else x / pivot for x in met)
                 inertia = self.freed(inertia, direction, met, share, rotor)
-                yielding.append(Yielding(coordinate, direction, pivot, share))
+                yielding.append(ArticulatedCoordinate(coordinate, direction, pivot, share))
                 pivots[coordinate] = pivot
                 self.own[coordinate] = self._dot(direction, self._times(rigid, direction)) + rotor
                 scales[coordinate] = self.size(direction, sizes[name]) + rotor

@@ -17,7 +17,7 @@ from symgen.symbolic.translate import translate
 Vector3 = Triple[Scalar]
 
 
-class Scalars:
+class ScalarArithmetic:
     """The arithmetic of `Kinematics` on a graph; `names` are those frames and bodies may use."""
 
     def __init__(self, graph: Graph, names: Mapping[str, Scalar], motion: Mapping[Scalar, Scalar]) -> None:
@@ -65,7 +65,7 @@ class Bodies:
     ) -> None:
         self.mechanism, self.graph, self.q, self.qd, self.held = mechanism, graph, q, qd, frozenset(held)
         self.names = names
-        self.scalars = Scalars(graph, names, dict(zip(q, qd, strict=True)))
+        self.scalars = ScalarArithmetic(graph, names, dict(zip(q, qd, strict=True)))
         self.kinematics: Kinematics[Scalar, Scalar] = Kinematics(mechanism, self.scalars)
 
     def component(self, name: str) -> Scalar:

@@ -106,7 +106,7 @@ def _held_points(mechanics: System, frame: str) -> tuple[tuple[str, Vector3], ..
 
 
 def _only_held(mechanics: System, body: FreeBody) -> bool:
-    """Whether geometric constraints feel the six coordinates through places of points only, and nothing else does."""
+    """Whether geometric constraints depend on the six coordinates by places of points only, and nothing else does."""
     model, graph = mechanics.model, mechanics.graph
     names, leaves = with_leaves(mechanics, [owner for owner, _ in body.points])
     coordinates = {x for j in body.coordinates for x in (mechanics.q[j], mechanics.qd[j])}

@@ -28,11 +28,11 @@ def derived_on(graph: Graph, candidate: Candidate) -> Quantity:
 
 def moved(graph: Graph, derived: Quantity) -> Quantity:
     """A quantity on another graph."""
-    there = Moved(graph)
+    there = GraphCopy(graph)
     return replace(derived, outputs=there.scalars(derived.outputs), guards=there.guards(derived.guards))
 
 
-class Moved:
+class GraphCopy:
     """Guards and scalars on another graph, where `symbols` by name have other values; equal guards stay equal."""
 
     def __init__(self, graph: Graph, symbols: Mapping[str, Scalar] = MappingProxyType({})) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from symgen.model.model import Model, Path
 from symgen.paths.forces import Forces, forces_along, inverse_dynamics
 from symgen.paths.path_equations import Array
-from symgen.paths.printed import Switched, switched_inverse_dynamics
+from symgen.paths.printed import SwitchedInputs, switched_inverse_dynamics
 from symgen.paths.trajectory import PathSolver, Trajectory, solve_path
 from symgen.paths.zeros import SingularPoses
 
@@ -44,7 +44,7 @@ class FigureData:
     curves: tuple[Curve, ...]
     u: Array
     threshold: float
-    printed: Switched | None
+    printed: SwitchedInputs | None
 
 
 def figure_data(model: Model, path: Path) -> FigureData:

@@ -16,7 +16,7 @@ from symgen.paths.path_equations import Array
 
 
 @dataclass(frozen=True, slots=True)
-class Switched:
+class SwitchedInputs:
     """u (k×m) along a path, and which partition was in use at each sample (k, indices into the partitions)."""
 
     u: Array
@@ -69,7 +69,7 @@ def inverse_dynamics(B: Array, M: Array, tau: Array, first: Sequence[int]) -> Ar
 
 def switched_inverse_dynamics(
     B: Array, M: Array, tau: Array, partitions: Sequence[Sequence[int]], threshold: float
-) -> Switched:
+) -> SwitchedInputs:
     """(27) and (28) along a path (leading axis k), keeping a partition until its determinant falls too low.
 
     The motion starts with the partition of largest det M̃₁ᵀM̃₁; where the determinant of the one in use drops below
@@ -85,4 +85,4 @@ def switched_inverse_dynamics(
             current = int(np.argmax(values))
         used.append(current)
         u.append(inverse_dynamics(B_k, M_k, tau_k, partitions[current]))
-    return Switched(np.array(u), tuple(used))
+    return SwitchedInputs(np.array(u), tuple(used))

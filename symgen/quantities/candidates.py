@@ -25,7 +25,7 @@ from symgen.methods.system import MethodInput
 from symgen.model.model import Model
 from symgen.model.quantities import PARTITION
 from symgen.quantities.catalogue import CatalogueEntry, by_blocks, derive, derived_from
-from symgen.quantities.everything import Everything
+from symgen.quantities.everything import WorkBudget
 from symgen.runtime.activity import working
 from symgen.symbolic.traverse import cost
 
@@ -40,7 +40,7 @@ VALID = Validity(0, 0, (), "along null spaces only ranks are divided by")
 class Candidates:
     """The candidates for the quantities of a model; `asked` are those for which no method is named."""
 
-    def __init__(self, mechanics: System, methods: Methods, everything: Everything, asked: Sequence[str]) -> None:
+    def __init__(self, mechanics: System, methods: Methods, everything: WorkBudget, asked: Sequence[str]) -> None:
         model, generic = mechanics.model, methods.workspace.generic
         self._mechanics, self._generic = mechanics, generic
         self._system = MethodInput(mechanics, generic)

@@ -31,7 +31,7 @@ OF_ALL = "`all` leaves it out"
 REMEDY = "name it in `outputs` to have it all the same"
 
 
-class Everything:
+class WorkBudget:
     """What is left of the work that `all` may take; `asked` are the quantities that are made whatever they take."""
 
     def __init__(self, outputs: Sequence[str], forms: Mapping[str, str]) -> None:

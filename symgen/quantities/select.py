@@ -16,7 +16,7 @@ from symgen.model.model import Model
 from symgen.model.quantities import POINTS
 from symgen.quantities.candidates import Candidates
 from symgen.quantities.catalogue import BY_NAME, CATALOGUE, missing
-from symgen.quantities.everything import Everything, too_long
+from symgen.quantities.everything import WorkBudget, too_long
 from symgen.quantities.finish import finished, with_alike_bodies
 from symgen.quantities.row_units import in_ordinary_units
 from symgen.records import dataclass
@@ -104,7 +104,7 @@ def derive_quantities(
         mechanics = System(model)
         generic = genericity(mechanics)
     present, absent = requested(model, generic, outputs)
-    methods, everything = Methods(model, generic), Everything(outputs, forms)
+    methods, everything = Methods(model, generic), WorkBudget(outputs, forms)
     candidates = Candidates(mechanics, methods, everything, [name for name in present if name not in forms])
     made: dict[str, Quantity] = {}
     choices: dict[str, Choice] = {}

@@ -50,10 +50,10 @@ class Differences:
     def _linear(self, node: Scalar) -> _Terms | None:
         """The coefficients of coordinates and fixed scalars, of 1 for numbers; None for what is not linear."""
         if node not in self._terms:
-            self._terms[node] = self._found(node)
+            self._terms[node] = self._coefficients(node)
         return self._terms[node]
 
-    def _found(self, node: Scalar) -> _Terms | None:
+    def _coefficients(self, node: Scalar) -> _Terms | None:
         if (value := node.constant) is not None:
             return {self._graph.one: value} if value else {}
         match node.op:

@@ -16,7 +16,7 @@ from sympy import QQ
 from sympy.polys.rings import PolyElement
 
 from symgen.closedform.algebra.ring import TrigRing, primitive
-from symgen.closedform.algebra.used import Monomial, Used
+from symgen.closedform.algebra.used import Monomial, UsedGenerators
 
 # A polynomial of more terms, once homogeneous, is factored as an ordinary one only: its length doubles with every angle
 # that a monomial lacks.
@@ -27,7 +27,7 @@ MOST_HOMOGENEOUS_TERMS = 3_000
 _Parts: TypeAlias = Mapping[Monomial, Mapping[Monomial, flint.fmpq]]
 
 
-def _classes(used: Used, p: PolyElement) -> list[_Parts]:
+def _classes(used: UsedGenerators, p: PolyElement) -> list[_Parts]:
     """The parity classes of p; with the powers they lack all terms of one have the same degree in a pair."""
     classes: dict[tuple[int, ...], list[tuple[Monomial, flint.fmpq, list[int]]]] = {}
     for monomial, coefficient in used.terms(p).items():
@@ -45,12 +45,12 @@ def _parts(terms: Sequence[tuple[Monomial, flint.fmpq, list[int]]]) -> _Parts:
     return parts
 
 
-def _images(used: Used, p: PolyElement) -> list[flint.fmpq_mpoly]:
+def _images(used: UsedGenerators, p: PolyElement) -> list[flint.fmpq_mpoly]:
     """The parity classes of p, each made homogeneous in every pair (s_i, c_i)."""
     return [_raised(used, parts) for parts in _classes(used, p)]
 
 
-def _raised(used: Used, parts: _Parts) -> flint.fmpq_mpoly:
+def _raised(used: UsedGenerators, parts: _Parts) -> flint.fmpq_mpoly:
     """One parity class times powers of s_i^2 + c_i^2 = 1, so that all its terms have the same degree in a pair."""
     if len(parts) == 1:
         (part,) = parts.values()
@@ -77,7 +77,7 @@ def parity_classes(ring: TrigRing, p: PolyElement) -> list[PolyElement]:
 
 def homogeneous(ring: TrigRing, p: PolyElement) -> PolyElement:
     """A normal form of one parity class, made homogeneous in every pair (s_i, c_i)."""
-    used = Used(ring, [p])
+    used = UsedGenerators(ring, [p])
     (result,) = _images(used, p)
     return used.element(result)
 
@@ -92,7 +92,7 @@ def common_factor(ring: TrigRing, polynomials: Iterable[PolyElement]) -> PolyEle
     ordered = sorted((p for p in polynomials if p), key=len)
     if not ordered or any(p.is_ground for p in ordered):
         return ring.one
-    used = Used(ring, ordered)
+    used = UsedGenerators(ring, ordered)
     result: flint.fmpq_mpoly | None = None
     for p in ordered:
         for image in _images(used, p):
@@ -111,7 +111,7 @@ def divide(ring: TrigRing, p: PolyElement, factor: PolyElement) -> PolyElement:
     """p / factor for a homogeneous common factor, in normal form."""
     if factor == 1:
         return p
-    used = Used(ring, (p, factor))
+    used = UsedGenerators(ring, (p, factor))
     divisor = used.image(factor)
     result = ring.zero
     for image in _images(used, p):
@@ -126,7 +126,7 @@ def cancel_plain(ring: TrigRing, numerator: PolyElement, denominator: PolyElemen
     """Cancel a common factor of the normal forms as ordinary polynomials, which helps a denominator of mixed parity."""
     if len(denominator) == 1 or len(parity_classes(ring, denominator)) == 1:
         return numerator, denominator
-    used = Used(ring, (numerator, denominator))
+    used = UsedGenerators(ring, (numerator, denominator))
     top, bottom = used.image(numerator), used.image(denominator)
     shared = top.gcd(bottom)
     if shared.is_constant():
@@ -147,7 +147,7 @@ def factorise(ring: TrigRing, p: PolyElement) -> tuple[PolyElement, tuple[tuple[
         single = [(ring.generator(i), e) for i, e in enumerate(monomial) if e]
         return ring.polys.ground_new(coefficient), tuple(single)
     ring.work.spend(len(p) * ring.polys.ngens)
-    whole = Used(ring, [p])
+    whole = UsedGenerators(ring, [p])
     classes = _classes(whole, p)
     if any(_homogeneous_terms(parts) > MOST_HOMOGENEOUS_TERMS for parts in classes):
         images = [(whole, whole.image(p))]
@@ -155,7 +155,7 @@ def factorise(ring: TrigRing, p: PolyElement) -> tuple[PolyElement, tuple[tuple[
         images = [(whole, _raised(whole, classes[0]))]
     else:
         content = common_factor(ring, [p])
-        over = ((Used(ring, [q]), q) for q in (content, divide(ring, p, content)) if q != 1)
+        over = ((UsedGenerators(ring, [q]), q) for q in (content, divide(ring, p, content)) if q != 1)
         images = [(used, used.image(q)) for used, q in over]
     constant = ring.one
     factors: list[tuple[PolyElement, int]] = []

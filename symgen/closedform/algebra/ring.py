@@ -17,7 +17,7 @@ from sympy.polys.rings import PolyElement, PolyRing
 
 from symgen.closedform.algebra.angles import AngleBasis
 from symgen.closedform.algebra.limits import WorkCounter
-from symgen.closedform.algebra.used import Used
+from symgen.closedform.algebra.used import UsedGenerators
 from symgen.model.expressions.expression import Expression, Name
 from symgen.records import dataclass
 
@@ -124,7 +124,7 @@ class TrigRing:
         self.work.spend(len(p) * len(q))
         if len(p) * len(q) < LONG_PRODUCT:
             return self.normal(p * q)
-        used = Used(self, (p, q))
+        used = UsedGenerators(self, (p, q))
         result = used.image(p) * used.image(q)
         self._look_for_squares(len(result))
         degrees = result.degrees()

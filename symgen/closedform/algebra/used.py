@@ -24,7 +24,7 @@ def _context(generators: int) -> flint.fmpq_mpoly_ctx:
     return flint.fmpq_mpoly_ctx.get([f"x{i}" for i in range(generators)], flint.Ordering.lex)
 
 
-class Used:
+class UsedGenerators:
     """The generators of `ring` that some polynomials use, and both of a pair (s_i, c_i) where they use one.
 
     Their order is that of the ring, and so are leading terms.  `pairs` has the places of s_i and c_i among them.

@@ -12,7 +12,7 @@ from dataclasses import replace
 from symgen.mechanics.absolute_angles import absolute_angles
 from symgen.mechanics.system import System
 from symgen.methods.forward_dynamics.motion import Motion
-from symgen.methods.graphs import Moved
+from symgen.methods.graphs import GraphCopy
 from symgen.methods.quantity import Quantity
 from symgen.model.model import Model
 from symgen.symbolic.scalar import Graph, Scalar
@@ -32,7 +32,7 @@ def brought_back(graph: Graph, mechanics: System, derived: Quantity) -> Quantity
     """
     assert mechanics.change is not None
     outputs = mechanics.change.relative(derived.outputs) if derived.name == "forward_dynamics" else derived.outputs
-    there = Moved(graph, _of_the_model(graph, mechanics))
+    there = GraphCopy(graph, _of_the_model(graph, mechanics))
     guards = there.guards(derived.guards)
     return replace(derived, outputs=there.scalars(outputs), guards=guards)
 
@@ -41,7 +41,7 @@ def motion_brought_back(graph: Graph, mechanics: System | None, motion: Motion) 
     """The same for q_ddot and lambda together; in the coordinates they have where no `mechanics` are given."""
     change = None if mechanics is None else mechanics.change
     accelerations = motion.accelerations if change is None else change.relative(motion.accelerations)
-    there = Moved(graph, {} if mechanics is None or change is None else _of_the_model(graph, mechanics))
+    there = GraphCopy(graph, {} if mechanics is None or change is None else _of_the_model(graph, mechanics))
     return replace(
         motion,
         accelerations=there.scalars(accelerations),

@@ -66,8 +66,8 @@ def _solved_apart(
 ) -> Motion:
     """A motion worked out in absolute angles; `measured` tells that it looks at the rank of B itself.
 
-    There G keeps the inertias of bodies apart, and a crank does not feel what the links behind it carry.  They are so
-    on a graph of their own and brought here as they stand: beside each other equal functions are one node.
+    There G keeps the inertias of bodies apart: that of a crank holds nothing of what the links behind it carry.  They
+    are so on a graph of their own and brought here as they stand: beside each other equal functions are one node.
     """
     own = derivation.mechanics
     apart = own.apart() if own.change is not None else in_absolute_angles(own.model) or own.apart()

@@ -25,7 +25,7 @@ from symgen.methods.forward_dynamics.held_lengths import HeldLengths, LengthsApa
 from symgen.methods.forward_dynamics.joint_accelerations import by_joints
 from symgen.methods.forward_dynamics.loop_points import LoopPoint, acceleration, loop_points, wrenches
 from symgen.methods.forward_dynamics.motion import Motion, Problem
-from symgen.methods.forward_dynamics.motions import BY_BODIES_ALONE, STRUCTURED, Alone
+from symgen.methods.forward_dynamics.motions import BY_BODIES_ALONE, STRUCTURED, WithoutNullSpace
 from symgen.methods.method import Method
 from symgen.methods.workspace import Workspace
 from symgen.model.expressions.expression import Number
@@ -244,5 +244,5 @@ def _alone(workspace: Workspace, by_bodies: bool = False) -> tuple[System, Motio
     return BY_BODIES_ALONE if found is None else found
 
 
-ARTICULATED: Method = Alone(_alone, STRUCTURED)
-REFINED: Method = Alone(partial(_alone, by_bodies=True), STRUCTURED)
+ARTICULATED: Method = WithoutNullSpace(_alone, STRUCTURED)
+REFINED: Method = WithoutNullSpace(partial(_alone, by_bodies=True), STRUCTURED)

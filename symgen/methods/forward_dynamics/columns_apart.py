@@ -28,7 +28,7 @@ class Share:
     amount: Scalar
 
 
-class Apart(Problem):
+class ColumnsApart(Problem):
     """The same equations for x with y_ddot = T x; `shares` are those of T, by the coordinate of the carrying link.
 
     `factor` is that of T^T G T.
@@ -92,7 +92,7 @@ class _Turned(OrderedCholesky):
         self._factor.lower = lower
 
 
-def apart(problem: Problem) -> Apart | None:
+def apart(problem: Problem) -> ColumnsApart | None:
     """The equations of a system in absolute angles with each link's column beside that of the link it carries.
 
     None where no two links end in a loop of the plane.
@@ -110,7 +110,7 @@ def apart(problem: Problem) -> Apart | None:
         if found is not None:
             amount, columns[parent] = found
             shares[parent] = Share(child, amount)
-    return Apart(problem, shares, tuple(zip(*columns, strict=True))) if shares else None
+    return ColumnsApart(problem, shares, tuple(zip(*columns, strict=True))) if shares else None
 
 
 def _beside(definite: Definite, own: Vector, other: Vector) -> tuple[Scalar, list[Scalar]] | None:

@@ -93,7 +93,7 @@ class AlongNullSpace(ByTheorem):
 
 
 @dataclass(frozen=True, slots=True)
-class Alone(ByTheorem):
+class WithoutNullSpace(ByTheorem):
     """A method of q_ddot and lambda that needs no null space, and brings its own system."""
 
     solved: Callable[[Workspace], tuple[System, Motion] | str]

@@ -17,7 +17,7 @@ from symgen.methods.forward_dynamics.absolute import in_absolute_angles, motion_
 from symgen.methods.forward_dynamics.motion import Motion, Problem
 from symgen.methods.forward_dynamics.motions import BY_BODIES_ALONE, POSITIVE, STRUCTURED
 from symgen.methods.forward_dynamics.schur import SchurQR
-from symgen.methods.graphs import Moved
+from symgen.methods.graphs import GraphCopy
 from symgen.methods.method import Candidate, Method
 from symgen.methods.quantity import Quantity
 from symgen.methods.system import MethodInput
@@ -69,7 +69,7 @@ def projection_of_bodies(
         parts = [equations.answered(tuple(-x for x in column)) for column in rows]
         units = identity(there.graph, n)
         columns = [tuple(x + y for x, y in zip(*pair, strict=True)) for pair in zip(units, parts, strict=True)]
-    moved = Moved(mechanics.graph)
+    moved = GraphCopy(mechanics.graph)
     guards = tuple(dict.fromkeys((*before, *moved.guards(equations.guards))))
     brought = tuple(map(moved.scalars, columns))
     there.graph.dissolve()

@@ -47,7 +47,7 @@ class Elimination:
         self._mechanics = mechanics
         self._graph: Graph = mechanics.graph
         rows, force = mechanics.constraint_jacobian, mechanics.balance
-        # u does not feel the lengths of the rows of B: the numbers that their terms have are left out
+        # u does not depend on the lengths of the rows of B: the numbers that their terms have are left out
         numbers = [usual_number(x for x in row if not x.is_zero) for row in rows]
         primitive = [tuple(divided(self._graph, x, k) for x in row) for row, k in zip(rows, numbers, strict=True)]
         columns = [*self._cancelled(primitive), *mechanics.inputs]

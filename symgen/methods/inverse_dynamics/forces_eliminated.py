@@ -4,8 +4,9 @@ Where M selects rows, the passive rows give the multipliers and the drive rows g
 like the multipliers.  N_B, B B^T or any choice of coordinates do not occur.
 
 All steps of the elimination are invertible.  So the core loses rank exactly where [M, B^T] does, an input
-singularity; beside regular ones the internal forces Z = (inputs that no motion feels) lose rank exactly where B does,
-because a force of B^T alone would then be in balance.  The method is valid at every regular configuration.
+singularity; beside regular ones the internal forces Z = (inputs that do no work along any motion) lose rank exactly
+where B does, because a force of B^T alone would then be in balance.  The method is valid at every regular
+configuration.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from symgen.diagnostics import Mistake, Notice, Span
 from symgen.model.checks.masses import check_masses
 from symgen.model.configurations.assembly import Assembly, RankedConfiguration
-from symgen.model.configurations.branches import Open
+from symgen.model.configurations.branches import OpenLoop
 from symgen.model.configurations.dense import Rows, rank
 from symgen.model.configurations.mechanics import NumericSystem
 from symgen.model.expressions.expression import Binary, Expression, Name, Power
@@ -28,7 +28,7 @@ FAR = 0.5  # rad, or of half a range, that a declared start is moved by
 
 def check_motion(
     mechanics: NumericSystem,
-    assembly: Assembly | Open | None,
+    assembly: Assembly | OpenLoop | None,
     independent: tuple[str, ...],
     declared: Mapping[str, float],
     spans: dict[str, Span | None],
@@ -75,7 +75,7 @@ def _further(mechanics: NumericSystem, assembly: Assembly) -> list[list[float]]:
     return [*(list(place.q) for place in assembly.places[SAMPLES:]), *anywhere]
 
 
-def _no_configuration(mechanics: NumericSystem, nearest: Open | None, span: Span | None) -> Mistake:
+def _no_configuration(mechanics: NumericSystem, nearest: OpenLoop | None, span: Span | None) -> Mistake:
     """The mistake at the row that stays open widest."""
     message = "no configuration was found that satisfies all geometric constraints"
     remedy = "check signs and lengths, or give a start near the assembled mechanism under `configuration`"

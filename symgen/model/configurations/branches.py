@@ -47,14 +47,14 @@ TRIED = 3  # configurations of the same ranks that are looked at for a regular o
 
 
 @dataclass(frozen=True, slots=True)
-class Open:
+class OpenLoop:
     """A mechanism that does not close: the geometric row that stays open widest, by number, and its value."""
 
     row: int
     value: float
 
 
-def branches(mechanics: NumericSystem, inputs: Sequence[Input], start: dict[str, float]) -> Assembly | Open | None:
+def branches(mechanics: NumericSystem, inputs: Sequence[Input], start: dict[str, float]) -> Assembly | OpenLoop | None:
     """The assembly; where loops stay open; None where the constraints have no value."""
     return _Search(mechanics, inputs, start).result()
 
@@ -76,7 +76,7 @@ class _Search:
         self._closer = Closer(mechanics.residuals, sizes[: self._r_geometric], self._widths)
         self._bound = self._bounds([*(rows for _, rows in samples), *self._with_other_parameters()])
 
-    def result(self) -> Assembly | Open | None:
+    def result(self) -> Assembly | OpenLoop | None:
         if not self._usable:
             return None
         configurations = list(self._free() if not self._r_geometric else self._closed())
@@ -378,7 +378,7 @@ class _Search:
                 return False
         return True
 
-    def _open(self) -> Open | None:
+    def _open(self) -> OpenLoop | None:
         """The widest gap at the nearest configuration, of a loop that never closes."""
         self._random = random.Random(SEED)
         nearest: dict[KinematicLoop, tuple[float, list[float]]] = {}
@@ -392,7 +392,7 @@ class _Search:
         for loop, (size, gaps) in nearest.items():
             if size > 0:
                 widest = max(range(len(gaps)), key=lambda i: abs(gaps[i]))
-                return Open(loop.rows[widest], gaps[widest])
+                return OpenLoop(loop.rows[widest], gaps[widest])
         return None
 
 

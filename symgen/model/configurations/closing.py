@@ -46,7 +46,7 @@ class KinematicLoop:
 
 
 @dataclass(frozen=True, slots=True)
-class Closed:
+class ClosureResult:
     """Where an iteration ended: q, and the loops that stay open."""
 
     q: tuple[float, ...]
@@ -67,11 +67,11 @@ class Closer:
 
     def close(
         self, q: Sequence[float], loops: Sequence[KinematicLoop] | None = None, held: Collection[int] = frozenset()
-    ) -> Closed:
+    ) -> ClosureResult:
         """The configuration that is reached from q, loop by loop; `held` coordinates stay where they are."""
         place = list(q)
         still = tuple(loop for loop in (self.loops if loops is None else loops) if not self._close(place, loop, held))
-        return Closed(tuple(place), still)
+        return ClosureResult(tuple(place), still)
 
     def gaps(self, q: Sequence[float], loop: KinematicLoop) -> list[float]:
         """The values of the rows of a loop, in their own units; NaN outside of a domain."""
