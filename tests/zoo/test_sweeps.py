@@ -19,7 +19,7 @@ from symgen.laboratory.zoo.generated import Answer, Target
 from symgen.laboratory.zoo.kkt import GenericRanks
 from symgen.laboratory.zoo.states import FloatState, rounded
 from symgen.laboratory.zoo.sweep_campaign import one_sweep, record_of, table, write_violations
-from symgen.laboratory.zoo.sweeps import ANSWERED, BEYOND, UNEXPLAINED, Led, compared, sweep
+from symgen.laboratory.zoo.sweeps import ANSWERED, BEYOND, UNEXPLAINED, LedState, compared, sweep
 from symgen.laboratory.zoo.witness import JudgedResult, Witness
 
 FOUR_BAR = """
@@ -124,7 +124,9 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def swept(folder: Path, monkeypatch: pytest.MonkeyPatch, change: Callable[[FloatState, float], Answer]) -> sweeps.Swept:
+def swept(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, change: Callable[[FloatState, float], Answer]
+) -> sweeps.SweepCounts:
     """The sweep of a kernel of the slide."""
     both = [kernel(scalar, change) for scalar in ("float64", "float32")]
     monkeypatch.setattr(sweeps, "targets", lambda *_: both)
@@ -168,7 +170,7 @@ def test_a_status_beside_a_singular_set_is_not(folder: Path, monkeypatch: pytest
     monkeypatch.setattr(sweeps, "targets", lambda *_: [kernel("float64", lambda *_: Answer(2, ()))])
     state = FloatState((0.4,), (0.1,), (0.2,), (1.0,), (3.0, 2.0))
     for distance, unexplained in ((1.0, 1), (1e-6, 0)):
-        found = compared(witness, folder, "slide", [Led("lengths", "beside", state, GenericRanks(0, 1), distance)])
+        found = compared(witness, folder, "slide", [LedState("lengths", "beside", state, GenericRanks(0, 1), distance)])
         assert found.of("constraint rank") == 1
         assert found.of(UNEXPLAINED) == unexplained
 
@@ -183,7 +185,7 @@ def test_records_are_told_and_summed_up(folder: Path, monkeypatch: pytest.Monkey
     record = record_of(7, 3, "slides", "verified", found)
     assert record.line.startswith("7:3 slides: ")
     assert f"{found.of(BEYOND)} beyond the tolerance, 0 statuses unexplained" in record.line
-    told = table([record, record_of(7, 4, "slides", "refused", sweeps.Swept({}))])
+    told = table([record, record_of(7, 4, "slides", "refused", sweeps.SweepCounts({}))])
     assert told.startswith("1 of 2 draws swept")
     (row,) = (line.split() for line in told.splitlines() if line.startswith("parameters float64"))
     assert row[2:] == ["6", *["0"] * len(sweeps.STATUSES), "0", "6", "0"]

@@ -21,7 +21,7 @@ ROUNDING = 1e-9
 PLACES, FURTHER = 6, 24
 
 
-class Drawn:
+class DrawnEquations:
     """A model's equations at the configuration that was drawn, and at others that satisfy the constraints."""
 
     def __init__(self, blocks: Mapping[str, Any], start: Mapping[str, float]) -> None:

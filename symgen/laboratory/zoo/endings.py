@@ -9,7 +9,7 @@ import numpy as np
 
 from symgen.laboratory.zoo.describe import MISTAKE, Description, Terms
 from symgen.laboratory.zoo.dice import decimal
-from symgen.laboratory.zoo.drawn import Drawn, rank_at
+from symgen.laboratory.zoo.drawn import DrawnEquations, rank_at
 from symgen.laboratory.zoo.linear import NOTHING
 from symgen.laboratory.zoo.names import ILLEGAL
 from symgen.laboratory.zoo.sketch import Sketch
@@ -96,7 +96,7 @@ def _mistake(sketch: Sketch) -> None:
 def allocate(sketch: Sketch) -> None:
     """Weights, preloads and limits where inputs are left over for them."""
     dice, blocks = sketch.dice, sketch.blocks
-    drawn = Drawn(expanded(blocks, sketch.files), sketch.start)
+    drawn = DrawnEquations(expanded(blocks, sketch.files), sketch.start)
     names = list(blocks["inputs"])
     if len(names) <= drawn.reach:
         return
@@ -119,7 +119,7 @@ def allocate(sketch: Sketch) -> None:
 
 def independent(sketch: Sketch) -> list[str]:
     """Coordinates whose rates determine all others where most rows count: as many as there are degrees of freedom."""
-    drawn = Drawn(expanded(sketch.blocks, sketch.files), sketch.start)
+    drawn = DrawnEquations(expanded(sketch.blocks, sketch.files), sketch.start)
     names = list(drawn.start)
     place = max(drawn.places, key=rank_at)
     jacobian = np.array(place.rows, dtype=float).reshape(-1, len(names))

@@ -10,7 +10,7 @@ import numpy as np
 
 from symgen.laboratory.zoo.describe import Description
 from symgen.laboratory.zoo.dice import Dice
-from symgen.laboratory.zoo.drawn import ROUNDING, Drawn, reached
+from symgen.laboratory.zoo.drawn import ROUNDING, DrawnEquations, reached
 from symgen.laboratory.zoo.linear import NOTHING
 from symgen.laboratory.zoo.names import LEGAL_BY_LANGUAGE
 from symgen.laboratory.zoo.states import normalized
@@ -64,7 +64,7 @@ def features(description: Description) -> frozenset[str]:
     """Which of `ALL` a drawn system has."""
     blocks = expanded(description.blocks, description.files)
     found = set(_of_text(description, blocks)) | set(_of_marks(description.marks))
-    return frozenset(found | set(_of_numbers(Drawn(blocks, description.start), blocks)))
+    return frozenset(found | set(_of_numbers(DrawnEquations(blocks, description.start), blocks)))
 
 
 def _of_marks(marks: tuple[str, ...]) -> Iterator[str]:
@@ -169,7 +169,7 @@ def _of_elements(blocks: Mapping[str, Any]) -> Iterator[str]:
     yield from (name for name, true in told.items() if true)
 
 
-def _of_numbers(drawn: Drawn, blocks: Mapping[str, Any]) -> Iterator[str]:
+def _of_numbers(drawn: DrawnEquations, blocks: Mapping[str, Any]) -> Iterator[str]:
     at = drawn.at_start
     joints = (blocks.get("joints") or {}).values()
     if not drawn.freedom:

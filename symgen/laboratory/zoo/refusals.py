@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from symgen.laboratory.zoo.describe import MISTAKE, Description
-from symgen.laboratory.zoo.drawn import Drawn
+from symgen.laboratory.zoo.drawn import DrawnEquations
 from symgen.laboratory.zoo.urdf_file import expanded
 from symgen.laboratory.zoo.verdict import FAILED, REFUSED, DrawVerdict
 
 NOT_TOLD = "mistake not told"
 # what symgen says of a system as a whole, and what must be so then
-REASONS: dict[str, Callable[[Drawn], bool]] = {
+REASONS: dict[str, Callable[[DrawnEquations], bool]] = {
     "the accelerations are undetermined": lambda drawn: drawn.undetermined,
     "the mechanism cannot move": lambda drawn: drawn.freedom == 0,
     "only singular configurations were found": lambda drawn: drawn.singular,
@@ -27,6 +27,6 @@ def judged(description: Description, verdict: DrawVerdict) -> DrawVerdict:
         return verdict
     for words, is_true in REASONS.items():
         if words in verdict.signature:
-            drawn = Drawn(expanded(description.blocks, description.files), description.start)
+            drawn = DrawnEquations(expanded(description.blocks, description.files), description.start)
             return verdict if is_true(drawn) else DrawVerdict(FAILED, "refused without reason", verdict.signature)
     return DrawVerdict(FAILED, "refused without reason", verdict.signature)

@@ -14,7 +14,7 @@ from symgen.laboratory.zoo.approach import KINDS
 from symgen.laboratory.zoo.campaign import Campaign, write
 from symgen.laboratory.zoo.families import draw
 from symgen.laboratory.zoo.run import run_command
-from symgen.laboratory.zoo.sweeps import ANSWERED, BEYOND, SCALED, STATUSES, UNEXPLAINED, UNKNOWN, Swept, sweep
+from symgen.laboratory.zoo.sweeps import ANSWERED, BEYOND, SCALED, STATUSES, UNEXPLAINED, UNKNOWN, SweepCounts, sweep
 from symgen.laboratory.zoo.verdict import NOTICED, VERIFIED, verdict_of
 
 
@@ -25,7 +25,7 @@ def one_sweep(campaign: Campaign, index: int) -> tuple[SweepRecord, str]:
     write(description, model)
     ending = verdict_of(run_command(model, model.with_suffix(""))).ending
     made = model.with_suffix("") / str(description.blocks["model"])
-    swept = sweep(description, made) if ending in (VERIFIED, NOTICED) else Swept({})
+    swept = sweep(description, made) if ending in (VERIFIED, NOTICED) else SweepCounts({})
     if swept.violations:
         write_violations(model.with_name("violations.json"), swept)
     else:
@@ -58,18 +58,18 @@ class SweepRecord:
         return f"{self.seed}:{self.index} {self.family}: {told}"
 
     @property
-    def swept(self) -> Swept:
+    def swept(self) -> SweepCounts:
         """The counts again."""
-        return Swept({(kind, scalar, outcome): count for kind, scalar, outcome, count in self.counts})
+        return SweepCounts({(kind, scalar, outcome): count for kind, scalar, outcome, count in self.counts})
 
 
-def record_of(seed: int, index: int, family: str, ending: str, swept: Swept) -> SweepRecord:
+def record_of(seed: int, index: int, family: str, ending: str, swept: SweepCounts) -> SweepRecord:
     """The record of a draw."""
     counts = tuple((*key, count) for key, count in sorted(swept.counts.items()))
     return SweepRecord(seed, index, family, ending, counts, tuple(one.text for one in swept.violations))
 
 
-def write_violations(path: Path, swept: Swept) -> None:
+def write_violations(path: Path, swept: SweepCounts) -> None:
     """Everything that is needed to look at each once more."""
     found: list[dict[str, Any]] = [{"text": one.text, **asdict(one)} for one in swept.violations]
     path.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")

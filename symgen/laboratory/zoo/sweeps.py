@@ -42,7 +42,7 @@ BEYOND, UNEXPLAINED, UNKNOWN, ANSWERED = "beyond", "unexplained", "no truth", "a
 
 
 @dataclass(frozen=True)
-class Led:
+class LedState:
     """A state, in words where it was led, the generic ranks of its system, and how far what was led is from a drop."""
 
     kind: str
@@ -73,7 +73,7 @@ class Violation:
 
 
 @dataclass(frozen=True)
-class Swept:
+class SweepCounts:
     """What was counted of a draw by kind, scalar type and outcome, and what violates the rule."""
 
     counts: Mapping[tuple[str, str, str], int]
@@ -84,12 +84,12 @@ class Swept:
         return sum(count for (_, _, outcome), count in self.counts.items() if outcome in outcomes)
 
 
-def sweep(description: Description, folder: Path) -> Swept:
+def sweep(description: Description, folder: Path) -> SweepCounts:
     """What was generated of a description, at all states that are led on; a text that is not read counts nothing."""
     try:
         witness = Witness(description.text, description.start, description.text, description.files)
     except NotReadError:
-        return Swept({})
+        return SweepCounts({})
     members = witness.opened(folder)
     defaults = witness.defaults()
     walker = witness.walker()
@@ -100,7 +100,7 @@ def sweep(description: Description, folder: Path) -> Swept:
     return compared(witness, folder, str(description.blocks["model"]), [*near, *far])
 
 
-def compared(witness: Witness, folder: Path, model: str, led: Iterable[Led]) -> Swept:
+def compared(witness: Witness, folder: Path, model: str, led: Iterable[LedState]) -> SweepCounts:
     """The generated C of both types at given states."""
     called = [target for target in targets(folder, model) if target.name != "Python"]
     counts: Counter[tuple[str, str, str]] = Counter()
@@ -120,7 +120,7 @@ def compared(witness: Witness, folder: Path, model: str, led: Iterable[Led]) -> 
                     counts[one.kind, target.scalar, outcome] += 1
                     if found is not None and outcome in (BEYOND, UNEXPLAINED):
                         violations.append(Violation(one.kind, one.where, target.name, quantity, found, one.state))
-    return Swept(dict(counts), tuple(violations))
+    return SweepCounts(dict(counts), tuple(violations))
 
 
 def _outcomes(found: JudgedResult | None, far: bool) -> Iterator[str]:
@@ -138,7 +138,7 @@ def _outcomes(found: JudgedResult | None, far: bool) -> Iterator[str]:
 
 def _towards(
     walker: Walker, parameters: Mapping[str, float], starts: Sequence[FloatState], ranks: GenericRanks, seed: object
-) -> Iterator[Led]:
+) -> Iterator[LedState]:
     """Towards where rows, inputs and masses lose rank, from each start, down to where that leads.
 
     Starts are regular states, and of many configurations those from which the way is shortest.
@@ -154,7 +154,8 @@ def _towards(
                 if seen[decade] <= PER_DECADE:
                     nearest = walker.refined(q, parameters)
                     state = walker.state(nearest, parameters, ranks.constraints)
-                    yield Led(kind, f"{kind} at 1e-{decade}", state, ranks, approach.distance(kind, state.q) or 0.0)
+                    distance = approach.distance(kind, state.q) or 0.0
+                    yield LedState(kind, f"{kind} at 1e-{decade}", state, ranks, distance)
 
 
 def _scaled(
@@ -163,7 +164,7 @@ def _scaled(
     starts: Sequence[FloatState],
     ranks: GenericRanks,
     names: Sequence[str],
-) -> Iterator[Led]:
+) -> Iterator[LedState]:
     """Each of these parameters far from its value, at a regular state where the loops still close."""
     for start in starts[:1]:
         for name in names:
@@ -172,4 +173,4 @@ def _scaled(
                 q = walker.closed(start.q, far)
                 if q is not None:
                     state = walker.state(walker.refined(q, far), far, ranks.constraints)
-                    yield Led(SCALED, f"{name} times 1e{exponent}", state, ranks)
+                    yield LedState(SCALED, f"{name} times 1e{exponent}", state, ranks)

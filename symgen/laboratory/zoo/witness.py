@@ -48,7 +48,7 @@ class Finding:
 
 
 @dataclass(frozen=True)
-class Checked:
+class CheckResult:
     """What was compared: how many states, the largest error in units of what is allowed, and what is wrong."""
 
     states: int
@@ -102,7 +102,7 @@ class Witness:
         self._runtime: list[bool] = []
         self._spanned = 0
 
-    def check(self, folder: Path, count: int = STATES) -> Checked:
+    def check(self, folder: Path, count: int = STATES) -> CheckResult:
         """Everything generated in a folder; nothing is compared where no state is found."""
         blocks = self._system.blocks
         defaults = self.defaults()
@@ -127,7 +127,7 @@ class Witness:
                         break
                 if findings and findings[-1].text.startswith(target.name):
                     break
-        return Checked(len(found), largest, tuple(findings))
+        return CheckResult(len(found), largest, tuple(findings))
 
     def opened(self, folder: Path) -> list[str]:
         """The parameters of what was generated in a folder, which is compared from now on."""
@@ -331,16 +331,16 @@ def _least_distance(values: Sequence[float], exact: Sequence[Any]) -> float:
     return _norm([float((x - y).abs_lower()) for x, y in zip(exact, values, strict=True)])
 
 
-def check(description: Description, folder: Path) -> Checked:
+def check(description: Description, folder: Path) -> CheckResult:
     """What the witness says of the files in a folder; a part of the language that it does not read is no failure."""
     text = description.text
     try:
         return Witness(text, description.start, text, description.files).check(folder)
     except NotReadError:
-        return Checked(0, 0.0, ())
+        return CheckResult(0, 0.0, ())
 
 
-def findings_by_kind(checked: Checked) -> Iterator[tuple[str, str]]:
+def findings_by_kind(checked: CheckResult) -> Iterator[tuple[str, str]]:
     """Kind and text of what is wrong."""
     for finding in checked.findings:
         yield finding.kind, finding.text
