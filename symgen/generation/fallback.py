@@ -94,10 +94,7 @@ class Fallback:
             self._alternatives = Alternatives(draft.model, derivations.generic, derivations.methods)
             self._search = WorstStateSearch(expected)
             self._exactly = ExactStates(expected)
-        made = draft
-        for quantity, faults in (certificate.rejected | self._worst(draft, certificate, expected)).items():
-            made = self._replaced(made, quantity, faults, expected)
-            let_go()
+        made = self._all_replaced(draft, certificate.rejected | self._worst(draft, certificate, expected), expected)
         if not certificate.faults:
             worst = {one.quantity: one for one in sorted(certificate.errors, key=lambda record: record.largest)}
             for quantity, record in worst.items():
@@ -106,6 +103,9 @@ class Fallback:
                 if largest > MARGIN and quantity not in self._weighed:
                     made = self._with_margin(made, quantity, largest, expected)
                     let_go()
+        if made is draft:
+            # ways that were looked at for a margin may have led to states at which what stays is worse
+            made = self._all_replaced(draft, self._worst(draft, certificate, expected), expected)
         return None if made is draft else made
 
     def settle(self) -> None:
@@ -139,6 +139,13 @@ class Fallback:
         return {
             scalar: self._search.largest(kernel, programs[scalar].sincos, scalar) for scalar, kernel in kernels.items()
         }
+
+    def _all_replaced(self, draft: Draft, rejected: Mapping[str, Sequence[Fault]], expected: Expected) -> Draft:
+        """The draft without the ways that are rejected."""
+        for quantity, faults in rejected.items():
+            draft = self._replaced(draft, quantity, faults, expected)
+            let_go()
+        return draft
 
     def _replaced(self, draft: Draft, quantity: str, faults: Sequence[Fault], expected: Expected) -> Draft:
         """The draft with a rejected quantity along its next way that passes, or without it."""
