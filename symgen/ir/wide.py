@@ -108,7 +108,7 @@ class _Writer:
         self._rests: dict[str, Operand] = {}
         self._sums = sums_of_shared_angles(kernel)
         sines = (one for one in kernel.statements if one.operation == "sincos")
-        self._own_sines = {one.operands[0].name: one for one in sines if isinstance(one.operands[0], Local)}
+        self._own_sines = {one.operands[0]: one for one in sines}
         self._turned: dict[Turn, tuple[_Pair, _Pair]] = {}
         self._written: set[str] = set()
         self.further_angles: list[str] = []
@@ -188,14 +188,14 @@ class _Writer:
         if turn in self._turned and not targets:
             return self._turned[turn]
         if turn.count == 1:
-            ((name, direction),) = turn.parts
-            sine, cosine = self._sines_of(name)
+            ((part, direction),) = turn.parts
+            sine, cosine = self._sines_of(part)
             if direction < 0:
                 sine = self.emit("neg", sine[0]), self.emit("neg", sine[1])
             self._turned[turn] = sine, cosine
             return sine, cosine
-        names = [name for name, _ in turn.parts]
-        last = next((name for name in names if turn.without(name) in self._turned), names[-1])
+        parts = [part for part, _ in turn.parts]
+        last = next((part for part in parts if turn.without(part) in self._turned), parts[-1])
         (sine, cosine), (s, c) = self._turn(turn.without(last)), self._sines_of(last)
         kinds: tuple[OperationName, OperationName] = ("wide_add", "wide_sub")
         add, sub = kinds if turn.direction(last) > 0 else kinds[::-1]
@@ -215,12 +215,16 @@ class _Writer:
         self._rests[target] = Local(rest)
         return Local(target), Local(rest)
 
-    def _sines_of(self, name: str) -> tuple[_Pair, _Pair]:
-        """Those of a loaded angle; where the kernel has none of it, or only later on, they come first."""
-        own = self._own_sines.get(name)
+    def _sines_of(self, angle: Operand) -> tuple[_Pair, _Pair]:
+        """Those of a loaded angle or a literal; where the kernel has none of it, or only later on, they come first."""
+        own = self._own_sines.get(angle)
         if own is None:
-            own = self._own_sines[name] = Statement((self._name(), self._name()), "sincos", (Local(name),))
-            self.further_angles.append(name)
+            rounded, rest = self._pair(angle, exact=False)
+            if isinstance(rounded, Local):
+                self._keep(rounded.name, rest)
+            own = self._own_sines[angle] = Statement((self._name(), self._name()), "sincos", (rounded,))
+            if isinstance(angle, Local):
+                self.further_angles.append(angle.name)
         if own.targets[0] not in self._written:
             self._on_circle(own)
         sine, cosine = map(Local, own.targets)

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import replace
+from fractions import Fraction
 
 from symgen.ir.kernel import Block, Kernel, Literal, Local, Operand, Statement, Status
 from symgen.records import dataclass
@@ -20,29 +21,31 @@ MOST_PARTS = 12
 
 @dataclass(frozen=True, slots=True)
 class Turn:
-    """How often, and in which direction, each loaded angle stands in a sum, in the order of their names."""
+    """How often, and in which direction, each loaded angle and each literal stands in a sum, in their order."""
 
-    parts: tuple[tuple[str, int], ...]
+    parts: tuple[tuple[Operand, int], ...]
 
     @property
     def count(self) -> int:
         """How many angles are added up."""
         return sum(abs(times) for _, times in self.parts)
 
-    def without(self, name: str) -> Turn:
+    def without(self, part: Operand) -> Turn:
         """One time less of an angle."""
-        left = ((x, k - self.direction(x) * (x == name)) for x, k in self.parts)
+        left = ((x, k - self.direction(x) * (x == part)) for x, k in self.parts)
         return Turn(tuple((x, k) for x, k in left if k))
 
-    def direction(self, name: str) -> int:
+    def direction(self, part: Operand) -> int:
         """1 or -1."""
-        return 1 if dict(self.parts)[name] > 0 else -1
+        return 1 if dict(self.parts)[part] > 0 else -1
 
 
 def sums_of_shared_angles(kernel: Kernel) -> dict[str, Turn]:
-    """Angles that are sums of loaded ones, some of which other sines and cosines of the kernel are made of, too."""
-    known: dict[str, Counter[str] | None] = {load.local: Counter({load.local: 1}) for load in kernel.loads}
-    angles: dict[str, Counter[str]] = {}
+    """Angles that are sums of loaded ones and literals, some of which other sines of the kernel are made of, too."""
+    known: dict[str, Counter[Operand] | None] = {}
+    for load in kernel.loads:
+        known[load.local] = Counter({Local(load.local): 1})
+    angles: dict[str, Counter[Operand]] = {}
     for statement in kernel.statements:
         if statement.operation == "sincos":
             (angle,) = statement.operands
@@ -51,28 +54,33 @@ def sums_of_shared_angles(kernel: Kernel) -> dict[str, Turn]:
                 angles[angle.name] = form
         elif statement.operation in ("add", "sub", "neg"):
             known[statement.targets[0]] = _sum(statement, known)
-    users = Counter(name for form in angles.values() for name in form)
+    users = Counter(part for form in angles.values() for part in form)
     return {
-        angle: Turn(tuple(sorted(form.items())))
+        angle: Turn(tuple(sorted(form.items(), key=_order)))
         for angle, form in angles.items()
-        if 1 < sum(map(abs, form.values())) <= MOST_PARTS and any(users[name] > 1 for name in form)
+        if 1 < sum(map(abs, form.values())) <= MOST_PARTS and any(users[part] > 1 for part in form)
     }
 
 
-def _sum(statement: Statement, known: Mapping[str, Counter[str] | None]) -> Counter[str] | None:
+def _order(part: tuple[Operand, int]) -> tuple[str, Fraction]:
+    x, _ = part
+    return ("", x.value) if isinstance(x, Literal) else (x.name, Fraction(0))
+
+
+def _sum(statement: Statement, known: Mapping[str, Counter[Operand] | None]) -> Counter[Operand] | None:
     signs = {"add": (1, 1), "sub": (1, -1), "neg": (-1,)}[statement.operation]
-    total: Counter[str] = Counter()
+    total: Counter[Operand] = Counter()
     for operand, sign in zip(statement.operands, signs, strict=True):
         form = _form(operand, known)
         if form is None:
             return None
-        for name, count in form.items():
-            total[name] += sign * count
-    return Counter({name: count for name, count in total.items() if count})
+        for part, count in form.items():
+            total[part] += sign * count
+    return Counter({part: count for part, count in total.items() if count})
 
 
-def _form(x: Operand, known: Mapping[str, Counter[str] | None]) -> Counter[str] | None:
-    return None if isinstance(x, Literal) else known.get(x.name)
+def _form(x: Operand, known: Mapping[str, Counter[Operand] | None]) -> Counter[Operand] | None:
+    return Counter({x: 1}) if isinstance(x, Literal) else known.get(x.name)
 
 
 def with_ranges(blocks: list[Block], angles: list[str], taken: set[str]) -> list[Block]:

@@ -216,8 +216,19 @@ def folded(lines: Lines) -> str:
     return lines("sub", left, lines("mul", f"t{both}b", f"t{one}a"))
 
 
+def offset(lines: Lines) -> str:
+    """sin(a + 1/3 - k) cos(a + 1/3) - cos(a + 1/3 - k) sin(a + 1/3), which is -sin k: a number is a part, too."""
+    placed = lines("add", "a", Fraction(1, 3))
+    lines("sincos", lines("sub", placed, "k"), targets=2)
+    both = len(lines.statements) - 1
+    lines("sincos", placed, targets=2)
+    one = len(lines.statements) - 1
+    left = lines("mul", f"t{both}a", f"t{one}b")
+    return lines("sub", left, lines("mul", f"t{both}b", f"t{one}a"))
+
+
 @pytest.mark.parametrize("scalar", SCALARS)
-@pytest.mark.parametrize("build", [stretched, folded], ids=lambda build: build.__name__)
+@pytest.mark.parametrize("build", [stretched, folded, offset], ids=lambda build: build.__name__)
 def test_angles_that_are_a_little_apart(build: Callable[[Lines], str], scalar: Scalar) -> None:
     """Sines of a sum and of a part of it keep what is between them, as on a leg that is all but stretched."""
     assert_digits_come_back(build, scalar, [{**one, "p": (one["p"][0] * 2.0**-9,)} for one in given(scalar)])
