@@ -18,7 +18,7 @@ from symgen.ir.interpret import round_literal
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Local, Operand, OperationName, Scalar, Statement, Status
 from symgen.ir.lifted import Lifted, same_kernel
 from symgen.ir.split import pruned
-from symgen.ir.wide_angles import Turn, sums_of_shared_angles, with_ranges
+from symgen.ir.wide_angles import AngleSum, sums_of_shared_angles, with_ranges
 from symgen.ir.wide_functions import HALF, ONE, WIDE, Lines
 
 ZERO = Literal(Fraction(0))
@@ -109,7 +109,7 @@ class _Writer:
         self._sums = sums_of_shared_angles(kernel)
         sines = (one for one in kernel.statements if one.operation == "sincos")
         self._own_sines = {one.operands[0]: one for one in sines}
-        self._turned: dict[Turn, tuple[_Pair, _Pair]] = {}
+        self._turned: dict[AngleSum, tuple[_Pair, _Pair]] = {}
         self._written: set[str] = set()
         self.further_angles: list[str] = []
         self._lines = Lines(self._name)
@@ -183,7 +183,7 @@ class _Writer:
         elif statement.targets[0] not in self._written:
             self._on_circle(statement)
 
-    def _turn(self, turn: Turn, targets: tuple[str, ...] = ()) -> tuple[_Pair, _Pair]:
+    def _turn(self, turn: AngleSum, targets: tuple[str, ...] = ()) -> tuple[_Pair, _Pair]:
         """Sine and cosine of a sum of angles, by the addition theorem from those of all but one."""
         if turn in self._turned and not targets:
             return self._turned[turn]

@@ -20,7 +20,7 @@ MOST_PARTS = 12
 
 
 @dataclass(frozen=True, slots=True)
-class Turn:
+class AngleSum:
     """How often, and in which direction, each loaded angle and each literal stands in a sum, in their order."""
 
     parts: tuple[tuple[Operand, int], ...]
@@ -30,17 +30,17 @@ class Turn:
         """How many angles are added up."""
         return sum(abs(times) for _, times in self.parts)
 
-    def without(self, part: Operand) -> Turn:
+    def without(self, part: Operand) -> AngleSum:
         """One time less of an angle."""
         left = ((x, k - self.direction(x) * (x == part)) for x, k in self.parts)
-        return Turn(tuple((x, k) for x, k in left if k))
+        return AngleSum(tuple((x, k) for x, k in left if k))
 
     def direction(self, part: Operand) -> int:
         """1 or -1."""
         return 1 if dict(self.parts)[part] > 0 else -1
 
 
-def sums_of_shared_angles(kernel: Kernel) -> dict[str, Turn]:
+def sums_of_shared_angles(kernel: Kernel) -> dict[str, AngleSum]:
     """Angles that are sums of loaded ones and literals, some of which other sines of the kernel are made of, too."""
     known: dict[str, Counter[Operand] | None] = {}
     for load in kernel.loads:
@@ -56,7 +56,7 @@ def sums_of_shared_angles(kernel: Kernel) -> dict[str, Turn]:
             known[statement.targets[0]] = _sum(statement, known)
     users = Counter(part for form in angles.values() for part in form)
     return {
-        angle: Turn(tuple(sorted(form.items(), key=_order)))
+        angle: AngleSum(tuple(sorted(form.items(), key=_order)))
         for angle, form in angles.items()
         if 1 < sum(map(abs, form.values())) <= MOST_PARTS and any(users[part] > 1 for part in form)
     }

@@ -11,7 +11,7 @@ from symgen.backends.c.lanes import each_name, lane_loops, loop_lines, results_o
 from symgen.backends.c.names import global_name, status_name
 from symgen.backends.c.pairs import GROUP_NAMES, group_lines, leading_group
 from symgen.backends.c.statements import CStatements
-from symgen.backends.c.steps import Table, table
+from symgen.backends.c.steps import StepTable, table
 from symgen.backends.c.surroundings import apart_name, both_name, rare_name
 from symgen.backends.comments import c_comment_lines
 from symgen.backends.locals import Names, array_arguments, used_locals
@@ -146,7 +146,7 @@ def _ending(model: Model, kernel: Kernel, printer: CStatements, names: Names) ->
 def _body_of_steps(model: Model, program: Program, kernel: Kernel, names: Names, function: str) -> tuple[str, ...]:
     """The lines of a function that runs through tables of steps."""
     suffix, scalar = SUFFIX[program.scalar], C_TYPE[program.scalar]
-    steps: Table = table(kernel, program)
+    steps: StepTable = table(kernel, program)
     causes = causes_of(kernel, function)
     placed = replace(names, locals={**names.locals, **steps.spelled})
     printer = _printer(model, program, kernel, placed, causes)

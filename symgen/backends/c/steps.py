@@ -35,7 +35,7 @@ class WideFunction:
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
+class StepCase:
     """What a step of an operation does."""
 
     number: int
@@ -52,11 +52,11 @@ class StepsView:
     run: str
     functions: tuple[WideFunction, ...]
     sines: bool
-    cases: tuple[Case, ...]
+    cases: tuple[StepCase, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class StepTable:
     """The steps of a kernel, rows of the number of an operation and of places; `parts` are those of each block.
 
     `constants` are the first of the `size` values, `spelled` is where each local is while it is needed.
@@ -99,7 +99,7 @@ def steps_view(name: str, suffix: str, program: Program) -> StepsView | None:
         run=f"{name}_steps{suffix}",
         functions=tuple(_function(one, program.scalar, pair) for one in used if is_wide_operation(one)),
         sines="sincos" in used,
-        cases=tuple(Case(k, one, tuple(_case(one, printer, pair, sines))) for k, one in enumerate(used)),
+        cases=tuple(StepCase(k, one, tuple(_case(one, printer, pair, sines))) for k, one in enumerate(used)),
     )
 
 
@@ -115,7 +115,7 @@ def local_names(program: Program) -> set[str]:
     return {_VALUES, _STEP, "pair"} if needed else set()
 
 
-def table(kernel: Kernel, program: Program) -> Table:
+def table(kernel: Kernel, program: Program) -> StepTable:
     """The steps of a kernel of a program."""
     numbers = {operation: number for number, operation in enumerate(_operations(program))}
     statements = kernel.statements
@@ -133,7 +133,7 @@ def table(kernel: Kernel, program: Program) -> Table:
         parts.append(range(start, len(rows)))
     texts = tuple(c_literal(program.scalar, one.value).strip("()") for one in places.constants)
     spelled = {name: f"{_VALUES}[{place}]" for name, place in places.of.items()}
-    return Table(program.scalar, tuple(rows), tuple(parts), texts, spelled, places.size)
+    return StepTable(program.scalar, tuple(rows), tuple(parts), texts, spelled, places.size)
 
 
 class _Places:
