@@ -10,7 +10,7 @@ from pathlib import Path
 from symgen.diagnostics import ModelError
 from symgen.laboratory.bench.passes import counted, page
 from symgen.laboratory.zoo.campaign import write
-from symgen.laboratory.zoo.families import draw
+from symgen.laboratory.zoo.draws.families import draw
 from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.quantities.everything import MAIN

@@ -9,7 +9,7 @@ import shutil
 import sys
 from pathlib import Path
 
-from symgen.laboratory.stress.pages import page
+from symgen.laboratory.stress.reporting.pages import page
 
 ROOT = Path(__file__).resolve().parent.parent
 TARGET = ROOT / "docs" / "stress"

@@ -167,7 +167,7 @@ def _verify(arguments: list[str]) -> int:
     add_models(parser)
     add_generation(parser)
     given = parser.parse_args(arguments)
-    from symgen.verify.compile import find_compiler
+    from symgen.verify.running.compile import find_compiler
 
     if find_compiler() is None:
         raise WrongUseError("no C compiler was found: install gcc or clang, or name one in CC")

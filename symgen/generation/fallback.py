@@ -31,7 +31,7 @@ from symgen.verify.comparison import INACCURATE, VIOLATES
 from symgen.verify.exactness import ExactStates
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import Measurements
-from symgen.verify.searched import WorstStateSearch
+from symgen.verify.sampling.searched import WorstStateSearch
 from symgen.verify.tolerance import FACTOR
 
 TOO_LONG = "not tried: it takes many times as long to derive"

@@ -15,10 +15,10 @@ from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.model.model import Model
 from symgen.quantities.catalogue import CATALOGUE
-from symgen.verify.compile import CFunction, Compilation, Outcome, c_array, find_compiler
 from symgen.verify.reference.reference import State
 from symgen.verify.run import generated_sources
-from symgen.verify.states import Sample, rounded
+from symgen.verify.running.compile import CFunction, Compilation, Outcome, c_array, find_compiler
+from symgen.verify.sampling.states import Sample, rounded
 
 SCALARS: tuple[Scalar, ...] = ("float64", "float32")
 # What the formulas of the paper are computed from.

@@ -12,7 +12,7 @@ from symgen.ir.kernel import Scalar
 from symgen.model.model import Model
 from symgen.verify.expected import Expected
 from symgen.verify.reference.reference import ReferenceValueError
-from symgen.verify.states import VerificationError
+from symgen.verify.sampling.states import VerificationError
 
 
 def expected_of(

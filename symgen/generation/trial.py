@@ -18,8 +18,8 @@ from symgen.generation.files import verified
 from symgen.generation.results import Options
 from symgen.generation.states import expected_of
 from symgen.verify.certificate import Certificate
-from symgen.verify.compile import find_compiler
 from symgen.verify.run import blank_certificate
+from symgen.verify.running.compile import find_compiler
 
 
 class Trial:

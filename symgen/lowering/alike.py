@@ -7,7 +7,7 @@ from symgen.ir.lifted import Lifted, Meant, same_kernel
 from symgen.lowering.writer import Writer, angles_among, angles_of
 from symgen.mechanics.alike import TOGETHER, Alike
 from symgen.methods.quantity import Quantity
-from symgen.symbolic.angles import share_angles
+from symgen.symbolic.angles.sharing import share_angles
 from symgen.symbolic.traverse import topological
 
 

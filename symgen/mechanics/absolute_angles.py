@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from symgen.records import dataclass
-from symgen.symbolic.angle_forms import angle_form
+from symgen.symbolic.angles.angle_forms import angle_form
 from symgen.symbolic.matrix import Matrix, Vector, flatten
 from symgen.symbolic.traverse import topological
 

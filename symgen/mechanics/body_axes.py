@@ -22,8 +22,8 @@ from symgen.model.expressions.expression import Expression
 from symgen.model.kinematics.triples import Rows, applied, cross, inner, minus, plus, transposed, triple
 from symgen.model.model import Model
 from symgen.symbolic.calculus import gradient
-from symgen.symbolic.content import divided, usual_number
 from symgen.symbolic.matrix import Matrix, Vector, dot
+from symgen.symbolic.polynomials.content import divided, usual_number
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.translate import translate
 from symgen.symbolic.traverse import substitute

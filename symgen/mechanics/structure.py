@@ -11,8 +11,8 @@ from symgen.mechanics.system import System
 from symgen.model.expressions.names import counted
 from symgen.model.model import ConstraintRow
 from symgen.records import dataclass
-from symgen.symbolic.angle_forms import angle_form
-from symgen.symbolic.angles import angles_of, share_angles
+from symgen.symbolic.angles.angle_forms import angle_form
+from symgen.symbolic.angles.sharing import angles_of, share_angles
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.matrix import flatten
 from symgen.symbolic.scalar import Scalar

@@ -10,7 +10,7 @@ from symgen.linear_algebra.guards import Guard
 from symgen.methods.quantity import Quantity, scalars
 from symgen.methods.system import MethodInput
 from symgen.records import dataclass
-from symgen.symbolic.angles import share_angles
+from symgen.symbolic.angles.sharing import share_angles
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost, topological
 

@@ -13,7 +13,7 @@ from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.never_zero import Definite
 from symgen.mechanics.system import System
 from symgen.model.model import Model
-from symgen.symbolic.angles import share_angles
+from symgen.symbolic.angles.sharing import share_angles
 from symgen.symbolic.matrix import Vector, flatten
 from symgen.symbolic.traverse import cost
 

@@ -22,7 +22,7 @@ from symgen.simulate.integrate import SimulatedMotion, consistent_start, integra
 from symgen.simulate.plant import QUANTITIES, Plant, PlantError
 from symgen.simulate.scene import scene
 from symgen.simulate.tables import motion_chart, motion_csv
-from symgen.verify.compile import find_compiler
+from symgen.verify.running.compile import find_compiler
 from symgen.verify.tolerance import FACTOR
 
 Progress = Callable[[str], None]

@@ -10,8 +10,8 @@ from symgen.mechanics.genericity import assembly_of
 from symgen.model.configurations.closing import row_unit
 from symgen.model.configurations.mechanics import NumericSystem
 from symgen.model.model import Model
-from symgen.verify.compile import Outcome
 from symgen.verify.reference.reference import State
+from symgen.verify.running.compile import Outcome
 
 QUANTITIES = ("forward_dynamics", "admissible_velocity", "projected_configuration", "constraint_residual", "energy")
 MEANING = {

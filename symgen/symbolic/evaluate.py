@@ -12,8 +12,8 @@ from fractions import Fraction
 
 from symgen.diagnostics import SymgenBug
 from symgen.runtime.effort import spend
+from symgen.symbolic.angles.sines import cosine, sine
 from symgen.symbolic.scalar import Scalar
-from symgen.symbolic.sines import cosine, sine
 from symgen.symbolic.traverse import topological
 
 FUNCTIONS: dict[str, Callable[..., float]] = {

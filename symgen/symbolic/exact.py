@@ -18,7 +18,7 @@ from math import isqrt
 from operator import mul
 from typing import TypeAlias
 
-from symgen.symbolic.circle import FIELD, Field
+from symgen.symbolic.angles.circle import FIELD, Field
 from symgen.symbolic.fingerprint import opaque
 from symgen.symbolic.scalar import PI, Scalar
 from symgen.symbolic.traverse import topological

@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
 
 from symgen.runtime.effort import SCALAR, spend
-from symgen.symbolic.angle_forms import Angles
+from symgen.symbolic.angles.angle_forms import Angles
 from symgen.symbolic.fingerprint import PRIME, combine, opaque, residue
 from symgen.symbolic.functions import expanded, simplified
 from symgen.symbolic.products import Products

@@ -12,9 +12,9 @@ from typing import TypeAlias
 
 from symgen.model.configurations.sparse import Row
 from symgen.runtime.effort import SLOPE, spend
+from symgen.symbolic.angles.sines import cosine, sine
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.scalar import Scalar
-from symgen.symbolic.sines import cosine, sine
 from symgen.symbolic.traverse import topological
 
 _Step: TypeAlias = tuple[int, str, int, int]

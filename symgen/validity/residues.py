@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
-from symgen.symbolic.angle_forms import angle_form
+from symgen.symbolic.angles.angle_forms import angle_form
 from symgen.symbolic.fingerprint import PRIME, angle_pair, combine, leaf_pair, opaque, residue
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import topological

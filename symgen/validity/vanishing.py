@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Collection, Iterator, Sequence
 from itertools import combinations
 
-from symgen.symbolic.angle_forms import angle_form
+from symgen.symbolic.angles.angle_forms import angle_form
 from symgen.symbolic.fingerprint import PRIME
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import topological

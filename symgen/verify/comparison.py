@@ -8,10 +8,10 @@ from typing import TypeAlias
 
 from symgen.ir.kernel import Status
 from symgen.verify.certificate import ErrorRecord, Fault, InvariantRecord
-from symgen.verify.compile import Outcome
 from symgen.verify.invariants import defects
 from symgen.verify.reference.reference import Reference
-from symgen.verify.states import Sample
+from symgen.verify.running.compile import Outcome
+from symgen.verify.sampling.states import Sample
 from symgen.verify.tolerance import FACTOR, Expectation
 
 Results: TypeAlias = Mapping[str, Sequence[Outcome]]

@@ -7,8 +7,8 @@ from statistics import median
 from typing import Any
 
 from symgen.verify.reference.reference import Reference
-from symgen.verify.regular import SAMPLING_BITS
-from symgen.verify.states import Sample
+from symgen.verify.sampling.regular import SAMPLING_BITS
+from symgen.verify.sampling.states import Sample
 
 
 def condition_numbers(reference: Reference, samples: Sequence[Sample]) -> list[tuple[str, float, float]]:

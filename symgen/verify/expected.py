@@ -9,10 +9,10 @@ from typing import TypeAlias
 from symgen.ir.kernel import Scalar
 from symgen.model.model import Model
 from symgen.runtime.activity import each, working
-from symgen.verify.modes import modes
 from symgen.verify.reference.reference import Reference, ReferenceValueError
-from symgen.verify.regular import FEWEST_STATES
-from symgen.verify.states import (
+from symgen.verify.sampling.modes import modes
+from symgen.verify.sampling.regular import FEWEST_STATES
+from symgen.verify.sampling.states import (
     USUAL_STATES,
     Sample,
     VerificationError,

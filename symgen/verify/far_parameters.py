@@ -20,13 +20,13 @@ import numpy as np
 from symgen.ir.bounded import Bound
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.runtime.activity import working
-from symgen.verify.compile import Outcome
 from symgen.verify.expected import Expected
 from symgen.verify.far_errors import Far, FarErrors
 from symgen.verify.interpreted import outcomes
-from symgen.verify.lanes import Lanes
-from symgen.verify.loops_in_lanes import Loops
 from symgen.verify.reference.reference import ReferenceValueError, State
+from symgen.verify.running.compile import Outcome
+from symgen.verify.sampling.lanes import Lanes
+from symgen.verify.sampling.loops_in_lanes import Loops
 from symgen.verify.tolerance import FACTOR, expectations
 
 # Powers of ten by which a parameter is away at most: they are looked at one by one.

@@ -9,10 +9,10 @@ from symgen.ir.kernel import Function, Kernel, Scalar
 from symgen.runtime.activity import working
 from symgen.verify.certificate import ErrorRecord, Fault
 from symgen.verify.comparison import compare, faults_of
-from symgen.verify.compile import Outcome
 from symgen.verify.expected import Expected
 from symgen.verify.many_states import run_many
 from symgen.verify.reference.reference import State
+from symgen.verify.running.compile import Outcome
 
 
 def measured(

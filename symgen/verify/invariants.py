@@ -15,7 +15,7 @@ from flint import arb_mat
 from symgen.verify.reference.evaluation import Evaluation
 from symgen.verify.reference.linear import column, norm
 from symgen.verify.reference.reference import BITS, Reference
-from symgen.verify.states import Sample
+from symgen.verify.sampling.states import Sample
 from symgen.verify.tolerance import FACTOR, Expectation
 
 Values: TypeAlias = Mapping[str, Any]

@@ -19,10 +19,13 @@ from symgen.backends.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.model.model import Model
 from symgen.runtime.activity import each, working
-from symgen.verify.batch import run_batch
 from symgen.verify.certificate import Certificate, ConditionRecord, ErrorRecord, Fault, InvariantRecord
 from symgen.verify.comparison import VIOLATES, Results, check_laws, compare, faults_of
-from symgen.verify.compile import (
+from symgen.verify.conditions import condition_numbers
+from symgen.verify.expected import Expected, Progress
+from symgen.verify.reference.reference import ReferenceValueError
+from symgen.verify.running.batch import run_batch
+from symgen.verify.running.compile import (
     CFunction,
     Compilation,
     CompilationError,
@@ -32,13 +35,10 @@ from symgen.verify.compile import (
     c_array,
     find_compiler,
 )
-from symgen.verify.conditions import condition_numbers
-from symgen.verify.expected import Expected, Progress
-from symgen.verify.given_trig import run_given_trig
-from symgen.verify.prepared import run_prepared
-from symgen.verify.python_module import PythonModule
-from symgen.verify.reference.reference import ReferenceValueError
-from symgen.verify.states import USUAL_STATES, Sample, VerificationError
+from symgen.verify.running.given_trig import run_given_trig
+from symgen.verify.running.prepared import run_prepared
+from symgen.verify.running.python_module import PythonModule
+from symgen.verify.sampling.states import USUAL_STATES, Sample, VerificationError
 
 LONGEST_EXCERPT = 2000
 NO_COMPILER = "no C compiler was found, the C is not verified: install gcc or clang, or name one in CC"

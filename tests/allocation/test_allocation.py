@@ -28,7 +28,7 @@ from symgen.verify.reference.quantities import QUANTITIES
 from symgen.verify.reference.reference import State
 from symgen.verify.reference.tape import ball, precision
 from symgen.verify.run import generated_sources, verify
-from symgen.verify.states import sample_states
+from symgen.verify.sampling.states import sample_states
 from symgen.verify.tolerance import FACTOR, expectations
 
 BITS = 256

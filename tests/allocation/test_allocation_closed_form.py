@@ -14,7 +14,7 @@ from symgen.report.content import ReportInput
 from symgen.report.html import render_html
 from symgen.report.latex import render_latex
 from symgen.report.pdf import render_pdf
-from symgen.verify.states import sample_states
+from symgen.verify.sampling.states import sample_states
 
 # the common denominator of M is negative, and with it the sign of the minors without it
 FLIPPED = """\

@@ -6,7 +6,7 @@ import pytest
 from laws_harness import System
 
 from symgen.ir.kernel import Status
-from symgen.verify.states import sample_states
+from symgen.verify.sampling.states import sample_states
 from symgen.verify.tolerance import FACTOR, expectations
 
 PLATE = """\

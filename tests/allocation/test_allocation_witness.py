@@ -6,7 +6,7 @@ import allocation_models as models
 import pytest
 from laws_harness import System
 
-from symgen.verify.states import sample_states
+from symgen.verify.sampling.states import sample_states
 from symgen.witness.casadi_derivation import witness_functions
 
 CASES = {

@@ -14,7 +14,7 @@ import pytest
 
 from symgen.cli.main import main
 from symgen.runtime.processes import ToolError, run
-from symgen.verify import compile as compiling
+from symgen.verify.running import compile as compiling
 
 MODEL = """model: {name}
 coordinates: {{x: {{unit: m}}, phi: {{unit: rad}}}}

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from symgen.cli.main import main
-from symgen.verify.states import VerificationError
+from symgen.verify.sampling.states import VerificationError
 
 MODEL = """model: steep
 coordinates: {x: {}, y: {}, z: {}}

@@ -22,7 +22,7 @@ from symgen.verify.reference import evaluation as reference_evaluation
 from symgen.verify.reference import linear as reference_linear
 from symgen.verify.reference.linear import solve
 from symgen.verify.reference.reference import Reference
-from symgen.verify.states import sample_states
+from symgen.verify.sampling.states import sample_states
 
 
 def sliders(count: int) -> Model:

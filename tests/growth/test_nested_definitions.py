@@ -14,7 +14,7 @@ from symgen.generation.results import Options
 from symgen.model.load import load_text
 from symgen.pipeline import generate
 from symgen.quantities.select import derive_quantities
-from symgen.symbolic.angle_forms import angle_form
+from symgen.symbolic.angles.angle_forms import angle_form
 from symgen.symbolic.scalar import Graph
 from symgen.verify.reference.reference import Reference
 

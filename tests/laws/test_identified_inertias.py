@@ -7,7 +7,7 @@ from laws_harness import System
 
 from symgen.diagnostics import ModelError
 from symgen.model.load import load_text
-from symgen.verify.states import sample_states
+from symgen.verify.sampling.states import sample_states
 
 ARM = """\
 model: identified_arm

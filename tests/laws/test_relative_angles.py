@@ -6,7 +6,7 @@ import pytest
 from laws_harness import System, system
 
 from symgen.symbolic.traverse import reached
-from symgen.verify.states import sample_states
+from symgen.verify.sampling.states import sample_states
 
 PRESS = """\
 model: press_with_two_toggles

@@ -11,7 +11,7 @@ from laws_harness import System, system
 from symgen.ir.kernel import Scalar, Status
 from symgen.mechanics.structure import analyse
 from symgen.verify.reference.reference import State
-from symgen.verify.states import rounded, sample_states
+from symgen.verify.sampling.states import rounded, sample_states
 
 SMALL = {
     "rank_one": texts.RANK_ONE,

@@ -12,7 +12,7 @@ from symgen.methods.quantity import scalars
 from symgen.methods.spaces import along_blocks, along_minors
 from symgen.quantities.catalogue import BY_NAME, by_blocks, derive
 from symgen.symbolic.traverse import cost
-from symgen.verify.states import sample_states
+from symgen.verify.sampling.states import sample_states
 from symgen.verify.tolerance import FACTOR, expectations
 
 # Two skates, a pendulum whose length is held, a coordinate that is locked, one that nothing touches.

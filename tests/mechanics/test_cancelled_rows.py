@@ -8,8 +8,8 @@ import shipped
 from symgen.mechanics.system import System
 from symgen.methods.inverse_dynamics.elimination import Elimination
 from symgen.model.configurations.mechanics import default_values
-from symgen.symbolic.content import usual_number
 from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.polynomials.content import usual_number
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost, reached
 

@@ -17,9 +17,9 @@ from symgen.methods.method import INPUTS, Candidate
 from symgen.methods.selection import Methods
 from symgen.model.load import load_model
 from symgen.model.model import Model
-from symgen.symbolic.angles import angles_of, share_angles
-from symgen.symbolic.content import divided, usual_number
+from symgen.symbolic.angles.sharing import angles_of, share_angles
 from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.polynomials.content import divided, usual_number
 from symgen.symbolic.scalar import PI, Graph, Scalar
 from symgen.symbolic.traverse import cost
 

@@ -15,12 +15,12 @@ from symgen.ir.kernel import Program
 from symgen.ir.lifted import Lifted, same_kernel
 from symgen.lowering.schedule import schedule
 from symgen.quantities.select import derive_quantities
-from symgen.symbolic.angles import share_angles
-from symgen.symbolic.content import divided, usual_number
+from symgen.symbolic.angles.sharing import share_angles
 from symgen.symbolic.identity import every_identity_evaluated, same_values
 from symgen.symbolic.passes import grouping
 from symgen.symbolic.passes.factoring import Factoring
-from symgen.symbolic.polynomial import Multiplier, refactored
+from symgen.symbolic.polynomials.content import divided, usual_number
+from symgen.symbolic.polynomials.polynomial import Multiplier, refactored
 from symgen.symbolic.scalar import Graph, Scalar
 
 SEEDS = range(60)

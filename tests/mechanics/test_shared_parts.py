@@ -10,10 +10,10 @@ from shipped import model
 
 from symgen.linear_algebra.guards import magnitude
 from symgen.quantities.select import derive_quantities
-from symgen.symbolic.content import divided
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.passes.shared_parts import with_shared_products, with_shared_sums
 from symgen.symbolic.passes.sum_factors import with_common_factors
+from symgen.symbolic.polynomials.content import divided
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import cost, reached
 

@@ -15,7 +15,7 @@ from symgen.quantities.candidates import ABSOLUTE, ARTICULATED
 from symgen.quantities.select import Selection, derive_quantities
 from symgen.symbolic.traverse import topological
 from symgen.verify.expected import Expected
-from symgen.verify.searched import WorstStateSearch
+from symgen.verify.sampling.searched import WorstStateSearch
 
 
 def derived(links: int, folder: Path, *outputs: str) -> Selection:

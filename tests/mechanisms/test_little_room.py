@@ -12,7 +12,7 @@ from symgen.model.load import load_text
 from symgen.model.model import Model
 from symgen.verify.reference.manifold import Ranks
 from symgen.verify.reference.reference import Reference
-from symgen.verify.states import VerificationError, sample_states
+from symgen.verify.sampling.states import VerificationError, sample_states
 
 LATCH = """\
 model: latch

@@ -14,7 +14,7 @@ from symgen.model.model import Model
 from symgen.quantities.select import derive_quantities
 from symgen.symbolic.evaluate import Evaluator
 from symgen.verify.reference.reference import Reference, State
-from symgen.verify.states import sample_states
+from symgen.verify.sampling.states import sample_states
 from symgen.verify.tolerance import expectations
 
 GUIDE = "guide: {translation: [0.5, -0.2, 0.1], rotation: [[x, 0.3], [y, -0.4]]}"

@@ -10,7 +10,7 @@ from symgen.model.model import Model
 from symgen.quantities.select import derive_quantities
 from symgen.symbolic.evaluate import Evaluator
 from symgen.verify.reference.reference import Reference
-from symgen.verify.states import sample_states
+from symgen.verify.sampling.states import sample_states
 from symgen.verify.tolerance import expectations
 
 # a boom on a turret that slews and travels, lifted by a jack; AXIS is that of its pins

@@ -22,7 +22,7 @@ from symgen.package.files import emit_package
 from symgen.quantities.select import derive_quantities
 from symgen.symbolic.evaluate import Evaluator
 from symgen.verify.reference.reference import Reference
-from symgen.verify.states import sample_states
+from symgen.verify.sampling.states import sample_states
 
 FOUR_BAR = (ROOT / "models" / "tilted_four_bar.yaml").read_text(encoding="utf-8")
 ARM = """\

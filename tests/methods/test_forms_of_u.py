@@ -13,7 +13,7 @@ from symgen.methods.selection import every_method
 from symgen.model.load import load_text
 from symgen.model.model import Model
 from symgen.verify.reference.reference import Reference
-from symgen.verify.states import rounded, sample_states
+from symgen.verify.sampling.states import rounded, sample_states
 from symgen.verify.tolerance import FACTOR, expectations
 
 STATES = 8

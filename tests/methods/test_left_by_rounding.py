@@ -13,7 +13,7 @@ from symgen.model.load import load_text
 from symgen.quantities.select import derive_quantities
 from symgen.verify.interpreted import outcomes
 from symgen.verify.reference.reference import Reference, State
-from symgen.verify.states import Sample, rounded
+from symgen.verify.sampling.states import Sample, rounded
 from symgen.verify.tolerance import FACTOR, expectations
 
 # Three rows hold two light bodies between three heavy ones; their entries are parameters.

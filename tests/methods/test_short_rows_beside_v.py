@@ -13,7 +13,7 @@ from symgen.model.load import load_text
 from symgen.quantities.select import derive_quantities
 from symgen.verify.interpreted import outcomes
 from symgen.verify.reference.reference import Reference, State
-from symgen.verify.states import Sample, rounded
+from symgen.verify.sampling.states import Sample, rounded
 from symgen.verify.tolerance import FACTOR, expectations
 
 # The last row follows from the first, and is as short as the sine is; V is the same without it.

@@ -20,7 +20,7 @@ from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.matrix import flatten
 from symgen.verify.interpreted import outcomes
 from symgen.verify.reference.reference import Reference, State
-from symgen.verify.states import Sample, rounded
+from symgen.verify.sampling.states import Sample, rounded
 from symgen.verify.tolerance import FACTOR, expectations
 
 # A leg that ends on the rim of a heavy wheel: what holds it along itself is the sine of its knee.

@@ -25,7 +25,7 @@ from symgen.model.model import Model
 from symgen.simulate import command
 from symgen.simulate.animation import animation
 from symgen.simulate.scene import Scene
-from symgen.verify import compile as compiling
+from symgen.verify.running import compile as compiling
 
 MODELS = ROOT / "models"
 

@@ -10,8 +10,8 @@ import pytest
 from symgen.ir.kernel import Status
 from symgen.laboratory.stress import command, run
 from symgen.laboratory.stress.families import SingularFamilies
-from symgen.laboratory.stress.rule import counted
-from symgen.verify.compile import Outcome
+from symgen.laboratory.stress.statuses.rule import counted
+from symgen.verify.running.compile import Outcome
 
 ROD = """
 model: rod

@@ -9,9 +9,9 @@ from shipped import model
 from symgen.generation.runnable import Kernels
 from symgen.laboratory.stress.determinants import choices, common_troubles
 from symgen.laboratory.stress.families import _family, _kind, near_redundant
-from symgen.laboratory.stress.redundant import with_redundant_row
 from symgen.laboratory.stress.series import SYMGEN
 from symgen.laboratory.stress.sweep import Sweeper
+from symgen.laboratory.stress.variants.redundant import with_redundant_row
 from symgen.laboratory.stress.zeros import places
 from symgen.model.load import load_text
 from symgen.verify.reference.reference import Reference

@@ -10,7 +10,7 @@ from rows_that_meet import beside, wheels
 from symgen.generation.runnable import SCALARS, STRESSED, Kernels
 from symgen.ir.kernel import Status
 from symgen.laboratory.stress.form_kernels import FormKernels
-from symgen.laboratory.stress.rule import of_more_draws
+from symgen.laboratory.stress.statuses.rule import of_more_draws
 from symgen.model.model import Model
 from symgen.verify.reference.reference import Reference
 from symgen.verify.tolerance import FACTOR, expectations

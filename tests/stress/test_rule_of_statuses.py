@@ -11,14 +11,14 @@ from symgen.generation.runnable import SCALARS, STRESSED, Kernels, rounded_state
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Scalar
 from symgen.laboratory.stress.families import search
-from symgen.laboratory.stress.rule import breaches, counted, held_to_the_rule
-from symgen.laboratory.stress.rule_states import Pushed, far_apart, towards_singular_sets
+from symgen.laboratory.stress.statuses.rule import breaches, counted, held_to_the_rule
+from symgen.laboratory.stress.statuses.rule_states import Pushed, far_apart, towards_singular_sets
 from symgen.lowering.schedule import schedule
 from symgen.model.load import load_text
 from symgen.model.model import Model
 from symgen.quantities.select import derive_quantities
-from symgen.verify.compile import Outcome
 from symgen.verify.reference.reference import Reference, State
+from symgen.verify.running.compile import Outcome
 from symgen.verify.tolerance import expectations
 
 CASTORS = {

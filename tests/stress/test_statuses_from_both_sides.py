@@ -14,9 +14,9 @@ from test_families import reference
 
 from symgen.generation.runnable import SCALARS, STRESSED, Kernels, rounded_state
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar, Status
-from symgen.laboratory.stress.dimensions import parameter_dimensions
+from symgen.laboratory.stress.variants.dimensions import parameter_dimensions
 from symgen.verify.reference.reference import ReferenceValueError, State
-from symgen.verify.states import sample_states
+from symgen.verify.sampling.states import sample_states
 from symgen.verify.tolerance import FACTOR, expectations
 
 STATES = 40

@@ -14,9 +14,9 @@ from symgen.cli.main import main
 from symgen.generation.runnable import PIECES, STRESSED, Kernels
 from symgen.laboratory.stress.long_run import long_runs
 from symgen.laboratory.stress.odd_numbers import odd_numbers
-from symgen.laboratory.stress.pages import page
-from symgen.laboratory.stress.scaling import scaling
-from symgen.verify.states import sample_states
+from symgen.laboratory.stress.reporting.pages import page
+from symgen.laboratory.stress.variants.scaling import scaling
+from symgen.verify.sampling.states import sample_states
 
 CART = """
 model: cart

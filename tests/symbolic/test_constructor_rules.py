@@ -10,8 +10,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from symgen.symbolic.angle_forms import angle_form
-from symgen.symbolic.angles import share_angles
+from symgen.symbolic.angles.angle_forms import angle_form
+from symgen.symbolic.angles.sharing import share_angles
 from symgen.symbolic.calculus import derivative_along, gradient
 from symgen.symbolic.evaluate import FUNCTIONS, Evaluator
 from symgen.symbolic.scalar import Graph, Scalar

@@ -10,8 +10,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from symgen.diagnostics import SymgenBug
-from symgen.symbolic.angles import share_angles
-from symgen.symbolic.circle import FIELD, INNER, INNERMOST, LAST, STEPS, Field
+from symgen.symbolic.angles.circle import FIELD, INNER, INNERMOST, LAST, STEPS, Field
+from symgen.symbolic.angles.sharing import share_angles
 from symgen.symbolic.exact import ExactValues, half_turns
 from symgen.symbolic.identity import every_identity_evaluated, same_values
 from symgen.symbolic.scalar import PI, Graph, Scalar

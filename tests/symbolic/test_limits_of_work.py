@@ -6,10 +6,10 @@ from fractions import Fraction
 
 import pytest
 
-from symgen.symbolic import content, polynomial
-from symgen.symbolic.content import usual_number
 from symgen.symbolic.passes.shared_parts import MOST_SHARING_TERMS, with_shared_sums
-from symgen.symbolic.polynomial import MOST_EXPANDED_TERMS, Multiplier, refactored
+from symgen.symbolic.polynomials import content, polynomial
+from symgen.symbolic.polynomials.content import usual_number
+from symgen.symbolic.polynomials.polynomial import MOST_EXPANDED_TERMS, Multiplier, refactored
 from symgen.symbolic.products import MOST_FACTORS
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.validity.driven import MOST_LISTED_MINORS, driven_minors

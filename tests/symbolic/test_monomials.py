@@ -8,8 +8,8 @@ from fractions import Fraction
 
 import pytest
 
-from symgen.symbolic.monomials import LARGEST_POWER, Coefficient, Monomials, Terms
-from symgen.symbolic.polynomial import Multiplier
+from symgen.symbolic.polynomials.monomials import LARGEST_POWER, Coefficient, Monomials, Terms
+from symgen.symbolic.polynomials.polynomial import Multiplier
 from symgen.symbolic.scalar import Graph, Scalar
 
 

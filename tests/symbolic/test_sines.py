@@ -8,9 +8,9 @@ import random
 import pytest
 from flint import arb, ctx
 
+from symgen.symbolic.angles.sines import PARTS, cosine, sine
 from symgen.symbolic.evaluate import FUNCTIONS, Evaluator
 from symgen.symbolic.scalar import Graph
-from symgen.symbolic.sines import PARTS, cosine, sine
 
 
 @pytest.mark.parametrize("largest", [1e-3, 7.0, 1e5])

@@ -23,7 +23,7 @@ from symgen.laboratory.target.vectors import rounded_state
 from symgen.lowering.schedule import schedule
 from symgen.quantities.select import derive_quantities
 from symgen.verify.reference.reference import Reference, State
-from symgen.verify.states import sample_states
+from symgen.verify.sampling.states import sample_states
 
 CORE = BY_NAME["cortex-m4f"]
 STATES = 64

@@ -13,7 +13,7 @@ from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
 from symgen.laboratory.bench.candidate import Task
 from symgen.laboratory.bench.workload import Errors, admissible_samples, errors_of, workload
 from symgen.verify.reference.reference import Reference, State
-from symgen.verify.states import Sample
+from symgen.verify.sampling.states import Sample
 from symgen.verify.tolerance import FACTOR, expectations
 
 U = "inverse_dynamics"

@@ -9,12 +9,12 @@ import pytest
 
 from symgen.model.load import load_text
 from symgen.model.model import Model
-from symgen.verify.loops_in_lanes import Loops
-from symgen.verify.modes import modes
-from symgen.verify.nearby import Surroundings
 from symgen.verify.reference.reference import Reference
 from symgen.verify.reference.system import default_parameters
-from symgen.verify.states import sample_states
+from symgen.verify.sampling.loops_in_lanes import Loops
+from symgen.verify.sampling.modes import modes
+from symgen.verify.sampling.nearby import Surroundings
+from symgen.verify.sampling.states import sample_states
 
 # Two arms of two links each hold a pin; the second arm stands d away.  Each elbow bends to either side.
 PIN = """

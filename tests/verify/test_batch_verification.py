@@ -15,12 +15,12 @@ from symgen.backends.c.prepared import emit_c_prepared
 from symgen.backends.defaults import default_values
 from symgen.backends.quantities import BATCHED
 from symgen.ir.kernel import Program
-from symgen.verify.batch import run_batch
-from symgen.verify.compile import CFunction, Compilation, c_array, find_compiler
-from symgen.verify.prepared import run_prepared
 from symgen.verify.reference.reference import State
 from symgen.verify.run import generated_sources
-from symgen.verify.states import Sample
+from symgen.verify.running.batch import run_batch
+from symgen.verify.running.compile import CFunction, Compilation, c_array, find_compiler
+from symgen.verify.running.prepared import run_prepared
+from symgen.verify.sampling.states import Sample
 
 pytestmark = pytest.mark.toolchain
 NAME = "skate"

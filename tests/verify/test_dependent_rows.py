@@ -19,7 +19,7 @@ from symgen.verify.reference.linear import determinant, norm, right_pseudoinvers
 from symgen.verify.reference.reference import Reference
 from symgen.verify.reference.system import default_parameters
 from symgen.verify.reference.tape import precision
-from symgen.verify.states import sample_states
+from symgen.verify.sampling.states import sample_states
 
 LEVERS = """\
 model: levers_that_hold_one_knob

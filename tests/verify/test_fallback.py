@@ -27,12 +27,12 @@ from symgen.pipeline import generate
 from symgen.quantities import alternatives, candidates, everything
 from symgen.quantities.alternatives import Alternative
 from symgen.symbolic.scalar import Graph, Scalar
-from symgen.verify import compile as compiling
 from symgen.verify.certificate import LeftOut
 from symgen.verify.reference.reference import State
-from symgen.verify.searched import JUDGED
-from symgen.verify.settling import Settling
-from symgen.verify.states import Sample
+from symgen.verify.running import compile as compiling
+from symgen.verify.sampling.searched import JUDGED
+from symgen.verify.sampling.settling import Settling
+from symgen.verify.sampling.states import Sample
 
 # A pin on a crank moves a slotted slider: one row, one degree of freedom.
 YOKE = """

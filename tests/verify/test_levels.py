@@ -7,9 +7,9 @@ from collections.abc import Callable
 import pytest
 import shipped
 
-from symgen.verify import compile as compiling
 from symgen.verify.certificate import Certificate
 from symgen.verify.run import generated_sources, verify
+from symgen.verify.running import compile as compiling
 
 pytestmark = pytest.mark.toolchain
 NAME, STATES = "skate", 8

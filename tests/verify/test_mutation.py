@@ -14,11 +14,11 @@ from mutation import Mutant, exact_outputs, mutations
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Kernel
 from symgen.verify.comparison import compare
-from symgen.verify.compile import Outcome
 from symgen.verify.reference.linear import norm
 from symgen.verify.reference.reference import Reference, State
 from symgen.verify.reference.tape import precision
-from symgen.verify.states import Sample, sample_states
+from symgen.verify.running.compile import Outcome
+from symgen.verify.sampling.states import Sample, sample_states
 from symgen.verify.tolerance import FACTOR, Expectation, expectations
 
 COUNT = 200

@@ -12,7 +12,7 @@ from symgen.verify.reference.measures import measures_of_parts
 from symgen.verify.reference.parts import Part, parts
 from symgen.verify.reference.reference import Reference
 from symgen.verify.reference.tape import precision
-from symgen.verify.states import sample_states
+from symgen.verify.sampling.states import sample_states
 
 MODEL = """model: side_by_side
 coordinates:

@@ -14,7 +14,7 @@ from symgen.verify.reference.linear import independent_rows, right_pseudoinverse
 from symgen.verify.reference.manifold import exceeds
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference.tape import ball, precision
-from symgen.verify.states import rounded, sample_states
+from symgen.verify.sampling.states import rounded, sample_states
 from symgen.verify.tolerance import expectations
 
 # the shelf holds the tip of an arm, so that its joints stand still; the crank turns beside it

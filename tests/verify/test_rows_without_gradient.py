@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from symgen.model.load import load_text
 from symgen.verify.reference.reference import Reference
-from symgen.verify.states import sample_states
+from symgen.verify.sampling.states import sample_states
 
 # a body on a ball joint whose second point is held as well: along the line of both points nothing is left to hold
 DOOR = """

@@ -17,7 +17,7 @@ from symgen.verify.expected import Expected
 from symgen.verify.reference.linear import column, norm
 from symgen.verify.reference.reference import Reference, State
 from symgen.verify.reference.tape import precision
-from symgen.verify.states import VerificationError, affordable_states, rounded, sample_states
+from symgen.verify.sampling.states import VerificationError, affordable_states, rounded, sample_states
 from symgen.verify.tolerance import expectations, perturbed
 
 

@@ -23,7 +23,7 @@ from symgen.methods.quantity import Quantity
 from symgen.model.model import Model
 from symgen.pipeline import generate
 from symgen.quantities import candidates
-from symgen.verify.states import VerificationError
+from symgen.verify.sampling.states import VerificationError
 
 # A ladder slides down between a wall and the ground.
 LADDER = """

@@ -10,11 +10,11 @@ import pytest
 
 from symgen.ir.kernel import Block, Kernel, Literal, Load, Local, Statement
 from symgen.model.load import load_model
-from symgen.verify.lanes import RoundingErrors
-from symgen.verify.nearby import Surroundings
 from symgen.verify.reference.reference import Reference
-from symgen.verify.regular import values_at
-from symgen.verify.states import sample_states
+from symgen.verify.sampling.lanes import RoundingErrors
+from symgen.verify.sampling.nearby import Surroundings
+from symgen.verify.sampling.regular import values_at
+from symgen.verify.sampling.states import sample_states
 
 # A ladder whose feet slide on a floor and along a wall, and a disc that is geared to its turning.
 LADDER = """

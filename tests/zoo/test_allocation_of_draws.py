@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from symgen.laboratory.zoo.allocation import directed, members, preloads
-from symgen.laboratory.zoo.fields import Balls, precision
-from symgen.laboratory.zoo.kkt import EquationValues, inverse_dynamics, split
-from symgen.laboratory.zoo.linear import determinant, transposed
+from symgen.laboratory.zoo.witness.allocation import directed, members, preloads
+from symgen.laboratory.zoo.witness.fields import Balls, precision
+from symgen.laboratory.zoo.witness.kkt import EquationValues, inverse_dynamics, split
+from symgen.laboratory.zoo.witness.linear import determinant, transposed
 
 # one mass, driven by three forces along it
 AT = EquationValues([[2.0]], [], [[1.0, 2.0, -1.0]], [0.5], [], [])

@@ -10,13 +10,13 @@ import pytest
 from symgen.laboratory.zoo import campaign, command
 from symgen.laboratory.zoo.campaign import MOST_SECONDS, Campaign, judge, one_draw, shrunk
 from symgen.laboratory.zoo.cases import case_of, read_case
-from symgen.laboratory.zoo.describe import Description, Terms, read_description, summands
-from symgen.laboratory.zoo.families import FAMILIES, draw
+from symgen.laboratory.zoo.draws.describe import Description, Terms, read_description, summands
+from symgen.laboratory.zoo.draws.families import FAMILIES, draw
 from symgen.laboratory.zoo.records import DrawRecord, read_records, summary, write_record
 from symgen.laboratory.zoo.refusals import NOT_TOLD
 from symgen.laboratory.zoo.run import CommandRun
-from symgen.laboratory.zoo.urdf_file import expanded
 from symgen.laboratory.zoo.verdict import FAILED, REFUSED, VERIFIED, DrawVerdict
+from symgen.laboratory.zoo.witness.urdf_file import expanded
 from symgen.model.load import load_text
 
 RIGHT = DrawRecord(1, 0, "disc", VERIFIED, "", "", 2.0, 100)

@@ -10,7 +10,7 @@ import pytest
 from symgen.laboratory.zoo.cases import read_case
 from symgen.laboratory.zoo.run import run_command
 from symgen.laboratory.zoo.verdict import NOTICED, VERIFIED, verdict_of
-from symgen.laboratory.zoo.witness import Witness
+from symgen.laboratory.zoo.witness.witness import Witness
 
 CASES = sorted((Path(__file__).parent / "cases").glob("*.yaml"))
 # Each is a whole run and its witness; this one takes the least.

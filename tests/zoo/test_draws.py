@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 import yaml
 
-from symgen.laboratory.zoo.describe import Description
 from symgen.laboratory.zoo.dice import Dice
-from symgen.laboratory.zoo.endings import independent
-from symgen.laboratory.zoo.families import FAMILIES, draw
-from symgen.laboratory.zoo.fields import Floats
-from symgen.laboratory.zoo.mechanics import equations
-from symgen.laboratory.zoo.reader import SystemReader
-from symgen.laboratory.zoo.sketch import Sketch
-from symgen.laboratory.zoo.urdf_file import expanded
+from symgen.laboratory.zoo.draws.describe import Description
+from symgen.laboratory.zoo.draws.endings import independent
+from symgen.laboratory.zoo.draws.families import FAMILIES, draw
+from symgen.laboratory.zoo.draws.sketch import Sketch
+from symgen.laboratory.zoo.witness.fields import Floats
+from symgen.laboratory.zoo.witness.mechanics import equations
+from symgen.laboratory.zoo.witness.reader import SystemReader
+from symgen.laboratory.zoo.witness.urdf_file import expanded
 
 DRAWS = range(3)
 
@@ -65,7 +65,7 @@ def test_an_over_constrained_linkage_moves(family: str, freedom: int) -> None:
 
 
 def test_a_seed_draws_the_same_under_any_hash_seed() -> None:
-    code = "from symgen.laboratory.zoo.families import draw\nfor k in range(8): print(draw(3, k).text)"
+    code = "from symgen.laboratory.zoo.draws.families import draw\nfor k in range(8): print(draw(3, k).text)"
     texts = [
         subprocess.run(
             [sys.executable, "-c", code],

@@ -9,7 +9,7 @@ import pytest
 from symgen.diagnostics import ModelError
 from symgen.ir.given_trig import given_trig
 from symgen.ir.prepare import prepare
-from symgen.laboratory.zoo.families import FAMILIES, draw
+from symgen.laboratory.zoo.draws.families import FAMILIES, draw
 from symgen.lowering.schedule import schedule
 from symgen.model.load import load_model
 from symgen.model.model import Model

@@ -9,8 +9,8 @@ import pytest
 
 from symgen.laboratory.zoo import run as running
 from symgen.laboratory.zoo.cases import case_of, read_case
-from symgen.laboratory.zoo.describe import Description, Terms
-from symgen.laboratory.zoo.families import draw
+from symgen.laboratory.zoo.draws.describe import Description, Terms
+from symgen.laboratory.zoo.draws.families import draw
 from symgen.laboratory.zoo.run import CommandRun, run_command
 from symgen.laboratory.zoo.shrink import frozen, shrink, substituted
 from symgen.laboratory.zoo.verdict import NOTICED, REFUSED, VERIFIED, DrawVerdict, verdict_of

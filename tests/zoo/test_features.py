@@ -6,8 +6,8 @@ from collections import Counter
 
 import pytest
 
-from symgen.laboratory.zoo.describe import Description
-from symgen.laboratory.zoo.families import draw
+from symgen.laboratory.zoo.draws.describe import Description
+from symgen.laboratory.zoo.draws.families import draw
 from symgen.laboratory.zoo.features import ALL, features
 
 DRAWS, LEAST = 500, 1

@@ -6,13 +6,13 @@ import pytest
 import robot_packages
 import yaml
 
-from symgen.laboratory.zoo import pinocchio_trees
 from symgen.laboratory.zoo.dice import Dice
-from symgen.laboratory.zoo.families import draw
-from symgen.laboratory.zoo.fields import Floats
-from symgen.laboratory.zoo.pinocchio_trees import SAME, disagreement
-from symgen.laboratory.zoo.reader import SystemReader
-from symgen.laboratory.zoo.urdf_file import expanded
+from symgen.laboratory.zoo.draws.families import draw
+from symgen.laboratory.zoo.witness import pinocchio_trees
+from symgen.laboratory.zoo.witness.fields import Floats
+from symgen.laboratory.zoo.witness.pinocchio_trees import SAME, disagreement
+from symgen.laboratory.zoo.witness.reader import SystemReader
+from symgen.laboratory.zoo.witness.urdf_file import expanded
 
 robot_packages.pinocchio()
 

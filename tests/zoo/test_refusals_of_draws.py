@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from symgen.laboratory.zoo.describe import MISTAKE, Description
+from symgen.laboratory.zoo.draws.describe import MISTAKE, Description
 from symgen.laboratory.zoo.refusals import judged
 from symgen.laboratory.zoo.verdict import NOTICED, REFUSED, VERIFIED, DrawVerdict
 

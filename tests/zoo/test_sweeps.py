@@ -13,14 +13,14 @@ import pytest
 from symgen.laboratory.zoo import sweeps
 from symgen.laboratory.zoo.approach import Approach
 from symgen.laboratory.zoo.campaign import Campaign
-from symgen.laboratory.zoo.describe import read_description
 from symgen.laboratory.zoo.dice import Dice
-from symgen.laboratory.zoo.generated import Answer, Target
-from symgen.laboratory.zoo.kkt import GenericRanks
-from symgen.laboratory.zoo.states import FloatState, rounded
+from symgen.laboratory.zoo.draws.describe import read_description
 from symgen.laboratory.zoo.sweep_campaign import one_sweep, record_of, table, write_violations
 from symgen.laboratory.zoo.sweeps import ANSWERED, BEYOND, UNEXPLAINED, LedState, compared, sweep
-from symgen.laboratory.zoo.witness import JudgedResult, Witness
+from symgen.laboratory.zoo.witness.generated import Answer, Target
+from symgen.laboratory.zoo.witness.kkt import GenericRanks
+from symgen.laboratory.zoo.witness.states import FloatState, rounded
+from symgen.laboratory.zoo.witness.witness import JudgedResult, Witness
 
 FOUR_BAR = """
 model: four_bar

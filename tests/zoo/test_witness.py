@@ -13,16 +13,16 @@ import yaml
 
 from symgen.generation.results import Options
 from symgen.laboratory.zoo.dice import Dice
-from symgen.laboratory.zoo.expressions import FUNCTIONS, NotReadError, read_expression
-from symgen.laboratory.zoo.fields import Balls, Floats, precision
-from symgen.laboratory.zoo.generated import Answer
-from symgen.laboratory.zoo.linear import basis
-from symgen.laboratory.zoo.mechanics import equations
-from symgen.laboratory.zoo.reader import SystemReader
 from symgen.laboratory.zoo.run import run_command
-from symgen.laboratory.zoo.states import Walker
-from symgen.laboratory.zoo.tape import NodeProgram, NodeTape
-from symgen.laboratory.zoo.witness import Witness
+from symgen.laboratory.zoo.witness.expressions import FUNCTIONS, NotReadError, read_expression
+from symgen.laboratory.zoo.witness.fields import Balls, Floats, precision
+from symgen.laboratory.zoo.witness.generated import Answer
+from symgen.laboratory.zoo.witness.linear import basis
+from symgen.laboratory.zoo.witness.mechanics import equations
+from symgen.laboratory.zoo.witness.reader import SystemReader
+from symgen.laboratory.zoo.witness.states import Walker
+from symgen.laboratory.zoo.witness.tape import NodeProgram, NodeTape
+from symgen.laboratory.zoo.witness.witness import Witness
 from symgen.pipeline import generate
 
 SYSTEM = """

@@ -21,7 +21,7 @@ from symgen.laboratory.bench.build import compile_candidate, gcc
 from symgen.laboratory.bench.candidate import CCandidate, Task
 from symgen.laboratory.bench.workload import Workload
 from symgen.model.model import Model
-from symgen.verify.python_module import PythonModule
+from symgen.verify.running.python_module import PythonModule
 
 # The flags of `compile()` in the generated module, for all: vectors of this machine, at their full width.
 FLAGS = ("-std=c99", "-O3", "-march=native", "-mprefer-vector-width=512", "-ffp-contract=off", "-fno-math-errno")

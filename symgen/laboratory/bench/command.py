@@ -14,7 +14,7 @@ from symgen.laboratory.bench.run import Progress, benchmark
 from symgen.laboratory.bench.tables import bench_tables
 from symgen.output.write import write_files
 from symgen.verify.reference.reference import ReferenceValueError
-from symgen.verify.states import VerificationError
+from symgen.verify.sampling.states import VerificationError
 
 SHORT = {"inverse_dynamics": "bench.svg"}
 

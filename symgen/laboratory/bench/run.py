@@ -26,7 +26,7 @@ from symgen.model.blocks.allocation import without_allocation
 from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.verify.reference.reference import Reference
-from symgen.verify.states import Sample
+from symgen.verify.sampling.states import Sample
 
 SCALARS: tuple[Scalar, ...] = ("float64", "float32")
 QUANTITIES = ("inverse_dynamics", "forward_dynamics", "multipliers")

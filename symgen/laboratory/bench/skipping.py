@@ -20,7 +20,7 @@ from symgen.methods.inverse_dynamics.elimination import Elimination
 from symgen.methods.inverse_dynamics.forces_eliminated import elimination_form
 from symgen.model.model import Model
 from symgen.quantities.select import derive_quantities
-from symgen.symbolic.angles import share_angles
+from symgen.symbolic.angles.sharing import share_angles
 from symgen.symbolic.matrix import Matrix, Vector, matvec
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost, topological

@@ -28,7 +28,7 @@ from symgen.methods.quantity import Quantity
 from symgen.methods.selection import every_method
 from symgen.model.model import Model
 from symgen.quantities.candidates import ABSOLUTE
-from symgen.verify.python_module import PythonModule
+from symgen.verify.running.python_module import PythonModule
 
 PORTABLE, LIBRARY = "portable", "libm"
 

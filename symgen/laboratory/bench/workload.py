@@ -9,8 +9,8 @@ from typing import Any
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
 from symgen.laboratory.bench.candidate import Task
 from symgen.verify.reference.reference import Reference, State
-from symgen.verify.regular import SAMPLING_BITS
-from symgen.verify.states import Sample, rounded, sample_states
+from symgen.verify.sampling.regular import SAMPLING_BITS
+from symgen.verify.sampling.states import Sample, rounded, sample_states
 from symgen.verify.tolerance import FACTOR, expectations
 
 UNIT_STATES = 48  # of these the unit d + eps |y| is found; it costs 9 reference evaluations a state

@@ -5,14 +5,14 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from symgen.laboratory.stress.charts import stress_charts
+from symgen.laboratory.stress.reporting.charts import stress_charts
+from symgen.laboratory.stress.reporting.tables import stress_tables
 from symgen.laboratory.stress.run import Progress, json_text, stress
-from symgen.laboratory.stress.tables import stress_tables
 from symgen.model.blocks.allocation import without_allocation
 from symgen.model.load import load_model
 from symgen.output.write import write_files
 from symgen.verify.reference.reference import ReferenceValueError
-from symgen.verify.states import VerificationError
+from symgen.verify.sampling.states import VerificationError
 
 
 def run_stress(path: Path, out: Path, steps: int, quiet: bool, progress: Progress) -> int:

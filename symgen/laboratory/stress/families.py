@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias
 
 from symgen.laboratory.stress.determinants import Choices, Trouble, choices, common_troubles, joint_troubles
-from symgen.laboratory.stress.dimensions import parameter_dimensions
+from symgen.laboratory.stress.variants.dimensions import parameter_dimensions
 from symgen.laboratory.stress.zeros import BITS as PLACE_BITS
 from symgen.laboratory.stress.zeros import Place, places
 from symgen.model.model import Model
 from symgen.verify.reference.closing import onto_manifold
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference.tape import ball, precision
-from symgen.verify.states import sample_states
+from symgen.verify.sampling.states import sample_states
 
 Kind: TypeAlias = Literal[
     "parameter",

@@ -16,16 +16,16 @@ from symgen.laboratory.stress.families import Family, SingularFamilies, near_red
 from symgen.laboratory.stress.form_kernels import FormKernels
 from symgen.laboratory.stress.long_run import Run, complaints, long_runs
 from symgen.laboratory.stress.odd_numbers import OddNumbers, odd_numbers
-from symgen.laboratory.stress.redundant import with_redundant_row
-from symgen.laboratory.stress.rule import Held, breaches, counted
-from symgen.laboratory.stress.rule_states import far_apart, towards_singular_sets
-from symgen.laboratory.stress.scaling import Scaled, scaling
 from symgen.laboratory.stress.series import Series
+from symgen.laboratory.stress.statuses.rule import Held, breaches, counted
+from symgen.laboratory.stress.statuses.rule_states import far_apart, towards_singular_sets
 from symgen.laboratory.stress.sweep import StatusCount, Sweep, Sweeper
+from symgen.laboratory.stress.variants.redundant import with_redundant_row
+from symgen.laboratory.stress.variants.scaling import Scaled, scaling
 from symgen.model.model import Model
 from symgen.verify.reference.reference import Reference
-from symgen.verify.regular import FEWEST_STATES
-from symgen.verify.states import sample_states
+from symgen.verify.sampling.regular import FEWEST_STATES
+from symgen.verify.sampling.states import sample_states
 from symgen.verify.tolerance import FACTOR
 
 Progress = Callable[[str], None]

@@ -17,8 +17,8 @@ from symgen.laboratory.stress.families import Family
 from symgen.laboratory.stress.form_kernels import LABELS, FormKernels
 from symgen.laboratory.stress.forms import Data, partitioned, projected, switched
 from symgen.laboratory.stress.series import FIXED, PARTITION, SWITCHING, SYMGEN, Error, Series
-from symgen.verify.compile import Outcome
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
+from symgen.verify.running.compile import Outcome
 from symgen.verify.tolerance import FACTOR, Expectation, expectations
 
 DEEPEST: dict[Scalar, int] = {"float64": 24, "float32": 12}  # half decades below 1

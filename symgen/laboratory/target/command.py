@@ -15,7 +15,7 @@ from symgen.model.load import load_model
 from symgen.output.write import write_files
 from symgen.runtime.processes import ToolError
 from symgen.verify.reference.reference import ReferenceValueError
-from symgen.verify.states import VerificationError
+from symgen.verify.sampling.states import VerificationError
 
 SHOWN = 20
 

@@ -13,7 +13,7 @@ from symgen.generation.runnable import rounded_state
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
 from symgen.laboratory.stress.families import search
 from symgen.verify.reference.reference import Reference, State
-from symgen.verify.states import sample_states
+from symgen.verify.sampling.states import sample_states
 
 FEWEST = 256
 CONFIGURATIONS = 64  # finding one on the constraints takes a mechanism of many links a tenth of a second

@@ -14,14 +14,14 @@ from pathlib import Path
 from typing import TypeVar
 
 from symgen.laboratory.zoo.cases import case_of
-from symgen.laboratory.zoo.describe import Description
-from symgen.laboratory.zoo.families import draw
+from symgen.laboratory.zoo.draws.describe import Description
+from symgen.laboratory.zoo.draws.families import draw
 from symgen.laboratory.zoo.records import DrawRecord
 from symgen.laboratory.zoo.refusals import NOT_TOLD, judged
 from symgen.laboratory.zoo.run import run_command
 from symgen.laboratory.zoo.shrink import shrink
 from symgen.laboratory.zoo.verdict import FAILED, REFUSED, DrawVerdict, verdict_of, without_numbers
-from symgen.laboratory.zoo.witness import check
+from symgen.laboratory.zoo.witness.witness import check
 
 # CPU seconds that making a failing draw small may take: one that takes too long each time would take hours
 MOST_SECONDS = 300.0

@@ -6,8 +6,8 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from symgen.laboratory.zoo.describe import Description
 from symgen.laboratory.zoo.dice import exact
+from symgen.laboratory.zoo.draws.describe import Description
 from symgen.laboratory.zoo.refusals import NOT_TOLD
 from symgen.laboratory.zoo.verdict import REFUSED, VERIFIED, DrawVerdict
 

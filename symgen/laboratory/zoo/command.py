@@ -11,8 +11,8 @@ from pathlib import Path
 
 from symgen.laboratory.zoo.campaign import Campaign, judge, one_draw, run_campaign, shrunk, usual_jobs
 from symgen.laboratory.zoo.cases import case_of, read_case
-from symgen.laboratory.zoo.describe import Description, read_description
-from symgen.laboratory.zoo.families import FAMILIES, draw
+from symgen.laboratory.zoo.draws.describe import Description, read_description
+from symgen.laboratory.zoo.draws.families import FAMILIES, draw
 from symgen.laboratory.zoo.features import ALL, features
 from symgen.laboratory.zoo.records import read_records, summary, write_record
 from symgen.laboratory.zoo.sweep_campaign import one_sweep, table

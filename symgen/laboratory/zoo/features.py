@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from symgen.laboratory.zoo.describe import Description
 from symgen.laboratory.zoo.dice import Dice
-from symgen.laboratory.zoo.drawn import ROUNDING, DrawnEquations, reached
-from symgen.laboratory.zoo.linear import NOTHING
-from symgen.laboratory.zoo.names import LEGAL_BY_LANGUAGE
-from symgen.laboratory.zoo.states import normalized
-from symgen.laboratory.zoo.urdf_file import expanded
+from symgen.laboratory.zoo.draws.describe import Description
+from symgen.laboratory.zoo.draws.drawn import ROUNDING, DrawnEquations, reached
+from symgen.laboratory.zoo.draws.names import LEGAL_BY_LANGUAGE
+from symgen.laboratory.zoo.witness.linear import NOTHING
+from symgen.laboratory.zoo.witness.states import normalized
+from symgen.laboratory.zoo.witness.urdf_file import expanded
 
 OVER_CONSTRAINED = {
     "bennett": "Bennett linkage",

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from symgen.laboratory.zoo.describe import MISTAKE, Description
-from symgen.laboratory.zoo.drawn import DrawnEquations
-from symgen.laboratory.zoo.urdf_file import expanded
+from symgen.laboratory.zoo.draws.describe import MISTAKE, Description
+from symgen.laboratory.zoo.draws.drawn import DrawnEquations
 from symgen.laboratory.zoo.verdict import FAILED, REFUSED, DrawVerdict
+from symgen.laboratory.zoo.witness.urdf_file import expanded
 
 NOT_TOLD = "mistake not told"
 # what symgen says of a system as a whole, and what must be so then

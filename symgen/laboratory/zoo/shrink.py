@@ -7,10 +7,10 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from symgen.laboratory.zoo.describe import Description, Terms
 from symgen.laboratory.zoo.dice import decimal
-from symgen.laboratory.zoo.frames import joint_coordinates
-from symgen.laboratory.zoo.urdf_file import expanded
+from symgen.laboratory.zoo.draws.describe import Description, Terms
+from symgen.laboratory.zoo.witness.frames import joint_coordinates
+from symgen.laboratory.zoo.witness.urdf_file import expanded
 
 Fails = Callable[[Description], bool]
 # what may go as a whole, and entry by entry

@@ -12,7 +12,7 @@ from typing import Any
 
 from symgen.laboratory.zoo.approach import KINDS
 from symgen.laboratory.zoo.campaign import Campaign, write
-from symgen.laboratory.zoo.families import draw
+from symgen.laboratory.zoo.draws.families import draw
 from symgen.laboratory.zoo.run import run_command
 from symgen.laboratory.zoo.sweeps import ANSWERED, BEYOND, SCALED, STATUSES, UNEXPLAINED, UNKNOWN, SweepCounts, sweep
 from symgen.laboratory.zoo.verdict import NOTICED, VERIFIED, verdict_of

@@ -11,13 +11,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from symgen.laboratory.zoo.approach import KINDS, Approach
-from symgen.laboratory.zoo.describe import Description
 from symgen.laboratory.zoo.dice import Dice
-from symgen.laboratory.zoo.expressions import NotReadError
-from symgen.laboratory.zoo.generated import targets
-from symgen.laboratory.zoo.kkt import GenericRanks
-from symgen.laboratory.zoo.states import FloatState, Walker
-from symgen.laboratory.zoo.witness import ALLOWED, CERTAIN, JudgedResult, Witness
+from symgen.laboratory.zoo.draws.describe import Description
+from symgen.laboratory.zoo.witness.expressions import NotReadError
+from symgen.laboratory.zoo.witness.generated import targets
+from symgen.laboratory.zoo.witness.kkt import GenericRanks
+from symgen.laboratory.zoo.witness.states import FloatState, Walker
+from symgen.laboratory.zoo.witness.witness import ALLOWED, CERTAIN, JudgedResult, Witness
 
 # regular states that are led on, and how many of them are looked at in a decade
 STARTS, PER_DECADE = 3, 2

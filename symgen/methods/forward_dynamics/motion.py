@@ -11,10 +11,10 @@ from symgen.linear_algebra.guards import Guard
 from symgen.mechanics.system import System
 from symgen.methods.method import MOTIONS
 from symgen.records import dataclass
-from symgen.symbolic.angles import share_angles
+from symgen.symbolic.angles.sharing import share_angles
 from symgen.symbolic.identity import same_values
 from symgen.symbolic.matrix import Matrix, Vector
-from symgen.symbolic.polynomial import Multiplier, refactored
+from symgen.symbolic.polynomials.polynomial import Multiplier, refactored
 from symgen.symbolic.scalar import Graph, Scalar
 
 

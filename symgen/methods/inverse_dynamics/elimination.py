@@ -22,9 +22,9 @@ from fractions import Fraction
 from symgen.linear_algebra.balance import along_rates, multipliers_alone
 from symgen.linear_algebra.null_spaces import LONGEST_PRODUCT
 from symgen.mechanics.system import System
-from symgen.symbolic.content import divided, usual_number
 from symgen.symbolic.matrix import Matrix, Vector, dot
 from symgen.symbolic.passes.factoring import LONGEST_CANCELLED
+from symgen.symbolic.polynomials.content import divided, usual_number
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import cost
 

@@ -28,8 +28,8 @@ from symgen.methods.inverse_dynamics.elimination import Elimination
 from symgen.methods.method import Candidate, Method, solved_for_u
 from symgen.methods.system import MethodInput
 from symgen.methods.workspace import Workspace
-from symgen.symbolic.content import divided, usual_number
 from symgen.symbolic.matrix import Matrix, Vector, dot, transpose
+from symgen.symbolic.polynomials.content import divided, usual_number
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.transplant import transplanted
 from symgen.symbolic.traverse import cost, substitute

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 
-from symgen.symbolic.angles import share_angles
+from symgen.symbolic.angles.sharing import share_angles
 from symgen.symbolic.differences import Differences
 from symgen.symbolic.identity import same_values
 from symgen.symbolic.passes.forgetting import forgetting
-from symgen.symbolic.polynomial import Multiplier, refactored
+from symgen.symbolic.polynomials.polynomial import Multiplier, refactored
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import topological
 

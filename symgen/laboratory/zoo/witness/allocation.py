@@ -1,0 +1,61 @@
+"""The block `allocation` as the documentation defines it: weights, preloads, limits of inputs that share the work."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from symgen.laboratory.zoo.witness.kkt import EquationValues, internal_force
+from symgen.laboratory.zoo.witness.linear import Vector
+
+# Of an internal force of norm 1, what rounding in balls leaves of an input that takes no part in it.
+NO_PART = 1e-30
+
+
+def members(block: Mapping[str, Any], value: Callable[[str], float]) -> dict[str, float]:
+    """Weights, preloads and limits as members of the parameters, in the order of the documentation."""
+    found = {f"weight_{name}": value(text) for name, text in (block.get("weights") or {}).items()}
+    preload = block.get("preload")
+    if isinstance(preload, str):
+        found["preload"] = value(preload)
+    elif preload is not None:
+        found |= {f"preload_{name}": value(text) for name, text in preload.items()}
+    for name, (lower, upper) in (block.get("limits") or {}).items():
+        found |= {f"limit_{name}_lower": value(lower), f"limit_{name}_upper": value(upper)}
+    return found
+
+
+def preloads(inputs: Sequence[str], block: Mapping[str, Any], values: Mapping[str, Any], zero: Any) -> Vector | None:
+    """The inputs that u is to be nearest to, None where it is to be nearest to 0."""
+    if not isinstance(block.get("preload"), Mapping):
+        return None
+    return [values.get(f"preload_{name}", zero) for name in inputs]
+
+
+def directed(
+    at: EquationValues, u: Vector, inputs: Sequence[str], block: Mapping[str, Any], values: Mapping[str, Any], one: Any
+) -> Vector:
+    """u with the internal force of one preload and of the limits added: c z.
+
+    c moves from the preload to the nearest value within the limits of every named input, and where these leave none to
+    the nearest of those at which no excess shrinks without another one's growing.
+    """
+    single = isinstance(block.get("preload"), str)
+    limits = block.get("limits") or {}
+    if not single and not limits:
+        return u
+    along = internal_force(at, [values.get(f"weight_{name}", one) for name in inputs])
+    amount = values["preload"] if single else one * 0
+    spans = []
+    for name in limits:
+        k = inputs.index(name)
+        if abs(float(along[k])) < NO_PART:
+            continue
+        ends = [(values[f"limit_{name}_{end}"] - u[k]) / along[k] for end in ("lower", "upper")]
+        spans.append(sorted(ends, key=float))
+    if spans:
+        # within all of them, or from the least upper to the largest lower end
+        lower, upper = max((span[0] for span in spans), key=float), min((span[1] for span in spans), key=float)
+        lower, upper = sorted((lower, upper), key=float)
+        amount = min(max(amount, lower, key=float), upper, key=float)
+    return [x + amount * z for x, z in zip(u, along, strict=True)]

@@ -1,0 +1,288 @@
+"""States at which numbers are compared: walked to from the drawn configuration, so on the branch that was drawn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from symgen.laboratory.zoo.dice import Dice
+from symgen.laboratory.zoo.witness.fields import Balls, Floats, precision
+from symgen.laboratory.zoo.witness.kkt import EquationEvaluator, EquationValues, GenericRanks, onto_rows
+from symgen.laboratory.zoo.witness.linear import NOTHING
+from symgen.laboratory.zoo.witness.reader import SystemReader
+
+STEPS = 30
+REFINEMENTS = 3
+CLOSED = 1e-12
+SAME = 1e-8
+# a step that shows whether V is smooth, and how much further than its square Newton's method may lead
+SHORT, STRAY = 1e-4, 1e3
+# rows whose gradients vanish on V do so to the root of what rounding leaves of their values
+DEPENDENT = 1e-6
+# how far rows, inputs and masses are apart at states that are compared, unless the model has none of the kind
+REGULAR = 1e-3
+# places beside the start, further for each coordinate, where functions that are 0 there are 0 everywhere
+ASIDE = Fraction(1, 70), Fraction(-1, 90)
+# a walk stays about as near as the ranges that the documentation takes for granted
+FURTHEST = 3.2
+
+
+@dataclass(frozen=True)
+class FloatState:
+    """q, rates, accelerations, inputs and parameters as floats."""
+
+    q: tuple[float, ...]
+    qd: tuple[float, ...]
+    qdd: tuple[float, ...]
+    u: tuple[float, ...]
+    parameters: tuple[float, ...]
+
+
+class Walker:
+    """Finds states of a system near a configuration."""
+
+    def __init__(
+        self, system: SystemReader, evaluate: EquationEvaluator, start: Mapping[str, float], dice: Dice
+    ) -> None:
+        self._system, self._evaluate, self._dice = system, evaluate, dice
+        self._start = np.array([start.get(name, 0.0) for name in system.coordinates])
+        self._floats = Floats()
+        self._balls = Balls()
+        self._ranges = system.blocks.get("ranges") or {}
+        self._voids: frozenset[int] | None = None
+
+    def states(self, parameters: Mapping[str, float], count: int) -> tuple[list[FloatState], GenericRanks]:
+        """So many regular states, fewer where they are hard to find; and the generic ranks that were met."""
+        points = self.points(parameters, 3 * count + 6)
+        if self._stuck(points, parameters):
+            return [], GenericRanks(0, 0)
+        ranks = GenericRanks(
+            max((self._rank(self.numbers(q, parameters)) for q in points), default=0),
+            max((self._reached(self.numbers(q, parameters)) for q in points), default=0),
+        )
+        found = []
+        for q in points:
+            at = self.numbers(q, parameters)
+            if self._rank(at, REGULAR) == ranks.constraints and self._reached(at, REGULAR) == ranks.actuation:
+                nearest = self.refined(q, parameters)
+                found.append(self.state(nearest, parameters))
+            if len(found) == count:
+                break
+        return found, ranks
+
+    def points(self, parameters: Mapping[str, float], count: int) -> list[Any]:
+        """Configurations on V: the start, then steps along V, back to the start where a walk leaves its ranges."""
+        here = self.closed(self._start, parameters)
+        if here is None:
+            return []
+        first = here
+        points = []
+        for _ in range(count):
+            free = self._free(here, parameters)
+            step = free @ np.array([self._dice.uniform(-1, 1) for _ in range(free.shape[1])])
+            there = self.closed(here + 0.6 * step, parameters)
+            if there is not None and np.abs(there - first).max() < FURTHEST and self._inside(there):
+                points.append(there)
+                here = there
+            else:
+                here = first
+        return points
+
+    def _stuck(self, points: list[Any], parameters: Mapping[str, float]) -> bool:
+        """Whether the walk began where branches meet, rows all but vanish there, and every step led back.
+
+        Rounding gives such rows a rank, and nothing can be compared.
+        """
+        if not points or np.ptp(np.array(points), axis=0).max() > DEPENDENT:
+            return False
+        q = points[0]
+        here, *beside = (
+            np.linalg.norm(np.array(self.numbers(place, parameters).rows, dtype=float).reshape(-1, len(q)), axis=1)
+            for place in (q, q + 0.3, q - 0.2)
+        )
+        return bool((here < DEPENDENT * np.max(beside, axis=0)).any())
+
+    def is_regular(self, q: Any, parameters: Mapping[str, float]) -> bool:
+        """Whether V is smooth at a configuration, of the dimension that its rows there say.
+
+        Rows count in the lengths that they have beside V: one whose gradient vanishes on V is none.
+        """
+        beside = [self.numbers(q + self._aside(len(q)), parameters).rows for _ in range(3)]
+        usual = np.linalg.norm(np.array(beside, dtype=float), axis=2).max(axis=0)
+        usual[usual <= NOTHING] = 1
+
+        def directions(place: Any) -> Any:
+            rows = np.array(self.numbers(place, parameters).rows, dtype=float) / usual[:, None]
+            values, free = np.linalg.svd(rows)[1:]
+            return free[int((values > DEPENDENT * values.max(initial=0.0)).sum()) :].T
+
+        free = directions(q)
+        for _ in range(3):
+            step = free @ np.array([self._dice.uniform(-1, 1) for _ in range(free.shape[1])])
+            there = self.closed(q + SHORT * step, parameters)
+            if there is None or np.abs(there - q - SHORT * step).max() > STRAY * SHORT**2:
+                return False
+            if directions(there).shape != free.shape:
+                return False
+        return bool(free.shape[1] > 0)
+
+    def _aside(self, count: int) -> Any:
+        return np.array([self._dice.uniform(-0.3, 0.3) for _ in range(count)])
+
+    def _inside(self, q: Any) -> bool:
+        for name, value in zip(self._system.coordinates, q, strict=True):
+            if name in self._ranges:
+                lower, upper = (self._number(text) for text in self._ranges[name])
+                if not lower <= value <= upper:
+                    return False
+        return True
+
+    def _number(self, text: str) -> float:
+        return float(self._system.tape.evaluate([self._system.read(text)], {}, self._floats)[0])
+
+    def numbers(self, q: Any, parameters: Mapping[str, float], qd: Any = None) -> EquationValues:
+        """The equations of motion in floats."""
+        rates = qd if qd is not None else [0.0] * len(q)
+        values = {**parameters, **dict(zip(self._system.coordinates, map(float, q), strict=True))}
+        values |= dict(zip(self._system.rate_names, map(float, rates), strict=True))
+        at, void = self._evaluate(values, self._floats), self._void(parameters)
+        rows = [[0.0] * at.n if i in void else row for i, row in enumerate(at.rows)]
+        residual = [0.0 if i in void else x for i, x in enumerate(at.residual)]
+        return replace(at, rows=rows, residual=residual)
+
+    def _void(self, parameters: Mapping[str, float]) -> frozenset[int]:
+        """The rows that are 0 beside V, too: what rounding leaves of one in small units is longer than another row."""
+        if self._voids is None:
+            number, names = self._balls.number, self._system.coordinates
+            found = set(range(len(self._system.rows)))
+            with precision():
+                fixed = {name: number(Fraction(value)) for name, value in parameters.items()}
+                fixed |= dict.fromkeys(self._system.rate_names, number(Fraction(0)))
+                for aside in ASIDE:
+                    exact = [number(Fraction(float(x)) + (1 + k) * aside) for k, x in enumerate(self._start)]
+                    at = self._evaluate({**fixed, **dict(zip(names, exact, strict=True))}, self._balls)
+                    found = {i for i in found if all(x.is_finite() and x.contains(0) for x in at.rows[i])}
+            self._voids = frozenset(found)
+        return self._voids
+
+    def closed(self, q: Any, parameters: Mapping[str, float]) -> Any:
+        """The nearest configuration that satisfies the geometric rows, to the last digits; None where there is none."""
+        geometric = sum(row.geometric for row in self._system.rows)
+        if not geometric:
+            return q
+        best, stalled = math.inf, 0
+        for _ in range(STEPS):
+            try:
+                at = self.numbers(q, parameters)
+            except (ValueError, OverflowError, ZeroDivisionError):
+                return None
+            rows: Any = np.array(at.rows[:geometric])
+            residual = np.array(at.residual)
+            lengths = np.linalg.norm(rows, axis=1)
+            lengths[lengths <= NOTHING] = 1
+            gap = float(np.abs(residual / lengths).max())
+            if gap >= best:
+                stalled += 1
+            best = min(best, gap)
+            if stalled >= 3 or gap == 0:
+                break
+            steep = rows / lengths[:, None]
+            steep[np.linalg.norm(rows, axis=1) <= NOTHING] = 0
+            q = q - np.linalg.lstsq(steep, residual / lengths, rcond=SAME)[0]
+        return q if best < CLOSED else None
+
+    def refined(self, q: Any, parameters: Mapping[str, float]) -> Any:
+        """The float nearest to a configuration that satisfies the rows to 30 digits.
+
+        Where rows depend on each other nothing is defined off V but by rounding.
+        """
+        geometric = sum(row.geometric for row in self._system.rows)
+        if not geometric:
+            return q
+        number = self._balls.number
+        names = self._system.coordinates
+        rank = rank_of(normalized(np.array(self.numbers(q, parameters).rows[:geometric])), SAME)
+        with precision():
+            fixed = {name: number(Fraction(value)) for name, value in parameters.items()}
+            fixed |= dict.fromkeys(self._system.rate_names, number(Fraction(0)))
+            exact = [number(Fraction(float(x))) for x in q]
+            for _ in range(REFINEMENTS):
+                at = self._evaluate({**fixed, **dict(zip(names, exact, strict=True))}, self._balls)
+                step = onto_rows(at.rows[:geometric], at.residual, rank)
+                exact = [(x + dx).mid() for x, dx in zip(exact, step, strict=True)]
+            return np.array([float(x) for x in exact])
+
+    def _free(self, q: Any, parameters: Mapping[str, float]) -> Any:
+        at = self.numbers(q, parameters)
+        return null_space(at)
+
+    @staticmethod
+    def _rank(at: EquationValues, threshold: float = SAME) -> int:
+        return rank_of(normalized(np.array(at.rows, dtype=float).reshape(-1, at.n)), threshold)
+
+    @staticmethod
+    def _reached(at: EquationValues, threshold: float = SAME) -> int:
+        control = np.array(at.control, dtype=float).reshape(at.n, -1)
+        if not control.size:
+            return 0
+        lengths = np.linalg.norm(control, axis=0)
+        # what rounding leaves of an input that moves nothing has no direction
+        idle = lengths <= NOTHING * lengths.max(initial=0.0)
+        control[:, idle], lengths[idle] = 0, 1
+        return rank_of((null_space(at).T @ (control / lengths)).T, threshold, absolute=True)
+
+    def state(self, q: Any, parameters: Mapping[str, float], rank: int | None = None) -> FloatState:
+        """A state with admissible rates and accelerations at a configuration, `rank` being that of the rows."""
+        free = null_space(self.numbers(q, parameters), rank)
+        spread = [self._dice.uniform(-1.5, 1.5) for _ in range(free.shape[1])]
+        qd = free @ np.array(spread)
+        moving = self.numbers(q, parameters, qd)
+        qdd = free @ np.array([self._dice.uniform(-4, 4) for _ in range(free.shape[1])])
+        if moving.drift:
+            qdd = qdd - self._inverse(moving.rows, rank) @ np.array(moving.drift)
+        u = [self._dice.uniform(-8, 8) for _ in self._system.inputs]
+        return FloatState(*(tuple(map(float, part)) for part in (q, qd, qdd, u, parameters.values())))
+
+    @staticmethod
+    def _inverse(rows: Any, rank: int | None) -> Any:
+        """The pseudoinverse of the rows, of as many directions as their rank where that is known."""
+        if rank is None:
+            return np.linalg.pinv(np.array(rows), rcond=SAME)
+        left, values, right = np.linalg.svd(np.array(rows), full_matrices=False)
+        return right[:rank].T @ (left[:, :rank] / values[:rank]).T
+
+
+def normalized(rows: Any) -> Any:
+    """Rows of length 1; those that vanish left out."""
+    lengths = np.linalg.norm(rows, axis=1)
+    return rows[lengths > NOTHING] / lengths[lengths > NOTHING, None]
+
+
+def null_space(at: EquationValues, rank: int | None = None) -> Any:
+    """Orthonormal columns that span the velocities which the constraints allow, of this rank where it is known."""
+    rows: Any = normalized(np.array(at.rows, dtype=float).reshape(-1, at.n))
+    if not rows.size:
+        return np.eye(at.n)
+    values, directions = np.linalg.svd(rows)[1:]
+    held = int((values > SAME * values.max()).sum()) if rank is None else rank
+    free = directions[held:].T
+    # a coordinate that cannot move stands still: float32 has no squares of what rounding leaves of its rate
+    return np.where(np.abs(free) > NOTHING, free, 0.0)
+
+
+def rank_of(rows: Any, threshold: float, absolute: bool = False) -> int:
+    """How many singular values are above the threshold, relative to the largest unless it is `absolute`."""
+    if not rows.size:
+        return 0
+    values = np.linalg.svd(rows, compute_uv=False)
+    return int((values > threshold * (1.0 if absolute else values.max())).sum())
+
+
+def rounded(values: Sequence[float], scalar: str) -> tuple[float, ...]:
+    """Rounded to float32 where that is asked for."""
+    return tuple(float(np.float32(value)) for value in values) if scalar == "float32" else tuple(values)

@@ -1,0 +1,353 @@
+"""The numbers of what was generated against those of the zoo, at states on the branch that was drawn."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from symgen.laboratory.zoo.dice import Dice
+from symgen.laboratory.zoo.draws.describe import Description
+from symgen.laboratory.zoo.witness.allocation import directed, members, preloads
+from symgen.laboratory.zoo.witness.expressions import NotReadError
+from symgen.laboratory.zoo.witness.fields import Balls, Floats, precision
+from symgen.laboratory.zoo.witness.generated import Answer, Target, targets
+from symgen.laboratory.zoo.witness.kkt import (
+    DirectionSplit,
+    EquationEvaluator,
+    GenericRanks,
+    inverse_dynamics,
+    motion,
+    split,
+)
+from symgen.laboratory.zoo.witness.mechanics import equations
+from symgen.laboratory.zoo.witness.pinocchio_trees import SAME, disagreement
+from symgen.laboratory.zoo.witness.reader import SystemReader
+from symgen.laboratory.zoo.witness.states import FloatState, Walker, rounded
+from symgen.laboratory.zoo.witness.tape import FileNumber, NodeProgram
+from symgen.laboratory.zoo.witness.urdf_file import expanded
+
+STATES = 20
+PERTURBATIONS = 8
+ALLOWED = 16.0
+# The truth is known to so much where it is looked at.
+KNOWN = 1e-40
+EPS = {"float64": 2.0**-53, "float32": 2.0**-24}
+# a status is a failure where rows, inputs and masses are further apart than this
+CERTAIN = {"float64": 1e-4, "float32": 2e-2}
+LARGEST = {"float64": 1e280, "float32": 1e30}
+# The status of u where inputs span less than they do on the branch that the files are made for.
+ACTUATION_RANK = 3
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A number that is wrong, or a status that is not honest."""
+
+    kind: str
+    text: str
+
+
+@dataclass(frozen=True)
+class CheckResult:
+    """What was compared: how many states, the largest error in units of what is allowed, and what is wrong."""
+
+    states: int
+    largest: float
+    findings: tuple[Finding, ...]
+
+
+@dataclass(frozen=True)
+class Truth:
+    """A quantity at a state, and how well the state determines it, 0 to 1."""
+
+    value: list[Any]
+    clear: float
+
+
+@dataclass(frozen=True)
+class JudgedResult:
+    """One result beside the truth: a status, or the error in units of what is allowed and relative to the truth.
+
+    `clear` is how well the state determines the result; where that is `certain` there is no reason for the status.
+    """
+
+    status: int
+    units: float
+    relative: float
+    clear: float
+    certain: bool
+
+
+class Witness:
+    """A model file read by the zoo alone."""
+
+    def __init__(
+        self,
+        text: str,
+        start: Mapping[str, float] | None = None,
+        seed: object = 0,
+        files: Mapping[str, str] | None = None,
+    ) -> None:
+        given: Mapping[str, Any] = yaml.load(text, Loader=yaml.BaseLoader)
+        self._given, self._files = given, files or {}
+        blocks = expanded(given, self._files)
+        self._system = SystemReader(blocks)
+        self._equations = equations(self._system)
+        self._evaluate = EquationEvaluator(NodeProgram(self._system.tape, self._equations.flat), self._equations)
+        self._seed = seed
+        told = {name: float(value) for name, value in (blocks.get("configuration") or {}).items()}
+        self._start = {**told, **(start or {})}
+        self._balls = Balls()
+        self._rows: Sequence[int] = range(len(self._system.rows))
+        self._runtime: list[bool] = []
+        self._spanned = 0
+
+    def check(self, folder: Path, count: int = STATES) -> CheckResult:
+        """Everything generated in a folder; nothing is compared where no state is found."""
+        blocks = self._system.blocks
+        defaults = self.defaults()
+        found, ranks = self.walker().states(defaults, count)
+        findings: list[Finding] = []
+        other = disagreement(self._given, defaults, Dice("Pinocchio", self._seed), self._files)
+        if other is not None and other > SAME:
+            findings.append(Finding("witness: Pinocchio", f"the witness and Pinocchio differ by {other:.1e}"))
+        largest = 0.0
+        members = self.opened(folder)
+        for target in targets(folder, blocks["model"]):
+            if members and len(target.parameters) != len(members):
+                told = f"{target.name}: parameters {target.parameters} where {members} are due"
+                findings.append(Finding("witness: parameters", told))
+                continue
+            for state in found:
+                for quantity in target.quantities:
+                    error, finding = self._compared(target, quantity, state, ranks)
+                    largest = max(largest, error)
+                    if finding is not None:
+                        findings.append(finding)
+                        break
+                if findings and findings[-1].text.startswith(target.name):
+                    break
+        return CheckResult(len(found), largest, tuple(findings))
+
+    def opened(self, folder: Path) -> list[str]:
+        """The parameters of what was generated in a folder, which is compared from now on."""
+        derivation = self._derivation(folder)
+        numbers = derivation.get("parameters_as_numbers", ())
+        members = [name for name in (*self._system.parameters, *self._allocation()) if name not in numbers]
+        self._runtime = [name in members for name in (*self._system.parameters, *self._allocation())]
+        self._rows = self._rows_of(folder)
+        self._spanned = int(derivation["sizes"]["alpha"])
+        return members
+
+    def walker(self) -> Walker:
+        """What finds states of the system, from the configuration that was drawn."""
+        return Walker(self._system, self._evaluate, self._start, Dice("states", self._seed))
+
+    @property
+    def shaping(self) -> frozenset[str]:
+        """The parameters on which masses or constraints depend: masses, inertias, lengths, ratios."""
+        nodes = [node for matrix in (self._equations.mass, self._equations.rows) for row in matrix for node in row]
+        reached = self._system.tape.reached([*nodes, *self._equations.residual])
+        return frozenset(str(node.payload) for node in reached if node.op == "symbol") & set(self._system.parameters)
+
+    def defaults(self) -> dict[str, float]:
+        """The values of the parameters in the file, of those of the allocation too."""
+        values: dict[str, float] = {}
+        with precision():
+            exact: dict[str, Any] = {}
+            for name, node in self._system.parameters.items():
+                exact[name] = self._system.tape.evaluate([node], exact, self._balls)[0]
+                values[name] = float(exact[name].mid())
+        for name, value in self._allocation().items():
+            values[name] = value
+        return values
+
+    @staticmethod
+    def _derivation(folder: Path) -> dict[str, Any]:
+        derivation: dict[str, Any] = json.loads((folder / "derivation.json").read_bytes())
+        return derivation
+
+    def _rows_of(self, folder: Path) -> Sequence[int]:
+        """The rows that the files have multipliers of: those that hold in every configuration are left out there."""
+        derivation = self._derivation(folder)
+        names = {name for block in derivation["blocks"] for name in block["rows"]}
+        kept = [index for index, row in enumerate(self._system.rows) if row.name in names]
+        return kept if len(kept) == derivation["sizes"]["r"] else range(len(self._system.rows))
+
+    def _allocation(self) -> dict[str, float]:
+        return members(self._system.blocks.get("allocation") or {}, self._float)
+
+    def _float(self, text: str) -> float:
+        return float(self._system.tape.evaluate([self._system.read(text)], {}, Floats())[0])
+
+    def _compared(
+        self, target: Target, quantity: str, state: FloatState, ranks: GenericRanks
+    ) -> tuple[float, Finding | None]:
+        """The error of one result in units of what is allowed, and what is wrong with it."""
+        found = self.compare(target, quantity, state, ranks)
+        if found is None:
+            return 0.0, None
+        where = f"{target.name}, {quantity}"
+        if found.status:
+            told = f"{where}: status {found.status} at a regular state ({found.clear:.1e})"
+            return 0.0, Finding("witness: status", told) if found.certain else None
+        if found.units <= 1:
+            return found.units, None
+        told = (
+            f"{where}: {ALLOWED * found.units:.3g} units at a state, {ALLOWED:g} are allowed "
+            f"(relative error {found.relative:.1e})"
+        )
+        return found.units, Finding("witness: number", told)
+
+    def compare(self, target: Target, quantity: str, state: FloatState, ranks: GenericRanks) -> JudgedResult | None:
+        """One result beside the truth, None where there is no truth."""
+        scalar = target.scalar
+        parts = (state.q, state.qd, state.qdd, state.u, state.parameters)
+        given = FloatState(*(rounded(part, scalar) for part in parts))
+        with precision():
+            truth = self._truth(quantity, given, ranks)
+            if truth is None:
+                return None
+            members = tuple(x for x, used in zip(given.parameters, self._runtime, strict=True) if used)
+            answer = target.call(quantity, replace(given, parameters=members), len(truth.value))
+            exact = [float(x.mid()) for x in truth.value]
+            if answer.status:
+                certain = truth.clear > CERTAIN[scalar] and all(abs(x) < LARGEST[scalar] for x in exact)
+                if quantity == "inverse_dynamics" and ranks.actuation < self._spanned:
+                    # the branch that was drawn is told to be one on which inputs lose rank
+                    certain = answer.status != ACTUATION_RANK
+                return JudgedResult(answer.status, 0.0, 0.0, truth.clear, certain)
+            units = self._units(answer, truth, quantity, given, ranks, EPS[scalar])
+        apart = _norm([a - b for a, b in zip(answer.value, exact, strict=True)])
+        return JudgedResult(0, units, apart / (_norm(exact) or 1.0), truth.clear, False)
+
+    def unit(self, quantity: str, state: FloatState, ranks: GenericRanks, scalar: str) -> float:
+        """The most that roundings of the inputs change a result, as a share of it; infinite where there is none."""
+        parts = (state.q, state.qd, state.qdd, state.u, state.parameters)
+        given = FloatState(*(rounded(part, scalar) for part in parts))
+        dice, moved = Dice("perturbations", self._seed), 0.0
+        with precision():
+            truth = self._truth(quantity, given, ranks)
+            if truth is None:
+                return math.inf
+            for _ in range(PERTURBATIONS):
+                other = self._truth(quantity, given, ranks, (dice, EPS[scalar]))
+                moved = max(moved, math.inf if other is None else _distance(other.value, truth.value))
+            size = _norm([float(x.mid()) for x in truth.value])
+        return moved / size if size else 0.0 if not moved else math.inf
+
+    def _units(
+        self, answer: Answer, truth: Truth, quantity: str, state: FloatState, ranks: GenericRanks, eps: float
+    ) -> float:
+        """The error over what is allowed; what rounding the inputs does is worked out only where it is needed."""
+        if not all(map(math.isfinite, answer.value)) or len(answer.value) != len(truth.value):
+            return math.inf
+        error = _least_distance(answer.value, truth.value)
+        size = _norm([float(x.mid()) for x in truth.value])
+        moved = 0.0
+        dice = Dice("perturbations", self._seed)
+        for _ in range(PERTURBATIONS + 1):
+            if error <= ALLOWED * (moved + eps * size):
+                break
+            other = self._truth(quantity, state, ranks, (dice, eps))
+            if other is not None:
+                moved = max(moved, _distance(other.value, truth.value))
+        allowed = ALLOWED * (moved + eps * size)
+        return error / allowed if allowed else (math.inf if error else 0.0)
+
+    def _truth(
+        self, quantity: str, state: FloatState, ranks: GenericRanks, moved: tuple[Dice, float] | None = None
+    ) -> Truth | None:
+        """The quantity in balls; where `moved` is given, of a state that is one rounding away."""
+        number = self._balls.number
+
+        def ball(value: float) -> Any:
+            exact = Fraction(value)
+            return number(exact + _sign(moved[0]) * Fraction(moved[1]) * exact) if moved else number(exact)
+
+        names = (*self._system.coordinates, *self._system.rate_names)
+        values = {name: ball(x) for name, x in zip(names, (*state.q, *state.qd), strict=True)}
+        parameters = [ball(x) for x in state.parameters]
+        values |= dict(zip((*self._system.parameters, *self._allocation()), parameters, strict=True))
+        literals: dict[FileNumber, Any] | None = None
+        if moved:
+            literals = {
+                literal: number(literal.value + _sign(moved[0]) * Fraction(moved[1]) * literal.value)
+                for literal in self._evaluate.program.literals
+            }
+        at = self._evaluate(values, self._balls, literals)
+        one = number(Fraction(1))
+        parts = split(at, ranks.constraints, one)
+        if len(parts.held) < ranks.constraints:
+            return None
+        if quantity == "inverse_dynamics":
+            return self._inputs(at, parts, [ball(x) for x in state.qdd], ranks, values)
+        u = [ball(x) for x in state.u]
+        accelerations, multipliers, pivots = motion(at, parts, u)
+        if not accelerations:
+            return None
+        clear = min((*parts.pivots, *pivots[-1:]), default=1.0)
+        if quantity == "forward_dynamics":
+            return Truth(accelerations, clear)
+        return Truth([multipliers[index] for index in self._rows], clear)
+
+    def _inputs(
+        self, at: Any, parts: DirectionSplit, accelerations: list[Any], ranks: GenericRanks, values: Mapping[str, Any]
+    ) -> Truth | None:
+        """u, as the model's allocation says."""
+        one = self._balls.number(Fraction(1))
+        inputs = self._system.inputs
+        block = self._system.blocks.get("allocation") or {}
+        weights = [values.get(f"weight_{name}", one) for name in inputs] if "weights" in block else None
+        near = preloads(inputs, block, values, one * 0)
+        u, pivots = inverse_dynamics(at, parts, accelerations, ranks.actuation, weights, near)
+        if len(pivots) < ranks.actuation:
+            return None
+        u = directed(at, u, inputs, block, values, one)
+        # where the inputs reach nothing, u is a plain 0
+        u = [x + 0 * one for x in u]
+        return Truth(u, min((*parts.pivots, *pivots), default=1.0))
+
+
+def _sign(dice: Dice) -> int:
+    return 1 if dice.chance(0.5) else -1
+
+
+def _norm(values: Sequence[float]) -> float:
+    return math.sqrt(math.fsum(x * x for x in values))
+
+
+def _distance(values: Sequence[Any], exact: Sequence[Any]) -> float:
+    return _norm([float((x - y).mid()) for x, y in zip(exact, values, strict=True)])
+
+
+def _least_distance(values: Sequence[float], exact: Sequence[Any]) -> float:
+    """Between numbers and what is known of the truth: 0 is right where that is 0 to a hundred digits.
+
+    Numbers are held against the middle of what is known less well.
+    """
+    if any(float(x.rad()) > KNOWN for x in exact):
+        return _distance(values, exact)
+    return _norm([float((x - y).abs_lower()) for x, y in zip(exact, values, strict=True)])
+
+
+def check(description: Description, folder: Path) -> CheckResult:
+    """What the witness says of the files in a folder; a part of the language that it does not read is no failure."""
+    text = description.text
+    try:
+        return Witness(text, description.start, text, description.files).check(folder)
+    except NotReadError:
+        return CheckResult(0, 0.0, ())
+
+
+def findings_by_kind(checked: CheckResult) -> Iterator[tuple[str, str]]:
+    """Kind and text of what is wrong."""
+    for finding in checked.findings:
+        yield finding.kind, finding.text

@@ -1,0 +1,1 @@
+"""Angles, sines and cosines of the graph: sums, half turns, the unit circle."""

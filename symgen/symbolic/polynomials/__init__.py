@@ -1,0 +1,1 @@
+"""Scalars as polynomials in what they are made of: monomials, content, factors."""

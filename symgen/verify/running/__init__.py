@@ -1,0 +1,1 @@
+"""What was generated, compiled or imported and called as its users call it."""

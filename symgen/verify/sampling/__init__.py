@@ -1,0 +1,1 @@
+"""States: regular ones on the constraint manifold, and where a kernel is worst."""

@@ -1,0 +1,227 @@
+"""Hundreds of states beside those of a verification, in float64: where to look for the worst, not what is right there.
+
+A state is what a sample of the verification, or a configuration in some assembly mode, becomes by a step along V; its
+parameters are that sample's, or the default ones.  Rates and accelerations satisfy the constraints in every other one,
+as there.  The dice do not depend on what was looked at before.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import hypot, prod
+from typing import Any
+
+import numpy as np
+
+from symgen.verify.reference.reference import Reference, ReferenceValueError, State
+from symgen.verify.reference.system import default_parameters
+from symgen.verify.sampling.lanes import Lanes
+from symgen.verify.sampling.loops_in_lanes import DEPENDENT, Loops, lengths_of, times
+from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, measures, ranked_parts
+from symgen.verify.sampling.regular import values_at
+from symgen.verify.sampling.states import Sample
+
+# Shares of the ranges of coordinates: how far states are drawn from samples, and moved from where they are.
+REACH = 0.2
+FURTHER = 0.05
+QUARTER = np.pi / 2
+# Powers of ten: how far an angle is from a multiple of a quarter turn.
+OFF = (1.0, 5.0)
+# Powers of ten by which inputs of half of the states are smaller than those of samples, where weights or springs drive
+# the machine too: inputs that hold its heaviest body hide what rounding does to light ones that nothing else moves.
+LITTLE = (1.0, 4.0)
+# In how many samples that is looked at, and how large these forces are beside inputs.
+LOOKED_AT, LEAST_SHARE = 8, 0.1
+# A step of differences along the rates, in radians and metres a unit of time.
+DIFFERENCE = 1e-5
+
+
+@dataclass(frozen=True)
+class Nearby:
+    """States with a row each: arguments and parameters by name, whether rates satisfy the constraints, and the places
+    of the samples that they come from."""
+
+    parts: Mapping[str, Lanes]
+    admissible: Lanes
+    origins: Lanes
+
+    def __len__(self) -> int:
+        return len(self.origins)
+
+    def only(self, which: Lanes) -> Nearby:
+        """Those that a mask or places name."""
+        parts = {name: values[which] for name, values in self.parts.items()}
+        return Nearby(parts, self.admissible[which], self.origins[which])
+
+    def state(self, place: int) -> State:
+        """One of them, in seven digits: what is found does not depend on the last bits of NumPy's functions."""
+        single = {name: values[place].astype(np.float32) for name, values in self.parts.items()}
+        q, qd, qdd, u = (tuple(map(float, single[name])) for name in ("q", "qd", "qdd", "u"))
+        return State(q, qd, qdd, u, tuple(map(float, self.parts["p"][place])))
+
+
+def joined(first: Nearby, second: Nearby) -> Nearby:
+    """All states of both."""
+    parts = {name: np.concatenate((values, second.parts[name])) for name, values in first.parts.items()}
+    admissible = np.concatenate((first.admissible, second.admissible))
+    return Nearby(parts, admissible, np.concatenate((first.origins, second.origins)))
+
+
+class Surroundings:
+    """What lies near the samples of a verification."""
+
+    def __init__(
+        self, reference: Reference, samples: Sequence[Sample], modes: Sequence[Sequence[float]] = ()
+    ) -> None:
+        self._system, self._parts = reference.system, ranked_parts(reference.system, reference.ranks)
+        self._loops = Loops(reference.system, [float(x) for x in reference.literals()])
+        states = [sample.state for sample in samples]
+        parts = {name: _rows([getattr(state, name) for state in states]) for name in ("q", "qd", "qdd", "u")}
+        parts["p"] = _rows([state.parameters for state in states])
+        admissible = np.array([sample.admissible for sample in samples])
+        self.samples = Nearby(parts, admissible, np.arange(len(samples)))
+        self._modes = np.array([list(q) for q in modes]).reshape(len(modes), reference.model.n)
+        self._defaults = np.array([float(x) for x in default_parameters(reference.model)])
+        coordinates = self._coordinates = reference.model.coordinates
+        low, high = (np.array([float(c.range[side]) for c in coordinates]) for side in (0, 1))
+        self._widths = high - low
+        # ranges that nobody told may be left by every configuration there is
+        met = [parts["q"], self._modes]
+        self._low = np.minimum(low, np.concatenate(met).min(axis=0, initial=np.inf))
+        self._high = np.maximum(high, np.concatenate(met).max(axis=0, initial=-np.inf))
+        self._rates = np.array([float(c.rate_range[1]) for c in coordinates])
+        self._accelerations = np.array([float(c.acceleration_range[1]) for c in coordinates])
+        self._inputs = np.abs(parts["u"]).max(axis=1, initial=1.0)[:, None]
+        self._driven_by_itself = any(_driven_by_itself(reference, state) for state in states[:LOOKED_AT])
+
+    def drawn(self, count: int) -> Nearby:
+        """About so many: a step off each sample in turn, with other rates, accelerations and inputs."""
+        start = self.samples.only(np.arange(count) % len(self.samples))
+        return self._stepped(start, REACH, 1.0, random.Random("nearby"), afresh=True)
+
+    def in_modes(self, count: int) -> Nearby:
+        """About so many: a step off each assembly mode in turn, for default parameters and for those of samples."""
+        start = self.samples.only(np.arange(count) % len(self.samples))
+        if not len(self._modes):
+            return start.only(slice(0))
+        turn = np.arange(count) // len(self._modes)
+        q, p = self._modes[np.arange(count) % len(self._modes)], start.parts["p"]
+        p = np.where((turn % 4 != 3)[:, None], self._defaults, p)
+        start = Nearby({**start.parts, "q": q, "p": p}, start.admissible, start.origins)
+        return self._stepped(start, REACH, 1.0, random.Random("modes"), afresh=True)
+
+    def aligned(self, count: int) -> Nearby:
+        """About so many with an angle near a multiple of a quarter turn, where a sine or cosine vanishes.
+
+        What divides by one of them loses digits there, and states at random do not come near.
+        """
+        start = self.samples.only(np.arange(count) % len(self.samples))
+        angles = [place for place, c in enumerate(self._coordinates) if c.unit == "rad"]
+        if not angles:
+            return start.only(slice(0))
+        dice = random.Random("aligned")
+        places = np.array([dice.choice(angles) for _ in range(count)])
+        before = start.parts["q"][np.arange(count), places]
+        off = np.array([dice.choice((-1, 1)) * 10.0 ** -dice.uniform(*OFF) for _ in range(count)])
+        held = (places, np.round(before / QUARTER) * QUARTER + off)
+        with np.errstate(all="ignore"):
+            q, _ = self._loops.newton(start.parts["q"], start.parts["p"], held)
+            parts = {**start.parts, "q": q}
+            return self._settled(Nearby(parts, start.admissible, start.origins), start.parts["q"])
+
+    def measures(self, states: Nearby) -> Lanes:
+        """What tells how far rows and inputs are from a drop of rank, a row for each state."""
+        return measures(self._parts, self._matrices(states.parts["q"], states.parts["p"]))
+
+    def moved(self, states: Nearby, seed: str) -> Nearby:
+        """States a step further, of which some are left out: those that are not regular or out of range."""
+        return self._stepped(states, FURTHER, 2 * FURTHER, random.Random(f"nearby {seed}"), afresh=False)
+
+    def _stepped(self, start: Nearby, reach: float, share: float, dice: random.Random, afresh: bool) -> Nearby:
+        count, kept = len(start), 0.0 if afresh else 1.0
+        parts = dict(start.parts)
+        q = parts["q"] + reach * _shifts(dice, parts["q"]) * self._widths
+        parts["q"] = np.clip(q, self._low, self._high)
+        widths = {"qd": self._rates, "qdd": self._accelerations, "u": self._inputs_of(start, afresh)}
+        for name, width in widths.items():
+            parts[name] = kept * parts[name] + share * _shifts(dice, parts[name]) * width
+        admissible = np.arange(count) // len(self.samples) % 2 == 0 if afresh else start.admissible
+        with np.errstate(all="ignore"):
+            return self._settled(Nearby(parts, admissible, start.origins), start.parts["q"])
+
+    def _inputs_of(self, start: Nearby, afresh: bool) -> Lanes:
+        """How large inputs are made, a row for each state; those of a state that goes on stay about as large."""
+        if not afresh:
+            return np.abs(start.parts["u"]).max(axis=1, initial=0.0)[:, None]
+        dice = random.Random("inputs")
+        little = np.array([10.0 ** -dice.uniform(*LITTLE) for _ in range(len(start))])
+        whole = not self._driven_by_itself or np.arange(len(start)) // len(self.samples) // 2 % 2 == 0
+        return self._inputs[start.origins] * np.where(whole, 1.0, little)[:, None]
+
+    def _settled(self, states: Nearby, start: Lanes) -> Nearby:
+        """Brought onto V, rates and accelerations too where they are to be.
+
+        Of machines side by side those that a step leads nowhere stay where they were.
+        """
+        parts, p = dict(states.parts), states.parts["p"]
+        q, shut = self._loops.newton(parts["q"], p)
+        slack = 0.01 * self._widths
+        inside = (q >= self._low - slack) & (q <= self._high + slack)
+        good = np.ones(len(q), dtype=bool)
+        for part, blocks in zip(self._parts, self._matrices(q, p), strict=True):
+            these = list(part.coordinates)
+            led = inside[:, these].all(axis=1) & shut[:, these].all(axis=1) & is_regular(part, *blocks)
+            if len(self._parts) == 1:
+                good = led
+            else:
+                q[:, these] = np.where(led[:, None], q[:, these], start[:, these])
+        parts["q"] = q
+        if self._system.r:
+            on = states.admissible[:, None]
+            rows = [made for made, _ in self._matrices(q, p)]
+            for made in rows:
+                good &= np.isfinite(made).all(axis=(1, 2))
+            lengths = [lengths_of(made) for made in rows]
+            units = [_finite(made / length) for made, length in zip(rows, lengths, strict=True)]
+            inverses = [np.linalg.pinv(unit, rcond=DEPENDENT) for unit in units]
+            qd, qdd = parts["qd"].copy(), parts["qdd"].copy()
+            for part, unit, inverse in zip(self._parts, units, inverses, strict=True):
+                these = list(part.coordinates)
+                qd[:, these] -= times(inverse, times(unit, qd[:, these]))
+            sides = (self._matrices(q + side * DIFFERENCE * qd, p) for side in (1, -1))
+            for part, length, unit, inverse, (ahead, _), (behind, _) in zip(
+                self._parts, lengths, units, inverses, *sides, strict=True
+            ):
+                these = list(part.coordinates)
+                drift = np.nan_to_num(times((ahead - behind) / (2 * DIFFERENCE) / length, qd[:, these]))
+                qdd[:, these] -= times(inverse, times(unit, qdd[:, these]) + drift)
+            parts["qd"], parts["qdd"] = np.where(on, qd, parts["qd"]), np.where(on, qdd, parts["qdd"])
+        return Nearby(parts, states.admissible, states.origins).only(good)
+
+    def _matrices(self, q: Lanes, p: Lanes) -> list[tuple[Lanes, Lanes]]:
+        """B and M of each part."""
+        return matrices(self._system, self._parts, self._loops, q, p)
+
+
+def _driven_by_itself(reference: Reference, state: State) -> bool:
+    """Whether the potential's force along the motion counts beside the inputs."""
+    try:
+        (force,) = values_at(reference, state, ["projected_potential_force"]).values()
+    except ReferenceValueError:
+        return False
+    return hypot(*force) > LEAST_SHARE * max(map(abs, state.u), default=0.0)
+
+
+def _finite(values: Lanes) -> Lanes:
+    return np.where(np.isfinite(values), values, 0.0)
+
+
+def _rows(values: Sequence[Sequence[Any]]) -> Lanes:
+    return np.array([[float(x) for x in row] for row in values]).reshape(len(values), -1)
+
+
+def _shifts(dice: random.Random, like: Lanes) -> Lanes:
+    """Numbers between -1 and 1."""
+    return np.array([2 * dice.random() - 1 for _ in range(prod(like.shape))]).reshape(like.shape)

@@ -1,0 +1,109 @@
+"""B and M of each part of a system at many states at once, and which of these states are regular: in float64."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import comb
+
+import numpy as np
+
+from symgen.verify.reference.manifold import Ranks
+from symgen.verify.reference.system import System
+from symgen.verify.sampling.lanes import Lanes
+from symgen.verify.sampling.loops_in_lanes import DEPENDENT, Loops, block, lengths_of
+from symgen.verify.sampling.regular import REGULAR
+
+# Of rows of length 1: what is more than rounding leaves of rows that depend on others.
+INDEPENDENT = 1e2 * DEPENDENT
+
+
+@dataclass(frozen=True)
+class RankedPart:
+    """A part of the system with the ranks of its rows and of its inputs along what these leave free."""
+
+    coordinates: Sequence[int]
+    rows: Sequence[int]
+    inputs: Sequence[int]
+    constraints: int
+    actuation: int
+
+
+def ranked_parts(system: System, ranks: Ranks) -> list[RankedPart]:
+    """The parts of a system; all of it where it is not known which parts lack ranks."""
+    if len(ranks.of_parts) != len(system.parts):
+        return [RankedPart(range(system.n), range(system.r), range(system.m), ranks.constraints, ranks.actuation)]
+    pairs = zip(system.parts, ranks.of_parts, strict=True)
+    return [RankedPart(part.coordinates, part.rows, part.inputs, *own) for part, own in pairs]
+
+
+def matrices(
+    system: System, parts: Sequence[RankedPart], loops: Loops, q: Lanes, p: Lanes
+) -> list[tuple[Lanes, Lanes]]:
+    """B and M of each part."""
+    n, m, r = system.n, system.m, system.r
+    made = loops.run(system.matrices_replay, q, p)
+    return [
+        (
+            block(made, [[i * n + j for j in part.coordinates] for i in part.rows], len(part.coordinates)),
+            block(made, [[r * n + j * m + k for k in part.inputs] for j in part.coordinates], len(part.inputs)),
+        )
+        for part in parts
+    ]
+
+
+def is_regular(part: RankedPart, rows: Lanes, control: Lanes, other_branches: bool = True) -> Lanes:
+    """Whether rows, and inputs along what the rows leave free, are as far from dependent as regular states are.
+
+    Configurations of greater ranks lie on `other_branches`, which may count or not.
+    """
+    good: Lanes = np.isfinite(rows).all(axis=(1, 2)) & np.isfinite(control).all(axis=(1, 2))
+    rows, control = rows.copy(), control.copy()
+    rows[~good], control[~good] = 0.0, 0.0
+    count, r, n = rows.shape
+    free = np.broadcast_to(np.eye(n), (count, n, n))
+    if r:
+        sizes, directions = np.linalg.svd(rows / lengths_of(rows))[1:]
+        rank = part.constraints
+        good &= sizes[:, rank - 1] >= REGULAR * sizes[:, 0] if rank else True
+        if not other_branches:
+            good &= (sizes[:, rank:] <= INDEPENDENT).all(axis=1)
+        free = directions[:, rank:]
+    if part.actuation or not other_branches:
+        columns = np.swapaxes(control, 1, 2)
+        moved = free @ np.swapaxes(columns / lengths_of(columns), 1, 2)
+        sizes = np.linalg.svd(moved, compute_uv=False)
+        good &= sizes[:, part.actuation - 1] >= REGULAR if part.actuation else True
+        if not other_branches:
+            good &= (sizes[:, part.actuation :] <= INDEPENDENT).all(axis=1)
+    return good
+
+
+def measures(parts: Sequence[RankedPart], blocks: Sequence[tuple[Lanes, Lanes]]) -> Lanes:
+    """What `singularity` gives of B and M of each part: of the rows, and of the inputs along what these leave free."""
+    of_rows, of_inputs, whole = [], [], []
+    for part, (rows, control) in zip(parts, blocks, strict=True):
+        rows, control = (np.where(np.isfinite(made), made, 0.0) for made in (rows, control))
+        count, r, n = rows.shape
+        free = np.broadcast_to(np.eye(n), (count, n, n))
+        if r:
+            sizes, directions = np.linalg.svd(rows / lengths_of(rows))[1:]
+            of_rows.append(sizes)
+            free = directions[:, part.constraints :]
+        of_inputs.append(np.linalg.svd(free @ control, compute_uv=False))
+        whole.append(np.linalg.svd(control, compute_uv=False))
+    rows_rank, inputs_rank = (sum(ranks) for ranks in zip(*((p.constraints, p.actuation) for p in parts), strict=True))
+    all_rows, count = sum(made.shape[1] for made, _ in blocks), len(blocks[0][0])
+    rows_measure = _sum_of_minors(count, of_rows, rows_rank) / comb(all_rows, rows_rank)
+    least, most = (_sum_of_minors(count, sizes, inputs_rank) for sizes in (of_inputs, whole))
+    return np.stack([rows_measure, np.divide(least, most, out=np.zeros(count), where=most > 0)], axis=1)
+
+
+def _sum_of_minors(count: int, sizes: Sequence[Lanes], rank: int) -> Lanes:
+    """Of the squares of so many singular values, all products of `rank`, summed."""
+    sums = [np.ones(count), *(np.zeros(count) for _ in range(rank))]
+    for made in sizes:
+        for square in (made * made).T:
+            sums = [sums[0], *(x + square * before for before, x in pairwise(sums))]
+    return sums[rank]

@@ -1,0 +1,125 @@
+"""States at which a kernel is worst, searched for: a few dozen drawn ones do not meet them.
+
+Rounding errors are estimated at hundreds of states near those of the verification, then some steps further from the
+worst of these.  Only where the estimate leaves a doubt are states judged, in units of d + eps |y*| by the reference, as
+at any state of the verification.  A status there is an answer.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from functools import cached_property
+from itertools import islice
+
+import numpy as np
+
+from symgen.ir.kernel import Function, Kernel, Scalar
+from symgen.runtime.activity import working
+from symgen.verify.expected import Expected
+from symgen.verify.interpreted import outcomes
+from symgen.verify.reference.reference import ReferenceValueError
+from symgen.verify.sampling.lanes import Lanes, RoundingErrors
+from symgen.verify.sampling.nearby import Nearby, Surroundings, joined
+from symgen.verify.sampling.settling import Settling
+from symgen.verify.sampling.states import Sample, rounded
+from symgen.verify.tolerance import FACTOR, Expectation, expectations
+
+# States drawn; fewer of long kernels, so that no more numbers are held at a time.
+DRAWN, ALIGNED, IN_MODES = 512, 256, 256
+NUMBERS = 4_000_000
+# Of the worst of them, how many go further, in how many directions, and how often.
+KEPT, DIRECTIONS, STEPS = 32, 8, 3
+# Units; what is estimated counts every rounding with all that it may do, and d for less than it is.
+DOUBTFUL = FACTOR / 2
+# How many are judged, and how many are brought onto V at most: not all that lie near come to a regular state.
+JUDGED, SETTLED = 8, 32
+
+
+class WorstStateSearch:
+    """The worst states of the quantities of a model, those of every way that was looked at."""
+
+    def __init__(self, expected: Expected) -> None:
+        self._expected = expected
+        self._states: defaultdict[str, list[Sample]] = defaultdict(list)
+        self._values: dict[tuple[str, int, Scalar], Expectation | None] = {}
+
+    def look(self, kernel: Kernel) -> None:
+        """Adds the worst states of a kernel of plain numbers."""
+        with working(f"where {kernel.name} is worst"):
+            self._add(kernel.name, *self._estimated(kernel))
+
+    def _add(self, quantity: str, states: Nearby, units: Lanes) -> None:
+        doubtful = (place for place in _worst(units, SETTLED) if units[place] > DOUBTFUL)
+        tried = (
+            self._settling.sample(states.state(place), bool(states.admissible[place]), quantity) for place in doubtful
+        )
+        for sample in islice((sample for sample in tried if sample is not None), JUDGED):
+            if sample not in self._states[quantity]:
+                self._states[quantity].append(sample)
+
+    def largest(self, kernel: Kernel, sincos: Function | None, scalar: Scalar) -> float:
+        """The largest error with status 0, in units of d + eps |y*|, at the states that were found for its quantity.
+
+        They are those of every way that was looked at.
+        """
+        states = [rounded(sample, scalar).state for sample in self._states[kernel.name]]
+        worst = 0.0
+        for place, made in enumerate(outcomes(kernel, sincos, scalar, states)):
+            if made.valid and (expected := self._expectation(kernel.name, place, scalar)) is not None:
+                worst = max(worst, expected.in_units(expected.distance(made.entries)))
+        return worst
+
+    def _expectation(self, quantity: str, place: int, scalar: Scalar) -> Expectation | None:
+        """None where there is no value once the state is rounded."""
+        key = quantity, place, scalar
+        if key not in self._values:
+            state = rounded(self._states[quantity][place], scalar).state
+            try:
+                made = expectations(self._expected.reference, state, [quantity], scalar, f"{scalar} searched {place}")
+                self._values[key] = made[quantity]
+            except ReferenceValueError:
+                self._values[key] = None
+        return self._values[key]
+
+    def _estimated(self, kernel: Kernel) -> tuple[Nearby, Lanes]:
+        """States, and the rounding errors that are estimated there."""
+        count = NUMBERS // (len(kernel.statements) + 1)
+        states = self._drawn
+        if len(states) > count:
+            samples = len(self._surroundings.samples)
+            others = np.linspace(samples, len(states), max(0, count - samples), endpoint=False).astype(int)
+            states = states.only(np.append(np.arange(samples), others))
+        errors = RoundingErrors(kernel)
+        units = self._units(errors, states)
+        for step in range(STEPS if units.max() > DOUBTFUL else 0):
+            worst = states.only(_worst(units, KEPT))
+            starts = worst.only(np.arange(len(worst)).repeat(DIRECTIONS))
+            further = self._surroundings.moved(starts, f"{kernel.name} {step}")
+            if len(further):
+                states, units = joined(states, further), np.append(units, self._units(errors, further))
+        return states, units
+
+    def _units(self, errors: RoundingErrors, states: Nearby) -> Lanes:
+        """What is estimated where nothing speaks against a regular state: others would take the places of these."""
+        units, measures = errors.at(states.parts), self._surroundings.measures(states)
+        return np.where((measures >= self._settling.measures).all(axis=1), units, 0.0)
+
+    @cached_property
+    def _surroundings(self) -> Surroundings:
+        expected = self._expected
+        return Surroundings(expected.reference, expected.drawn, expected.modes)
+
+    @cached_property
+    def _drawn(self) -> Nearby:
+        around = self._surroundings
+        found = joined(around.samples, around.aligned(ALIGNED))
+        return joined(joined(found, around.in_modes(IN_MODES)), around.drawn(DRAWN))
+
+    @cached_property
+    def _settling(self) -> Settling:
+        return Settling(self._expected.reference, self._expected.drawn)
+
+
+def _worst(units: Lanes, count: int) -> Lanes:
+    """The places of the largest."""
+    return np.argsort(-units, kind="stable")[:count]

@@ -1,0 +1,133 @@
+"""Admissible states for verification: on the constraint manifold, away from singularities, seeded and deterministic."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import islice
+from math import comb, isfinite
+from typing import Any
+
+from symgen.ir.kernel import Scalar
+from symgen.runtime.activity import working
+from symgen.verify.reference.quantities import RATES
+from symgen.verify.reference.reference import Reference, ReferenceValueError, State
+from symgen.verify.reference.tape import precision
+from symgen.verify.sampling.regular import (
+    FEWEST_STATES,
+    SAMPLING_BITS,
+    Regular,
+    RegularStateSearch,
+    floats,
+    measured,
+    settled,
+    values_at,
+)
+
+USUAL_STATES = 64
+LONGEST_SECONDS = 20.0
+
+
+class VerificationError(Exception):
+    """Verification could not be carried out at all; the text says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """A state with exact floats; `admissible` when rates and accelerations satisfy the constraints up to rounding."""
+
+    state: State
+    admissible: bool
+    measures: tuple[float, float]
+
+
+def affordable_states(reference: Reference, quantities: Sequence[str], wanted: int) -> int:
+    """How many of `wanted` states fit in 20 s, by a count of operations (never by a clock), but 8 at least."""
+    system, ranks = reference.system, reference.ranks
+    solved = 40 * sum(len(part.coordinates) ** 3 for part in system.heavy) + 2 * system.n**2
+    if len(ranks.of_parts) == len(system.parts):
+        of_parts = zip(system.parts, ranks.of_parts, strict=True)
+        subsets = max(comb(len(part.rows), constraints) for part, (constraints, _) in of_parts)
+    else:
+        subsets = comb(system.r, ranks.constraints)
+    rates = (matrix for quantity in quantities for matrix in RATES.get(quantity, ()))
+    operations = system.operations(rates) + solved * subsets
+    seconds_per_state = 30 * 1.3e-7 * operations
+    return max(FEWEST_STATES, min(wanted, int(LONGEST_SECONDS / seconds_per_state)))
+
+
+def sample_states(
+    reference: Reference,
+    quantities: Sequence[str],
+    count: int,
+    seed: int = 0,
+    modes: Sequence[Sequence[float]] = (),
+) -> tuple[Sample, ...]:
+    """`count` states (fewer when V is hard to find), rounded to float64; one in five starts at one of the `modes`.
+
+    Rates and accelerations are projected onto the constraints in the even ones and arbitrary in the others; every
+    fourth is moved off V by about 1e-3, as measured states are, unless the constraints depend on each other or the
+    inputs reach more directions there than on V: what they give is defined on V alone then.
+    Raises VerificationError when fewer than 8 are found.
+    """
+    with precision(SAMPLING_BITS):
+        inside: list[Sample] = []
+        outside: list[Regular] = []
+        search = RegularStateSearch(reference, count, seed, modes)
+        with working("", count) as work:
+            for found_state, in_range in search.candidates():
+                if not in_range:
+                    outside.append(found_state)
+                elif (sample := _sample(reference, quantities, found_state)) is not None:
+                    inside.append(sample)
+                else:
+                    search.has_no_value()
+                if len(inside) == count:
+                    break
+                work.done, work.part = len(inside), f"{len(inside)} of {count} found"
+        others = (_sample(reference, quantities, found_state) for found_state in outside)
+        found = [*inside, *islice((sample for sample in others if sample is not None), count - len(inside))]
+    if len(found) < FEWEST_STATES:
+        raise VerificationError(
+            f"{reference.model.name}: only {len(found)} regular configurations on the constraint manifold were found "
+            f"({FEWEST_STATES} are needed){search.explanation()}; give a start under `configuration` and the ranges of "
+            "the coordinates"
+        )
+    return tuple(found)
+
+
+def rounded(sample: Sample, scalar: Scalar) -> Sample:
+    """The sample with every number rounded to the scalar type."""
+    if scalar == "float64":
+        return sample
+    state = sample.state
+    parts = (state.q, state.qd, state.qdd, state.u, state.parameters)
+    return replace(sample, state=State(*(tuple(_single(x) for x in part) for part in parts)))
+
+
+def _single(value: Any) -> float:
+    return float(struct.unpack("f", struct.pack("f", value))[0])
+
+
+def _sample(reference: Reference, quantities: Sequence[str], regular: Regular) -> Sample | None:
+    """A regular state with its inputs, rates and accelerations, or None outside the domain of a quantity."""
+    state, values = regular.state, regular.values
+    try:
+        if missing := [name for name in measured(reference) if name not in values]:
+            values = values | values_at(reference, state, missing)
+        if regular.admissible:
+            coordinates = reference.model.coordinates
+            rates = settled(values["admissible_velocity"], [c.rate_range for c in coordinates])
+            accelerations = settled(values["admissible_acceleration"], [c.acceleration_range for c in coordinates])
+            state = replace(state, qd=tuple(rates), qdd=tuple(accelerations))
+        if regular.shares:
+            scale = 2 * max(1.0, *(abs(x) for x in values["inverse_dynamics"]))
+            state = replace(state, u=tuple(scale * share for share in regular.shares))
+        everything = reference.matrices(state, quantities, SAMPLING_BITS)
+    except ReferenceValueError:
+        return None
+    if not all(isfinite(x) for matrix in everything.values() for x in floats(matrix)):
+        return None
+    first, second = values["singularity"]
+    return Sample(state, regular.admissible, (first, second))
