@@ -11,7 +11,7 @@ import shutil
 import sys
 from pathlib import Path
 
-from symgen.laboratory.bench.pages import deviation_lines, page
+from symgen.laboratory.bench.reporting.pages import deviation_lines, page
 
 ROOT = Path(__file__).resolve().parent.parent
 TARGET = ROOT / "docs" / "bench"

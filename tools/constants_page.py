@@ -5,8 +5,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from symgen.laboratory.bench.constants import measured, page
-from symgen.laboratory.bench.tuned import tuned
+from symgen.laboratory.bench.tuning.constants import measured, page
+from symgen.laboratory.bench.tuning.tuned import tuned
 
 TARGET = Path(__file__).resolve().parent.parent / "docs" / "constants.md"
 

@@ -9,7 +9,7 @@ import json
 import sys
 from pathlib import Path
 
-from symgen.laboratory.bench.mechanism_pages import page
+from symgen.laboratory.bench.reporting.mechanism_pages import page
 
 TARGET = Path(__file__).resolve().parent.parent / "docs" / "bench" / "mechanisms.md"
 

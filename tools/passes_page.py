@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from symgen.diagnostics import ModelError
-from symgen.laboratory.bench.passes import counted, page
+from symgen.laboratory.bench.tuning.passes import counted, page
 from symgen.laboratory.zoo.campaign import write
 from symgen.laboratory.zoo.draws.families import draw
 from symgen.model.load import load_model

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from symgen.laboratory.bench.skipping import page, skipped
+from symgen.laboratory.bench.tuning.skipping import page, skipped
 from symgen.model.load import load_model
 
 TARGET = Path(__file__).resolve().parent.parent / "docs" / "skipping.md"

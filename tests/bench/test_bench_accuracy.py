@@ -6,8 +6,8 @@ from typing import Any
 
 from shipped import model
 
-from symgen.laboratory.bench.accuracy_pages import accuracy_section
 from symgen.laboratory.bench.candidate import Task
+from symgen.laboratory.bench.reporting.accuracy_pages import accuracy_section
 from symgen.laboratory.bench.workload import admissible_samples, beyond_tolerance, workload
 from symgen.verify.reference.reference import Reference
 

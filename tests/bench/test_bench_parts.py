@@ -11,12 +11,12 @@ import pytest
 from symgen.laboratory.bench.build import Footprint
 from symgen.laboratory.bench.callgrind import inclusive_costs
 from symgen.laboratory.bench.candidate import Task
-from symgen.laboratory.bench.charts import spread, time_against_error
-from symgen.laboratory.bench.goals import GOALS, PAPER, STUDY
-from symgen.laboratory.bench.pages import deviation_lines, page
 from symgen.laboratory.bench.pareto import pareto_front
+from symgen.laboratory.bench.reporting.charts import spread, time_against_error
+from symgen.laboratory.bench.reporting.goals import GOALS, PAPER, STUDY
+from symgen.laboratory.bench.reporting.pages import deviation_lines, page
+from symgen.laboratory.bench.reporting.tables import bench_tables
 from symgen.laboratory.bench.run import Benchmark, Comparison, Measured
-from symgen.laboratory.bench.tables import bench_tables
 from symgen.laboratory.bench.workload import Errors
 
 PROFILE = """version: 1

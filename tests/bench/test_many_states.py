@@ -13,8 +13,8 @@ import shipped
 
 from symgen.laboratory.bench import batch
 from symgen.laboratory.bench.batch import Many, many_states
-from symgen.laboratory.bench.batch_pages import many_lines, many_section
 from symgen.laboratory.bench.candidate import Task
+from symgen.laboratory.bench.reporting.batch_pages import many_lines, many_section
 from symgen.laboratory.bench.symgen_kernels import programs_of, symgen_candidates
 from symgen.laboratory.bench.workload import Workload
 

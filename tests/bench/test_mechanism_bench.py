@@ -9,16 +9,17 @@ import pytest
 from shipped import ROOT, model
 
 from symgen.laboratory.bench import build as build_module
-from symgen.laboratory.bench import mechanism_pages, mechanisms
-from symgen.laboratory.bench.goals import AS_WRITTEN, Goal
-from symgen.laboratory.bench.mechanism_goals import CHEAPEST_WRITTEN, GOALS, MECHANISMS, STUDY
-from symgen.laboratory.bench.mechanism_pages import page, table_of
+from symgen.laboratory.bench import mechanisms
 from symgen.laboratory.bench.mechanisms import drawn_states, mechanism_benchmark
 from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine
 from symgen.laboratory.bench.peers.frames import lagrange_by_frames, mechanics_by_frames
 from symgen.laboratory.bench.peers.mechanics import mechanics
 from symgen.laboratory.bench.peers.native import direct_balance
 from symgen.laboratory.bench.peers.pinocchio_program import pinocchio_time, tree_text
+from symgen.laboratory.bench.reporting import mechanism_pages
+from symgen.laboratory.bench.reporting.goals import AS_WRITTEN, Goal
+from symgen.laboratory.bench.reporting.mechanism_goals import CHEAPEST_WRITTEN, GOALS, MECHANISMS, STUDY
+from symgen.laboratory.bench.reporting.mechanism_pages import page, table_of
 
 
 def quiet(_: str) -> None:

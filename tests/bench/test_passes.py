@@ -6,7 +6,7 @@ from pathlib import Path
 
 import shipped
 
-from symgen.laboratory.bench.passes import counted, page, passes
+from symgen.laboratory.bench.tuning.passes import counted, page, passes
 from symgen.symbolic.passes import grouping
 
 PAGE = Path(__file__).parents[2] / "docs/passes.md"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 import shipped
 
-from symgen.laboratory.bench.skipping import BY_MINORS, page, skipped
+from symgen.laboratory.bench.tuning.skipping import BY_MINORS, page, skipped
 
 # Vectors and matrices are derived along different ways; one may share a product that the other does not.
 CERTAIN = (

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from symgen.laboratory.bench.altered import DOUBLE, HALF
-from symgen.laboratory.bench.constants import measured
-from symgen.laboratory.bench.tuned import NUMERICAL, Constant, tuned
-from symgen.laboratory.bench.varied import Key, Varied
+from symgen.laboratory.bench.tuning.altered import DOUBLE, HALF
+from symgen.laboratory.bench.tuning.constants import measured
+from symgen.laboratory.bench.tuning.tuned import NUMERICAL, Constant, tuned
+from symgen.laboratory.bench.tuning.varied import Key, Varied
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs/constants.md"

@@ -7,11 +7,11 @@ import sys
 from pathlib import Path
 
 from symgen.laboratory.bench.build import BuildError
-from symgen.laboratory.bench.charts import time_against_error
-from symgen.laboratory.bench.mechanism_pages import table_of
 from symgen.laboratory.bench.mechanisms import mechanism_benchmark
+from symgen.laboratory.bench.reporting.charts import time_against_error
+from symgen.laboratory.bench.reporting.mechanism_pages import table_of
+from symgen.laboratory.bench.reporting.tables import bench_tables
 from symgen.laboratory.bench.run import Progress, benchmark
-from symgen.laboratory.bench.tables import bench_tables
 from symgen.output.write import write_files
 from symgen.verify.reference.reference import ReferenceValueError
 from symgen.verify.sampling.states import VerificationError

@@ -12,9 +12,9 @@ from typing import Any
 from symgen.generation.files import sources_of
 from symgen.generation.recorded import as_recorded
 from symgen.generation.results import Options
-from symgen.laboratory.bench.passes import costs
-from symgen.laboratory.bench.tuned import ROOT
-from symgen.laboratory.bench.varied import Key
+from symgen.laboratory.bench.tuning.passes import costs
+from symgen.laboratory.bench.tuning.tuned import ROOT
+from symgen.laboratory.bench.tuning.varied import Key
 from symgen.model.load import load_model
 
 OPTIONS = Options(parts=("c",), measured=ROOT / "generated")

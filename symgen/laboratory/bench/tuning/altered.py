@@ -16,8 +16,8 @@ from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
 from types import CodeType
 from typing import Any
 
-from symgen.laboratory.bench.tuned import named_number
-from symgen.laboratory.bench.varied import Key, Varied
+from symgen.laboratory.bench.tuning.tuned import named_number
+from symgen.laboratory.bench.tuning.varied import Key, Varied
 
 HALF, DOUBLE = "half", "double"
 FACTORS: Mapping[str, Callable[[Any], Any]] = {
@@ -87,12 +87,12 @@ def changing(changed: str, how: str) -> Exchange:
 
 
 def main() -> None:
-    """What is to be done comes as JSON, and what came of it goes: see `symgen.laboratory.bench.constants`."""
+    """What is to be done comes as JSON, and what came of it goes: see `symgen.laboratory.bench.tuning.constants`."""
     task = json.load(sys.stdin)
     noticed: set[Key] = set()
     if modules := task["modules"]:
         exchange(modules, changing(*task["changed"]) if task["changed"] else watching(noticed))
-    derived = import_module("symgen.laboratory.bench.derived")
+    derived = import_module("symgen.laboratory.bench.tuning.derived")
     json.dump({path: derived.derived(path, most, noticed) for path, most in task["models"].items()}, sys.stdout)
 
 

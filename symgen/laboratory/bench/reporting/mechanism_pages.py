@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from symgen.laboratory.bench.goals import AS_WRITTEN, Goal
-from symgen.laboratory.bench.mechanism_goals import (
+from symgen.laboratory.bench.reporting.goals import AS_WRITTEN, Goal
+from symgen.laboratory.bench.reporting.mechanism_goals import (
     CHEAPEST_WRITTEN,
     GOALS,
     MECHANISMS,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symgen.laboratory.bench.goals import AS_WRITTEN, BEST_ANY, Goal
+from symgen.laboratory.bench.reporting.goals import AS_WRITTEN, BEST_ANY, Goal
 
 MECHANISMS = (
     "front_car_bodies", "rapkm_bodies", "delta", "gough_stewart", "chain8", "chain16", "chain32", "arm7",

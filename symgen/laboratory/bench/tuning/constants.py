@@ -1,6 +1,6 @@
 """What each tuned constant changes: every model derived with half and with twice of it, where that decides anything.
 
-One derivation of each model tells which constants could (`symgen.laboratory.bench.varied`); only these are tried.
+One derivation of each model tells which constants could (`bench.tuning.varied`); only these are tried.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from math import exp, log
 from pathlib import Path
 from typing import Any
 
-from symgen.laboratory.bench.altered import FACTORS
-from symgen.laboratory.bench.skipping import table_line
-from symgen.laboratory.bench.tuned import Constant
-from symgen.laboratory.bench.varied import Key
+from symgen.laboratory.bench.tuning.altered import FACTORS
+from symgen.laboratory.bench.tuning.skipping import table_line
+from symgen.laboratory.bench.tuning.tuned import Constant
+from symgen.laboratory.bench.tuning.varied import Key
 
 PROCESSES = 2
 # Times what a model takes with the constants as they are, and seconds more: nobody waits longer for a derivation.
@@ -125,7 +125,7 @@ def _changed(constant: Constant, how: str, plain: Mapping[str, Derived]) -> Chan
 
 def _child(modules: Sequence[str], changed: Key | None, models: Mapping[str, float]) -> dict[str, Derived]:
     task = json.dumps({"modules": modules, "changed": changed, "models": models})
-    command = [sys.executable, "-m", "symgen.laboratory.bench.altered"]
+    command = [sys.executable, "-m", "symgen.laboratory.bench.tuning.altered"]
     done = subprocess.run(command, input=task, capture_output=True, text=True, check=False)
     if done.returncode:
         raise RuntimeError(f"{changed}: {done.stderr}")

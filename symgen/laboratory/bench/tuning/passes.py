@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from statistics import fmean
 from unittest.mock import patch
 
-from symgen.laboratory.bench.skipping import counted_cost, table_line
+from symgen.laboratory.bench.tuning.skipping import counted_cost, table_line
 from symgen.methods.quantity import Quantity, scalars
 from symgen.model.model import Model
 from symgen.quantities.select import derive_quantities

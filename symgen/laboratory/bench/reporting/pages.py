@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeAlias
 
-from symgen.laboratory.bench.accuracy_pages import accuracy_section
-from symgen.laboratory.bench.batch_pages import many_section
-from symgen.laboratory.bench.goals import (
+from symgen.laboratory.bench.reporting.accuracy_pages import accuracy_section
+from symgen.laboratory.bench.reporting.batch_pages import many_section
+from symgen.laboratory.bench.reporting.goals import (
     AS_WRITTEN,
     BEST_ANY,
     BEST_VALID,

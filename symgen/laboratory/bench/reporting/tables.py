@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symgen.laboratory.bench.batch_pages import many_lines
+from symgen.laboratory.bench.reporting.batch_pages import many_lines
 from symgen.laboratory.bench.run import Benchmark, Comparison, Measured
 from symgen.terminal import columns
 

@@ -1,0 +1,1 @@
+"""What passes, constants and what scenes do not need are worth, counted."""
