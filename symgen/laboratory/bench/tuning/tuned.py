@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[3]
+ROOT = Path(__file__).resolve().parents[4]
 # Packages that no derivation runs through: closed forms of the report, and what follows from verification.
 OUTSIDE = ("generation", "closedform")
 PACKAGES = (
