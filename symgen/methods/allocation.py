@@ -17,8 +17,10 @@ from symgen.model.model import Allocation
 from symgen.symbolic.matrix import Vector, matvec, subtract_vectors
 from symgen.symbolic.scalar import Graph, Scalar
 
-# Below this an input takes no part in the internal force; quotients by it are finite in float32, too.
+# Below this an input takes no part in the internal force, and shares are further apart than any limits leave them;
+# quotients by the one and the other itself are finite in float32, too.
 NO_PART = Fraction(1, 10**30)
+NO_LIMIT = Fraction(10**38)
 
 
 class InputAllocation:
@@ -89,12 +91,14 @@ class InputAllocation:
         return _larger(graph, below, _smaller(graph, above, share))
 
     def _interval(self, lower: str, upper: str, u: Scalar, z: Scalar) -> tuple[Scalar, Scalar]:
-        """The shares s with lower <= u + s z <= upper."""
+        """The shares s with lower <= u + s z <= upper: all of them for an input that takes no part."""
         graph = self._graph
-        size = _larger(graph, graph.function("abs", (z,)), graph.const(NO_PART))
-        reciprocal = 1 / graph.function("copysign", (size, z))
+        size = graph.function("abs", (z,))
+        reciprocal = 1 / graph.function("copysign", (_larger(graph, size, graph.const(NO_PART)), z))
         ends = [(graph.symbol(limit) - u) * reciprocal for limit in (lower, upper)]
-        return _smaller(graph, *ends), _larger(graph, *ends)
+        lacking = _larger(graph, graph.const(NO_PART) - size, graph.zero)
+        beyond = graph.function("ratio_or_zero", (lacking, lacking)) * NO_LIMIT
+        return _smaller(graph, *ends) - beyond, _larger(graph, *ends) + beyond
 
 
 def _smaller(graph: Graph, a: Scalar, b: Scalar) -> Scalar:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from itertools import product
@@ -333,6 +334,22 @@ inputs: {a: {acts_on: {x: 1}}, b: {acts_on: {x: 1}}, q: {acts_on: {y: 1}}}
         status, u = made.run("inverse_dynamics", made.state([0.0, 0.0], qdd=[4.0, y]))
         assert status is Status.OK
         assert u == pytest.approx([1.5, 2.5, y], rel=1e-15)
+
+
+def test_limits_of_an_input_that_takes_no_part_where_it_is_beyond_them() -> None:
+    """u_a + sin(x) u_b = x_ddot: at x = 0 no u_b brings u_a below its limit, and near it a large one does."""
+    text = """\
+model: lever
+coordinates: {x: {unit: rad}}
+kinetic_energy: x_dot**2/2
+inputs: {a: {acts_on: {x: 1}}, b: {acts_on: {x: sin(x)}}}
+"""
+    made = system(text, "limits: {a: [-1, 1]}")
+    status, u = made.run("inverse_dynamics", made.state([0.0], qdd=[10.0]))
+    assert status is Status.OK
+    assert u == [10, 0]
+    status, u = made.run("inverse_dynamics", made.state([1e-3], qdd=[10.0]))
+    assert u == pytest.approx([1, 9 / math.sin(1e-3)], rel=1e-12)
 
 
 @pytest.mark.parametrize("infinite", [1e300, float("inf")])
