@@ -14,7 +14,11 @@ from symgen.validity.driven import driven_minors
 
 
 def rank_measures(mechanics: System, generic: Genericity, space: NullSpace) -> Vector:
-    """[det(B B^T) / prod |b_k|^2, e(M~)/e(M)] along a null space, with rows normalised before products are formed."""
+    """[det(B B^T) / prod |b_k|^2, e(M~)/e(M)] along a null space, with rows normalised before products are formed.
+
+    Where rows depend on each other, inputs are projected along the rows as they are: the direction of a short one is
+    that of what rounding left of it, and long ones give the projection without it.
+    """
     graph, n, r = mechanics.graph, mechanics.n, mechanics.r
     rows = mechanics.constraint_jacobian
     lengths = [graph.function("sqrt", (dot(graph, row, row),)) for row in rows]
@@ -28,10 +32,11 @@ def rank_measures(mechanics: System, generic: Genericity, space: NullSpace) -> V
     if isinstance(space, HouseholderSpace):
         turned = reflected(graph, unit_rows, n, generic.rank, everywhere=True)
         constraint = turned.square
+        along = reflected(graph, rows, n, generic.rank, everywhere=True) if dependent else turned
         driven = driven_minors(graph, unit_rows, mechanics.inputs, n)
         if driven is not None and not dependent and generic.full_actuation:
             return constraint, graph.function("ratio_or_zero", (driven[0], constraint * driven[1]))
-        seen, _ = turned.actuation(mechanics.inputs, generic.alpha)
+        seen, _ = along.actuation(mechanics.inputs, generic.alpha)
         regular = graph.function("ratio_or_zero", (constraint, constraint))
         actuation = _actuation_measure(mechanics, generic, seen.square() * regular)
         return graph.function("ratio_or_zero", (constraint, possible)) if dependent else constraint, actuation
@@ -40,14 +45,15 @@ def rank_measures(mechanics: System, generic: Genericity, space: NullSpace) -> V
     if r:
         constraint = graph.function("ratio_or_zero", (forms.square, possible)) if dependent else forms.square
     if not small_family(forms.forms, mechanics.inputs, generic.alpha):
-        turned = reflected(graph, unit_rows, n, generic.rank, everywhere=True)
+        turned = reflected(graph, rows if dependent else unit_rows, n, generic.rank, everywhere=True)
         seen, _ = turned.actuation(mechanics.inputs, generic.alpha)
         regular = graph.function("ratio_or_zero", (constraint, constraint)) if r else graph.one
         return constraint, _actuation_measure(mechanics, generic, seen.square() * regular)
-    projected = ActuationForms(forms, mechanics.inputs, generic.alpha).square()
+    along_rows = RowForms(graph, rows, n, generic.rank) if dependent else forms
+    projected = ActuationForms(along_rows, mechanics.inputs, generic.alpha).square()
     if r:
         # |M_J ^ omega|^2 / |omega|^2 sums the determinants of the projected columns
-        projected = graph.function("ratio_or_zero", (projected, forms.square))
+        projected = graph.function("ratio_or_zero", (projected, along_rows.square))
     return constraint, _actuation_measure(mechanics, generic, projected)
 
 
