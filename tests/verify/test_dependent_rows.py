@@ -180,3 +180,25 @@ def test_exact_lengths_are_no_rounded_ones_however_many_rows_depend_on_others() 
     assert not Reference(model).ranks.rounded
     written = energy_form(model)
     assert len(generic_points(written, ExactSystem(written, make_translator(written, ())), 3)) == 3
+
+
+def test_what_rounded_axes_leave_of_a_direction_is_none() -> None:
+    """A body that slides along x in a frame turned by 120 degrees: its axis is 1e-16 off, and y does not move."""
+    turn = f"[[{', '.join(['0.5773502691896258'] * 3)}], 2.0943951023931957]"
+    text = f"""\
+model: slide
+frames:
+  dock: {{translation: [-0.6, 0.22, -0.55], rotation: [[{turn[1:-1]}]]}}
+joints:
+  base: {{type: floating, coordinates: [x, y, z, e0, e1, e2, e3]}}
+bodies:
+  base: {{mass: 6.2, inertia: {{xx: 0.004, yy: 0.003, zz: 0.003}}}}
+loops:
+  guide: {{type: cylindrical, between: [base, dock]}}
+inputs:
+  across: {{acts_on: {{y: 1}}}}
+  along: {{acts_on: {{x: 1}}}}
+configuration: {{x: -0.6, y: 0.22, z: -0.55, e0: 0.5, e1: 0.5, e2: 0.5, e3: 0.5}}
+"""
+    reference = Reference(load_text(text, "slide.yaml"))
+    assert reference.ranks.actuation == 1

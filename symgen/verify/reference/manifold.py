@@ -28,6 +28,8 @@ RANK_STARTS = 24
 RANK_POINTS = 6
 # Thresholds for ranks where lengths are rounded.
 ROUNDED_NOISE, ROUNDED_SIGNAL = -36, -20
+# Of a direction that an input reaches: below this it is what numbers with sixteen digits in a file leave of none.
+ROUNDED_DIRECTION = -44
 
 
 @dataclass(frozen=True)
@@ -124,6 +126,7 @@ def _ranks_at(
         return None
     # an input that only loads the constraints leaves rounding alone, which is no direction of motion
     sizes = [_size(control, j) for j in range(system.m)]
+    noise, signal = max(noise, ROUNDED_DIRECTION), max(signal, ROUNDED_DIRECTION)
     moving = [j for j in range(system.m) if _size(projected, j) > sizes[j] * 2.0**noise]
     # units of inputs are no measure of each other
     entries = [projected[i, j] / sizes[j] for i in range(system.n) for j in moving]
