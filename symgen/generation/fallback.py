@@ -3,7 +3,7 @@
 Another way is held against the same states by interpretation before anything is printed or compiled; the files that
 come of it are then verified like any others.  A way that needs most of what is allowed at these states will need more
 at others: it is taken only where no other way keeps a margin.  Where none does, one that loses digits works with twice
-as many.  Where no way passes in float32, float64 stays.
+as many, and so does one that needs nearly all.  Where no way passes in float32, float64 stays.
 """
 
 from __future__ import annotations
@@ -37,6 +37,8 @@ from symgen.verify.tolerance import FACTOR
 TOO_LONG = "not tried: it takes many times as long to derive"
 # Of the error that is allowed; what way a quantity takes is decided at a few dozen states.
 MARGIN = FACTOR / 2
+# Beyond this twice the digits are taken where nothing else keeps a margin: of a state in thousands more is lost.
+NARROW = FACTOR * 3 / 4
 # Share of operations more that keeping a margin may cost.
 MARGIN_WORTH = Fraction(1, 2)
 # Ways that are tried once more with twice the digits.
@@ -101,7 +103,9 @@ class Fallback:
                 searched = self._searched.get(quantity)
                 largest = max(record.largest, searched.largest if searched is not None else 0.0)
                 if largest > MARGIN and quantity not in self._weighed:
-                    made = self._with_margin(made, quantity, largest, expected)
+                    before, made = made, self._with_margin(made, quantity, largest, expected)
+                    if made is before and largest > NARROW:
+                        made = self._with_digits(made, quantity, largest, expected)
                     let_go()
         if made is draft:
             # ways that were looked at for a margin may have led to states at which what stays is worse
@@ -213,13 +217,32 @@ class Fallback:
         most = cost(scalars(taken.derived)).weight * (1 + MARGIN_WORTH)
         for one in self._candidates(draft, quantity, 0, expected, largest / 2):
             if one.scalars == here.scalars and 2 * one.largest <= here.largest and one.way.cost <= most:
-                self._passing[quantity].append(here)
-                why = f"error {largest:.3g} times d + eps |y*| of {FACTOR:g} leaves no margin"
-                self._tried[quantity].append((draft.way(quantity), why))
-                return draft.along(one.way, one.kernels).rejecting((Rejection(quantity, draft.way(quantity), why),))
+                return self._in_place_of(draft, here, one)
             if "float64" in one.scalars:
                 self._passing[quantity].append(one)
         return draft
+
+    def _with_digits(self, draft: Draft, quantity: str, largest: float, expected: Expected) -> Draft:
+        """The draft with twice the digits for a quantity that needs nearly all that is allowed, where these help."""
+        taken, kernels = draft.taken(quantity), draft.kernels(quantity)
+        if taken.choice.wide:
+            return draft
+        here = _Candidate(largest, tuple(kernels), taken, kernels)
+        self._inaccurate[quantity].append(taken)
+        for one in self._with_more_digits(draft, quantity, expected):
+            if one.scalars == here.scalars and one.largest <= MARGIN:
+                return self._in_place_of(draft, here, one)
+            if "float64" in one.scalars:
+                self._passing[quantity].append(one)
+        return draft
+
+    def _in_place_of(self, draft: Draft, here: _Candidate, one: _Candidate) -> Draft:
+        """The draft with a way that keeps a margin in place of one that does not, which stays at hand."""
+        quantity = here.way.choice.quantity
+        self._passing[quantity].append(here)
+        why = f"error {here.largest:.3g} times d + eps |y*| of {FACTOR:g} leaves no margin"
+        self._tried[quantity].append((draft.way(quantity), why))
+        return draft.along(one.way, one.kernels).rejecting((Rejection(quantity, draft.way(quantity), why),))
 
     def _candidates(
         self, draft: Draft, quantity: str, tier: int, expected: Expected, most: float

@@ -17,9 +17,9 @@ from symgen.model.model import Allocation
 from symgen.symbolic.matrix import Vector, matvec, subtract_vectors
 from symgen.symbolic.scalar import Graph, Scalar
 
-# Below this an input takes no part in the internal force, and shares are further apart than any limits leave them;
-# quotients by the one and the other itself are finite in float32, too.
+# Below this an input takes no part in the internal force; quotients by it are finite in float32, too.
 NO_PART = Fraction(1, 10**30)
+# A share of the internal force that no limits reach, with quotients by what takes no part; finite in float32, too.
 NO_LIMIT = Fraction(10**38)
 
 

@@ -16,6 +16,7 @@ from symgen.backends.c import backend
 from symgen.cli import main as cli
 from symgen.diagnostics import SymgenBug
 from symgen.generation import fallback
+from symgen.generation.fallback import NARROW
 from symgen.generation.results import Options, Result
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.guards import Guard
@@ -144,12 +145,17 @@ def edging(motion: Motion) -> Motion:
 
 
 def losing_digits(motion: Motion) -> Motion:
-    """λ that loses digits in roots, products and sums: times 1 + 2^12 (sqrt(3 r)^2 - 3 r)."""
+    """λ that loses digits in roots, products and sums."""
+    return losing(motion, 2**12)
+
+
+def losing(motion: Motion, factor: int) -> Motion:
+    """λ times 1 + factor (sqrt(3 r)^2 - 3 r)."""
     graph = motion.multipliers[0].graph
     r = graph.const(3) * graph.symbol("r")
     root = graph.raw("sqrt", (r,))
     nothing = graph.raw("sub", (graph.raw("mul", (root, root)), r))
-    share = graph.raw("mul", (graph.const(2**12), nothing))
+    share = graph.raw("mul", (graph.const(factor), nothing))
     return replace(
         motion,
         multipliers=tuple(graph.raw("add", (value, graph.raw("mul", (value, share)))) for value in motion.multipliers),
@@ -299,6 +305,20 @@ def test_a_long_way_has_its_numbers_grouped_once_its_worst_states_speak_for_it(
     (left_out,) = made(yoke).left_out
     assert left_out.quantity == "multipliers"
     assert regrouped == []
+
+
+def test_what_needs_nearly_all_takes_twice_the_digits(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    yoke.write_text(YOKE + "ranges: {a: [0.7, 1]}\n", encoding="utf-8")
+    spoil_choice(monkeypatch, lambda motion: losing(motion, 22))
+    spoil_named(monkeypatch, lambda motion: losing(motion, 22))
+    result = made(yoke)
+    (rejected,) = derived(result)["rejected"]
+    assert float(re.findall(r"error (\S+) times", rejected["why"])[0]) > NARROW
+    assert "leaves no margin" in rejected["why"]
+    assert derived(result)["kernels"]["multipliers"]["twice_the_digits"] == ["float64", "float32"]
+    assert result.certificate is not None
+    assert result.certificate["passed"]
+    assert max(e["largest"] for e in result.certificate["errors"] if e["quantity"] == "multipliers") <= 8
 
 
 def test_states_that_lead_nowhere_do_not_end_the_search(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
