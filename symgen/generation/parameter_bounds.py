@@ -24,8 +24,17 @@ class ParameterBounds:
         for name in (kernel.name for kernel in draft.program.kernels):
             kernels, known = draft.kernels(name), self._known.get(name)
             if known is None or any(kernel is not known[0].get(scalar) for scalar, kernel in kernels.items()):
-                known = self._known[name] = kernels, self._far.bounds(kernels, draft.programs)
+                known = self._known[name] = kernels, self._far.bounds(kernels, draft.programs, _plain(draft, name))
             for scalar in kernels:
                 if bounds := known[1].get(scalar):
                     found[scalar][name] = bounds
         return replace(draft, bounds=found)
+
+
+def _plain(draft: Draft, quantity: str) -> Kernel | None:
+    """The kernel in float64 without pairs of numbers, of a quantity that works with them there."""
+    taken = draft.taken(quantity)
+    if "float64" not in taken.choice.wide:
+        return None
+    taken = replace(taken, choice=replace(taken.choice, wide=()))
+    return draft.kernels_along(taken, ("float64",))["float64"]

@@ -2,7 +2,8 @@
 
 In float64 they are estimated.  In float32 estimates to the first order are not all there is: one digit of three may be
 lost by refinement that no longer converges, or by numbers too small for the type.  There they are measured as well,
-beside the same operations in float64.
+beside the same operations in float64.  Kernels with twice the digits lose what the same operations on plain numbers
+do, but for the digits that pairs gain.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import numpy as np
 
 from symgen.ir.interpret import round_literal
 from symgen.ir.kernel import UNIT_ROUNDOFF, Block, Kernel, Literal, Operand, Program, Scalar, Status
+from symgen.ir.wide import GAINED
 from symgen.ir.wide_functions import works_with_pairs
 from symgen.verify.many_states import run_many
 from symgen.verify.sampling.lanes import Lanes, RoundingErrors
@@ -23,11 +25,13 @@ from symgen.verify.sampling.lanes import Lanes, RoundingErrors
 
 @dataclass(frozen=True)
 class Far:
-    """A row for each state with one parameter far away: which, by how many powers of ten, and all that is given."""
+    """A row for each state with one parameter far away: which, by how many powers of ten, all that is given, and
+    whether rows and inputs are as far from a drop of rank there as in regular states."""
 
     parameters: Lanes
     powers: Lanes
     given: Mapping[str, Lanes]
+    regular: Lanes
 
     def __len__(self) -> int:
         return len(self.powers)
@@ -35,7 +39,7 @@ class Far:
     def only(self, which: Lanes) -> Far:
         """Those that a mask or places name."""
         given = {name: rows[which] for name, rows in self.given.items()}
-        return Far(self.parameters[which], self.powers[which], given)
+        return Far(self.parameters[which], self.powers[which], given, self.regular[which])
 
     @property
     def rounded(self) -> list[dict[str, list[float]]]:
@@ -45,11 +49,13 @@ class Far:
 
 
 class FarErrors:
-    """Those of the kernels of one quantity; of pairs, which have digits enough in float64, refusals alone."""
+    """Those of the kernels of one quantity; `plain` is the one in float64 where that works with pairs of numbers."""
 
-    def __init__(self, kernels: Mapping[Scalar, Kernel], programs: Mapping[Scalar, Program]) -> None:
-        self._programs, self._kernels, double = programs, kernels, kernels["float64"]
-        self._estimated = None if works_with_pairs(double) else RoundingErrors(double)
+    def __init__(
+        self, kernels: Mapping[Scalar, Kernel], programs: Mapping[Scalar, Program], plain: Kernel | None = None
+    ) -> None:
+        self._programs, self._kernels, self._in_pairs = programs, kernels, plain is not None
+        self._estimates = RoundingErrors(plain or kernels["float64"])
         self._single = kernels.get("float32")
         if self._single is not None:
             self._beside = _with_numbers_of_float32(self._single)
@@ -57,17 +63,22 @@ class FarErrors:
     def units(self, far: Far) -> dict[Scalar, Lanes]:
         """By scalar type, a number for each state; 0 where a kernel refuses with reason.
 
-        That masses far apart seem to leave the motion undetermined is no reason: infinitely many units.  That they are
-        no masses is one.
+        That masses or lengths far apart seem to leave the motion undetermined is no reason: infinitely many units.
+        That masses are none is one, and that rows or inputs are near a drop of rank.
         """
-        if self._estimated is None:
-            return {scalar: self._refusals(scalar, far) for scalar in self._kernels}
-        found = self._estimated_and_measured(self._estimated, far)
-        masses = ~self._estimated.indefinite(far.given)
+        found = self._of_pairs(far) if self._in_pairs else self._estimated_and_measured(far)
+        masses = ~self._estimates.indefinite(far.given)
         return {scalar: np.where(masses, units, 0.0) for scalar, units in found.items()}
 
-    def _estimated_and_measured(self, estimates: RoundingErrors, far: Far) -> dict[Scalar, Lanes]:
-        own, unit = estimates.with_units(far.given)
+    def _of_pairs(self, far: Far) -> dict[Scalar, Lanes]:
+        """In float64 pairs have digits enough."""
+        found = {scalar: self._refusals(scalar, far) for scalar in self._kernels}
+        if self._single is not None:
+            found["float32"] = np.maximum(found["float32"], self._estimates.at(far.given) * 2.0**-GAINED)
+        return found
+
+    def _estimated_and_measured(self, far: Far) -> dict[Scalar, Lanes]:
+        own, unit = self._estimates.with_units(far.given)
         estimated = own / unit
         refused = np.flatnonzero(~np.isfinite(unit))
         estimated[refused] = self._refusals("float64", far.only(refused))
@@ -80,20 +91,26 @@ class FarErrors:
         return found
 
     def _refusals(self, scalar: Scalar, far: Far) -> Lanes:
-        """Infinite where a kernel finds masses singular, 0 elsewhere."""
+        """Infinite where a kernel refuses without a reason, 0 elsewhere."""
         made = run_many(self._kernels[scalar], self._programs[scalar].sincos, scalar, far.rounded)
-        return np.array([inf if status is Status.MASS_RANK else 0.0 for status, _ in made])
+        pairs = zip(made, far.regular, strict=True)
+        return np.array([inf if _is_unfounded(status, regular) else 0.0 for (status, _), regular in pairs])
 
     def _measured(self, kernel: Kernel, far: Far) -> Lanes:
-        """How far float32 is off; infinitely where it refuses what the same operations do in float64."""
+        """How far float32 is off; infinitely where it refuses without a reason, or what float64 does not."""
         given, programs = far.rounded, self._programs
         exact = run_many(self._beside, programs["float64"].sincos, "float64", given)
         made = run_many(kernel, programs["float32"].sincos, "float32", given)
         off = [
-            0.0 if refused and status is not Status.MASS_RANK else inf if status else dist(y, z)
-            for (refused, y), (status, z) in zip(exact, made, strict=True)
+            0.0 if refused and not _is_unfounded(status, regular) else inf if status else dist(y, z)
+            for (refused, y), (status, z), regular in zip(exact, made, far.regular, strict=True)
         ]
         return np.array(off)
+
+
+def _is_unfounded(status: Status, regular: bool) -> bool:
+    """Whether a kernel names a drop of rank that is due to masses or lengths far apart."""
+    return status is Status.MASS_RANK or (regular and status in (Status.CONSTRAINT_RANK, Status.ACTUATION_RANK))
 
 
 def _with_numbers_of_float32(kernel: Kernel) -> Kernel:

@@ -27,6 +27,7 @@ from symgen.verify.reference.reference import ReferenceValueError, State
 from symgen.verify.running.compile import Outcome
 from symgen.verify.sampling.lanes import Lanes
 from symgen.verify.sampling.loops_in_lanes import Loops
+from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, ranked_parts
 from symgen.verify.tolerance import FACTOR, expectations
 
 # Powers of ten by which a parameter is away at most: they are looked at one by one.
@@ -59,17 +60,21 @@ class FarParameters:
     def __init__(self, expected: Expected) -> None:
         self._reference, self._drawn = expected.reference, expected.drawn
         self._loops = Loops(expected.reference.system, [float(x) for x in expected.reference.literals()])
+        self._parts = ranked_parts(expected.reference.system, expected.reference.ranks)
 
     def bounds(
-        self, kernels: Mapping[Scalar, Kernel], programs: Mapping[Scalar, Program]
+        self, kernels: Mapping[Scalar, Kernel], programs: Mapping[Scalar, Program], plain: Kernel | None = None
     ) -> dict[Scalar, tuple[Bound, ...]]:
-        """The bounds for the kernels of one quantity: of parameters that they read, or that say where loops close."""
+        """The bounds for the kernels of one quantity: of parameters that they read, or that say where loops close.
+
+        `plain` is the one in float64 without pairs of numbers where that works with them.
+        """
         double = kernels["float64"]
         read = {load.index for load in double.loads if load.argument == "p"} | self._leading
         if not read:
             return {}
         with working(f"how far parameters of {double.name} may be"):
-            return _Bounds(self, kernels, programs).of(sorted(read))
+            return _Bounds(self, kernels, programs, plain).of(sorted(read))
 
     def led(self, steps: Sequence[tuple[int, float]], states: int) -> Far:
         """States with one parameter far away, for each step (which, and by what power of ten) as far as loops close."""
@@ -81,7 +86,16 @@ class FarParameters:
         configurations, shut = self._closed
         at = (far > 0).astype(int), np.rint(np.abs(far) / QUARTER).astype(int) - 1, which, place
         given["q"] = configurations[at]
-        return Far(which, far, given).only(shut[at])
+        return Far(which, far, given, self._regular(given)).only(shut[at])
+
+    def _regular(self, given: Mapping[str, Lanes]) -> Lanes:
+        """Whether neither rows nor inputs are near a drop of rank."""
+        found = np.ones(len(given["q"]), dtype=bool)
+        with np.errstate(all="ignore"):
+            blocks = matrices(self._reference.system, self._parts, self._loops, given["q"], given["p"])
+            for part, (rows, control) in zip(self._parts, blocks, strict=True):
+                found &= is_regular(part, rows, control)
+        return found
 
     def bound(self, parameter: int, low: float | None, high: float | None) -> Bound | None:
         """A parameter may be by these powers of ten below and above the values that it has in the verification.
@@ -153,10 +167,14 @@ class _Bounds:
     """The search for one quantity."""
 
     def __init__(
-        self, far: FarParameters, kernels: Mapping[Scalar, Kernel], programs: Mapping[Scalar, Program]
+        self,
+        far: FarParameters,
+        kernels: Mapping[Scalar, Kernel],
+        programs: Mapping[Scalar, Program],
+        plain: Kernel | None,
     ) -> None:
         self._far, self._kernels, self._programs = far, kernels, programs
-        self._errors = FarErrors(kernels, programs)
+        self._errors = FarErrors(kernels, programs, plain)
         self._size = len(kernels["float64"].statements) + 1
 
     def of(self, read: Sequence[int]) -> dict[Scalar, tuple[Bound, ...]]:

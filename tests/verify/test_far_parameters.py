@@ -17,6 +17,7 @@ from symgen.generation.recorded import as_recorded
 from symgen.generation.results import Options, Result
 from symgen.ir.bounded import Bound
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Program, Scalar, Statement, Status
+from symgen.ir.wide import widened
 from symgen.model.load import load_model
 from symgen.pipeline import generate
 from symgen.verify.expected import Expected
@@ -136,11 +137,12 @@ def test_a_type_may_refuse_where_nothing_is_estimated(expected: Expected) -> Non
     assert 10 < bound.high < 1e3
 
 
+@pytest.mark.parametrize("status", [Status.MASS_RANK, Status.CONSTRAINT_RANK, Status.ACTUATION_RANK])
 @pytest.mark.parametrize("scalar", SCALARS)
-def test_masses_that_are_taken_for_none_are_bounded(expected: Expected, scalar: Scalar) -> None:
-    """c d is no share of m any more, although nothing is lost."""
+def test_what_is_taken_for_none_beside_a_mass_is_bounded(expected: Expected, scalar: Scalar, status: Status) -> None:
+    """c d is no share of m any more, although nothing is lost; neither rows nor inputs are near a drop of rank."""
     share = Statement(("share",), "mul", (Local("m"), Literal(Fraction(1, 10**6))))
-    check = Check(Status.MASS_RANK, Local("d"), Local("share"))
+    check = Check(status, Local("d"), Local("share"))
     loads = (Load("c", "qd", 2), Load("m", "p", 4, MASS), Load("d", "p", 5, "d"))
     product = Statement(("y",), "mul", (Local("c"), Local("d")))
     kernel = Kernel(MULTIPLIERS, (), loads, (Block((share,), (check,)), Block((product,), ())), (Local("y"),), (1,))
@@ -148,6 +150,25 @@ def test_masses_that_are_taken_for_none_are_bounded(expected: Expected, scalar: 
     assert bound.low is None
     assert bound.high is not None
     assert 1e5 < bound.high < 1e7
+
+
+def test_pairs_of_float32_are_bounded_by_what_plain_numbers_lose(expected: Expected) -> None:
+    """(c d + m a) - m a has twelve digits more with pairs, of which a mass of 1e9 takes nine."""
+    plain = straight(
+        Statement(("ma",), "mul", (Local("m"), Local("a"))),
+        Statement(("mma",), "mul", (Local("m"), Local("ma"))),
+        Statement(("cd",), "mul", (Local("c"), Local("d"))),
+        Statement(("sum",), "add", (Local("cd"), Local("mma"))),
+        Statement(("y",), "sub", (Local("sum"), Local("mma"))),
+    )
+    kernels = {scalar: widened(plain, scalar) for scalar in SCALARS}
+    programs = {scalar: Program(scalar, None, (kernels[scalar],)) for scalar in SCALARS}
+    found = FarParameters(expected).bounds(kernels, programs, plain)
+    assert found["float64"] == ()
+    bound = {one.parameter: one for one in found["float32"]}[MASS]
+    assert bound.low is None
+    assert bound.high is not None
+    assert 1e3 < bound.high < 1e6
 
 
 def test_what_loses_nothing_has_no_bound(expected: Expected) -> None:
