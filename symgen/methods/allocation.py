@@ -12,7 +12,9 @@ from __future__ import annotations
 from fractions import Fraction
 
 from symgen.linear_algebra.null_spaces import NullSpace
+from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
+from symgen.methods.least_inputs import least_inputs
 from symgen.model.model import Allocation
 from symgen.symbolic.matrix import Vector, matvec, subtract_vectors
 from symgen.symbolic.scalar import Graph, Scalar
@@ -26,15 +28,16 @@ NO_LIMIT = Fraction(10**38)
 class InputAllocation:
     """The inputs of one allocation along one null space."""
 
-    def __init__(self, mechanics: System, allocation: Allocation, space: NullSpace, degree: int) -> None:
+    def __init__(self, mechanics: System, generic: Genericity, allocation: Allocation, space: NullSpace) -> None:
         self._allocation = allocation
         self._mechanics = mechanics
+        self._generic = generic
         self._graph = graph = mechanics.graph
         self._place = {item.name: k for k, item in enumerate(mechanics.model.inputs)}
         weights = [graph.one] * mechanics.m
         for name, parameter in allocation.weights:
             weights[self._place[name]] = graph.symbol(parameter)
-        equations, self._restriction = space.actuation(mechanics.inputs, degree)
+        equations, self._restriction = space.actuation(mechanics.inputs, generic.alpha)
         self.forms = equations.weighted(weights)
 
     def solve(self, force: Vector) -> Vector:
@@ -50,13 +53,15 @@ class InputAllocation:
         """The inputs for a force that are nearest to the preferred ones; of least norm where none is preferred."""
         graph = self._graph
         if not self._allocation.preferred:
-            return self.forms.solve(self._restriction(force))
+            return self._least(force)
         preferred = [graph.zero] * self._mechanics.m
         for name, parameter in self._allocation.preferred:
             preferred[self._place[name]] = graph.symbol(parameter)
         rest = subtract_vectors(force, matvec(graph, self._mechanics.control_matrix, tuple(preferred)))
-        solved = self.forms.solve(self._restriction(rest))
-        return tuple(p + u for p, u in zip(preferred, solved, strict=True))
+        return tuple(p + u for p, u in zip(preferred, self._least(rest), strict=True))
+
+    def _least(self, force: Vector) -> Vector:
+        return least_inputs(self._mechanics, self._generic, self.forms, self._restriction, force)
 
     def internal_force(self) -> tuple[Vector, Scalar]:
         """(-1)^(k-1) det[M without column k, B^T], or a positive multiple of it, and its squared weighted norm."""

@@ -28,6 +28,7 @@ from symgen.mechanics.system import System
 from symgen.methods.allocation import InputAllocation
 from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
 from symgen.methods.forward_dynamics.motion import Problem
+from symgen.methods.least_inputs import least_inputs
 from symgen.symbolic.calculus import derivative_along
 from symgen.symbolic.matrix import (
     Matrix,
@@ -122,10 +123,7 @@ class Derivation:
     def _solve_inputs(self, force: Vector) -> Vector:
         forms, restriction = self._actuation
         given, rest = self._taken_directly(force)
-        found = forms.solve(restriction(rest))
-        if self.generic.alpha < min(self.m, self.generic.delta):
-            # M~^+ M~ u = u: beside V, inputs that on V load the constraints alone would answer to what no input moves
-            found = forms.solve(restriction(matvec(self.graph, self.mechanics.control_matrix, found)))
+        found = least_inputs(self.mechanics, self.generic, forms, restriction, rest)
         return tuple(a + b for a, b in zip(given, found, strict=True))
 
     def _taken_directly(self, force: Vector) -> tuple[Vector, Vector]:
@@ -315,7 +313,7 @@ class Derivation:
         allocation = self.mechanics.model.allocation
         if allocation is None:
             return None
-        return InputAllocation(self.mechanics, allocation, self.space, self.generic.alpha)
+        return InputAllocation(self.mechanics, self.generic, allocation, self.space)
 
     @property
     def inverse_dynamics_guards(self) -> tuple[Guard, ...]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from symgen.generation.draft import draft_of
 from symgen.generation.results import Options
 from symgen.model.load import load_text
@@ -36,8 +38,9 @@ configuration: {a: 0.4, b: 0.3, c: 0.4, e: 2.8}
 """
 
 
-def test_u_keeps_its_digits_beside_an_input_that_moves_nothing() -> None:
-    model = load_text(TRIANGLE, "triangle.yaml")
+@pytest.mark.parametrize("allocation", ["", "allocation: {weights: {press: 3}, preload: {turn: 5}}\n"])
+def test_u_keeps_its_digits_beside_an_input_that_moves_nothing(allocation: str) -> None:
+    model = load_text(TRIANGLE + allocation, "triangle.yaml")
     draft = draft_of(model, model.outputs, Options())
     program = draft.programs["float64"]
     expected = Expected(model, model.outputs, 32, lambda _: None)
