@@ -15,7 +15,9 @@ def along_minors(mechanics: System, generic: Genericity) -> Derivation | str:
     """The derivation along the minors of B, or why there is none."""
     if not has_few_minors(mechanics.constraint_jacobian, generic.rank):
         return f"B has {generic.minors} minors"
-    space = MinorSpace(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, generic.rank)
+    # of independent rows the one determinant is multiplied out later, and what is left as it is shares its parts
+    factoring = mechanics.factoring if generic.rank < mechanics.r else None
+    space = MinorSpace(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, generic.rank, factoring)
     return Derivation(mechanics, generic, space)
 
 

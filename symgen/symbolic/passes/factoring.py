@@ -66,6 +66,14 @@ class Factoring:
         (shorter,) = self.shorten((scalar,))
         return shorter if shorter.size < scalar.size else scalar
 
+    def as_one_product(self, scalar: Scalar) -> Scalar:
+        """The scalar as a product of what is no sum but of parameters, where it is one: all its digits hold then."""
+        if scalar.op not in ("add", "sub") or scalar.size > LONGEST_CANCELLED:
+            return scalar
+        (shorter,) = self.shorten((scalar,))
+        _, powers = self.graph.products.monomial(shorter)
+        return scalar if any(factor.op in ("add", "sub") and not self.fixed(factor) for factor in powers) else shorter
+
     def common_sums(self, components: Sequence[Scalar]) -> frozenset[Scalar]:
         """The sums that are factors of two components or more: what a vector is a multiple of."""
         seen: dict[Scalar, int] = {}
