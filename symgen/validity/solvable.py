@@ -116,21 +116,27 @@ def _by_minors(
     lengths: Sequence[Scalar],
     status: Status,
 ) -> Guard:
-    """The sum of squared determinants, beside what it would be if all inputs and rows were orthogonal."""
+    """The sum of squared determinants, beside what it would be if all inputs and rows were orthogonal.
+
+    Of rows that depend on each other on V alone, determinants that are 0 on V hold eps beside it, where rounded
+    coordinates are.  They say nothing of u, and their squares have to be eps of the sum at most: its threshold is not
+    squared.
+    """
     graph, denominator = mechanics.graph, forms.denominator()
     scale = graph.sum(
         graph.product(lengths[k] for k in subset) * forms.importance(subset) for subset in forms.subsets
     )
     directions = forms.degree
-    measure = denominator * denominator if forms.single else denominator
+    measure, degree = denominator * denominator if forms.single else denominator, 2
     if isinstance(space, MinorSpace):
         directions += generic.rank
         if generic.rank < len(space.rows):
             measure, scale = forms.at_one_length(space.lengths), scale * graph.product(space.lengths)
+            degree = 2 if generic.rank_is_identical else 1
         else:
             rows = [_size(mechanics, row) for row in mechanics.constraint_jacobian]
             scale = scale * elementary_symmetric(graph, rows, generic.rank)
-    return Guard(status, measure, 2, space.guards, scale, directions)
+    return Guard(status, measure, degree, space.guards, scale, directions, positive=degree == 1)
 
 
 def _size(mechanics: System, row: Vector) -> Scalar:

@@ -10,6 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from symgen.generation.draft import draft_of
+from symgen.generation.results import Options
 from symgen.laboratory.zoo import sweeps
 from symgen.laboratory.zoo.approach import Approach
 from symgen.laboratory.zoo.campaign import Campaign
@@ -21,6 +23,10 @@ from symgen.laboratory.zoo.witness.generated import Answer, Target
 from symgen.laboratory.zoo.witness.kkt import GenericRanks
 from symgen.laboratory.zoo.witness.states import FloatState, rounded
 from symgen.laboratory.zoo.witness.witness import JudgedResult, Witness
+from symgen.model.load import load_text
+from symgen.verify.interpreted import outcomes
+from symgen.verify.reference.reference import Reference, State
+from symgen.verify.tolerance import FACTOR, expectations
 
 FOUR_BAR = """
 model: four_bar
@@ -198,3 +204,78 @@ def test_a_draw_is_swept(tmp_path: Path) -> None:
     assert record.swept.of(ANSWERED) > 100
     assert "0 beyond the tolerance" in line
     assert not (tmp_path / "2001_22").exists()
+
+
+RING = """
+model: ring
+parameters: {a: {value: 0.4}, m: {value: 2}}
+gravity: [0, 0, -9.81]
+frames:
+  end: {parent: r_5, translation: [a, 0, 0], rotation: [[x, pi/2]]}
+  dock: {translation: ["-a", 0, 0], rotation: [[x, pi/2]]}
+joints:
+  r_1: {type: revolute, axis: z, coordinate: t_1}
+  r_2: {type: revolute, axis: z, parent: r_1, at: [a, 0, 0], rotation: [[x, pi/2]], coordinate: t_2}
+  r_3: {type: revolute, axis: z, parent: r_2, at: [a, 0, 0], rotation: [[x, "-pi/2"]], coordinate: t_3}
+  r_4: {type: revolute, axis: z, parent: r_3, at: [a, 0, 0], rotation: [[x, pi/2]], coordinate: t_4}
+  r_5: {type: revolute, axis: z, parent: r_4, at: [a, 0, 0], rotation: [[x, "-pi/2"]], coordinate: t_5}
+bodies:
+  r_1: {mass: m, com: [a/2, 0, 0], inertia: {xx: 0.01, yy: 0.02, zz: 0.02}}
+  r_3: {mass: 3, com: [a/2, 0, 0], inertia: {xx: 0.01, yy: 0.02, zz: 0.02}}
+loops: {ring: {type: revolute, between: [end, dock]}}
+inputs: {u: {joint: t_1}}
+outputs: [inverse_dynamics]
+configuration: {t_1: 1.12, t_2: -1.87913, t_3: 1.12, t_4: -1.87913, t_5: 1.12}
+"""
+
+
+def test_inputs_of_dependent_rows_hold_the_rule_towards_a_dead_point() -> None:
+    """Determinants that are 0 on V hold a rounding beside it: at a dead point they are as large as the others."""
+    model = load_text(RING, "ring.yaml")
+    reference, programs = Reference(model), draft_of(model, model.outputs, Options()).programs
+    reached, _ = led_on(RING, "inputs")
+    walker, defaults = Witness(RING).walker(), Witness(RING).defaults()
+    answered = 0
+    for decade, q in reached.items():
+        nearest = walker.refined(q, defaults)
+        assert nearest is not None
+        found = walker.state(nearest, defaults)
+        for scalar, program in programs.items():
+            parts = (found.q, found.qd, found.qdd, found.u, found.parameters)
+            state = State(*(rounded(part, scalar) for part in parts))
+            (made,) = outcomes(program.kernels[0], program.sincos, scalar, [state])
+            if made.valid:
+                truth = expectations(reference, state, ["inverse_dynamics"], scalar, f"ring {decade}")
+                expected = truth["inverse_dynamics"]
+                assert expected.in_units(expected.distance(made.entries)) <= FACTOR, (decade, scalar)
+                answered += 1
+    assert max(reached) >= 10
+    assert answered >= 8
+
+
+BENNETT = """
+model: bennett
+parameters: {a: {value: 0.3}, b: {value: a*sin(1.7)/sin(1.2)}}
+frames:
+  end: {parent: r_3, translation: [a, 0, 0], rotation: [[x, 1.2]]}
+  dock: {translation: ["-b", 0, 0], rotation: [[x, -1.7]]}
+joints:
+  r_1: {type: revolute, axis: z, coordinate: t_1}
+  r_2: {type: revolute, axis: z, parent: r_1, at: [a, 0, 0], rotation: [[x, 1.2]], coordinate: t_2}
+  r_3: {type: revolute, axis: z, parent: r_2, at: [b, 0, 0], rotation: [[x, 1.7]], coordinate: t_3}
+bodies: {r_1: {mass: 1, com: [a/2, 0, 0], inertia: {xx: 0.01, yy: 0.02, zz: 0.02}}}
+loops: {ring: {type: revolute, between: [end, dock]}}
+inputs: {u: {joint: t_3}}
+configuration: {t_1: 2.1, t_2: 2.32187, t_3: -2.1}
+"""
+
+
+def test_a_state_that_refinement_leads_elsewhere_is_none() -> None:
+    """Where a row of the linkage all but vanishes, what rounding leaves of it passes for a direction."""
+    reached, _ = led_on(BENNETT, "lengths")
+    walker, defaults = Witness(BENNETT).walker(), Witness(BENNETT).defaults()
+    refined = [walker.refined(q, defaults) for q in reached.values()]
+    assert any(q is None for q in refined)
+    for q in refined:
+        if q is not None:
+            assert np.abs(walker.numbers(q, defaults).residual).max() < 1e-13

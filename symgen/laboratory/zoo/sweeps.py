@@ -150,9 +150,9 @@ def _towards(
         seen: Counter[int] = Counter()
         for number, start in enumerate([*(state.q for state in starts), *approach.nearest(kind, NEAREST)]):
             for decade, q in approach.towards(kind, start, Dice("approach", seed, kind, number)):
-                seen[decade] += 1
-                if seen[decade] <= PER_DECADE:
-                    nearest = walker.refined(q, parameters)
+                nearest = walker.refined(q, parameters) if seen[decade] < PER_DECADE else None
+                if nearest is not None:
+                    seen[decade] += 1
                     state = walker.state(nearest, parameters, ranks.constraints)
                     distance = approach.distance(kind, state.q) or 0.0
                     yield LedState(kind, f"{kind} at 1e-{decade}", state, ranks, distance)
@@ -171,6 +171,7 @@ def _scaled(
             for exponent in EXPONENTS:
                 far = {**parameters, name: parameters[name] * 10.0**exponent}
                 q = walker.closed(start.q, far)
+                q = None if q is None else walker.refined(q, far)
                 if q is not None:
-                    state = walker.state(walker.refined(q, far), far, ranks.constraints)
+                    state = walker.state(q, far, ranks.constraints)
                     yield LedState(SCALED, f"{name} times 1e{exponent}", state, ranks)

@@ -20,6 +20,8 @@ STEPS = 30
 REFINEMENTS = 3
 CLOSED = 1e-12
 SAME = 1e-8
+# a closed configuration that is refined moves less
+ELSEWHERE = 1e-6
 # a step that shows whether V is smooth, and how much further than its square Newton's method may lead
 SHORT, STRAY = 1e-4, 1e3
 # rows whose gradients vanish on V do so to the root of what rounding leaves of their values
@@ -70,7 +72,8 @@ class Walker:
             at = self.numbers(q, parameters)
             if self._rank(at, REGULAR) == ranks.constraints and self._reached(at, REGULAR) == ranks.actuation:
                 nearest = self.refined(q, parameters)
-                found.append(self.state(nearest, parameters))
+                if nearest is not None:
+                    found.append(self.state(nearest, parameters))
             if len(found) == count:
                 break
         return found, ranks
@@ -197,9 +200,10 @@ class Walker:
         return q if best < CLOSED else None
 
     def refined(self, q: Any, parameters: Mapping[str, float]) -> Any:
-        """The float nearest to a configuration that satisfies the rows to 30 digits.
+        """The float nearest to a configuration that satisfies the rows to 30 digits; None where that is another one.
 
-        Where rows depend on each other nothing is defined off V but by rounding.
+        Where rows depend on each other nothing is defined off V but by rounding.  Where one of them all but vanishes,
+        rounding passes for a direction of it, and the steps lead away.
         """
         geometric = sum(row.geometric for row in self._system.rows)
         if not geometric:
@@ -215,7 +219,8 @@ class Walker:
                 at = self._evaluate({**fixed, **dict(zip(names, exact, strict=True))}, self._balls)
                 step = onto_rows(at.rows[:geometric], at.residual, rank)
                 exact = [(x + dx).mid() for x, dx in zip(exact, step, strict=True)]
-            return np.array([float(x) for x in exact])
+            nearest = np.array([float(x) for x in exact])
+        return nearest if np.abs(nearest - q).max(initial=0.0) < ELSEWHERE else None
 
     def _free(self, q: Any, parameters: Mapping[str, float]) -> Any:
         at = self.numbers(q, parameters)
