@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
+from symgen.verify.reference.manifold import ROUNDED_DIRECTION
 from symgen.verify.reference.parts import Part
 from symgen.verify.reference.system import System
 from symgen.verify.reference.tape import Replay
@@ -145,9 +146,10 @@ def block(made: Sequence[Lanes], places: Sequence[Sequence[int]], columns: int =
 
 
 def lengths_of(rows: Lanes) -> Lanes:
-    """Of every row, 1 for one that vanishes."""
+    """Of every row; of one that vanishes up to rounding the largest of all, so that it stays as small as it is."""
     lengths = np.linalg.norm(rows, axis=2, keepdims=True)
-    return np.where(lengths > 0, lengths, 1.0)
+    largest = lengths.max(axis=1, keepdims=True, initial=0.0)
+    return np.where(lengths > 2.0**ROUNDED_DIRECTION * largest, lengths, np.where(largest > 0, largest, 1.0))
 
 
 def times(matrices: Lanes, vectors: Lanes) -> Lanes:
