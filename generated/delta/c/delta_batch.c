@@ -299,6 +299,7 @@ size_t delta_inverse_dynamics_batch(size_t count, size_t stride, const double *q
             const double t327 = t320 * t326;
             const double t328 = t315 - t327;
             double rest = (t291 - t291) * t312 * t328;
+            rest += l_2 >= 4.3e-05 ? 0.0 : 1.0;
             rest += 47.0 >= l_2 ? 0.0 : 1.0;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += 100000.0 >= t2 ? 0.0 : 1.0;

@@ -286,6 +286,7 @@ size_t delta_inverse_dynamics_batch_f(size_t count, size_t stride, const float *
             const float t327 = t320 * t326;
             const float t328 = t315 - t327;
             float rest = (t291 - t291) * t312 * t328;
+            rest += l_2 >= 0.024f ? 0.0f : 1.0f;
             rest += 47.0f >= l_2 ? 0.0f : 1.0f;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += 100.0f >= t2 ? 0.0f : 1.0f;

@@ -358,6 +358,9 @@ static DELTA_APART_F delta_status delta_inverse_dynamics_f_cause(const float q[6
 delta_status delta_inverse_dynamics_f(const float q[6], const float qd[6], const float qdd[6], const delta_params_f *p, float u[3]) {
     (void)qd;
     const float l_2 = p->l_2;
+    if (DELTA_RARELY_F(!(l_2 >= 0.024f))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     if (DELTA_RARELY_F(!(47.0f >= l_2))) {
         return DELTA_PARAMETER_RANGE;
     }

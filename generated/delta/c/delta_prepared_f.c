@@ -390,6 +390,9 @@ static DELTA_APART_F delta_status delta_inverse_dynamics_prepared_f_cause(const 
 delta_status delta_inverse_dynamics_prepared_f(const float q[6], const float qd[6], const float qdd[6], const delta_prepared_f *p, float u[3]) {
     (void)qd;
     const float l_2 = p->value[4];
+    if (DELTA_RARELY_F(!(l_2 >= 0.024f))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     if (DELTA_RARELY_F(!(47.0f >= l_2))) {
         return DELTA_PARAMETER_RANGE;
     }

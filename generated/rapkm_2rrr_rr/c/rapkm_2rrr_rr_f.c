@@ -5529,6 +5529,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_pseudoinverse_f(const float
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float F_B[12]) {
+    const float x_2 = p->x_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 2e-07f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float b_1 = q[3];
     const float t1 = fabsf(b_1);
     const float b_3 = q[5];
@@ -8530,6 +8534,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_applied_force_f(const float q[6], c
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float G_bar[4]) {
+    const float x_2 = p->x_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 2e-07f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_1 = q[0];
     const float t1 = fabsf(a_1);
     const float b_1 = q[3];
@@ -8813,6 +8821,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix_f(const float q[6], const
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix_f(const float q[6], const float qd[6], const rapkm_2rrr_rr_params_f *p, float C_bar[4]) {
     const float l_1 = p->l_1;
     if (RAPKM_2RRR_RR_RARELY_F(!(94.0f >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float x_2 = p->x_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 2e-07f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float b_1 = q[3];
@@ -9824,6 +9836,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_applied_force_f(const float q[6], con
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float M_bar[6]) {
+    const float x_2 = p->x_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 2e-07f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float b_3 = q[5];
     const float t1 = fabsf(b_3);
     const float a_1 = q[0];

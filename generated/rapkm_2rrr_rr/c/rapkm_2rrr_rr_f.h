@@ -57,7 +57,10 @@
  * Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:
  *   weighted_pseudoinverse l_2 <= 3
  *   weighted_nullspace_projector l_1 <= 9.4, l_2 <= 9.4
- *   minimal_coriolis_matrix l_1 <= 94
+ *   orthogonal_complement 2e-07 <= x_2
+ *   minimal_mass_matrix 2e-07 <= x_2
+ *   minimal_coriolis_matrix l_1 <= 94, 2e-07 <= x_2
+ *   minimal_control_matrix 2e-07 <= x_2
  *   projected_configuration l_1 <= 16, l_2 <= 16
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.
