@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 import shipped
-from generated_checksums import CHECKSUMS, checksums_text
+from generated_checksums import checksums_text
 from kernel_growth import grown
 
 from symgen.generation.results import Result
@@ -26,6 +26,7 @@ from symgen.ir.lifted import Lifted, same_kernel
 from symgen.ir.order import relaxed
 from symgen.ir.prepare import prepare
 from symgen.ir.split import split, without_first
+from symgen.output.manifest import CHECKSUMS
 from symgen.output.write import compare, is_measured, write_files
 from symgen.symbolic.identity import every_identity_evaluated
 

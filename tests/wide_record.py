@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from symgen.cli.main import main
+from symgen.output.write import write_files
 
 # A swing hangs from a runner on a sloping rail: one row, two degrees of freedom, quotients and sines, a spring by
 # a table of numbers.
@@ -53,5 +54,5 @@ def recorded(
     for quantity, types in wide.items():
         content["kernels"][quantity]["twice_the_digits"] = list(types)
     content["left_out"] = [{"quantity": q, "scalars": list(types)} for q, types in left_out.items()]
-    file.write_text(json.dumps(content), encoding="utf-8")
+    write_files(out / NAME, {"derivation.json": json.dumps(content)})
     return path, out

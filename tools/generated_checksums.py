@@ -11,10 +11,8 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
-from symgen.output.manifest import checksum_of, read_manifest
+from symgen.output.manifest import CHECKSUMS, checksum_of, read_manifest
 from symgen.output.write import is_measured
-
-CHECKSUMS = "files.sha256"
 
 
 def checksums_text(files: Mapping[str, str | bytes]) -> str:

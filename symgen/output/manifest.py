@@ -1,4 +1,4 @@
-"""The list of the files of a folder that symgen made, with their checksums as `sha256sum --check` reads them."""
+"""The lists of the files of a folder that symgen made, with their checksums as `sha256sum --check` reads them."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path, PurePosixPath
 
 FILES = ".symgen-files"
+CHECKSUMS = "files.sha256"  # the same for a repository, without measurements: tools/generated_checksums.py writes it
 _HEAD = "# What symgen made of the model {name}; other files are never replaced or removed.\n"
 _NAME = re.compile(r"# What symgen made of the model (\w+);")
 _LINE = re.compile(r"([0-9a-f]{64})  (.+)")
@@ -31,8 +32,20 @@ def read_manifest(directory: Path) -> tuple[str, dict[str, str]] | None:
     except (FileNotFoundError, NotADirectoryError):
         return None
     name = _NAME.match(text)
+    return name.group(1) if name else "", _by_path(text)
+
+
+def read_checksums(directory: Path) -> dict[str, str]:
+    """Those that a repository keeps, by path; none where it keeps none."""
+    try:
+        return _by_path((directory / CHECKSUMS).read_text(encoding="utf-8", errors="replace"))
+    except (FileNotFoundError, NotADirectoryError):
+        return {}
+
+
+def _by_path(text: str) -> dict[str, str]:
     found = (line.groups() for row in text.splitlines() if (line := _LINE.fullmatch(row)))
-    return name.group(1) if name else "", {path: checksum for checksum, path in found if is_inside(path)}
+    return {path: checksum for checksum, path in found if is_inside(path)}
 
 
 def checksum_of(content: bytes) -> str:

@@ -17,21 +17,21 @@ from pathlib import Path, PurePosixPath
 from symgen.diagnostics import SymgenBug
 from symgen.output.journal import Switch, is_pending, perform, recover, stage, unstage
 from symgen.output.lock import folder_lock
-from symgen.output.manifest import FILES, checksum_of, is_inside, manifest_text, read_manifest
+from symgen.output.manifest import FILES, checksum_of, is_inside, manifest_text, read_checksums, read_manifest
 
 MEASURED = (
     "certificate.json", "*.pdf", "bench.*", "stress.*", "target.*", "proof.json", "simulation.*", ".symgen-*"
 )
 _HELD_SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
-_DERIVED = "derivation.json"
 _MOST_LISTED = 5
+_NOT_AS_MADE = "not made by symgen, or changed since,"
 _changed: list[Path] = []
 
 Notify = Callable[[str], None]
 
 
 class ForeignFileError(OSError):
-    """A file that symgen did not make stands where one of its files would go."""
+    """A file that symgen did not make, or that was changed since, stands where one of its files would go."""
 
 
 def is_measured(path: str) -> bool:
@@ -59,26 +59,26 @@ def write_files(directory: Path, files: Mapping[str, str | bytes], notify: Notif
     Everything is staged first; then the files change places with interrupts held back. A failure leaves the folder as
     it was, and a run that is killed leaves a switch that the next one finishes. Of the sub-folders that `files` fill,
     earlier files that symgen made and makes no more are removed. Files that it did not make, or that were changed
-    since, stay and are told. Raises OSError when the disk refuses, ForeignFileError where a file would have to be
-    replaced that symgen did not make, LockedError when another run does not end.
+    since, stay and are told. Raises OSError when the disk refuses, ForeignFileError where such a file would have to be
+    replaced, LockedError when another run does not end.
     """
     contents = {_checked(path): _bytes(content) for path, content in files.items()}
     directory.mkdir(parents=True, exist_ok=True)
     with folder_lock(directory, notify):
         if done := recover(directory):
             notify(done)
-        known = _known(directory, contents)
+        known = _known(directory)
+        _refuse_to_replace(directory, contents, known)
         stale = _stale(directory, contents, known)
         removed = [path for path in stale if checksum_of(_read(directory / path) or b"") == known[path]]
         kept = {path: checksum for path, checksum in known.items() if path not in stale and _exists(directory / path)}
         made = kept | {path: checksum_of(content) for path, content in contents.items()}
-        if _keeps_a_list(directory, contents):
-            contents[FILES] = manifest_text(directory.name, made).encode()
+        contents[FILES] = manifest_text(directory.name, made).encode()
         _replace(directory, contents, removed)
         if others := _others(directory, contents, made):
             more = f" and {len(others) - _MOST_LISTED} more" if len(others) > _MOST_LISTED else ""
             shown = ", ".join(others[:_MOST_LISTED]) + more
-            notify(f"{directory}: notice: not made by symgen, or changed since, and left as they are: {shown}")
+            notify(f"{directory}: notice: {_NOT_AS_MADE} and left as they are: {shown}")
     return tuple(directory / path for path in contents if path != FILES)
 
 
@@ -115,35 +115,34 @@ def recover_folders(out: Path, notify: Notify = _complain) -> None:
                 notify(done)
 
 
-def _keeps_a_list(directory: Path, contents: Collection[str]) -> bool:
-    """Whether the list of files is written: a measurement does not begin the list of a folder that came without one,
-    since everything that is not on a list is the user's.
-    """
-    return read_manifest(directory) is not None or _DERIVED in contents or not _exists(directory / _DERIVED)
-
-
-def _known(directory: Path, contents: Mapping[str, bytes]) -> dict[str, str]:
-    """Checksums by path of what symgen made; ForeignFileError where something else stands in the way of `contents`.
-
-    A folder without a list, of a version that kept none or from a repository without it, is symgen's by its derivation:
-    files at the paths of symgen's are replaced, and none is removed.
-    """
-    found = read_manifest(directory)
-    name, known = found or ("", {})
+def _known(directory: Path) -> dict[str, str]:
+    """Checksums by path of what symgen made, as the folder's list has them."""
+    name, known = read_manifest(directory) or ("", {})
     if name != directory.name and name.lower() == directory.name.lower():
         message = f"here are the files of the model {name}: this disk knows no capitals; rename one, or choose --out"
         raise ForeignFileError(errno.EEXIST, message, str(directory))
-    derived = found is None and _exists(directory / _DERIVED)
-    foreign = [
-        path
-        for path, content in contents.items()
-        if path not in known and not derived and not (found is None and is_measured(path))
-        and _exists(directory / path) and _read(directory / path) != content
-    ]
-    if foreign:
-        message = "symgen did not make this file and does not replace it: move it, or choose another folder (--out)"
-        raise ForeignFileError(errno.EEXIST, message, str(directory / foreign[0]))
     return known
+
+
+def _refuse_to_replace(directory: Path, contents: Mapping[str, bytes], known: Mapping[str, str]) -> None:
+    """ForeignFileError where a file would be replaced that is not, byte for byte, what symgen made.
+
+    What it made has the checksum of the list, or of files.sha256, which a repository keeps in place of the list. A
+    header says nothing: edited files have it, too. They are refused as well, since a notice comes when they are lost,
+    and a copy beside them would be compiled by whoever takes `c/*`, or be lost in the next run.
+    """
+    kept = read_checksums(directory)
+    foreign = []
+    for path, content in contents.items():
+        if _exists(directory / path):
+            found = _read(directory / path)
+            made = found is not None and checksum_of(found) in (known.get(path), kept.get(path))
+            if found != content and not made:
+                foreign.append(path)
+    if foreign:
+        remedy = "move or delete what is named, or choose another folder (--out)"
+        message = f"{_NOT_AS_MADE} and not replaced, so nothing is written: {', '.join(foreign)}; {remedy}"
+        raise ForeignFileError(errno.EEXIST, message, str(directory))
 
 
 def _replace(directory: Path, contents: Mapping[str, bytes], removed: list[str]) -> None:
@@ -178,7 +177,7 @@ def _others(directory: Path, files: Collection[str], made: Collection[str]) -> l
         for place, inner, names in os.walk(directory / folder):
             inner[:] = sorted(name for name in inner if not name.startswith(".") and name != "__pycache__")
             paths = ((Path(place) / name).relative_to(directory).as_posix() for name in sorted(names))
-            found += [path for path in paths if path not in made and not is_measured(path)]
+            found += [path for path in paths if path not in made]
     return found
 
 

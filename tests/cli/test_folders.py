@@ -13,10 +13,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from generated_checksums import checksums_text
 
 from symgen.output.journal import STAGING
 from symgen.output.lock import LOCK, LockedError, folder_lock
-from symgen.output.manifest import FILES, read_manifest
+from symgen.output.manifest import CHECKSUMS, FILES, read_manifest
 from symgen.output.write import ForeignFileError, compare, recover_folders, write_files
 
 OLD = {f"c/part{k}.c": f"old {k}\n" for k in range(3)} | {"c/gone.c": "old\n", "derivation.json": "{}\n"}
@@ -28,6 +29,13 @@ def tree(folder: Path) -> dict[str, str]:
     return {path.relative_to(folder).as_posix(): path.read_text() for path in paths}
 
 
+def put(folder: Path, files: dict[str, str]) -> None:
+    """Files as a user or git puts them there, without a list."""
+    for path, text in files.items():
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        (folder / path).write_text(text)
+
+
 def silent(_message: str) -> None:
     return
 
@@ -35,9 +43,7 @@ def silent(_message: str) -> None:
 def test_what_symgen_did_not_make_stays_and_is_told(tmp_path: Path) -> None:
     write_files(tmp_path, OLD)
     mine = {"c/main.c": "mine\n", "c/build/out.txt": "mine\n", "notes.txt": "mine\n"}
-    for path, text in mine.items():
-        (tmp_path / path).parent.mkdir(exist_ok=True)
-        (tmp_path / path).write_text(text)
+    put(tmp_path, mine)
     told: list[str] = []
     write_files(tmp_path, NEW, told.append)
     assert tree(tmp_path) == dict(sorted((NEW | mine).items()))
@@ -45,6 +51,16 @@ def test_what_symgen_did_not_make_stays_and_is_told(tmp_path: Path) -> None:
         f"{tmp_path}: notice: not made by symgen, or changed since, and left as they are: c/main.c, c/build/out.txt"
     ]
     assert compare(tmp_path, NEW) == ()
+
+
+def test_files_of_the_user_named_like_measurements_are_told_and_those_measured_are_not(tmp_path: Path) -> None:
+    write_files(tmp_path, OLD | {"report/m.pdf": "measured\n", "bench.json": "{}\n"})
+    mine = {"c/bench.c": "mine\n", "c/target.ld": "mine\n", "report/motor.pdf": "mine\n"}
+    put(tmp_path, mine)
+    told: list[str] = []
+    write_files(tmp_path, OLD | {"report/m.html": "new\n"}, told.append)
+    assert {path: tree(tmp_path)[path] for path in mine} == mine
+    assert [line.partition("they are: ")[2] for line in told] == ["c/bench.c, c/target.ld, report/motor.pdf"]
 
 
 def test_a_file_that_was_changed_since_is_not_removed(tmp_path: Path) -> None:
@@ -58,26 +74,60 @@ def test_a_file_that_was_changed_since_is_not_removed(tmp_path: Path) -> None:
 
 def test_a_file_of_the_user_is_not_replaced(tmp_path: Path) -> None:
     write_files(tmp_path, OLD)
-    (tmp_path / "python").mkdir()
-    (tmp_path / "python/added.py").write_text("mine\n")
+    put(tmp_path, {"python/added.py": "mine\n"})
     before = tree(tmp_path)
-    with pytest.raises(ForeignFileError, match=r"--out.*") as caught:
+    with pytest.raises(ForeignFileError, match=r": python/added\.py; .*--out") as caught:
         write_files(tmp_path, NEW)
-    assert caught.value.filename == str(tmp_path / "python/added.py")
+    assert caught.value.filename == str(tmp_path)
     assert tree(tmp_path) == before
 
 
-def test_folders_of_earlier_versions_are_taken_over_and_lose_nothing(tmp_path: Path) -> None:
-    """They have no list of files; a folder without a derivation is none of symgen's."""
-    for path, text in OLD.items():
-        (tmp_path / path).parent.mkdir(exist_ok=True)
-        (tmp_path / path).write_text(text)
-    (tmp_path / "derivation.json").rename(tmp_path / "aside")
-    with pytest.raises(ForeignFileError):
+@pytest.mark.parametrize("listed", [True, False])
+def test_edits_of_generated_files_are_not_replaced_until_they_are_moved(tmp_path: Path, listed: bool) -> None:
+    """With a list, or with the checksums of a repository in its place."""
+    write_files(tmp_path, OLD)
+    if not listed:
+        (tmp_path / FILES).unlink()
+        put(tmp_path, {CHECKSUMS: checksums_text(OLD)})
+    put(tmp_path, {path: OLD[path] + "/* tuned */\n" for path in ("c/part0.c", "c/part2.c", "c/gone.c")})
+    before = tree(tmp_path)
+    with pytest.raises(ForeignFileError, match=r"nothing is written: c/part0\.c, c/part2\.c; move or delete"):
+        write_files(tmp_path, NEW, silent)
+    assert tree(tmp_path) == before
+    for name in ("part0.c", "part2.c"):
+        (tmp_path / "c" / name).rename(tmp_path / name)
+    write_files(tmp_path, NEW, silent)
+    edits = {"part0.c": before["c/part0.c"], "part2.c": before["c/part2.c"], "c/gone.c": before["c/gone.c"]}
+    assert tree(tmp_path) == tree(tmp_path) | NEW | edits
+
+
+def test_an_edit_that_generation_makes_as_well_is_none(tmp_path: Path) -> None:
+    write_files(tmp_path, OLD)
+    put(tmp_path, {"c/part1.c": NEW["c/part1.c"]})
+    write_files(tmp_path, NEW)
+    assert tree(tmp_path) == dict(sorted(NEW.items()))
+
+
+@pytest.mark.parametrize("listed", [True, False])
+def test_what_git_checks_out_is_replaced_without_a_word(tmp_path: Path, listed: bool) -> None:
+    """The checksums come with the files; a list, where there is one, is of another commit."""
+    if listed:
+        write_files(tmp_path, {path: f"other {text}" for path, text in OLD.items()})
+    put(tmp_path, OLD | {CHECKSUMS: checksums_text(OLD)})
+    told: list[str] = []
+    write_files(tmp_path, NEW | {"c/gone.c": "new\n"}, told.append)
+    assert tree(tmp_path) == tree(tmp_path) | NEW | {"c/gone.c": "new\n"}
+    assert told == []
+
+
+def test_a_folder_without_a_list_and_checksums_is_the_users(tmp_path: Path) -> None:
+    """Whatever lies in it: a derivation does not say who wrote the files beside it."""
+    put(tmp_path, OLD | {".staging-ab12/new-3": "left behind by a version without lists"})
+    with pytest.raises(ForeignFileError, match=r"c/part0\.c, c/part1\.c, c/part2\.c, derivation\.json; "):
         write_files(tmp_path, NEW)
-    (tmp_path / "aside").rename(tmp_path / "derivation.json")
-    (tmp_path / ".staging-ab12").mkdir()
-    (tmp_path / ".staging-ab12/new-3").write_text("left behind")
+    assert tree(tmp_path) == dict(sorted(OLD.items()))
+    for path in set(OLD) & set(NEW):
+        (tmp_path / path).unlink()
     told: list[str] = []
     write_files(tmp_path, NEW, told.append)
     assert tree(tmp_path) == dict(sorted((NEW | {"c/gone.c": "old\n"}).items()))
@@ -85,13 +135,19 @@ def test_folders_of_earlier_versions_are_taken_over_and_lose_nothing(tmp_path: P
 
 
 def test_a_measurement_in_a_folder_of_a_repository_leaves_its_files_to_symgen(tmp_path: Path) -> None:
-    """Repositories keep no list: what is made there first may be a measurement, and the next run replaces all."""
-    write_files(tmp_path, OLD)
-    (tmp_path / FILES).unlink()
-    write_files(tmp_path, {"target.json": "{}\n", "stress.svg": "<svg/>\n"})
-    write_files(tmp_path, NEW)
-    assert tree(tmp_path) == dict(sorted((OLD | NEW | {"target.json": "{}\n", "stress.svg": "<svg/>\n"}).items()))
+    """What is made first, and begins the list, may be a measurement; the next one and the next run replace all."""
+    put(tmp_path, OLD | {CHECKSUMS: checksums_text(OLD)})
+    for text in ("{}\n", "[]\n"):
+        write_files(tmp_path, {"target.json": text, "stress.svg": "<svg/>\n"})
+    write_files(tmp_path, NEW, silent)
+    assert tree(tmp_path) == tree(tmp_path) | NEW | {"target.json": "[]\n", "c/gone.c": "old\n"}
     assert read_manifest(tmp_path) is not None
+
+
+def test_a_measurement_of_the_user_is_not_replaced(tmp_path: Path) -> None:
+    put(tmp_path, OLD | {CHECKSUMS: checksums_text(OLD), "target.json": "mine\n"})
+    with pytest.raises(ForeignFileError, match=r"target\.json"):
+        write_files(tmp_path, {"target.json": "{}\n"})
 
 
 def test_the_list_is_one_that_sha256sum_checks(tmp_path: Path) -> None:
