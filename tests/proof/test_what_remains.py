@@ -53,6 +53,7 @@ def test_front_car_has_nothing_to_name() -> None:
 
 def test_friction_by_tanh_has_no_alarm(tool: Callable[[str], str], tmp_path: Path) -> None:
     """The analyser's own header says nothing of tanh; the driver says what every C library keeps."""
+    tool("gcc")  # Frama-C's preprocessor
     system = shipped.model("scara")
     program = of_inverse_dynamics(system)
     for path, text in (emit_c(system, program) | emit_proofs(system, [program])).items():

@@ -198,7 +198,8 @@ def test_records_are_told_and_summed_up(folder: Path, monkeypatch: pytest.Monkey
 
 
 @pytest.mark.campaign
-def test_a_draw_is_swept(tmp_path: Path) -> None:
+def test_a_draw_is_swept(tmp_path: Path, tool: Callable[[str], str]) -> None:
+    tool("gcc")
     record, line = one_sweep(Campaign(2001, tmp_path), 22)
     assert record.violations == ()
     assert record.swept.of(ANSWERED) > 100

@@ -204,7 +204,8 @@ def test_a_wheel_that_could_lift_is_held() -> None:
 
 
 @pytest.mark.campaign
-def test_multipliers_of_wheels_and_limited_inputs_are_compared(tmp_path: Path) -> None:
+def test_multipliers_of_wheels_and_limited_inputs_are_compared(tmp_path: Path, tool: Callable[[str], str]) -> None:
+    tool("gcc")
     (tmp_path / "hopper.yaml").write_text(WHEEL)
     run = run_command(tmp_path / "hopper.yaml", tmp_path / "out")
     assert run.code == 0, run.err
@@ -327,8 +328,9 @@ outputs: [inverse_dynamics, forward_dynamics]
 
 
 @pytest.mark.campaign
-def test_a_branch_on_which_inputs_span_less_has_a_status(tmp_path: Path) -> None:
+def test_a_branch_on_which_inputs_span_less_has_a_status(tmp_path: Path, tool: Callable[[str], str]) -> None:
     """It is told; what the kernel answers there is no false status, whether it is this one is looked at."""
+    tool("gcc")
     model = tmp_path / "two.yaml"
     model.write_text(TWO, encoding="utf-8")
     run = run_command(model, tmp_path / "out")
