@@ -603,8 +603,8 @@ outputs: [inverse_dynamics, forward_dynamics, multipliers]
 """
 
 
-@pytest.mark.campaign
-@pytest.mark.parametrize("text", [LIGHT, LIFT], ids=["light_yoke", "lift"])
+@pytest.mark.slow
+@pytest.mark.parametrize("text", [LIGHT, pytest.param(LIFT, marks=pytest.mark.campaign)], ids=["light_yoke", "lift"])
 def test_real_machines_get_every_quantity(text: str, tmp_path: Path) -> None:
     path = tmp_path / "machine.yaml"
     path.write_text(text, encoding="utf-8")
