@@ -18,7 +18,7 @@ from symgen.model.file.scope import PARAMETERS, Scope
 from symgen.model.file.source import MappingNode, Node, ScalarNode
 from symgen.model.kinematics.formulas import ExpressionArithmetic, ExpressionNumber, Form
 from symgen.model.kinematics.walk import Kinematics
-from symgen.model.mechanism import AXES, PLACES, WORLD, ZERO, Component, Mechanism, Quaternion, component, is_component
+from symgen.model.mechanism import AXES, PLACES, WORLD, ZERO, Component, Mechanism, component, is_component
 from symgen.model.model import ConstraintRow, Coordinate, Definition
 
 # What each full joint holds: offsets along the axis, offsets across it, tilts of the axis, the turn about it.  A point
@@ -127,34 +127,18 @@ class Rows:
             yield "turn", Name(Component(one, f"r{across[0] + 1}{across[1] + 1}", other).name)
 
     def _meeting(self, one: str, other: str) -> str:
-        """The frame that carries both ends of a rod: in its axes the length knows nothing of how that moves."""
-        return self._kinematics.meeting(*self._sides(one, other))
-
-    def _sides(self, one: str, other: str) -> list[str]:
-        """The frames that carry both sides of a loop."""
+        """The frame that carries both sides of a loop: in its axes a length knows nothing of how that moves."""
         points = self._kinematics.points
-        return [points[owner].frame if owner in points else owner for owner in (one, other)]
+        return self._kinematics.meeting(*(points[owner].frame if owner in points else owner for owner in (one, other)))
 
     def _carrier(self, one: str, other: str) -> str:
-        """The moving frame that carries both sides of a loop where they move in a plane of it, else the world.
+        """The frame that carries both sides of a loop, where it moves, else the world.
 
-        In its axes the rows know nothing of how it moves itself, and those across the plane always hold.
+        In its axes the rows know nothing of how it moves itself, and none is left across a plane in which they move.
         """
-        kinematics = self._kinematics
-        sides = self._sides(one, other)
-        carrier = kinematics.meeting(*sides)
-        turned: set[int] = set()
-        for side in sides:
-            line = kinematics.lineage(side)
-            for name in line[: line.index(carrier)]:
-                turns = kinematics.frames[name].rotation
-                if isinstance(turns, Quaternion):
-                    return WORLD
-                for turn in turns:
-                    if exact_value(turn.angle) != 0:
-                        turned |= {index for index, entry in enumerate(turn.axis) if exact_value(entry) != 0}
-        twist = kinematics.twist(carrier)
-        return carrier if len(turned) < 2 and any((*twist.linear, *twist.angular)) else WORLD
+        carrier = self._meeting(one, other)
+        twist = self._kinematics.twist(carrier)
+        return carrier if any((*twist.linear, *twist.angular)) else WORLD
 
     def _rolling(self, frame: str, radius: Expression, axle: int) -> Iterator[tuple[str, Expression]]:
         """No slip where the wheel touches the plane, and the height of its centre where that can change.

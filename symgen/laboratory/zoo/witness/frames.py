@@ -107,22 +107,13 @@ class FramePoses:
         parent = self._relative[name].parent
         return self._relative[parent].parent if parent.endswith(BASE) else parent
 
-    def plane_of(self, one: str, other: str) -> str:
-        """The nearest frame that both hang on, if it moves and all turns in between are about one of its axes."""
-        lines = [self._line(one), self._line(other)]
-        nearest = next(frame for frame in lines[0] if frame in lines[1])
-        axes: set[int] = set()
-        for line in lines:
-            for frame in line[: line.index(nearest)]:
-                relative = self._relative[frame]
-                if relative.quaternion is not None:
-                    return "world"
-                for axis, angle in relative.turns:
-                    if angle.number != 0:
-                        axes |= {index for index in range(3) if axis[index].number != 0}
+    def meeting(self, one: str, other: str) -> str:
+        """The nearest frame that both hang on, if it moves, else the world."""
+        line = self._line(other)
+        nearest = next(frame for frame in self._line(one) if frame in line)
         pose = self.pose(nearest)
         moves = any(rate.number != 0 for rate in (*pose.turning, *self.rates(pose.origin)))
-        return nearest if len(axes) < 2 and moves else "world"
+        return nearest if moves else "world"
 
     def _line(self, frame: str) -> list[str]:
         line = [frame]

@@ -211,10 +211,10 @@ class SystemReader:
         if kind == "distance":
             length = self.read(entry["length"])
             return [ConstraintEquation(f"{name}_length", True, dot(apart, apart) - length * length)]
-        plane = transposed(self.frames.pose(self.frames.plane_of(self._frame(one), self._frame(other))).axes)
+        carrier = transposed(self.frames.pose(self.frames.meeting(self._frame(one), self._frame(other))).axes)
         if kind in ("point", "spherical"):
-            in_plane = turned(plane, apart)
-            return [ConstraintEquation(f"{name}_{axis}", True, in_plane[index]) for axis, index in PLACES.items()]
+            held = turned(carrier, apart)
+            return [ConstraintEquation(f"{name}_{axis}", True, held[index]) for axis, index in PLACES.items()]
         axis = PLACES[entry.get("axis", "z")]
         across = [index for index in range(3) if index != axis]
         here, there = transposed(self.frames.pose(one).axes), transposed(self.frames.pose(other).axes)
@@ -225,7 +225,7 @@ class SystemReader:
             "planar": (True, False, True, False),
             "fixed": (True, True, True, True),
         }[kind]
-        held = turned(plane if along and beside else there, apart)
+        held = turned(carrier if along and beside else there, apart)
         rows = [
             ConstraintEquation(f"{name}_{letter}", True, held[index])
             for letter, index in PLACES.items()
