@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from symgen.ir.kernel import Kernel
 from symgen.ir.wide_functions import works_with_pairs
-from symgen.model.quantities import ROWS
+from symgen.model.quantities import MAIN, ROWS
 
 # Those with a kernel for many states: what trajectories, sampling and simulations evaluate by the million.
-BATCHED = ("inverse_dynamics", "forward_dynamics", "multipliers")
+BATCHED = MAIN
 
 
 def output_argument(quantity: str) -> str:

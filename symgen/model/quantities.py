@@ -19,7 +19,8 @@ class QuantityRow:
 
     `result` is what its array is called in C.  `shape` has its extents, products of numbers and of sizes of the system:
     n coordinates, m inputs, r rows, of these r_g geometric, delta degrees of freedom, points.  A quantity exists where
-    none of them is 0 and the model has what it `needs`.
+    none of them is 0 and the model has what it `needs`.  The `main` ones are what the equations of motion are solved
+    for.
     """
 
     name: str
@@ -30,6 +31,7 @@ class QuantityRow:
     shape: tuple[str, ...]
     description: str
     needs: str
+    main: bool
 
     @property
     def sizes(self) -> frozenset[str]:
@@ -43,10 +45,11 @@ class QuantityRow:
 
 
 def _row(
-    name: str, symbol: str, equation: str, result: str, arguments: str, shape: str, description: str, needs: str = ""
-) -> QuantityRow:
+    name: str, symbol: str, equation: str, result: str, arguments: str, shape: str, description: str, needs: str = "",
+    *, main: bool = False,
+) -> QuantityRow:  # fmt: skip
     given = cast(tuple[Argument, ...], tuple(arguments.split()))
-    return QuantityRow(name, symbol, equation, result, given, tuple(shape.split()), description, needs)
+    return QuantityRow(name, symbol, equation, result, given, tuple(shape.split()), description, needs, main)
 
 
 # fmt: off
@@ -96,7 +99,8 @@ QUANTITIES: tuple[QuantityRow, ...] = (
          "acceleration made admissible"),
     _row("projected_configuration", "q − B⁺g", "", "q_projected", "q", "n",
          "two Newton steps towards the configuration space"),
-    _row("inverse_dynamics", "u", "(27)", "u", "q qd qdd", "m", "the smallest inputs that produce the motion"),
+    _row("inverse_dynamics", "u", "(27)", "u", "q qd qdd", "m", "the smallest inputs that produce the motion",
+         main=True),
     _row("inverse_dynamics_residual", "F Fᵀ(τ − M u)", "", "residual", "q qd qdd", "n",
          "the force no input can supply"),
     _row("actuator_velocity", "ν", "Remark 10", "nu", "q qd", "m", "velocities along the inputs", ACTUATORS),
@@ -104,9 +108,10 @@ QUANTITIES: tuple[QuantityRow, ...] = (
          "mass matrix in the actuator velocities", ACTUATORS),
     _row("actuator_bias", "Wᵀ(GẆν + Cq̇ + Q − Q_a)", "Remark 10", "bias_nu", "q qd", "m",
          "further forces along the inputs", ACTUATORS),
-    _row("forward_dynamics", "q̈", "(15)", "qdd", "q qd u", "n", "accelerations under the inputs"),
+    _row("forward_dynamics", "q̈", "(15)", "qdd", "q qd u", "n", "accelerations under the inputs",
+         main=True),
     _row("multipliers", "λ", "(14)", "lambda_B", "q qd u", "r",
-         "Lagrange multipliers; the reaction on the system is −Bᵀλ"),
+         "Lagrange multipliers; the reaction on the system is −Bᵀλ", main=True),
     _row("energy", "T, U", "", "T_U", "q qd", "2", "kinetic and potential energy"),
     _row("singularity", "σ", "", "measure", "q", "2", "distances from constraint and input singularities, 0 to 1"),
     _row("point_position", "(x, y, z)", "", "position", "q", "points 3",
@@ -116,3 +121,5 @@ QUANTITIES: tuple[QuantityRow, ...] = (
 )
 # fmt: on
 ROWS = {quantity.name: quantity for quantity in QUANTITIES}
+MAIN = tuple(quantity.name for quantity in QUANTITIES if quantity.main)
+"""u, q̈ and λ, which take methods of their own and have kernels for many states."""

@@ -11,9 +11,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from typing import TypeVar
 
+from symgen.model.quantities import MAIN
 from symgen.runtime.effort import SCALAR, TooLongError, at_most, done, worth_trying
 
-MAIN = ("inverse_dynamics", "forward_dynamics", "multipliers")
 # Counted cost of all quantities together: what takes under a minute to derive, to verify and to compile.
 OPERATIONS_OF_ALL = 70_000
 # Counted cost of one quantity along a way that loses digits: with twice as many it takes some twenty times as long.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TypeAlias
 
+from symgen.model.quantities import QUANTITIES
 from symgen.report.document import (
     Emphasis,
     FormulaReference,
@@ -27,6 +28,7 @@ from symgen.report.mathematics.layout import (
     Scripts,
     Sum,
 )
+from symgen.report.mathematics.symbols import symbol_layout
 
 Slot: TypeAlias = str | Layout | InlineCode | Emphasis | FormulaReference
 
@@ -129,46 +131,10 @@ small_n, small_r, small_m, rho = Letter("n"), Letter("r"), Letter("m"), Letter("
 NB_dot = Scripts(Accent(N, "dot"), B)
 B_dot = Accent(B, "dot")
 
-SYMBOLS: dict[str, Layout] = {
-    "mass_matrix": G,
-    "coriolis_matrix": C,
-    "coriolis_force": juxtaposed(C, qd),
-    "potential_force": Q,
-    "applied_force": Qa,
-    "constraint_residual": g,
-    "constraint_jacobian": B,
-    "constraint_jacobian_dot": B_dot,
-    "constraint_pseudoinverse": pseudoinverse(B),
-    "nullspace_projector": NB,
-    "nullspace_projector_dot": NB_dot,
-    "weighted_pseudoinverse": pseudoinverse(BG),
-    "weighted_nullspace_projector": NBG,
-    "control_matrix": M,
-    "projected_control_matrix": Mt,
-    "projected_control_pseudoinverse": pseudoinverse(Mt),
-    "orthogonal_complement": F,
-    "projected_mass_matrix": Accent(G, "tilde"),
-    "projected_coriolis_matrix": Accent(C, "tilde"),
-    "projected_potential_force": Accent(Q, "tilde"),
-    "projected_applied_force": juxtaposed(NB, Qa),
-    "minimal_mass_matrix": Accent(G, "bar"),
-    "minimal_coriolis_matrix": Accent(C, "bar"),
-    "minimal_potential_force": Accent(Q, "bar"),
-    "minimal_applied_force": juxtaposed(transposed(F), Qa),
-    "minimal_control_matrix": Accent(M, "bar"),
-    "inverse_dynamics": u,
-    "forward_dynamics": qdd,
-    "multipliers": lam,
-    "admissible_velocity": juxtaposed(NB, Scripts(qd, ZERO)),
-    "admissible_acceleration": plus(juxtaposed(NB, Scripts(qdd, ZERO)), juxtaposed(NB_dot, qd)),
-    "projected_configuration": minus_sum((q,), (juxtaposed(pseudoinverse(B), g),)),
+# What the report writes in the terms of its own sections, where the code's one line is of others.
+REWRITTEN: dict[str, Layout] = {
     "inverse_dynamics_residual": minus_sum((juxtaposed(NB, tau),), (juxtaposed(Mt, u),)),
     "actuator_bias": juxtaposed(transposed(W), Fenced(minus_sum((tau,), (juxtaposed(G, W, Accent(nu, "dot")),)))),
-    "energy": listed((T, U)),
-    "singularity": Letter("σ"),
-    "point_position": Fenced(listed((Letter("x"), Letter("y"), Letter("z")))),
-    "point_jacobian": bold("J"),
-    "actuator_velocity": nu,
-    "actuator_mass_matrix": juxtaposed(transposed(W), G, W),
 }
-"""How the quantities of section 2 of the interface are written in formulas."""
+SYMBOLS: dict[str, Layout] = {row.name: symbol_layout(row.symbol) for row in QUANTITIES} | REWRITTEN
+"""How the quantities are written in formulas: the symbols of their rows, set."""

@@ -9,9 +9,10 @@ from linkages import row_of_four_bars
 
 from symgen.generation.results import Options
 from symgen.model.load import load_text
+from symgen.model.quantities import MAIN
 from symgen.pipeline import generate
 from symgen.quantities import everything
-from symgen.quantities.everything import MAIN, OF_ALL
+from symgen.quantities.everything import OF_ALL
 from symgen.quantities.select import derive_quantities
 
 TEXT = row_of_four_bars(1, ground="0.7", tail="configuration: {a0: 1, a1: 1, b1: 0}")

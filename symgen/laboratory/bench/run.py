@@ -25,11 +25,11 @@ from symgen.laboratory.bench.workload import Errors, Workload, admissible_sample
 from symgen.model.blocks.allocation import without_allocation
 from symgen.model.load import load_model
 from symgen.model.model import Model
+from symgen.model.quantities import MAIN
 from symgen.verify.reference.reference import Reference
 from symgen.verify.sampling.states import Sample
 
 SCALARS: tuple[Scalar, ...] = ("float64", "float32")
-QUANTITIES = ("inverse_dynamics", "forward_dynamics", "multipliers")
 USUAL_STATES = 1000
 OTHER_STATES = 250  # of forward dynamics and multipliers, for which there are no goals
 COUNTED_STATES = 64
@@ -115,9 +115,9 @@ def benchmark(path: Path, states: int, progress: Progress, out: Path | None = No
         raise WrongUseError("symgen bench compiles everything with gcc, and there is no gcc on this machine")
     model = without_allocation(load_model(path))
     reference = Reference(model)
-    tasks = [_task(model, name) for name in QUANTITIES if name in reference.quantities()]
+    tasks = [_task(model, name) for name in MAIN if name in reference.quantities()]
     if not tasks:
-        raise WrongUseError(f"{path}: nothing to measure, the model has none of {', '.join(QUANTITIES)}")
+        raise WrongUseError(f"{path}: nothing to measure, the model has none of {', '.join(MAIN)}")
     progress("looking for admissible states")
     samples = admissible_samples(reference, states, [task.quantity for task in tasks])
     notes = [] if find_valgrind() else ["there is no valgrind: instructions were not counted"]

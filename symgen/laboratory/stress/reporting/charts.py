@@ -7,22 +7,18 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from symgen.generation.runnable import SCALARS
+from symgen.generation.runnable import SCALARS, STRESSED
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
 from symgen.laboratory.stress.reporting.axes import logarithmic
 from symgen.laboratory.stress.reporting.form_charts import form_chart
 from symgen.laboratory.stress.run import Stress
 from symgen.laboratory.stress.series import FIXED, PARTITION, SWITCHING, SYMGEN, Series, by_form
+from symgen.model.quantities import ROWS
 from symgen.paths.drawing import svg
 from symgen.paths.line_chart import COLOURS
 from symgen.verify.tolerance import FACTOR
 
-SYMBOLS = {
-    "inverse_dynamics": "u",
-    "forward_dynamics": "q̈",
-    "multipliers": "λ",
-    "nullspace_projector": "N_B",
-}
+SYMBOLS = {name: ROWS[name].symbol for name in STRESSED}
 # symgen last: drawn on top
 LOOKS: Mapping[str, tuple[str, str, str]] = {
     PARTITION: (COLOURS[1], "--", "s"),

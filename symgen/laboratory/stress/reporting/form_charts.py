@@ -10,11 +10,11 @@ from symgen.laboratory.stress.form_kernels import LABELS
 from symgen.laboratory.stress.reporting.axes import logarithmic
 from symgen.laboratory.stress.run import Stress
 from symgen.laboratory.stress.series import SYMGEN, Series, by_form
+from symgen.model.quantities import MAIN, ROWS
 from symgen.paths.drawing import svg
 from symgen.paths.line_chart import COLOURS
 from symgen.verify.tolerance import FACTOR
 
-SYMBOLS = {"inverse_dynamics": "u", "forward_dynamics": "q̈", "multipliers": "λ"}
 KINDS: tuple[Kind, ...] = ("parameter", "input", "constraint", "mass ratios")
 LOWEST, HIGHEST = 0.05, 1e9  # units; a form without a result is drawn at the top
 STYLES = ("-", "--", ":", "-.")
@@ -25,7 +25,7 @@ def form_chart(result: Stress) -> str | None:
     """Every form in float64, the worst over the families of a kind; None for a model without such families."""
     kinds = [kind for kind in KINDS if any(family.kind == kind for family in result.families)]
     compared = {series.quantity for series in result.series if series.form in LABELS.values()}
-    quantities = [name for name in SYMBOLS if name in compared]
+    quantities = [name for name in MAIN if name in compared]
     if not kinds or not quantities:
         return None
     looks = {
@@ -44,7 +44,7 @@ def form_chart(result: Stress) -> str | None:
                 if SYMGEN in forms:
                     _line(panel, forms[SYMGEN], SYMGEN, "#BBBBBB", "-", 3.5, 1)
                 panel.axhline(FACTOR, color="#888888", linewidth=0.7, linestyle=(0, (2, 2)), zorder=0)
-            row[0].set_ylabel(f"{SYMBOLS[quantity]}: error over unit")
+            row[0].set_ylabel(f"{ROWS[quantity].symbol}: error over unit")
         for panel, kind in zip(panels[0], kinds, strict=True):
             panel.set_title(kind, fontsize=9, loc="left")
             logarithmic(panel.xaxis)

@@ -6,7 +6,10 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-SYMBOLS = {"inverse_dynamics": "u", "forward_dynamics": "q̈", "multipliers": "λ", "nullspace_projector": "N_B"}
+from symgen.generation.runnable import STRESSED
+from symgen.model.quantities import MAIN, ROWS
+
+SYMBOLS = {name: ROWS[name].symbol for name in STRESSED}
 CAPTIONS = {
     "claim": "Error of u against the distance d to parameter singularities.",
     "forms": "Errors of u, q̈, λ and N_B against d, float64 and float32.",
@@ -179,7 +182,7 @@ def _scaling(result: Mapping[str, Any]) -> str:
     rows = []
     for change in dict.fromkeys(s["change"] for s in result["scaling"]):
         cells = [change]
-        for quantity in ("inverse_dynamics", "forward_dynamics", "multipliers"):
+        for quantity in MAIN:
             mine = [s for s in result["scaling"] if (s["change"], s["quantity"]) == (change, quantity)]
             if not mine:
                 cells.append("")
@@ -192,7 +195,7 @@ def _scaling(result: Mapping[str, Any]) -> str:
                 error = f"{max(_finite(s['units']) for s in mine):.2g}"
                 cells.append(f"{error}, {refused} refused" if refused else error)
         rows.append(cells)
-    return _table(["other units (error in units)", "u", "q̈", "λ"], rows)
+    return _table(["other units (error in units)", *(SYMBOLS[quantity] for quantity in MAIN)], rows)
 
 
 def _runs(result: Mapping[str, Any]) -> str:

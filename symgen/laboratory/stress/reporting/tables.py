@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import math
 
+from symgen.generation.runnable import STRESSED
 from symgen.laboratory.stress.run import Stress
 from symgen.laboratory.stress.series import FORMS, SYMGEN, by_form
+from symgen.model.quantities import MAIN, ROWS
 from symgen.terminal import columns
 
+# Columns count characters, of which dots over a letter are one more: q̈ is called as in C.
 SHORTEST = {
-    "inverse_dynamics": "u",
-    "forward_dynamics": "qdd",
-    "multipliers": "λ",
-    "nullspace_projector": "N_B",
+    name: ROWS[name].result if name == "forward_dynamics" else ROWS[name].symbol for name in STRESSED
 }
 LONGEST_LABEL = 44
 
@@ -97,7 +97,7 @@ def _units(result: Stress) -> str:
     rows = []
     for change in dict.fromkeys(s.change for s in result.scaled):
         cells = [change]
-        for quantity in ("inverse_dynamics", "forward_dynamics", "multipliers"):
+        for quantity in MAIN:
             mine = [s for s in result.scaled if s.change == change and s.quantity == quantity]
             if not mine:
                 cells.append("")
@@ -108,7 +108,8 @@ def _units(result: Stress) -> str:
             else:
                 cells.append(f"{max(s.units for s in mine):.2g}" + _refused(sum(s.refused for s in mine)))
         rows.append(cells)
-    return columns(("other units*", "u", "qdd", "λ"), rows, "<>>>") + "\n  * error as above, both scalar types"
+    head = ("other units*", *(SHORTEST[quantity] for quantity in MAIN))
+    return columns(head, rows, "<>>>") + "\n  * error as above, both scalar types"
 
 
 def _refused(states: int) -> str:

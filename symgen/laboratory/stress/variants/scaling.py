@@ -23,12 +23,12 @@ from symgen.laboratory.stress.variants.dimensions import (
     parameter_dimensions,
 )
 from symgen.model.model import Model
+from symgen.model.quantities import MAIN
 from symgen.verify.reference.reference import Reference, State
 from symgen.verify.reference.tape import precision
 from symgen.verify.sampling.states import sample_states
 from symgen.verify.tolerance import FACTOR, expectations
 
-QUANTITIES = ("inverse_dynamics", "forward_dynamics", "multipliers")
 STATES = 4
 BITS = 256
 POLYNOMIAL = ("minor", "minor factored", "elimination", "nullspace")  # forms without square roots
@@ -63,7 +63,7 @@ class Scaled:
 def scaling(reference: Reference, kernels: Kernels, folder: Path) -> tuple[tuple[Scaled, ...], tuple[str, ...]]:
     """All changes of units of a model, and what is wrong (empty: nothing)."""
     model = reference.model
-    names = tuple(name for name in QUANTITIES if name in kernels.names)
+    names = tuple(name for name in MAIN if name in kernels.names)
     quantities = names[:1] if model.m else ()
     regular = sample_states(reference, quantities, 2 * STATES)
     states = [sample.state for sample in regular if sample.admissible][:STATES]
