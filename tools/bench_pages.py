@@ -1,7 +1,7 @@
 """docs/bench/: the measured tables and charts of `symgen bench`, from what its runs left under a folder.
 
 `python tools/bench_pages.py generated models/a.yaml ...` reads generated/<model>/bench.json and bench.svg, and says
-where a peer takes more instructions than in the study that the goals come from.
+where a peer takes more instructions than when the goals were set.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ TARGET = ROOT / "docs" / "bench"
 
 
 def main(generated: Path, names: list[str]) -> None:
-    """Writes docs/bench/README.md and its charts, and prints where a peer differs from the study."""
+    """Writes docs/bench/README.md and its charts, and prints where a peer differs from the early counts."""
     TARGET.mkdir(parents=True, exist_ok=True)
     for old in TARGET.glob("*.svg"):
         old.unlink()

@@ -16,8 +16,8 @@ ROOT = Path(__file__).resolve().parent.parent
 REPEATS = 3
 U = ("--outputs", "inverse_dynamics")
 C = ("--only", "c", "--no-verify")
-# The goals come from a study whose machine took this many seconds of CPU time to import SymPy.
-STUDY_IMPORT = 0.44
+# The goals were set on a machine that took this many seconds of CPU time to import SymPy.
+EARLY_IMPORT = 0.44
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ def lines(results: Sequence[tuple[Row, float, float]], importing: float) -> Iter
     yield "CPU time of the whole command from a cold start, in all processes it starts, the least of three (once where"
     yield "there is no goal); memory is that of the largest process.  Made by `make generation`."
     yield ""
-    yield f"`import sympy` took {importing:.2f} s of CPU time beside these commands, {STUDY_IMPORT} s on the machine"
+    yield f"`import sympy` took {importing:.2f} s of CPU time beside these commands, {EARLY_IMPORT} s on the machine"
     yield "that the goals come from; the second column of times is for a machine of that speed."
     yield ""
     yield "| model | options | CPU s | scaled | goal | MB | goal |"
@@ -83,7 +83,7 @@ def lines(results: Sequence[tuple[Row, float, float]], importing: float) -> Iter
     for row, seconds, megabytes in results:
         goal = "–" if row.seconds is None else f"{row.seconds:g}"
         options = f"`{' '.join(row.options)}`" if row.options else "all of it, verified"
-        scaled = seconds * STUDY_IMPORT / importing
+        scaled = seconds * EARLY_IMPORT / importing
         yield f"| {row.model} | {options} | {seconds:.2f} | {scaled:.2f} | {goal} | {megabytes:.0f} | {row.megabytes} |"
     times = {row.model: seconds for row, seconds, _ in results if row.options == (*C, *U)}
     growth = log(times["chain32"] / times["chain8"]) / log(4)

@@ -1,4 +1,7 @@
-"""What is generically true of a system: the rank of B on V and the degree of actuation (model/branches)."""
+"""What is generically true of a system: the rank of B on V and the degree of actuation.
+
+Both hold on one branch of configurations (`model/configurations/branches.py`).
+"""
 
 from __future__ import annotations
 

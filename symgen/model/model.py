@@ -202,7 +202,7 @@ class Model:
     """A mechanical system, complete: the input of every derivation.
 
     T and U are the energies written in the file plus those of `mechanism`; `assembly` is what loading found out about
-    its configurations.  `row_units` are set where rows stand here times 2 to these powers (`dynamics/row_units`).
+    its configurations.  `row_units` are set where rows stand here times 2 to these powers (`quantities/row_units.py`).
     `taken` are parameters of the file that are numbers here (`as_numbers`).
     """
 

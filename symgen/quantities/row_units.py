@@ -2,7 +2,8 @@
 
 Systems are derived with rows times powers of 2, which change no digit; what depends on the units of rows is given in
 those of the file in the end: g and B as they are, B^+ and lambda the other way round.  Where rows depend on each other
-the smallest multipliers are meant, in the units of the file, so that these rows have one factor (`model/branches`).
+the smallest multipliers are meant, in the units of the file, so that these rows have one factor
+(`model/configurations/branches.py`).
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ from symgen.laboratory.bench.callgrind import inclusive_costs
 from symgen.laboratory.bench.candidate import Task
 from symgen.laboratory.bench.pareto import pareto_front
 from symgen.laboratory.bench.reporting.charts import spread, time_against_error
-from symgen.laboratory.bench.reporting.goals import GOALS, PAPER, STUDY
+from symgen.laboratory.bench.reporting.goals import EARLY_COUNTS, GOALS, PAPER
 from symgen.laboratory.bench.reporting.pages import deviation_lines, page
 from symgen.laboratory.bench.reporting.tables import bench_tables
 from symgen.laboratory.bench.run import Benchmark, Comparison, Measured
@@ -88,7 +88,7 @@ def measured(generator: str, form: str, count: float, **changes: Any) -> Measure
 
 
 def result_of(name: str, factor: float = 1.0) -> Benchmark:
-    written, valid, best = (STUDY[key][PAPER.index(name)][0] for key in STUDY)
+    written, valid, best = (EARLY_COUNTS[key][PAPER.index(name)][0] for key in EARLY_COUNTS)
     rows = (
         measured("symgen", "minors, portable", 0.3 * best),
         measured("symgen", "minors, libm", 0.6 * best),
@@ -129,7 +129,7 @@ def test_page_shows_goals_met_and_missed() -> None:
 
 def test_dearer_peers_are_reported() -> None:
     honest = deviation_lines([result_of(name).to_json() for name in PAPER])
-    assert len(honest) == len(PAPER) * len(STUDY)
+    assert len(honest) == len(PAPER) * len(EARLY_COUNTS)
     assert not any("DEARER" in line for line in honest)
     straw = deviation_lines([result_of(name, 1.2).to_json() for name in PAPER])
     assert sum("DEARER" in line for line in straw) == len(PAPER)

@@ -18,7 +18,7 @@ from symgen.laboratory.bench.peers.native import direct_balance
 from symgen.laboratory.bench.peers.pinocchio_program import pinocchio_time, tree_text
 from symgen.laboratory.bench.reporting import mechanism_pages
 from symgen.laboratory.bench.reporting.goals import AS_WRITTEN, Goal
-from symgen.laboratory.bench.reporting.mechanism_goals import CHEAPEST_WRITTEN, GOALS, MECHANISMS, STUDY
+from symgen.laboratory.bench.reporting.mechanism_goals import CHEAPEST_WRITTEN, EARLY_COUNTS, GOALS, MECHANISMS
 from symgen.laboratory.bench.reporting.mechanism_pages import page, table_of
 
 
@@ -66,22 +66,22 @@ def test_every_peer_computes_u(tool: Callable[[str], str], monkeypatch: pytest.M
     assert "front_car_bodies" in table_of(result)
 
 
-def test_goals_and_study_have_a_place_for_every_mechanism() -> None:
+def test_goals_and_early_counts_have_a_place_for_every_mechanism() -> None:
     assert all(len(goal.ratios) == len(MECHANISMS) for goal in GOALS)
-    assert all(len(counts) == len(MECHANISMS) for counts in STUDY.values())
+    assert all(len(counts) == len(MECHANISMS) for counts in EARLY_COUNTS.values())
     assert page({}).startswith("# Mechanisms")
 
 
-def test_as_written_is_the_writing_of_the_study() -> None:
+def test_as_written_is_native_or_else_along_directions() -> None:
     def row(generator: str, form: str, count: int) -> dict[str, object]:
         return {"generator": generator, "form": form, "instructions": count, "nanoseconds": 1.0}
 
     looped = [row("CasADi", "literal", 90), row("CasADi", "native", 100), row("wrenfold", "elimination", 50)]
     serial = [row("CasADi", "AD", 70), row("CasADi", "AD in world axes", 110), row("CasADi", "native", 900)]
-    for peers, study, cheapest in ((looped, 100, 90), (serial, 110, 70), (looped[:1], 90, 90)):
+    for peers, written, cheapest in ((looped, 100, 90), (serial, 110, 70), (looped[:1], 90, 90)):
         goals = [Goal(against, "libm", ()) for against in (AS_WRITTEN, CHEAPEST_WRITTEN)]
         found = [mechanism_pages.ratio([row("symgen", "elimination, libm", 45), *peers], goal, None) for goal in goals]
-        assert [text.split("/ ")[1].split()[0] for text in found] == [str(study), str(cheapest)]
+        assert [text.split("/ ")[1].split()[0] for text in found] == [str(written), str(cheapest)]
 
 
 def test_velocities_in_either_axes_give_the_same_equations() -> None:

@@ -1,1 +1,1 @@
-"""Methods that nothing chooses: published ones, long or less accurate, to be compared with when asked for by name."""
+"""Published methods, long or less accurate: to be compared with, and where verification rejects all others, taken."""

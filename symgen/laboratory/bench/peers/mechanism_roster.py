@@ -80,7 +80,7 @@ def _others(left_out: list[tuple[str, str]]) -> list[type[Engine]]:
 
 
 def _forms(model: Model, states: Any, left_out: list[tuple[str, str]]) -> dict[str, Build]:
-    """lean up to a size, part, and range where M selects coordinates; a serial arm has one form."""
+    """lean up to a size, part, and elimination where M selects coordinates; a serial arm has one form."""
     if not model.r:
         return {SERIAL: lambda engine, s: elimination_form(engine, s, ())} if _selects(model) else {"lean": lean}
     forms: dict[str, Build] = {}

@@ -16,7 +16,7 @@ from symgen.witness.lagrange import Lagrange, differentiate
 Build: TypeAlias = Callable[[Engine, PeerSystem], list[Symbol]]
 # Tools that the extra `bench` installs, by module.
 OPTIONAL = {"wrenfold": "wrenfold", "SymForce": "symforce", "JAX": "jax"}
-# Cheaper than the study's Cholesky factors, by about the same for every tool; the one that is cheapest takes them.
+# Cheaper than Cholesky factors with roots, by about the same for every tool; the one that is cheapest takes them.
 SYMPY_ONLY = ("lean LDLᵀ", "part LDLᵀ")
 
 

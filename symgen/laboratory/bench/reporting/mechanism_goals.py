@@ -1,4 +1,4 @@
-"""What is asked of u of mechanisms given by bodies, and the counts of the study that the goals come from."""
+"""What is asked of u of mechanisms given by bodies, and the early counts that the goals were set by."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ GOALS = (
     Goal(BEST_ANY, "libm", (0.66, 0.68, 1.0, 1.0, 0.57, 0.56, 0.55, 0.47)),
     Goal(BEST_ANY, "portable", (0.36, 0.38, 0.8, 0.95, 0.36, 0.38, 0.39, 0.37)),
 )
-# What the study took for "as written": G and C as matrices, (27) and (28) with `inv` and `@`; where that is too long,
+# What counts as "as written": G and C as matrices, (27) and (28) with `inv` and `@`; where that is too long,
 # the motion equations along directions; without loops, these of energies in world axes.
-STUDIED_WRITINGS = (
+AS_WRITTEN_FORMS = (
     frozenset({"AD in world axes"}),
     frozenset({"native", "native from energies"}),
     frozenset({"literal", "literal from energies"}),
 )
-WRITTEN = frozenset({"AD"}).union(*STUDIED_WRITINGS)
-# Counts of the study; its cars, RA-PKM and chains are these, its other mechanisms have parameters of their own.
-STUDY: dict[str, tuple[int | None, ...]] = {
+WRITTEN = frozenset({"AD"}).union(*AS_WRITTEN_FORMS)
+# Its cars, RA-PKM and chains are these, the other mechanisms were counted with other parameters.
+EARLY_COUNTS: dict[str, tuple[int | None, ...]] = {
     AS_WRITTEN: (821, 3696, 1735, 11126, 9464, 51463, None, 5157),
     BEST_ANY: (519, 1433, 572, 1583, 3110, 6348, 12918, 5157),
 }

@@ -7,11 +7,11 @@ from typing import Any
 
 from symgen.laboratory.bench.reporting.goals import AS_WRITTEN, Goal
 from symgen.laboratory.bench.reporting.mechanism_goals import (
+    AS_WRITTEN_FORMS,
     CHEAPEST_WRITTEN,
+    EARLY_COUNTS,
     GOALS,
     MECHANISMS,
-    STUDIED_WRITINGS,
-    STUDY,
     WRITTEN,
 )
 from symgen.terminal import columns
@@ -29,11 +29,12 @@ are drawn from the ranges of the coordinates. symgen's kernels return statuses, 
 The peers walk the frames in their own scalars, as somebody writes a mechanism who knows the tool: rotation matrices and
 velocities in body axes from frame to frame, energies as sums over bodies, motion equations by the tool's derivatives
 along directions, never through matrices. **literal** is (27) with (28) on those, **native** the same with the matrices
-G and C; **lean**, **part** and **range** are the forms of [the other page](README.md), **AD** is a mechanism without
-loops, *in world axes* with rotation matrices multiplied up and the velocities of mass centres as the world sees them.
-*from energies* starts from energies written out in world axes, which is shorter for a few mechanisms in the plane.
+G and C; **lean**, **part** and **elimination** are the forms of [the other page](README.md), **AD** is a mechanism
+without loops, *in world axes* with rotation matrices multiplied up and the velocities of mass centres as the world sees
+them. *from energies* starts from energies written out in world axes, which is shorter for a few mechanisms in the
+plane.
 
-*As written* is what the study of the goals calls so: native, where it is not too long to be built (16 links: literal);
+*As written* is what a user of CasADi writes down: native, where it is not too long to be built (16 links: literal);
 without loops AD of energies in world axes. The row below it takes whichever of native, literal and AD is cheapest, for
 comparison; the best peer in any form is the strongest of all.
 """
@@ -44,7 +45,7 @@ def page(results: Results) -> str:
     names = [name for name in MECHANISMS if name in results]
     parts = [HEAD]
     if names:
-        parts += [_goals(results, names), _library(results, names), _study(results, names)]
+        parts += [_goals(results, names), _library(results, names), _early(results, names)]
     for name, result in results.items():
         parts.append(f"## {name}\n\n{_table(COLUMNS, _rows(result))}")
         parts += [f"Not measured: {what} ({why}).\n" for what, why in _left_out(result)]
@@ -113,9 +114,9 @@ def ratio(rows: Sequence[Row], goal: Goal, wanted: float | None) -> str:
     return f"{shown}{asked}: {_count(mine):.0f} / {_count(peer):.0f} {peer['generator']} {peer['form']}"
 
 
-def _study(results: Results, names: Sequence[str]) -> str:
+def _early(results: Results, names: Sequence[str]) -> str:
     rows = []
-    for against, counts in STUDY.items():
+    for against, counts in EARLY_COUNTS.items():
         cells = []
         for name in names:
             peer, count = _peer(results[name]["kernels"], against), counts[MECHANISMS.index(name)]
@@ -127,10 +128,11 @@ def _study(results: Results, names: Sequence[str]) -> str:
             cells.append(f"{count}; {here}; symgen {libm:.2f} ({portable:.2f}) of it")
         rows.append([against, *cells])
     return (
-        "## The peers are no straw men\n\nInstructions of the peers in the study that the goals come from, how far the "
-        "peers here are from them, and symgen's u with libm (portable) over the study's count. The study's arm, Delta "
-        "and Gough-Stewart platform have other parameters: the platform here has its joints given by angles, whose "
-        "sines the peers evaluate. The arm's strongest peer here, AD in body axes, is not among the study's.\n\n"
+        "## The peers are no straw men\n\nInstructions of the peers as counted before the goals were set, how far the "
+        "peers here are from them, and symgen's u with libm (portable) over the early count. The arm, Delta and "
+        "Gough-Stewart platform of the early counts have other parameters: the platform here has its joints given by "
+        "angles, whose sines the peers evaluate. The arm's strongest peer here, AD in body axes, was not counted "
+        "then.\n\n"
         + _table(["against", *names], rows)
     )
 
@@ -142,7 +144,7 @@ def _own(rows: Sequence[Row], trig: str) -> Row:
 def _peer(rows: Sequence[Row], against: str) -> Row | None:
     peers = [row for row in rows if row["generator"] != "symgen"]
     if against == AS_WRITTEN:
-        kinds = ([row for row in peers if row["form"] in forms] for forms in STUDIED_WRITINGS)
+        kinds = ([row for row in peers if row["form"] in forms] for forms in AS_WRITTEN_FORMS)
         peers = next(filter(None, kinds), [])
     elif against == CHEAPEST_WRITTEN:
         peers = [row for row in peers if row["form"] in WRITTEN]

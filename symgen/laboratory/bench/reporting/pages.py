@@ -11,13 +11,13 @@ from symgen.laboratory.bench.reporting.goals import (
     AS_WRITTEN,
     BEST_ANY,
     BEST_VALID,
+    COUNTED_EARLY,
+    EARLY_COUNTS,
     FOOTPRINT_GOALS,
     FOOTPRINT_MODELS,
     GOALS,
     PAPER,
     REPRODUCED_WITHIN,
-    STUDIED,
-    STUDY,
     VALID_FORMS,
     Goal,
 )
@@ -38,10 +38,10 @@ inputs, parameters and literals are rounded.
 
 Forms of the peers: **native** is the paper's (27) with (28) as a user writes it, with full matrices, `inv` and `@`;
 **lean** applies Cholesky factors of B Bᵀ to vectors; **part** takes a basis of ker B from chosen coordinates;
-**range** solves the passive rows for the multipliers, where M selects rows. `LDLᵀ` stands for factors without roots,
-and for m = δ a direct solution. The choice of coordinates and multipliers is an expert's: the cheapest one that stays
-away from singularities. All start from the energies in the model file. Times of Python are per state, all states in
-one call.
+**elimination** solves the passive rows for the multipliers, where M selects rows. `LDLᵀ` stands for factors without
+roots, and for m = δ a direct solution. The choice of coordinates and multipliers is an expert's: the cheapest one that
+stays away from singularities. All start from the energies in the model file. Times of Python are per state, all states
+in one call.
 
 CasADi exports its helper functions, so they cannot be inlined into position-independent code, which is what a loaded
 library consists of; **native -fPIE** shows what inlining them is worth.
@@ -61,7 +61,7 @@ def page(results: Sequence[Mapping[str, Any]], charts: Mapping[str, Sequence[str
 
 
 def deviation_lines(results: Sequence[Mapping[str, Any]]) -> list[str]:
-    """The peers' counts beside the study's, one line each; empty where not all were counted."""
+    """The peers' counts beside the early ones, one line each; empty where not all were counted."""
     measured = _of_inverse_dynamics(results)
     if not _counted(measured):
         return []
@@ -69,9 +69,9 @@ def deviation_lines(results: Sequence[Mapping[str, Any]]) -> list[str]:
     for against, cells in deviations(measured).items():
         for name, (count, found, label) in zip(PAPER, cells, strict=True):
             change = found / count - 1
-            verdict = "DEARER than in the study" if change > REPRODUCED_WITHIN else ""
-            verdict = "cheaper than in the study" if change < -REPRODUCED_WITHIN else verdict
-            line = f"{name}: {against}: {found:.0f} ({label}), study {count:.0f}: {100 * change:+.1f} % {verdict}"
+            verdict = "DEARER than early" if change > REPRODUCED_WITHIN else ""
+            verdict = "cheaper than early" if change < -REPRODUCED_WITHIN else verdict
+            line = f"{name}: {against}: {found:.0f} ({label}), early {count:.0f}: {100 * change:+.1f} % {verdict}"
             lines.append(line.rstrip())
     return lines
 
@@ -86,12 +86,12 @@ def _of_inverse_dynamics(results: Sequence[Mapping[str, Any]]) -> Results:
 
 
 def deviations(measured: Results) -> dict[str, tuple[tuple[float, float, str], ...]]:
-    """By row of the study and in the order of the paper's models: the study's count, the one found here, by whom."""
+    """By row of the early counts, in the order of the paper's models: the early count, the one found here, by whom."""
     found = {}
-    for against, counts in STUDY.items():
+    for against, counts in EARLY_COUNTS.items():
         cells = []
         for (count, _), name in zip(counts, PAPER, strict=True):
-            best = _best(measured.get(STUDIED.get(name, name), measured[name]), _PEERS[against])
+            best = _best(measured.get(COUNTED_EARLY.get(name, name), measured[name]), _PEERS[against])
             cells.append((float(count), float(best["instructions"]), _label(best)))
         found[against] = tuple(cells)
     return found
@@ -153,20 +153,20 @@ def _footprint(measured: Results, name: str, trig: str, against: str, what: str)
 
 
 def _reproduced(measured: Results) -> str:
-    """The peers' counts beside those of the study the goals come from."""
+    """The peers' counts beside the early ones that the goals come from."""
     rows = []
     for against, cells in deviations(measured).items():
         row = [against]
-        for (count, found, label), (_, by) in zip(cells, STUDY[against], strict=True):
+        for (count, found, label), (_, by) in zip(cells, EARLY_COUNTS[against], strict=True):
             change = found / count - 1
             shown = f"{100 * change:+.0f} %"
             shown = f"**{shown}**" if change > REPRODUCED_WITHIN else shown
             row.append(f"{count:.0f} {by}; here {found:.0f} {label}, {shown}")
         rows.append(row)
-    swapped = ", ".join(f"{other} in place of {name}" for name, other in STUDIED.items() if other in measured)
-    note = f" With {swapped}, which is the mechanism of that study." if swapped else ""
+    swapped = ", ".join(f"{other} in place of {name}" for name, other in COUNTED_EARLY.items() if other in measured)
+    note = f" With {swapped}, which is the mechanism of that count." if swapped else ""
     return (
-        "## The peers are no straw men\n\nInstructions of u in float64 in the study that the goals come from, and "
+        "## The peers are no straw men\n\nInstructions of u in float64 as counted before the goals were set, and "
         f"here; bold where a peer is more than {100 * REPRODUCED_WITHIN:.0f} % dearer here, a minus where it is "
         f"cheaper.{note}\n\n" + _table(["", *PAPER], rows)
     )
