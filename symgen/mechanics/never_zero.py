@@ -115,15 +115,8 @@ class Definite:
         """entry / content for a content that divides it, without a division."""
         if content.is_one or entry.is_zero:
             return entry
-        coefficient, powers = self._graph.products.monomial(entry)
-        divided, taken = self._graph.products.monomial(content)
-        rest = {factor: count - taken.get(factor, 0) for factor, count in powers.items()}
-        ordered = sorted(rest.items(), key=lambda item: item[0].serial)
-        product = self._graph.product(factor for factor, count in ordered for _ in range(count))
-        for factor, count in ordered:
-            for _ in range(-count):
-                product = product / factor
-        return self._graph.const(Fraction(coefficient) / divided) * product
+        number, taken = self._graph.products.monomial(content)
+        return self._graph.products.quotient(entry, taken, number)
 
     def ratio(self, entry: Scalar, divisor: Scalar) -> Scalar:
         """entry / divisor with the parameters' quotient in one piece, so that it is shared and can be computed once."""

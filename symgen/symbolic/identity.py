@@ -34,6 +34,11 @@ def every_identity_evaluated() -> Iterator[None]:
         _Thoroughly.on = before
 
 
+def evaluates_all() -> bool:
+    """Whether that is so now."""
+    return _Thoroughly.on
+
+
 def same_values(
     rule: str, before: Sequence[Scalar], after: Sequence[Scalar], squares_roots: bool = False
 ) -> None:

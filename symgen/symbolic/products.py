@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
 
-from symgen.symbolic.fingerprint import PRIME
+from symgen.symbolic.fingerprint import PRIME, residue
 
 if TYPE_CHECKING:
     from symgen.symbolic.scalar import Graph, Scalar
@@ -20,6 +20,15 @@ MOST_FACTORS = 12
 
 def _whole(value: Fraction) -> int | Fraction:
     return value.numerator if value.denominator == 1 else value
+
+
+def _held(rule: str, same: bool, found: Scalar, asked: Callable[[], Scalar]) -> Scalar:
+    """What was found, held to be what was asked for: where fingerprints are not the same, or do not decide, exactly."""
+    from symgen.symbolic import identity  # which needs graphs
+
+    if not same or identity.evaluates_all():
+        identity.same_values(rule, [asked()], [found])
+    return found
 
 
 _COMPOSED = frozenset({"const", "neg", "mul", "div"})
@@ -104,12 +113,8 @@ class Products:
             return None
         rest = {f: common for f in more if (common := min(left.get(f, 0), right.get(f, 0)))}
         found = k1 * (self._product(rest) * angle)
-        if found.value != (a.value + sign * b.value) % PRIME:
-            from symgen.symbolic.identity import same_values  # which needs graphs
-
-            asked = self._graph.raw("add" if sign > 0 else "sub", (a, b))
-            same_values("the addition theorem", [asked], [found])
-        return found
+        op, same = "add" if sign > 0 else "sub", found.value == (a.value + sign * b.value) % PRIME
+        return _held("the addition theorem", same, found, lambda: self._graph.beside(op, (a, b)))
 
     def quotient(self, a: Scalar, powers: Mapping[Scalar, int], number: int | Fraction = 1) -> Scalar:
         """`a` over a number times powers of factors; those of its own are left out instead of divided by."""
@@ -117,7 +122,25 @@ class Products:
         if not coefficient:
             return a
         rest = {f: own.get(f, 0) - powers.get(f, 0) for f in {**own, **powers}}
-        return Fraction(coefficient) / number * self._product({f: count for f, count in rest.items() if count})
+        found = Fraction(coefficient) / number * self._product({f: count for f, count in rest.items() if count})
+        # found * number * below = a * above, as what is 0 has no inverse in the field
+        left, right = found.value * residue(Fraction(number)), a.value
+        for factor, count in powers.items():
+            if count > 0:
+                left = left * pow(factor.value, count, PRIME)
+            else:
+                right = right * pow(factor.value, -count, PRIME)
+        same = (left - right) % PRIME == 0
+        return _held("leaving out factors", same, found, lambda: self._over(a, powers, number))
+
+    def _over(self, a: Scalar, powers: Mapping[Scalar, int], number: int | Fraction) -> Scalar:
+        """The quotient as it is asked for, divided by one factor after the other."""
+        beside = self._graph.beside
+        asked = beside("div", (a, beside("const", (), Fraction(number))))
+        for factor, count in powers.items():
+            for _ in range(abs(count)):
+                asked = beside("div" if count > 0 else "mul", (asked, factor))
+        return asked
 
     def _product(self, powers: dict[Scalar, int]) -> Scalar:
         factors = sorted(powers.items(), key=lambda entry: entry[0].serial)

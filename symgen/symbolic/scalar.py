@@ -243,6 +243,13 @@ class Graph:
         node = self._nodes.get(key)
         return self._new(key, op, args, payload) if node is None else node
 
+    def beside(self, op: str, args: tuple[Scalar, ...], payload: object = None) -> Scalar:
+        """The operation as it stands, unknown to the graph: what it is compared with is made in the same order."""
+        node = Scalar(self, len(self._serials), op, args, payload)
+        values = [a.value for a in args]
+        node.value = combine(op, values, payload) if node.constant is None else residue(node.constant)
+        return node
+
     def sum(self, terms: Iterable[Scalar]) -> Scalar:
         """Left-to-right sum; 0 for no terms."""
         total = self.zero
