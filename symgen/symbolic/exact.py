@@ -21,7 +21,7 @@ from typing import TypeAlias
 from symgen.symbolic.angles.circle import FIELD, Field
 from symgen.symbolic.fingerprint import opaque
 from symgen.symbolic.scalar import PI, Scalar
-from symgen.symbolic.traverse import topological
+from symgen.symbolic.traverse import reached, topological
 
 # a, or a + b i where b is not 0
 Element: TypeAlias = int | tuple[int, int]
@@ -67,6 +67,11 @@ def half_turns(value: Fraction) -> Fraction | None:
         value -= Fraction(count, whole) * PI**degree
         turns += Fraction(count, whole) if degree == 1 else 0
     return turns
+
+
+def holds_roots(outputs: Sequence[Scalar]) -> bool:
+    """Whether a root of what is no number stands in them: at a point that of x^2 is x or -x, either by chance."""
+    return any(node.op == "sqrt" and node.args[0].constant is None for node in reached(outputs))
 
 
 class ExactValues:

@@ -11,7 +11,8 @@ import random
 from collections.abc import Sequence
 
 from symgen.symbolic.evaluate import Evaluator
-from symgen.symbolic.exact import ExactValues
+from symgen.symbolic.exact import ExactValues, holds_roots
+from symgen.symbolic.identity import POINTS_OF_SIGNS
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import reached
 
@@ -29,9 +30,19 @@ def without_hidden_zeros(scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
         hidden = [scalar for scalar, value in values if abs(value) <= ROUNDING_OF_ZEROS]
     if not hidden:
         return tuple(scalars)
-    exact = ExactValues(signs=False)(hidden)
-    zeros = {scalar for scalar, value in zip(hidden, exact, strict=True) if value == 0}
+    zeros = set(_zeros(hidden, 0))
+    rooted = [scalar for scalar in zeros if holds_roots([scalar])]
+    zeros -= {*rooted}
+    for seed in range(1, 1 + POINTS_OF_SIGNS):
+        rooted = _zeros(rooted, seed)
+    zeros |= {*rooted}
     return tuple(scalar.graph.zero if scalar in zeros else scalar for scalar in scalars)
+
+
+def _zeros(scalars: Sequence[Scalar], seed: int) -> list[Scalar]:
+    """Those that are 0 at the point of a seed."""
+    values = ExactValues(seed, signs=False)(scalars)
+    return [scalar for scalar, value in zip(scalars, values, strict=True) if value == 0]
 
 
 def _floats(scalars: Sequence[Scalar], seed: int) -> list[float]:

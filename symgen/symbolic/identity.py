@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from symgen.diagnostics import SymgenBug
-from symgen.symbolic.exact import ExactValues, Value
+from symgen.symbolic.exact import ExactValues, Value, holds_roots
 from symgen.symbolic.scalar import Scalar
 
 # Points at which signs are right, half of them by chance.
@@ -44,7 +44,9 @@ def same_values(
 ) -> None:
     """Raises SymgenBug, naming the rule, where a scalar is not the same function after it as before.
 
-    A rule that squares roots is not judged at points where the field does not have them.
+    A rule that squares roots is not judged at points where the field does not have them.  Equal at one point are
+    sqrt(x^2) and x, by chance: there roots are left to fingerprints, to which each is a function of its own, or to more
+    points.
     """
     if len(before) != len(after):
         raise SymgenBug(f"{rule}: {len(after)} scalars in place of {len(before)}")
@@ -53,13 +55,21 @@ def same_values(
         for one, other in zip(before, after, strict=True)
         if (one.value != other.value or _Thoroughly.on) and one is not other
     ]
-    differ = [pair for pair in differ if (value := _value(pair[0], 0)) is None or value != _value(pair[1], 0)]
+    differ = [pair for pair in differ if not _equal(*pair)]
     for seed in range(1, 1 + POINTS_OF_SIGNS if differ else 1):
         changed = [(one, other) for one, other in differ if _changed(one, other, seed)]
         if squares_roots:
             changed = [(one, other) for one, other in changed if not _point(other, seed).any_root_in([other])]
         if wrong := len(changed):
             raise SymgenBug(f"{rule}: changes the value of {wrong} of {len(before)} scalars")
+
+
+def _equal(one: Scalar, other: Scalar) -> bool:
+    """Whether one point is enough to tell that two scalars are the same function."""
+    value = _value(one, 0)
+    if value is None or value != _value(other, 0):
+        return False
+    return one.value == other.value or not holds_roots([one, other])
 
 
 def _changed(one: Scalar, other: Scalar, seed: int) -> bool:

@@ -93,6 +93,19 @@ def test_identities_hold_and_others_do_not() -> None:
             same_values("that", [one], [other])
 
 
+@pytest.mark.parametrize("number", range(20))
+def test_a_root_is_not_what_it_is_the_root_of_the_square_of(number: int) -> None:
+    """At one point it is, by chance."""
+    graph = Graph()
+    x, y = graph.symbol(f"x{number}"), graph.symbol(f"y{number}")
+    total = x + y
+    root = graph.function("sqrt", (x * x + 2 * x * y + y * y,))
+    same_values("squaring", [root * root, root], [total * total, graph.function("abs", (total,))])
+    for wrong in (total, -total):
+        with pytest.raises(SymgenBug, match="one side: changes the value of 1 of 1"):
+            same_values("one side", [root], [wrong])
+
+
 def test_nothing_is_said_of_what_is_divided_by_zero() -> None:
     graph = Graph()
     x = graph.symbol("x")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from fractions import Fraction
 
 import pytest
@@ -10,7 +11,9 @@ from symgen.generation.draft import draft_of
 from symgen.generation.results import Options
 from symgen.mechanics.system import System
 from symgen.model.load import load_text
+from symgen.quantities.select import derive_quantities
 from symgen.symbolic.hidden_zeros import without_hidden_zeros
+from symgen.symbolic.identity import every_identity_evaluated, same_values
 from symgen.symbolic.scalar import Graph, Scalar
 
 
@@ -47,6 +50,62 @@ def test_what_is_small_or_almost_0_stays() -> None:
     nothing = root[0] * root[1] * x - root[2] * x
     scalars = (tiny, almost, opposite, nothing, x, graph.one)
     assert without_hidden_zeros(scalars) == (tiny, almost, opposite, graph.zero, x, graph.one)
+
+
+@pytest.mark.parametrize("number", range(20))
+def test_what_is_0_on_one_side_only_stays(number: int) -> None:
+    """sqrt(x^2) - x is 0 where x > 0; at a point of a field it is by chance, for each pair of names another one."""
+    graph = Graph()
+    x, y = graph.symbol(f"x{number}"), graph.symbol(f"y{number}")
+    root = graph.function("sqrt", (x * x + 2 * x * y + y * y,))
+    angle = graph.function("sqrt", (1 - graph.raw("sub", (graph.one, graph.trig("sin", x) * graph.trig("sin", x))),))
+    penalties = (root - (x + y), (x + y) / root - 1, graph.function("abs", (x,)) - x, angle - graph.trig("sin", x))
+    assert without_hidden_zeros(penalties) == penalties
+    length = graph.function("sqrt", (x * x + y * y,))
+    nothing = (x / length) * (x / length) + (y / length) * (y / length) - 1
+    assert without_hidden_zeros((nothing, root * root - (x + y) * (x + y))) == (graph.zero, graph.zero)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_only_zeros_are_taken_for_zeros(seed: int) -> None:
+    """Sums of what is 0, what is not and what is on one side only, in which zeros cancel or do not."""
+    graph, draw = Graph(), random.Random(seed)
+    x, y = graph.symbol(f"x{seed}"), graph.symbol(f"y{seed}")
+    roots = [graph.function("sqrt", (graph.const(number),)) for number in (2, 7, 14)]
+    square = graph.function("sqrt", (x * x - 2 * x * y + y * y,))
+    parts = [
+        roots[0] * roots[1] * x - roots[2] * x,
+        graph.function("sqrt", (x * x + 2 * x * y + y * y,)) - x - y,
+        square * square - (x - y) * (x - y),
+        square + y - x,
+        x * y,
+    ]
+    scalars = []
+    for _ in range(8):
+        total = graph.zero
+        for part in draw.sample(parts, draw.randrange(1, 3)):
+            total = total + draw.choice((1, -1, 3)) * part * draw.choice((graph.one, x, y))
+        scalars.append(total)
+    found = without_hidden_zeros(scalars)
+    with every_identity_evaluated():
+        same_values("hidden zeros", scalars, found)
+
+
+STOP = """model: stop
+parameters: {m: {value: 2}, k: {value: 30}}
+coordinates: {x: {unit: m}, y: {unit: m}}
+kinetic_energy: m*(x_dot**2 + y_dot**2)/2
+applied_forces:
+  x: k*(sqrt(x**2 - 2*x*y + y**2) + x - y)
+  y: k*(sqrt(x**2 + 2*x*y + y**2) - x - y)
+inputs: {push: {acts_on: {x: 1}}}
+outputs: [applied_force]
+"""
+
+
+def test_a_force_on_one_side_of_a_stop_is_not_lost() -> None:
+    (force,) = derive_quantities(load_text(STOP, "stop.yaml"), ["applied_force"]).quantities
+    assert not any(entry.is_zero for entry in force.outputs)
 
 
 SCREWS = """model: screws
