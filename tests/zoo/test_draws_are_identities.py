@@ -17,9 +17,7 @@ from symgen.quantities.select import derive_quantities
 from symgen.symbolic.identity import every_identity_evaluated
 
 SEED = 20
-# Others take long with every value worked out, and come up in campaigns, where fingerprints are compared.
-SLOW = ("spatial_bodies", "bricard", "cable_robot", "parallelogram_bodies", "legged_platform")
-# By energies, by bodies, with a loop.
+# By energies, by bodies, with a loop; the others are members of the campaign of tests.
 FEW = ("disc", "tree_bodies", "bennett")
 
 
@@ -41,7 +39,6 @@ def _first(family: str, folder: Path) -> Model:
     [
         family if family in FEW else pytest.param(family, marks=pytest.mark.campaign)
         for family in FAMILIES
-        if family not in SLOW
     ],
 )
 def test_every_rewriting_of_a_draw_is_an_identity(family: str, tmp_path: Path) -> None:
