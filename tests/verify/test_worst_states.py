@@ -8,13 +8,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from symgen.generation.draft import draft_of
+from symgen.generation.results import Options
 from symgen.ir.kernel import Block, Kernel, Literal, Load, Local, Statement
-from symgen.model.load import load_model
+from symgen.ir.wide import widened
+from symgen.model.load import load_model, load_text
+from symgen.verify.expected import Expected
 from symgen.verify.reference.reference import Reference
 from symgen.verify.sampling.lanes import RoundingErrors
 from symgen.verify.sampling.nearby import Surroundings
 from symgen.verify.sampling.regular import values_at
+from symgen.verify.sampling.searched import WorstStateSearch
 from symgen.verify.sampling.states import sample_states
+from symgen.verify.tolerance import FACTOR
 
 # A ladder whose feet slide on a floor and along a wall, and a disc that is geared to its turning.
 LADDER = """
@@ -148,3 +154,41 @@ def test_measures_in_lanes_are_those_of_the_reference(name: str) -> None:
     for sample, found in zip(samples, around.measures(around.samples), strict=True):
         exact = values_at(reference, sample.state, ["singularity"])["singularity"]
         assert found == pytest.approx(exact, rel=1e-9)
+
+
+# A table on two pairs of links, at a right angle to each other, that stand straight where it is highest.
+LIFT = """
+model: lift
+parameters: {l: {value: 0.4}, d: {value: 0.8}}
+gravity: [0, 0, -9.81]
+frames:
+  end: {parent: side_knee, translation: [0, 0, l]}
+  dock: {parent: table, translation: ["-d", d, 0]}
+joints:
+  foot: {type: revolute, axis: x, at: [0, "-d", 0], coordinate: a}
+  knee: {type: revolute, axis: x, parent: foot, at: [0, 0, l], coordinate: b}
+  table: {type: revolute, axis: x, parent: knee, at: [0, 0, l], coordinate: c}
+  side_foot: {type: revolute, axis: y, at: ["-d", 0, 0], coordinate: e}
+  side_knee: {type: revolute, axis: y, parent: side_foot, at: [0, 0, l], coordinate: f}
+bodies:
+  foot: {mass: 2, com: [0, 0, l/2], inertia: {xx: 0.03, yy: 0.03, zz: 0.01}}
+  knee: {mass: 1, com: [0, 0, l/2], inertia: {xx: 0.03, yy: 0.03, zz: 0.01}}
+  table: {mass: 5, com: [0, d, 0], inertia: {xx: 0.4, yy: 0.4, zz: 0.5}}
+  side_knee: {mass: 1, com: [0, 0, l/2], inertia: {xx: 0.03, yy: 0.03, zz: 0.01}}
+loops: {hinge: {type: revolute, between: [end, dock], axis: y}}
+inputs: {drive: {joint: b}, other: {joint: f}}
+configuration: {a: 0.5, b: -1, c: 0.5, e: 0.5, f: -1}
+outputs: [inverse_dynamics]
+"""
+
+
+def test_u_is_judged_nearer_to_singular_states_than_samples_are() -> None:
+    """What every way loses beside straight legs is seen though no sample comes near; twice the digits hold."""
+    model = load_text(LIFT, "lift.yaml")
+    program = draft_of(model, model.outputs, Options()).programs["float64"]
+    expected = Expected(model, model.outputs, 16, lambda _: None)
+    assert min(abs(sample.state.q[1]) for sample in expected.drawn) > 0.3
+    search, (kernel,) = WorstStateSearch(expected), program.kernels
+    search.look(kernel)
+    assert search.largest(kernel, program.sincos, "float64") > FACTOR
+    assert search.largest(widened(kernel, "float64"), program.sincos, "float64") < 1

@@ -8,12 +8,14 @@ at any state of the verification.  A status there is an answer.
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Sequence
 from functools import cached_property
 from itertools import islice
 
 import numpy as np
 
 from symgen.ir.kernel import Function, Kernel, Scalar
+from symgen.model.quantities import MAIN
 from symgen.runtime.activity import working
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import outcomes
@@ -31,6 +33,10 @@ NUMBERS = 4_000_000
 KEPT, DIRECTIONS, STEPS = 32, 8, 3
 # Units; what is estimated counts every rounding with all that it may do, and d for less than it is.
 DOUBTFUL = FACTOR / 2
+# How near to singular states u, accelerations and multipliers are judged, beside samples; these measures are squares.
+# The others keep to where samples are: most of N_B and of admissible velocities lose digits beside stretched knees, and
+# hardly anybody wants them there at ten times the operations.
+NEARER = 1e-3
 # How many are judged, and how many are brought onto V at most: not all that lie near come to a regular state.
 JUDGED, SETTLED = 8, 32
 
@@ -49,9 +55,10 @@ class WorstStateSearch:
             self._add(kernel.name, *self._estimated(kernel))
 
     def _add(self, quantity: str, states: Nearby, units: Lanes) -> None:
+        settling = self._settling(quantity)
         doubtful = (place for place in _worst(units, SETTLED) if units[place] > DOUBTFUL)
         tried = (
-            self._settling.sample(states.state(place), bool(states.admissible[place]), quantity) for place in doubtful
+            settling.sample(states.state(place), bool(states.admissible[place]), quantity) for place in doubtful
         )
         for sample in islice((sample for sample in tried if sample is not None), JUDGED):
             if sample not in self._states[quantity]:
@@ -89,20 +96,20 @@ class WorstStateSearch:
             samples = len(self._surroundings.samples)
             others = np.linspace(samples, len(states), max(0, count - samples), endpoint=False).astype(int)
             states = states.only(np.append(np.arange(samples), others))
-        errors = RoundingErrors(kernel)
-        units = self._units(errors, states)
+        errors, least = RoundingErrors(kernel), self._settling(kernel.name).measures
+        units = self._units(errors, states, least)
         for step in range(STEPS if units.max() > DOUBTFUL else 0):
             worst = states.only(_worst(units, KEPT))
             starts = worst.only(np.arange(len(worst)).repeat(DIRECTIONS))
             further = self._surroundings.moved(starts, f"{kernel.name} {step}")
             if len(further):
-                states, units = joined(states, further), np.append(units, self._units(errors, further))
+                states, units = joined(states, further), np.append(units, self._units(errors, further, least))
         return states, units
 
-    def _units(self, errors: RoundingErrors, states: Nearby) -> Lanes:
+    def _units(self, errors: RoundingErrors, states: Nearby, least: Sequence[float]) -> Lanes:
         """What is estimated where nothing speaks against a regular state: others would take the places of these."""
         units, measures = errors.at(states.parts), self._surroundings.measures(states)
-        return np.where((measures >= self._settling.measures).all(axis=1), units, 0.0)
+        return np.where((measures >= least).all(axis=1), units, 0.0)
 
     @cached_property
     def _surroundings(self) -> Surroundings:
@@ -115,9 +122,14 @@ class WorstStateSearch:
         found = joined(around.samples, around.aligned(ALIGNED))
         return joined(joined(found, around.in_modes(IN_MODES)), around.drawn(DRAWN))
 
+    def _settling(self, quantity: str) -> Settling:
+        return self._settlings[quantity in MAIN]
+
     @cached_property
-    def _settling(self) -> Settling:
-        return Settling(self._expected.reference, self._expected.drawn)
+    def _settlings(self) -> tuple[Settling, Settling]:
+        """For other quantities, and for the main ones."""
+        reference, samples = self._expected.reference, self._expected.drawn
+        return Settling(reference, samples), Settling(reference, samples, NEARER)
 
 
 def _worst(units: Lanes, count: int) -> Lanes:

@@ -21,16 +21,17 @@ TYPICAL = 8
 class Settling:
     """Takes what is as regular as the samples are: at least a thousandth of the usual, or as the least of them.
 
-    `measures` are the least that rows and inputs are to have.
+    `measures` are the least that rows and inputs are to have; a share of that of the samples, where states beside
+    singular ones count as well.
     """
 
-    def __init__(self, reference: Reference, samples: Sequence[Sample]) -> None:
+    def __init__(self, reference: Reference, samples: Sequence[Sample], share: float = 1.0) -> None:
         self._reference, model = reference, reference.model
         tied = () if model.assembly is None else model.assembly.tied
         self._varied = ParameterValues(model, [p.name for p in model.parameters if p.range and p.name not in tied])
         usual = REGULAR ** max(1.0, (model.n - reference.ranks.constraints) / 2)
         columns = zip(*(sample.measures for sample in samples), strict=True)
-        self.measures = [min(usual, max(column) / 10, *column) for column in columns]
+        self.measures = [share * min(usual, max(column) / 10, *column) for column in columns]
         with precision(SAMPLING_BITS):
             lengths = [self._lengths(sample.state) for sample in samples[:TYPICAL]]
         self._rows = [min(REGULAR * max(column), *column) for column in zip(*lengths, strict=True)]
