@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 import re
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
-from campaign_members import all_members
-from campaigns import SAMPLED, Member, read_record, run_and_record, run_changed
+from campaign_members import all_members, counted, figures
+from campaigns import SAMPLED, Member, inputs_hash, read_record, run_and_record, run_changed
 
 ROOT = Path(__file__).resolve().parent.parent
 COUNT = "open('runs.txt', 'a').write('{0} ')"
@@ -132,7 +134,55 @@ def test_each_model_is_in_the_campaigns_and_all_that_they_read_exists() -> None:
     tests = ((path, path.relative_to(ROOT / "tests")) for path in (ROOT / "tests").rglob("test_*.py"))
     marks = re.compile(rf"mark\.{MARK}\b|\bsparing\(")
     marked = {f"tests/{there.parts[0]}" for path, there in tests if marks.search(path.read_text("utf-8"))}
-    assert marked == {one.files[-1] for one in members if one.campaign == "tests"}
+    assert marked == {one.commands[0][-3] for one in members if one.campaign == "tests"}
     record = read_record(ROOT)
     known = {(campaign, name) for campaign, found in record.items() for name in found}
     assert known <= {(one.campaign, one.name) for one in members}, "run `make campaigns`"
+
+
+def test_what_a_campaign_looks_at_is_in_its_hash() -> None:
+    """The packages of Python, what its code imports, helpers of tests; and no more than that."""
+    files = {(one.campaign, one.name): one.files for one in all_members(ROOT)}
+    assert [name for name, found in files.items() if "requirements.lock" not in found] == []
+    stress = {*files["stress", "skate"]}
+    assert stress >= {"symgen/generation/runnable.py", "symgen/validity/descent.py", "symgen/paths/printed.py"}
+    assert stress.isdisjoint({"symgen/symbolic/scalar.py", "symgen/methods/table.py", "symgen/report/compose.py"})
+    assert "symgen/verify" in files["mechanisms", "five_bar"]
+    assert not any(path.startswith("symgen/verify") for path in files["proof", "five_bar"])
+    for folder, helper in (("backends", "handmade"), ("ir", "laws_harness"), ("growth", "linkages")):
+        assert {"tests/conftest.py", f"tests/{helper}.py"} <= {*files["tests", folder]}
+    assert {"tests/kernel_growth.py", "generated/delta/files.sha256"} <= {*files["tests", "test_generated"]}
+    assert "tests/mechanisms/robots.lock" in files["zoo", "same_draws"]
+
+
+def test_a_changed_package_makes_every_campaign_due(root: Path) -> None:
+    (root / "packages.lock").write_text("casadi==3.6.7\n")
+    locked = member("a", files=("packages.lock",))
+    before = inputs_hash(root, locked, version)
+    (root / "packages.lock").write_text("casadi==3.7.2\n")
+    assert inputs_hash(root, locked, version) != before
+
+
+def test_a_benchmark_keeps_what_repeats_from_run_to_run() -> None:
+    def row(generator: str, form: str, chosen: bool, nanoseconds: float) -> dict[str, Any]:
+        repeating = {"scalar": "float32", "instructions": 90.5, "operations": {"add": 3, "mul": 4}, "beyond": 0}
+        return {"generator": generator, "form": form, "chosen": chosen, "nanoseconds": nanoseconds, **repeating}
+
+    def measured(nanoseconds: float) -> dict[str, Any]:
+        rows = [
+            row("symgen", "minor, portable", True, nanoseconds),
+            row("symgen", "minor, libm", True, nanoseconds),
+            row("symgen", "kkt, portable", False, nanoseconds),
+            row("CasADi", "native", False, nanoseconds),
+        ]
+        return {"comparisons": [{"quantity": "inverse_dynamics", "measured": rows}]}
+
+    assert counted(measured(3.5)) == counted(measured(4.1)) == [["inverse_dynamics", "float32", 90.5, 7, 0]]
+
+
+def test_figures_that_tests_note_are_kept(tmp_path: Path) -> None:
+    noting = "def test_of_weights(record_property):\n    record_property('largest', '1.25')\n"
+    (tmp_path / "test_weights.py").write_text(noting)
+    command = (sys.executable, "-m", "pytest", "-q", "--junitxml=noted.xml", "-o", "junit_family=xunit1")
+    subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
+    assert figures(tmp_path / "noted.xml") == {"test_of_weights": {"largest": "1.25"}}

@@ -1,19 +1,42 @@
-"""What the campaigns consist of: commands, what goes in, and what is kept of the results."""
+"""What the campaigns consist of: commands, what goes in, and what is kept of the results.
+
+A campaign on a shipped model depends on the product by the bytes it made (`files.sha256`), on its own code, and on what
+this imports besides the way to those bytes; one on anything else depends on the product as a whole.
+"""
 
 from __future__ import annotations
 
 import json
+from collections import Counter
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 from campaigns import Member
+from imported import imported
 
 PYTHON = "python"  # this one, wherever it is
 SYMGEN = (PYTHON, "-m", "symgen")
 PYTEST = (PYTHON, "-m", "pytest")
 CORES = ("arm-none-eabi-gcc", "qemu-system-arm", "riscv64-unknown-elf-gcc", "qemu-system-riscv32", "gcc", "clang")
+# The packages of Python, and those that some tests need besides.
+LOCK = "requirements.lock"
+MORE_LOCKS = ("tests/mechanisms/robots.lock", "tests/backends/jax.lock")
 # What looks at the product as a whole.
-PRODUCT = ("symgen", "templates", "models", "pyproject.toml")
+PRODUCT = ("symgen", "templates", "models", "pyproject.toml", LOCK)
+# What a campaign's code imports and does not depend on by it: the way from model to C, which its bytes stand for, and
+# how results are told.
+BY_BYTES = (
+    *("symgen/model", "symgen/symbolic", "symgen/ir", "symgen/linear_algebra", "symgen/mechanics", "symgen/methods"),
+    *("symgen/quantities", "symgen/lowering", "symgen/backends"),
+)
+TELLING = ("symgen/output", "symgen/report", "symgen/terminal.py", "symgen/cli")
+# A minute of two cores: always the same random systems, beside those that CI draws anew.
+ZOO_SEED, ZOO_DRAWS = 1, 16
+FIGURES = "build/campaigns/every_float32.xml"
+NOTED = (f"--junitxml={FIGURES}", "-o", "junit_family=xunit1")
 # What in tests/ has tests of the mark `campaign`, and the tools they need; a part of each class stays in `make test`.
 TESTED = {
     "backends": ("gcc",),
@@ -38,24 +61,27 @@ def all_members(root: Path) -> tuple[Member, ...]:
     models = sorted((path.stem for path in (root / "models").glob("*.yaml")), key=lambda name: -_size(root, name))
     energies = [name for name in models if _by_energies(root, name)]
     bodies = [name for name in models if name not in energies]
+    benching = _code(root, "symgen/laboratory/bench")
     others = sorted(path.stem for path in (root / "tests/mechanisms").glob("*.yaml"))
     return (
-        *(_target(name) for name in models),
+        *(_target(root, name) for name in models),
         Member("firmware", "goals", ((*PYTEST, "tests/target", "-m", "firmware"),),
-               (*PRODUCT, "tests/target", "examples"), CORES),
-        *(_proof(name) for name in models),
-        *(_stress(name) for name in energies),
-        *(_mechanism(f"models/{name}.yaml", name, (f"generated/{name}/files.sha256",)) for name in bodies),
-        *(_mechanism(f"tests/mechanisms/{name}.yaml", name, PRODUCT) for name in others),
+               (*PRODUCT, *_tests_of(root, "target"), "examples"), CORES),
+        *(_proof(root, name) for name in models),
+        *(_stress(root, name) for name in energies),
+        *(_mechanism(f"models/{name}.yaml", name, (*_made(name), *_code(root, "symgen/verify"))) for name in bodies),
+        *(_mechanism(path := f"tests/mechanisms/{name}.yaml", name, (path, *PRODUCT)) for name in others),
         Member("mechanisms", "witnesses", ((*PYTEST, "tests/mechanisms", "-m", "mechanisms or not mechanisms"),),
-               (*PRODUCT, "tests/mechanisms"), ("gcc",)),
-        *(_tests(path, tools) for path, tools in TESTED.items()),
-        Member("trig", "every_float32", ((*PYTEST, "tests/toolchain/test_portable_pair.py", "-k", "everywhere"),),
-               ("symgen/ir", "symgen/backends", "templates/c", "tests/toolchain"), ("gcc",),
-               environment=(("SYMGEN_TRIG_STRIDE", "1"),)),
-        *(_bench(f"models/{name}.yaml", name) for name in energies),
-        _bench("docs/bench/rapkm_without_payload.yaml", "rapkm_without_payload"),
-        Member("bench", "tests", ((*PYTEST, "tests/bench", "-m", "bench"),), (*PRODUCT, "tests/bench"),
+               (*PRODUCT, *_tests_of(root, "mechanisms")), ("gcc",)),
+        _zoo(),
+        *(_tests(root, path, tools) for path, tools in TESTED.items()),
+        Member("trig", "every_float32",
+               ((*PYTEST, "tests/toolchain/test_portable_pair.py", "-k", "everywhere", *NOTED),),
+               (LOCK, "symgen/ir", "symgen/backends", "templates/c", *_tests_of(root, "toolchain")), ("gcc",),
+               lambda root: figures(root / FIGURES), environment=(("SYMGEN_TRIG_STRIDE", "1"),)),
+        *(_bench(f"models/{name}.yaml", name, (*_made(name), *benching)) for name in energies),
+        _bench(other := "docs/bench/rapkm_without_payload.yaml", "rapkm_without_payload", (other, *PRODUCT)),
+        Member("bench", "tests", ((*PYTEST, "tests/bench", "-m", "bench"),), (*PRODUCT, *_tests_of(root, "bench")),
                ("gcc", "valgrind"), alone=True),
     )  # fmt: skip
 
@@ -71,55 +97,113 @@ def _size(root: Path, name: str) -> int:
     return sum(sum(kernel["operations"].values()) for kernel in kernels.values())
 
 
-def _tests(path: str, tools: tuple[str, ...]) -> Member:
+@cache
+def _code(root: Path, path: str, *outside: str) -> tuple[str, ...]:
+    """A campaign's own files, and what they import besides the way to the bytes they are about."""
+    found = imported(root, (path,), (*BY_BYTES, *TELLING, *outside))
+    return (path, *(file for file in found if not file.startswith(f"{path}/")))
+
+
+def _tests_of(root: Path, path: str) -> tuple[str, ...]:
+    """A folder or file of tests, with the helpers that they share with others."""
+    found = imported(root, (f"tests/{path}",), ("symgen",))
+    helpers = (file for file in found if not file.startswith(f"tests/{path}"))
+    return (f"tests/{path}", "tests/conftest.py", *helpers, *MORE_LOCKS)
+
+
+def _tests(root: Path, path: str, tools: tuple[str, ...]) -> Member:
     command = (*PYTEST, f"tests/{path}", "-m", "campaign")
-    return Member("tests", path.partition(".")[0], (command,), (*PRODUCT, "tests/shipped.py", f"tests/{path}"), tools)
+    kept = ("derivation.json", "files.sha256") if path == "test_generated.py" else ()
+    compared = [f"generated/{model.stem}/{file}" for model in sorted((root / "models").glob("*.yaml")) for file in kept]
+    files = (*PRODUCT, *_tests_of(root, path), *compared)
+    return Member("tests", path.partition(".")[0], (command,), files, tools)
 
 
 def _made(name: str) -> tuple[str, ...]:
-    return (f"models/{name}.yaml", f"generated/{name}/files.sha256")
+    return (f"models/{name}.yaml", f"generated/{name}/files.sha256", LOCK)
 
 
-def _target(name: str) -> Member:
+def _written(name: str, file: str) -> Callable[[Path], Any]:
+    return lambda root: json.loads((root / f"generated/{name}/{file}").read_bytes())
+
+
+def _target(root: Path, name: str) -> Member:
     def result(root: Path) -> Any:
-        found = json.loads((root / f"generated/{name}/target.json").read_bytes())
+        found = _written(name, "target.json")(root)
         cells = found["cells"]
         return {"passed": found["passed"], "builds": len(cells), "different": sum(c["different"] for c in cells)}
 
     command = (*SYMGEN, "target", f"models/{name}.yaml", "--cpu", "all", "--quiet")
-    code = ("symgen/laboratory/target", "templates/target")
+    code = (*_code(root, "symgen/laboratory/target", "symgen/closedform"), "templates/target", "templates/package")
     return Member("firmware", name, (command,), (*_made(name), *code), CORES, result)
 
 
-def _proof(name: str) -> Member:
+def _proof(root: Path, name: str) -> Member:
     def result(root: Path) -> Any:
-        found = json.loads((root / f"generated/{name}/proof.json").read_bytes())
+        found = _written(name, "proof.json")(root)
         return {"unproven": found["unproven"], "bounds": found["bounds"], "without": found["without"]}
 
     make = (*SYMGEN, f"models/{name}.yaml", "--only", "c,proof", "--recorded", "generated", "--out", "build/proof")
     table = (PYTHON, "tools/proof_table.py", "build/proof", "generated", name)
-    code = ("symgen/proof", "templates/proof", "tools/proof_table.py")
+    code = (*_code(root, "symgen/proof"), "templates/proof", *imported(root, ("tools/proof_table.py",), ("symgen",)))
     return Member("proof", name, (make, table), (*_made(name), *code), ("frama-c", "gappa", "gcc"), result)
 
 
-def _stress(name: str) -> Member:
+def _stress(root: Path, name: str) -> Member:
     def result(root: Path) -> Any:
-        found = json.loads((root / f"generated/{name}/stress.json").read_bytes())
+        found = _written(name, "stress.json")(root)
         counts = [(one["quantity"], one["scalar"], one["beyond"], one["unexplained"]) for one in found["rule"]]
         return {"failures": found["failures"], "rule": [list(one) for one in counts]}
 
     command = (*SYMGEN, "stress", f"models/{name}.yaml", "--quiet")
-    code = ("symgen/laboratory/stress", "symgen/verify", "templates/stress")
+    code = (*_code(root, "symgen/laboratory/stress"), "templates/stress")
     return Member("stress", name, (command,), (*_made(name), *code), ("gcc",), result)
 
 
-def _mechanism(path: str, name: str, made: tuple[str, ...]) -> Member:
+def _mechanism(path: str, name: str, files: tuple[str, ...]) -> Member:
     command = (*SYMGEN, path, "--only", "c,python", "--states", "32", "--quiet", "--out", "build/mechanisms")
-    return Member("mechanisms", name, (command,), (path, *made, "symgen/verify"), ("gcc",))
+    return Member("mechanisms", name, (command,), files, ("gcc",))
 
 
-def _bench(path: str, name: str) -> Member:
+def _zoo() -> Member:
+    """Random systems that are always the same: how many of each family end how."""
+    out = Path("build/campaigns/zoo")
+    command = (
+        *(PYTHON, "-m", "symgen.laboratory.zoo", "--seed", str(ZOO_SEED), "--draws", str(ZOO_DRAWS)),
+        *("--shrink", "0", "--out", str(out)),
+    )
+
+    def result(root: Path) -> Any:
+        drawn = (root / out / f"{ZOO_SEED}_0.jsonl").read_text(encoding="utf-8").splitlines()
+        endings = Counter((record["family"], record["ending"]) for record in map(json.loads, drawn))
+        return [[*one, count] for one, count in sorted(endings.items())]
+
+    return Member("zoo", "same_draws", (command,), (*PRODUCT, *MORE_LOCKS), ("gcc",), result, alone=True)
+
+
+def _bench(path: str, name: str, files: tuple[str, ...]) -> Member:
+    """What symgen's own kernels with its own sine and cosine take: nothing of it depends on the processor."""
+
+    def result(root: Path) -> Any:
+        return counted(_written(name, "bench.json")(root))
+
     command = (*SYMGEN, "bench", path, "--quiet")
-    files = (path, *PRODUCT) if path.startswith("docs") else _made(name)
-    code = ("symgen/laboratory/bench", "templates/bench")
-    return Member("bench", name, (command,), (*files, *code), ("gcc", "valgrind"), alone=True)
+    return Member("bench", name, (command,), (*files, "templates/bench"), ("gcc", "valgrind"), result, alone=True)
+
+
+def counted(bench: Any) -> Any:
+    """Instructions, operations, states beyond the tolerance of each generated kernel."""
+    return [
+        [one["quantity"], row["scalar"], row["instructions"], sum(row["operations"].values()), row["beyond"]]
+        for one in bench["comparisons"]
+        for row in one["measured"]
+        if row["chosen"] and row["form"].endswith(", portable")
+    ]
+
+
+def figures(path: Path) -> Any:
+    """What the tests of a run noted as properties, by the name of the test."""
+    return {
+        case.attrib["name"]: {one.attrib["name"]: one.attrib["value"] for one in case.iter("property")}
+        for case in ElementTree.parse(path).iter("testcase")
+    }

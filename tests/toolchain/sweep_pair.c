@@ -19,7 +19,7 @@ typedef struct {
     double distance[BLOCK];
 } Worst;
 
-static unsigned long asymmetric, uncontrolled;
+static unsigned long asymmetric, uncontrolled, compared;
 
 static float from_bits(const uint32_t bits)
 {
@@ -94,6 +94,7 @@ static void compare(const uint32_t first, const unsigned size, Worst *worst)
         different += (uint32_t)(minus_sine[j] != -sine[j]) | (uint32_t)(minus_cosine[j] != cosine[j]);
     }
     asymmetric += different;
+    compared += size;
     units(size, exact_sine, sine_unit);
     units(size, exact_cosine, cosine_unit);
     for (unsigned j = 0; j < size; j++) {
@@ -141,6 +142,6 @@ int main(void)
     sweep(&next, LIMIT, &far);
     printf("%.6f %.6f ", largest(turns.sine_ulps), largest(turns.cosine_ulps));
     printf("%.6e %.6e ", larger(largest(turns.distance), largest(near.distance)), largest(far.distance));
-    printf("%lu %lu\n", asymmetric, uncontrolled);
+    printf("%lu %lu %lu\n", asymmetric, uncontrolled, compared);
     return 0;
 }
