@@ -89,17 +89,16 @@ def test_projectors_are_numpys(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", CONSTRAINED)
-def test_projector_rate_is_a_difference_quotient(name: str) -> None:
-    """Along an admissible velocity, on which Remark 9 and the derivative agree whatever the rank."""
+def test_projector_rate_keeps_a_projector_onto_the_kernel(name: str) -> None:
+    """What N = Nᵀ, N² = N and B N = 0 are along an admissible velocity, differentiated: no other rate has all three."""
     c = case(name)
-    v, h = c("admissible_velocity").ravel(), 1e-6
-
-    def moved(step: float) -> Any:
-        q = c.q + step * v
-        return c("nullspace_projector", q=c("projected_configuration", q=q))
-
-    quotient = (moved(h) - moved(-h)) / (2 * h)
-    assert c("nullspace_projector_dot", qd=v) == pytest.approx(quotient, abs=1e-6 * (1 + np.linalg.norm(quotient)))
+    v = c("admissible_velocity").ravel()
+    B, N = c("constraint_jacobian"), c("nullspace_projector")
+    B_dot, N_dot = c.rate("constraint_jacobian", {"q": v}), c("nullspace_projector_dot", qd=v)
+    scale = 1 + np.linalg.norm(N_dot) + np.linalg.norm(B_dot)
+    assert N_dot.tolist() == pytest.approx(N_dot.T, abs=1e-11 * scale)
+    assert (N_dot @ N + N @ N_dot).tolist() == pytest.approx(N_dot, abs=1e-11 * scale)
+    assert (B @ N_dot).tolist() == pytest.approx(-B_dot @ N, abs=1e-11 * scale * (1 + np.linalg.norm(B)))
 
 
 @pytest.mark.parametrize("name", EVERY)
