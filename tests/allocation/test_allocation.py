@@ -19,6 +19,7 @@ from symgen.ir.kernel import Status
 from symgen.linear_algebra.exterior import ActuationForms
 from symgen.linear_algebra.null_spaces import HouseholderSpace
 from symgen.linear_algebra.reflected_inputs import ReflectedInputs
+from symgen.methods.allocation import InputAllocation
 from symgen.methods.derivation import Derivation
 from symgen.methods.spaces import derivations
 from symgen.symbolic.evaluate import Evaluator
@@ -203,7 +204,9 @@ def test_reflections_of_the_inputs_give_the_same(text: str, monkeypatch: pytest.
     assert made.model.r == 0 or set(ways) == {"minors", "householder"}
     ways.setdefault("householder", Derivation(mechanics, generic, HouseholderSpace(mechanics.graph, (), made.model.n)))
     for derivation in ways.values():
-        assert isinstance(derivation._allocation.forms, ReflectedInputs)
+        assert made.model.allocation is not None
+        allocated = InputAllocation(mechanics, generic, made.model.allocation, derivation.space)
+        assert isinstance(allocated.forms, ReflectedInputs)
         guards = derivation.inverse_dynamics_guards
         evaluate = Evaluator([*derivation.inverse_dynamics, *(guard.denominator for guard in guards)])
         for state, e in evaluations(made):

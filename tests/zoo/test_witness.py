@@ -12,15 +12,13 @@ import pytest
 import yaml
 
 from symgen.generation.results import Options
-from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.run import run_command
 from symgen.laboratory.zoo.witness.expressions import FUNCTIONS, NotReadError, read_expression
 from symgen.laboratory.zoo.witness.fields import Balls, Floats, precision
-from symgen.laboratory.zoo.witness.generated import Answer
+from symgen.laboratory.zoo.witness.generated import Answer, Target
 from symgen.laboratory.zoo.witness.linear import basis
 from symgen.laboratory.zoo.witness.mechanics import equations
 from symgen.laboratory.zoo.witness.reader import SystemReader
-from symgen.laboratory.zoo.witness.states import Walker
 from symgen.laboratory.zoo.witness.tape import NodeProgram, NodeTape
 from symgen.laboratory.zoo.witness.witness import Witness
 from symgen.pipeline import generate
@@ -240,7 +238,7 @@ configuration: {e_0: 1, e_1: 0, e_2: 0, e_3: 0, a: 0.9, s: -0.2}
 
 def test_rows_that_hold_in_every_configuration_have_no_multipliers(tmp_path: Path) -> None:
     """Both axes of the loop are held along one x by the joints before it, wherever the ball turns."""
-    assert len(Witness(HINGE)._system.rows) == 4
+    assert len(SystemReader(yaml.load(HINGE, Loader=yaml.BaseLoader)).rows) == 4
     (tmp_path / "hinge.yaml").write_text(HINGE)
     made = generate(tmp_path / "hinge.yaml", Options(parts=("python",), verify=False), lambda _: None)
     for name, content in made.files.items():
@@ -267,8 +265,7 @@ outputs: [inverse_dynamics]
 
 
 def test_what_rounding_leaves_of_an_idle_input_spans_nothing() -> None:
-    witness = Witness(RADIAL, {"a": 0.7})
-    _, ranks = Walker(witness._system, witness._evaluate, {"a": 0.7}, Dice("radial")).states({}, 6)
+    _, ranks = Witness(RADIAL, {"a": 0.7}).walker().states({}, 6)
     assert ranks.actuation == 1
 
 
@@ -298,8 +295,7 @@ constraints:
 
 def test_a_rod_between_the_ends_of_a_link_is_no_row_in_small_units() -> None:
     """Rounding leaves 1e-11 of its gradient, which is 0 (draw 2901:824)."""
-    witness, start = Witness(LINK_AS_ROD), {"a": 1.047, "b": 0.4}
-    states, ranks = Walker(witness._system, witness._evaluate, start, Dice("rod")).states({}, 6)
+    states, ranks = Witness(LINK_AS_ROD, {"a": 1.047, "b": 0.4}).walker().states({}, 6)
     assert len(states) == 6
     assert ranks.constraints == 1
 
@@ -368,8 +364,7 @@ configuration: {a_0: 0, a_1: 0, a_2: 0, b: 0}
 """
     for start, expected in (({}, 0), ({"a_0": 0.7, "a_1": 0.7, "a_2": 0.7, "b": -0.7}, 3)):
         witness = Witness(text, start)
-        walker = Walker(witness._system, witness._evaluate, witness._start, Dice("states", 0))
-        found, ranks = walker.states(witness.defaults(), 5)
+        found, ranks = witness.walker().states(witness.defaults(), 5)
         assert (len(found), ranks.constraints) == (5 if expected else 0, expected)
 
 
@@ -382,15 +377,13 @@ gravity: [0, -9.81, 0]
 outputs: [forward_dynamics]
 """
     witness = Witness(text, {"a": 0.7})
-    walker = Walker(witness._system, witness._evaluate, witness._start, Dice("states", 0))
-    found, ranks = walker.states(witness.defaults(), 4)
-    with precision():
-        for state in found:
-            truth = witness._truth("forward_dynamics", state, ranks)
-            assert truth is not None
-            units = [
-                witness._units(Answer(0, (value,)), truth, "forward_dynamics", state, ranks, 2.0**-53)
-                for value in (0.0, 1e-30)
-            ]
-            assert units[0] == 0
-            assert units[1] > 1e3
+    found, ranks = witness.walker().states(witness.defaults(), 4)
+
+    def answering(value: float) -> Target:
+        return Target("made up", "float64", ("forward_dynamics",), (), lambda *_: Answer(0, (value,)))
+
+    for state in found:
+        judged = [witness.compare(answering(value), "forward_dynamics", state, ranks) for value in (0.0, 1e-30)]
+        right, wrong = (one.units for one in judged if one is not None)
+        assert right == 0
+        assert wrong > 1e3
