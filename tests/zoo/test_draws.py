@@ -11,8 +11,8 @@ import pytest
 import yaml
 
 from symgen.laboratory.zoo.dice import Dice
-from symgen.laboratory.zoo.draws.describe import Description
-from symgen.laboratory.zoo.draws.endings import independent
+from symgen.laboratory.zoo.draws.describe import MISTAKE, Description
+from symgen.laboratory.zoo.draws.endings import MAIN, independent
 from symgen.laboratory.zoo.draws.families import FAMILIES, draw
 from symgen.laboratory.zoo.draws.sketch import Sketch
 from symgen.laboratory.zoo.witness.fields import Floats
@@ -104,3 +104,16 @@ def test_parallelograms_are_driven_at_their_own_cranks() -> None:
         description = draw(23, index, "parallelogram_bodies")
         driven = {entry["joint"] for entry in description.blocks["inputs"].values() if "joint" in entry}
         assert driven <= {*description.start, "nowhere"}
+
+
+def test_outputs_that_are_named_hold_what_the_witness_compares() -> None:
+    """In any order, beside others; a mistake on purpose apart."""
+    firsts = set()
+    for index in range(60):
+        description = draw(31, index, "geared")
+        outputs = description.blocks.get("outputs")
+        if isinstance(outputs, list) and MISTAKE not in description.marks:
+            assert set(MAIN) <= set(outputs)
+            assert len(set(outputs)) == len(outputs)
+            firsts.add(outputs[0])
+    assert firsts == set(MAIN)

@@ -42,8 +42,10 @@ def finish(sketch: Sketch) -> Description:
         case "main":
             blocks["outputs"] = list(MAIN)
         case "some":
-            # what the witness compares stays among them
-            blocks["outputs"] = [*dice.sample(MAIN, dice.whole(1, 3)), *dice.sample(others, dice.whole(0, 6))]
+            # what the witness compares is always among them, in another place each time
+            first = dice.sample(MAIN, dice.whole(1, 3))
+            rest = [name for name in MAIN if name not in first]
+            blocks["outputs"] = [*first, *dice.sample(others, dice.whole(0, 6)), *rest]
         case "all":
             blocks["outputs"] = "all"
     if dice.chance(0.7):
