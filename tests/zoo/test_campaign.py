@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from symgen.laboratory.zoo import campaign, command
-from symgen.laboratory.zoo.campaign import MOST_SECONDS, Campaign, judge, one_draw, shrunk
+from symgen.laboratory.zoo.campaign import MOST_SECONDS, Campaign, JudgedDraw, judge, one_draw, shrunk
 from symgen.laboratory.zoo.cases import case_of, read_case
 from symgen.laboratory.zoo.draws.describe import Description, Terms, read_description, summands
 from symgen.laboratory.zoo.draws.families import FAMILIES, draw
@@ -16,7 +16,11 @@ from symgen.laboratory.zoo.records import DrawRecord, read_records, summary, wri
 from symgen.laboratory.zoo.refusals import NOT_TOLD
 from symgen.laboratory.zoo.run import CommandRun
 from symgen.laboratory.zoo.verdict import FAILED, REFUSED, VERIFIED, DrawVerdict
+from symgen.laboratory.zoo.witness.comparison import Comparison
+from symgen.laboratory.zoo.witness.expressions import NotReadError
+from symgen.laboratory.zoo.witness.states import LOST_STEPS, NOT_CLOSED, STUCK
 from symgen.laboratory.zoo.witness.urdf_file import expanded
+from symgen.laboratory.zoo.witness.witness import CheckResult
 from symgen.model.load import load_text
 
 RIGHT = DrawRecord(1, 0, "disc", VERIFIED, "", "", 2.0, 100)
@@ -76,7 +80,7 @@ def ends(monkeypatch):
 
 def test_a_run_that_writes_nothing_is_no_success(ends, tmp_path: Path) -> None:
     ends(CommandRun(0, "", "", 1, 1))
-    verdict, _, _ = judge(draw(1, 1, "geared"), tmp_path / "zoo.yaml")
+    verdict = judge(draw(1, 1, "geared"), tmp_path / "zoo.yaml").verdict
     assert (verdict.ending, verdict.kind) == (FAILED, "nothing written")
 
 
@@ -87,7 +91,7 @@ def test_what_breaks_the_witness_is_a_failure_of_the_draw(ends, tmp_path: Path) 
     (made / "derivation.json").write_text("{}")
     (made / "python").mkdir()
     (made / "python" / "zoo.py").write_text("raise RuntimeError('no')")
-    verdict, _, _ = judge(draw(1, 1, "geared"), tmp_path / "zoo.yaml")
+    verdict = judge(draw(1, 1, "geared"), tmp_path / "zoo.yaml").verdict
     assert (verdict.ending, verdict.kind) == (FAILED, "fault of the zoo")
 
 
@@ -115,10 +119,97 @@ def test_a_campaign_makes_its_failures_small_and_keeps_them_as_tests(ends, tmp_p
     assert len(kept.model) < len(draw(1, 0, "geared").text) / 2
 
 
+def wrote(tmp_path: Path) -> None:
+    """What a command that ends well leaves, as far as the campaign looks at it."""
+    made = tmp_path / "zoo" / "zoo"
+    made.mkdir(parents=True)
+    (made / "derivation.json").write_text("{}")
+
+
+def test_a_draw_that_the_witness_cannot_read_is_a_failure(ends, tmp_path: Path, monkeypatch) -> None:
+    ends(CommandRun(0, "", "", 1, 1))
+    wrote(tmp_path)
+
+    def unread(*_: object) -> CheckResult:
+        raise NotReadError("a joint of type helical")
+
+    monkeypatch.setattr(campaign, "check", unread)
+    ended = judge(draw(1, 1, "geared"), tmp_path / "zoo.yaml")
+    assert (ended.verdict.kind, ended.verdict.signature) == (
+        "fault of the zoo",
+        "NotReadError: a joint of type helical",
+    )
+    assert ended.compared is None
+
+
+@pytest.mark.parametrize(
+    ("compared", "kind", "signature"),
+    [
+        (Comparison(20), "", ""),
+        (Comparison(7, LOST_STEPS), "", ""),
+        (Comparison(0, LOST_STEPS), "no state to compare", LOST_STEPS),
+        (Comparison(0, NOT_CLOSED), "no state to compare", NOT_CLOSED),
+        # several branches meet there: which one is meant nobody can say
+        (Comparison(0, STUCK), "", f"no state to compare: {STUCK}"),
+    ],
+)
+def test_a_draw_without_a_state_is_a_failure_unless_its_start_is_singular(
+    compared: Comparison, kind: str, signature: str, ends, tmp_path: Path, monkeypatch
+) -> None:
+    ends(CommandRun(0, "", "", 1, 1))
+    wrote(tmp_path)
+    monkeypatch.setattr(campaign, "check", lambda *_: CheckResult(compared, 0.0, ()))
+    ended = judge(draw(1, 1, "geared"), tmp_path / "zoo.yaml")
+    assert (ended.verdict.kind, ended.verdict.signature) == (kind, signature)
+    assert ended.compared == compared
+
+
+def test_what_was_compared_is_recorded_and_summed_up(tmp_path: Path) -> None:
+    names = ("inverse_dynamics", "forward_dynamics", "multipliers")
+    compared = [
+        Comparison(20, "", names, (), 180, 0, 0, 0.0, 0, 40),
+        Comparison(20, "", names[:2], names[2:], 100, 2, 18, 3.1e-3),
+        Comparison(13, LOST_STEPS, names[1:2], (), 26, 0, 0, 0.0, 4),
+        Comparison(0, STUCK, (), names),
+        None,
+    ]
+    for index, each in enumerate(compared):
+        write_record(tmp_path / "a", DrawRecord(1, index, "disc", VERIFIED, "", "", 2.0, 100, compared=each))
+    records = read_records([tmp_path / "a"])
+    assert [record.compared for record in records] == compared
+    told = summary(records)
+    assert f"4 draws compared: 2 at 20 states, 1 at fewer (1 x {LOST_STEPS}), 1 at none (1 x {STUCK})" in told
+    assert "u compared in 2 draws, there but not compared in 1" in told
+    assert "λ compared in 1 draws, there but not compared in 2" in told
+    assert "306 results compared, 4 without truth" in told
+    assert "2 statuses of float64 and 18 of float32 in 1 draws (states determine them to 3.1e-03 at best)" in told
+    assert "40 results of 1 draws beside Pinocchio's" in told
+
+
+def test_a_record_of_an_earlier_version_is_read(tmp_path: Path) -> None:
+    (tmp_path / "a").write_text(
+        '{"seed": 1, "index": 0, "family": "disc", "ending": "verified", "kind": "", "signature": "", "cpu": 2.0, '
+        '"megabytes": 100, "file": ""}\n'
+    )
+    records = read_records([tmp_path / "a"])
+    assert records[0].compared is None
+    assert "0 draws compared" in summary(records)
+
+
+def test_without_pinocchio_nothing_is_drawn_where_tools_are_required(monkeypatch, tmp_path: Path, capsys) -> None:
+    monkeypatch.setattr(command, "find_spec", lambda _: None)
+    monkeypatch.setattr(command, "run_campaign", lambda *_: [RIGHT])
+    monkeypatch.setattr("sys.argv", ["zoo", "--draws", "1", "--out", str(tmp_path)])
+    monkeypatch.setenv("SYMGEN_REQUIRE_TOOLS", "1")
+    assert command.main() == 1
+    assert "Pinocchio is not installed" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("installed", [True, False])
 def test_trees_that_are_compared_with_one_witness_only_are_told(
     installed: bool, tmp_path: Path, monkeypatch, capsys
 ) -> None:
+    monkeypatch.delenv("SYMGEN_REQUIRE_TOOLS", raising=False)
     monkeypatch.setattr(command, "find_spec", lambda _: object() if installed else None)
     monkeypatch.setattr(command, "run_campaign", lambda *_: [RIGHT])
     monkeypatch.setattr("sys.argv", ["zoo", "--draws", "1", "--out", str(tmp_path)])
@@ -129,9 +220,9 @@ def test_trees_that_are_compared_with_one_witness_only_are_told(
 def test_what_takes_long_is_made_small_in_few_runs(monkeypatch, tmp_path: Path) -> None:
     late, runs = DrawVerdict(FAILED, "time", "deriving ..."), []
 
-    def instead(candidate: Description, _model: Path) -> tuple[DrawVerdict, float, float]:
+    def instead(candidate: Description, _model: Path) -> JudgedDraw:
         runs.append(candidate)
-        return late, MOST_SECONDS / 4, 1
+        return JudgedDraw(late, MOST_SECONDS / 4, 1)
 
     monkeypatch.setattr(campaign, "judge", instead)
     description = draw(1, 0, "planar_energies")
@@ -148,7 +239,7 @@ def test_a_mistake_that_was_not_told_is_kept_with_the_mistake(tmp_path: Path) ->
 
 def test_a_draw_that_ends_well_leaves_nothing(ends, tmp_path: Path, monkeypatch) -> None:
     ends(CommandRun(0, "", "", 1, 1))
-    monkeypatch.setattr(campaign, "_witnessed", lambda *_: (DrawVerdict(VERIFIED), ""))
+    monkeypatch.setattr(campaign, "_witnessed", lambda *_: (DrawVerdict(VERIFIED), "", Comparison(20)))
     record, _ = one_draw(Campaign(1, tmp_path, "disc"), 0)
     assert not record.failed
     assert not list(tmp_path.iterdir())

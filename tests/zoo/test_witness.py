@@ -13,6 +13,7 @@ import yaml
 
 from symgen.generation.results import Options
 from symgen.laboratory.zoo.run import run_command
+from symgen.laboratory.zoo.witness import states
 from symgen.laboratory.zoo.witness.expressions import FUNCTIONS, NotReadError, read_expression
 from symgen.laboratory.zoo.witness.fields import Balls, Floats, precision
 from symgen.laboratory.zoo.witness.generated import Answer, Target
@@ -146,6 +147,11 @@ def test_generated_numbers_are_right(generated: Path) -> None:
     assert checked.states == 20
     assert checked.findings == ()
     assert 0 < checked.largest < 1
+    compared = checked.comparison
+    assert compared.quantities == ("inverse_dynamics", "forward_dynamics", "multipliers")
+    assert (compared.lack, compared.missing, compared.unknown) == ("", (), 0)
+    # of Python and of the C of both types
+    assert compared.numbers + compared.statuses == 20 * 3 * 3
 
 
 @pytest.mark.slow
@@ -364,8 +370,10 @@ configuration: {a_0: 0, a_1: 0, a_2: 0, b: 0}
 """
     for start, expected in (({}, 0), ({"a_0": 0.7, "a_1": 0.7, "a_2": 0.7, "b": -0.7}, 3)):
         witness = Witness(text, start)
-        found, ranks = witness.walker().states(witness.defaults(), 5)
+        walker = witness.walker()
+        found, ranks = walker.states(witness.defaults(), 5)
         assert (len(found), ranks.constraints) == (5 if expected else 0, expected)
+        assert walker.lack == ("" if expected else states.STUCK)
 
 
 def test_a_number_that_is_0_to_all_digits_of_the_witness_is_right() -> None:
@@ -387,3 +395,45 @@ outputs: [forward_dynamics]
         right, wrong = (one.units for one in judged if one is not None)
         assert right == 0
         assert wrong > 1e3
+
+
+# two rods that stay within 2e-3 of one line: regular, and float32 cannot tell
+FLAT = """
+model: flat
+coordinates: {x: {unit: m}, y: {unit: m}, z: {unit: m}}
+kinetic_energy: x_dot**2 + y_dot**2 + z_dot**2
+constraints: {geometric: {one: x + y - 1, two: x + 1.004*y + 0.003*z - 1}}
+inputs: {f: {acts_on: {x: 1}}}
+outputs: [forward_dynamics]
+configuration: {x: 1, y: 0, z: 0}
+"""
+
+
+@pytest.mark.campaign
+def test_statuses_that_are_passed_over_are_counted(tmp_path: Path) -> None:
+    (tmp_path / "flat.yaml").write_text(FLAT)
+    run = run_command(tmp_path / "flat.yaml", tmp_path / "out")
+    assert run.code == 0, run.err
+    checked = Witness(FLAT).check(tmp_path / "out" / "flat", count=4)
+    assert checked.findings == ()
+    compared = checked.comparison
+    assert (compared.states, compared.missing) == (4, ("inverse_dynamics", "multipliers"))
+    assert compared.numbers + compared.statuses == 4 * 3
+
+
+def test_a_walk_that_loses_its_steps_is_taken_up_again(monkeypatch) -> None:
+    """A slide with little room: most steps would leave it."""
+    text = """model: slide
+coordinates: {x: {unit: m}, y: {unit: m}}
+kinetic_energy: x_dot**2 + y_dot**2
+ranges: {x: [-0.1, 0.1], y: [-0.3, 0.3]}
+"""
+    witness = Witness(text)
+    walker = witness.walker()
+    found, _ = walker.states({}, 20)
+    assert (len(found), walker.lack) == (20, "")
+    monkeypatch.setattr(states, "WALKS", 1)
+    walker = witness.walker()
+    found, _ = walker.states({}, 20)
+    assert 0 < len(found) < 20
+    assert walker.lack == states.LOST_STEPS

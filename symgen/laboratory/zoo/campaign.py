@@ -21,6 +21,8 @@ from symgen.laboratory.zoo.refusals import NOT_TOLD, judged
 from symgen.laboratory.zoo.run import run_command
 from symgen.laboratory.zoo.shrink import shrink
 from symgen.laboratory.zoo.verdict import FAILED, REFUSED, DrawVerdict, verdict_of, without_numbers
+from symgen.laboratory.zoo.witness.comparison import Comparison
+from symgen.laboratory.zoo.witness.states import STUCK
 from symgen.laboratory.zoo.witness.witness import check
 
 # CPU seconds that making a failing draw small may take: one that takes too long each time would take hours
@@ -52,45 +54,70 @@ def write(description: Description, model: Path) -> None:
         (model.parent / name).write_text(text, encoding="utf-8")
 
 
-def judge(description: Description, model: Path) -> tuple[DrawVerdict, float, float]:
-    """Writes the model file, runs the command beside it and looks at the numbers; verdict, CPU seconds, megabytes."""
+@dataclass(frozen=True)
+class JudgedDraw:
+    """How a draw ended, CPU seconds and megabytes of the command, and what was compared, if anything was."""
+
+    verdict: DrawVerdict
+    cpu: float
+    megabytes: float
+    compared: Comparison | None = None
+
+
+def judge(description: Description, model: Path) -> JudgedDraw:
+    """Writes the model file, runs the command beside it and looks at the numbers."""
     write(description, model)
     folder = model.with_suffix("")
     run = run_command(model, folder)
     verdict = judged(description, verdict_of(run))
+    compared = None
     if not verdict.failed and verdict.ending != REFUSED:
-        verdict, told = _witnessed(description, folder, verdict)
+        verdict, told, compared = _witnessed(description, folder, verdict)
         (folder / "stderr").write_text(told + run.err, encoding="utf-8")
-    return verdict, run.cpu, run.megabytes
+    return JudgedDraw(verdict, run.cpu, run.megabytes, compared)
 
 
-def _witnessed(description: Description, folder: Path, verdict: DrawVerdict) -> tuple[DrawVerdict, str]:
-    """What the numbers make of a verdict, and what there is to say about it."""
+def _witnessed(
+    description: Description, folder: Path, verdict: DrawVerdict
+) -> tuple[DrawVerdict, str, Comparison | None]:
+    """What the numbers make of a verdict, what there is to say about it, and what was compared."""
     made = folder / str(description.blocks["model"])
     if not (made / "derivation.json").exists():
-        return DrawVerdict(FAILED, "nothing written"), ""
+        return DrawVerdict(FAILED, "nothing written"), "", None
     try:
         checked = check(description, made)
     except Exception as fault:  # a draw on which the witness itself breaks must not end a campaign of a thousand
         signature = without_numbers(f"{type(fault).__name__}: {fault}")
-        return DrawVerdict(FAILED, "fault of the zoo", signature), f"{fault!r}\n"
+        return DrawVerdict(FAILED, "fault of the zoo", signature), f"{fault!r}\n", None
     if checked.findings:
         first = checked.findings[0]
         told = "".join(f"{finding.text}\n" for finding in checked.findings)
-        return DrawVerdict(FAILED, first.kind, without_numbers(first.text)), told
-    return (verdict, "") if checked.states else (replace(verdict, signature="no state to compare"), "")
+        return DrawVerdict(FAILED, first.kind, without_numbers(first.text)), told, checked.comparison
+    if not checked.states:
+        verdict = without_states(verdict, checked.comparison.lack)
+    return verdict, "", checked.comparison
+
+
+def without_states(verdict: DrawVerdict, lack: str) -> DrawVerdict:
+    """The verdict where nothing was compared: a failure, unless the walk cannot leave a singular start."""
+    if lack == STUCK:
+        return replace(verdict, signature=f"no state to compare: {lack}")
+    return DrawVerdict(FAILED, "no state to compare", lack)
 
 
 def one_draw(campaign: Campaign, index: int) -> tuple[DrawRecord, str]:
     """A draw from its number to its record, and a line about it."""
     description = draw(campaign.seed, index, campaign.family)
     model = campaign.folder / f"{campaign.seed}_{index}" / "zoo.yaml"
-    verdict, cpu, megabytes = judge(description, model)
+    ended = judge(description, model)
+    verdict = ended.verdict
     record = DrawRecord(
-        campaign.seed, index, description.family, verdict.ending, verdict.kind, verdict.signature, round(cpu, 1),
-        round(megabytes), str(model) if verdict.failed else "",
+        campaign.seed, index, description.family, verdict.ending, verdict.kind, verdict.signature,
+        round(ended.cpu, 1), round(ended.megabytes), str(model) if verdict.failed else "", ended.compared,
     )  # fmt: skip
     told = f"{record.ending} {record.kind} {record.signature} ({record.cpu} s, {record.megabytes} MB)"
+    if ended.compared is not None and ended.compared.lack:
+        told += f"; {ended.compared.states} states: {ended.compared.lack}"
     if not verdict.failed:
         shutil.rmtree(model.parent, ignore_errors=True)
     elif campaign.shrinking:
@@ -146,8 +173,9 @@ def shrunk(description: Description, verdict: DrawVerdict, model: Path, most: in
         nonlocal spent
         if spent > MOST_SECONDS:
             return False
-        other, cpu, _ = judge(candidate, model)
-        spent += cpu
+        ended = judge(candidate, model)
+        spent += ended.cpu
+        other = ended.verdict
         # what takes too long need not stop at the same step
         alike = other.signature == verdict.signature or other.kind in ("time", "memory", "no end")
         return alike and other.kind == verdict.kind

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import time
 from collections import Counter
@@ -67,6 +68,8 @@ def main() -> int:
     path.unlink(missing_ok=True)
     if find_spec("pinocchio") is None:
         _show("Pinocchio is not installed (`make robots`): trees are compared with the zoo's own witness alone")
+        if os.environ.get("SYMGEN_REQUIRE_TOOLS"):
+            return 1
     campaign = Campaign(given.seed, given.out, given.family, given.shrink, given.cases)
     indices = range(given.first, given.first + given.draws)
     if given.sweeps:
@@ -94,7 +97,7 @@ def _sweep(campaign: Campaign, indices: range, path: Path, given: argparse.Names
 def _one(description: Description, name: str, given: argparse.Namespace) -> int:
     """Judges one system; where it fails it is made small, and stored or printed as a case."""
     model = given.out / name / f"{name}.yaml"
-    verdict = judge(description, model)[0]
+    verdict = judge(description, model).verdict
     _show(f"{name}: {verdict.ending} {verdict.kind} {verdict.signature}")
     if verdict.failed and given.shrink:
         case = case_of(shrunk(description, verdict, model.with_name("small.yaml"), given.shrink), verdict)

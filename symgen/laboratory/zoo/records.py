@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symgen.laboratory.zoo.verdict import VERIFIED
+from symgen.laboratory.zoo.witness.comparison import Comparison, comparison_of
+from symgen.laboratory.zoo.witness.witness import STATES
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
+SYMBOLS = {"inverse_dynamics": "u", "forward_dynamics": "q̈", "multipliers": "λ"}
+
 
 @dataclass(frozen=True)
 class DrawRecord:
-    """One draw: where it comes from, how it ended, what it took."""
+    """One draw: where it comes from, how it ended, what it took, what of it was compared (None: nothing was)."""
 
     seed: int
     index: int
@@ -28,6 +32,7 @@ class DrawRecord:
     cpu: float
     megabytes: float
     file: str = ""
+    compared: Comparison | None = None
 
     @property
     def failed(self) -> bool:
@@ -47,13 +52,14 @@ def read_records(paths: Iterable[Path]) -> list[DrawRecord]:
     for path in paths:
         for line in path.read_text(encoding="utf-8").splitlines():
             given: dict[str, Any] = json.loads(line)
-            record = DrawRecord(**given)
+            compared = given.pop("compared", None)
+            record = DrawRecord(**given, compared=comparison_of(compared) if compared else None)
             found[record.seed, record.index, record.family] = record
     return list(found.values())
 
 
 def summary(records: list[DrawRecord]) -> str:
-    """Counts by family and ending, the failures by kind, the largest draws."""
+    """Counts by family and ending, the failures by kind, how much was compared, the largest draws."""
     if not records:
         return "no draws"
     endings = [VERIFIED, *sorted({record.ending for record in records} - {VERIFIED})]
@@ -67,8 +73,40 @@ def summary(records: list[DrawRecord]) -> str:
     failures = Counter((record.kind, record.signature) for record in records if record.failed)
     for (kind, signature), count in failures.most_common():
         lines.append(f"  {count} x {kind}: {signature}")
+    lines += [f"  {line}" for line in _compared(records)]
     slowest = max(records, key=lambda record: record.cpu)
     largest = max(records, key=lambda record: record.megabytes)
     lines.append(f"  most CPU time: {slowest.cpu} s ({slowest.seed}:{slowest.index} {slowest.family})")
     lines.append(f"  most memory: {largest.megabytes} MB ({largest.seed}:{largest.index} {largest.family})")
     return "\n".join(lines)
+
+
+def _compared(records: list[DrawRecord]) -> Iterator[str]:
+    """At how many states, which quantities, and what was passed over; records of earlier versions say nothing."""
+    known = [record.compared for record in records if record.compared is not None]
+    none, fewer = ([each for each in known if low <= each.states < high] for low, high in ((0, 1), (1, STATES)))
+    told = [f"{len(known)} draws compared: {len(known) - len(none) - len(fewer)} at {STATES} states"]
+    for draws, how in ((fewer, "at fewer"), (none, "at none")):
+        reasons = Counter(each.lack for each in draws)
+        why = f" ({', '.join(f'{count} x {lack}' for lack, count in reasons.most_common())})" if draws else ""
+        told.append(f"{len(draws)} {how}{why}")
+    yield ", ".join(told)
+    for name, symbol in SYMBOLS.items():
+        compared, missing = (
+            sum(name in names for names in which)
+            for which in ([each.quantities for each in known], [each.missing for each in known])
+        )
+        yield f"{symbol} compared in {compared} draws, there but not compared in {missing}"
+    results = sum(each.numbers for each in known)
+    statuses = [each for each in known if each.statuses]
+    float64, float32 = (sum(getattr(each, f"statuses_{scalar}") for each in known) for scalar in ("float64", "float32"))
+    clearest = max((each.clearest for each in statuses), default=0.0)
+    told = [
+        f"{results} results compared",
+        f"{sum(each.unknown for each in known)} without truth",
+        f"passed over {float64} statuses of float64 and {float32} of float32 in {len(statuses)} draws "
+        f"(states determine them to {clearest:.1e} at best)",
+    ]
+    yield ", ".join(told)
+    trees = [each.pinocchio for each in known if each.pinocchio]
+    yield f"{sum(trees)} results of {len(trees)} draws beside Pinocchio's"

@@ -32,6 +32,12 @@ REGULAR = 1e-3
 ASIDE = Fraction(1, 70), Fraction(-1, 90)
 # a walk stays about as near as the ranges that the documentation takes for granted
 FURTHEST = 3.2
+# a step along every free direction at most; where ranges or loops that do not close take too many, walks of half the
+# stride each find the rest
+STRIDE, WALKS = 0.6, 5
+# why there are fewer states than were asked for
+NOT_CLOSED, STUCK = "the start does not close", "the start is singular and every step led back"
+LOST_STEPS, IRREGULAR, LED_ELSEWHERE = "most steps were lost", "most configurations are singular", "refined elsewhere"
 
 
 @dataclass(frozen=True)
@@ -57,28 +63,53 @@ class Walker:
         self._balls = Balls()
         self._ranges = system.blocks.get("ranges") or {}
         self._voids: frozenset[int] | None = None
+        self.lack = ""
 
     def states(self, parameters: Mapping[str, float], count: int) -> tuple[list[FloatState], GenericRanks]:
-        """So many regular states, fewer where they are hard to find; and the generic ranks that were met."""
-        points = self.points(parameters, 3 * count + 6)
+        """So many regular states, fewer where they are hard to find (`lack` says why), and the generic ranks."""
+        wanted = 3 * count + 6
+        points = self.points(parameters, wanted)
+        walked = 1
+        self.lack = ""
         if self._stuck(points, parameters):
+            self.lack = STUCK
+        elif not points and self.closed(self._start, parameters) is None:
+            self.lack = NOT_CLOSED
+        if self.lack:
             return [], GenericRanks(0, 0)
-        ranks = GenericRanks(
-            max((self._rank(self.numbers(q, parameters)) for q in points), default=0),
-            max((self._reached(self.numbers(q, parameters)) for q in points), default=0),
-        )
-        found = []
-        for q in points:
-            at = self.numbers(q, parameters)
-            if self._rank(at, REGULAR) == ranks.constraints and self._reached(at, REGULAR) == ranks.actuation:
-                nearest = self.refined(q, parameters)
-                if nearest is not None:
-                    found.append(self.state(nearest, parameters))
+        ranks, regular = self._regular(points, parameters)
+        while len(regular) < count and walked < WALKS:
+            points += self.points(parameters, wanted, STRIDE / 2**walked)
+            walked += 1
+            ranks, regular = self._regular(points, parameters)
+        found: list[FloatState] = []
+        for q in regular:
             if len(found) == count:
                 break
+            nearest = self.refined(q, parameters)
+            if nearest is not None:
+                found.append(self.state(nearest, parameters))
+        if len(found) < count:
+            lost = {
+                LOST_STEPS: walked * wanted - len(points),
+                IRREGULAR: len(points) - len(regular),
+                LED_ELSEWHERE: len(regular) - len(found),
+            }
+            self.lack = max(lost, key=lost.__getitem__)
         return found, ranks
 
-    def points(self, parameters: Mapping[str, float], count: int) -> list[Any]:
+    def _regular(self, points: list[Any], parameters: Mapping[str, float]) -> tuple[GenericRanks, list[Any]]:
+        """The largest ranks of all, and the configurations that have them by far."""
+        values = [self.numbers(q, parameters) for q in points]
+        ranks = GenericRanks(max(map(self._rank, values), default=0), max(map(self._reached, values), default=0))
+        regular = [
+            q
+            for q, at in zip(points, values, strict=True)
+            if self._rank(at, REGULAR) == ranks.constraints and self._reached(at, REGULAR) == ranks.actuation
+        ]
+        return ranks, regular
+
+    def points(self, parameters: Mapping[str, float], count: int, stride: float = STRIDE) -> list[Any]:
         """Configurations on V: the start, then steps along V, back to the start where a walk leaves its ranges."""
         here = self.closed(self._start, parameters)
         if here is None:
@@ -88,7 +119,7 @@ class Walker:
         for _ in range(count):
             free = self._free(here, parameters)
             step = free @ np.array([self._dice.uniform(-1, 1) for _ in range(free.shape[1])])
-            there = self.closed(here + 0.6 * step, parameters)
+            there = self.closed(here + stride * step, parameters)
             if there is not None and np.abs(there - first).max() < FURTHEST and self._inside(there):
                 points.append(there)
                 here = there

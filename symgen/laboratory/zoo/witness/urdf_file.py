@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 from xml.etree import ElementTree
@@ -98,8 +99,25 @@ def _origin(element: ElementTree.Element) -> tuple[list[str], list[Any]]:
 
 def _angle(text: str) -> str:
     """Angles within 1e-8 of a multiple of a quarter turn stand for it."""
-    count = round(float(text) / QUARTER)
-    return f"{count}*pi/2" if count and abs(float(text) - count * QUARTER) < NEAR else text
+    count = _quarters(float(text))
+    return f"{count}*pi/2" if count else text
+
+
+def exact_angles(text: str) -> str:
+    """A URDF in which angles that stand for multiples of a quarter turn have all their digits."""
+
+    def whole(found: re.Match[str]) -> str:
+        angles = (float(angle) for angle in found[2].split())
+        told = (repr(count * QUARTER if (count := _quarters(angle)) else angle) for angle in angles)
+        return f"{found[1]}{' '.join(told)}{found[3]}"
+
+    return re.sub(r"""(\brpy\s*=\s*["'])([^"']*)(["'])""", whole, text)
+
+
+def _quarters(angle: float) -> int:
+    """The multiple of a quarter turn that an angle stands for, 0 for none."""
+    count = round(angle / QUARTER)
+    return count if abs(angle - count * QUARTER) < NEAR else 0
 
 
 def _friction(joint: ElementTree.Element, name: str, entry: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:

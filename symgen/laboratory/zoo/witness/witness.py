@@ -15,9 +15,9 @@ import yaml
 from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.draws.describe import Description
 from symgen.laboratory.zoo.witness.allocation import directed, members, preloads
-from symgen.laboratory.zoo.witness.expressions import NotReadError
+from symgen.laboratory.zoo.witness.comparison import Comparison, Tally
 from symgen.laboratory.zoo.witness.fields import Balls, Floats, precision
-from symgen.laboratory.zoo.witness.generated import Answer, Target, targets
+from symgen.laboratory.zoo.witness.generated import ARGUMENTS, Answer, Target, targets
 from symgen.laboratory.zoo.witness.kkt import (
     DirectionSplit,
     EquationEvaluator,
@@ -27,7 +27,8 @@ from symgen.laboratory.zoo.witness.kkt import (
     split,
 )
 from symgen.laboratory.zoo.witness.mechanics import equations
-from symgen.laboratory.zoo.witness.pinocchio_trees import SAME, disagreement
+from symgen.laboratory.zoo.witness.pinocchio_answers import COMPARED, PinocchioAnswers
+from symgen.laboratory.zoo.witness.pinocchio_trees import SAME, disagreement, tree_of
 from symgen.laboratory.zoo.witness.reader import SystemReader
 from symgen.laboratory.zoo.witness.states import FloatState, Walker, rounded
 from symgen.laboratory.zoo.witness.tape import FileNumber, NodeProgram
@@ -42,6 +43,8 @@ EPS = {"float64": 2.0**-53, "float32": 2.0**-24}
 # a status is a failure where rows, inputs and masses are further apart than this
 CERTAIN = {"float64": 1e-4, "float32": 2e-2}
 LARGEST = {"float64": 1e280, "float32": 1e30}
+# the part of a state that a result is as long as
+RESULTS = {"inverse_dynamics": "u", "forward_dynamics": "qdd"}
 # The status of u where inputs span less than they do on the branch that the files are made for.
 ACTUATION_RANK = 3
 
@@ -56,11 +59,16 @@ class Finding:
 
 @dataclass(frozen=True)
 class CheckResult:
-    """What was compared: how many states, the largest error in units of what is allowed, and what is wrong."""
+    """What was compared, the largest error in units of what is allowed, and what is wrong."""
 
-    states: int
+    comparison: Comparison
     largest: float
     findings: tuple[Finding, ...]
+
+    @property
+    def states(self) -> int:
+        """At how many states."""
+        return self.comparison.states
 
 
 @dataclass(frozen=True)
@@ -111,30 +119,66 @@ class Witness:
 
     def check(self, folder: Path, count: int = STATES) -> CheckResult:
         """Everything generated in a folder; nothing is compared where no state is found."""
-        blocks = self._system.blocks
-        defaults = self.defaults()
-        found, ranks = self.walker().states(defaults, count)
+        defaults, walker, tally = self.defaults(), self.walker(), Tally()
+        found, ranks = walker.states(defaults, count)
         findings: list[Finding] = []
-        other = disagreement(self._given, defaults, Dice("Pinocchio", self._seed), self._files)
-        if other is not None and other > SAME:
-            findings.append(Finding("witness: Pinocchio", f"the witness and Pinocchio differ by {other:.1e}"))
         largest = 0.0
         members = self.opened(folder)
-        for target in targets(folder, blocks["model"]):
+        called = targets(folder, self._system.blocks["model"])
+        for target in called:
             if members and len(target.parameters) != len(members):
                 told = f"{target.name}: parameters {target.parameters} where {members} are due"
                 findings.append(Finding("witness: parameters", told))
                 continue
             for state in found:
                 for quantity in target.quantities:
-                    error, finding = self._compared(target, quantity, state, ranks)
+                    error, finding = self._compared(target, quantity, state, ranks, tally)
                     largest = max(largest, error)
                     if finding is not None:
                         findings.append(finding)
                         break
                 if findings and findings[-1].text.startswith(target.name):
                     break
-        return CheckResult(len(found), largest, tuple(findings))
+        findings += self._beside_pinocchio(called, found, ranks, tally)
+        return CheckResult(tally.total(len(found), walker.lack, self._there), largest, tuple(findings))
+
+    @property
+    def _there(self) -> tuple[str, ...]:
+        """Which of u, accelerations and multipliers the model has."""
+        absent = {"inverse_dynamics": not self._system.inputs, "multipliers": not self._rows}
+        return tuple(name for name in ARGUMENTS if not absent.get(name))
+
+    def _beside_pinocchio(
+        self, called: Sequence[Target], states: Sequence[FloatState], ranks: GenericRanks, tally: Tally
+    ) -> Iterator[Finding]:
+        """Where joints and bodies make a tree, or one that is closed: its forces, and double results of all states."""
+        defaults = self.defaults()
+        found = tree_of(self._given, defaults, self._files)
+        if found is None:
+            return
+        other = disagreement(*found, defaults, Dice("Pinocchio", self._seed))
+        if other > SAME:
+            yield Finding("witness: Pinocchio", f"the witness and Pinocchio differ by {other:.1e}")
+            return
+        answers = PinocchioAnswers(found[0], self._system.blocks, ranks)
+        names = (*self._system.coordinates, *self._system.rate_names)
+        for target in called:
+            for state in states if target.scalar == "float64" else ():
+                values = {**defaults, **dict(zip(names, (*state.q, *state.qd), strict=True))}
+                for quantity in (name for name in COMPARED if name in target.quantities):
+                    answer = target.call(quantity, self._at_runtime(state), len(getattr(state, RESULTS[quantity])))
+                    apart = None if answer.status else answers.apart(quantity, state, values, answer.value)
+                    tally.pinocchio += apart is not None
+                    if apart is not None and not apart <= SAME:
+                        told = f"{target.name}, {quantity}: {apart:.1e} from Pinocchio's, {SAME:g} is allowed"
+                        yield Finding("witness: Pinocchio", told)
+                        return
+
+    def _at_runtime(self, state: FloatState) -> FloatState:
+        """With the parameters alone that the files take."""
+        return replace(
+            state, parameters=tuple(x for x, used in zip(state.parameters, self._runtime, strict=True) if used)
+        )
 
     def opened(self, folder: Path) -> list[str]:
         """The parameters of what was generated in a folder, which is compared from now on."""
@@ -188,16 +232,20 @@ class Witness:
         return float(self._system.tape.evaluate([self._system.read(text)], {}, Floats())[0])
 
     def _compared(
-        self, target: Target, quantity: str, state: FloatState, ranks: GenericRanks
+        self, target: Target, quantity: str, state: FloatState, ranks: GenericRanks, tally: Tally
     ) -> tuple[float, Finding | None]:
         """The error of one result in units of what is allowed, and what is wrong with it."""
         found = self.compare(target, quantity, state, ranks)
         if found is None:
+            tally.unknown()
             return 0.0, None
         where = f"{target.name}, {quantity}"
         if found.status:
+            if not found.certain:
+                tally.status(target.scalar, found.clear)
             told = f"{where}: status {found.status} at a regular state ({found.clear:.1e})"
             return 0.0, Finding("witness: status", told) if found.certain else None
+        tally.number(quantity)
         if found.units <= 1:
             return found.units, None
         told = (
@@ -215,8 +263,7 @@ class Witness:
             truth = self._truth(quantity, given, ranks)
             if truth is None:
                 return None
-            members = tuple(x for x, used in zip(given.parameters, self._runtime, strict=True) if used)
-            answer = target.call(quantity, replace(given, parameters=members), len(truth.value))
+            answer = target.call(quantity, self._at_runtime(given), len(truth.value))
             exact = [float(x.mid()) for x in truth.value]
             if answer.status:
                 certain = truth.clear > CERTAIN[scalar] and all(abs(x) < LARGEST[scalar] for x in exact)
@@ -339,12 +386,9 @@ def _least_distance(values: Sequence[float], exact: Sequence[Any]) -> float:
 
 
 def check(description: Description, folder: Path) -> CheckResult:
-    """What the witness says of the files in a folder; a part of the language that it does not read is no failure."""
+    """What the witness says of the files in a folder; it must read all that is drawn."""
     text = description.text
-    try:
-        return Witness(text, description.start, text, description.files).check(folder)
-    except NotReadError:
-        return CheckResult(0, 0.0, ())
+    return Witness(text, description.start, text, description.files).check(folder)
 
 
 def findings_by_kind(checked: CheckResult) -> Iterator[tuple[str, str]]:
