@@ -18,7 +18,7 @@ FORMER = {(USUAL, "range"): "elimination"}
 UNKNOWN = "unrecognized arguments: "  # how argparse begins
 
 
-class _Parser(argparse.ArgumentParser):
+class _OptionParser(argparse.ArgumentParser):
     """A parser that knows what a misspelt option was meant to be."""
 
     def error(self, message: str) -> NoReturn:
@@ -33,7 +33,7 @@ class _Parser(argparse.ArgumentParser):
 def make_parser(program: str, description: str, epilog: str | None = None) -> argparse.ArgumentParser:
     """A parser that wants options in full."""
     form = argparse.RawDescriptionHelpFormatter
-    return _Parser(
+    return _OptionParser(
         program, description=description, epilog=epilog, formatter_class=form, allow_abbrev=False
     )
 

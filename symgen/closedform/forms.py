@@ -92,7 +92,7 @@ def derive_closed_forms(model: Model, straight_line_operations: Mapping[str, int
     exact = Exact(model, mechanics, structure)
     speller = Speller(exact.ring, dynamic_names(model))
     kernel = _short_kernel(exact)
-    writer = _Writer(model, exact, speller, straight_line_operations or {}, places, velocities)
+    writer = _FormWriter(model, exact, speller, straight_line_operations or {}, places, velocities)
     return ClosedForms(
         model=model.name,
         forms={form.quantity: form for form in writer.all_forms()},
@@ -158,7 +158,7 @@ def published_expressions(model: Model) -> Iterable[Expression]:
                     yield item.corrected
 
 
-class _Writer:
+class _FormWriter:
     """Chooses the form of every quantity."""
 
     def __init__(

@@ -64,7 +64,7 @@ class Verdict:
 
 
 @dataclass(frozen=True, slots=True)
-class _Finding:
+class _FormVerdict:
     """A verdict on one form of a formula with the text that goes with it."""
 
     verdict: str
@@ -116,7 +116,7 @@ class _Judge:
             return Verdict(position, item.equation, quantity, UNDECIDED, None, str(large))
         return Verdict(position, item.equation, quantity, finding.verdict, proven, text, finding.difference)
 
-    def _reading(self, item: Published) -> tuple[str, Callable[[bool], _Finding], bool]:
+    def _reading(self, item: Published) -> tuple[str, Callable[[bool], _FormVerdict], bool]:
         """The quantity, how to decide the printed (False) or corrected (True) form, and whether there is one."""
         match item:
             case PublishedMatrix():
@@ -145,14 +145,14 @@ class _Judge:
 
     # matrices
 
-    def _matrix(self, item: PublishedMatrix, printed: ExpressionMatrix) -> _Finding:
+    def _matrix(self, item: PublishedMatrix, printed: ExpressionMatrix) -> _FormVerdict:
         derived = self.derived(item.quantity, item.independent)
         if derived is None:
-            return _Finding(UNDECIDED, f"no closed form of {item.quantity}")
+            return _FormVerdict(UNDECIDED, f"no closed form of {item.quantity}")
         where = dict(item.where)
         values = tuple(tuple(self._value(entry, where) for entry in row) for row in printed)
         if len(values) != len(derived) or any(len(a) != len(b) for a, b in zip(values, derived, strict=True)):
-            return _Finding(MISPRINTED, "the shape is another one")
+            return _FormVerdict(MISPRINTED, "the shape is another one")
         difference = tuple(
             tuple(a - b for a, b in zip(u, v, strict=True)) for u, v in zip(derived, values, strict=True)
         )
@@ -164,7 +164,7 @@ class _Judge:
         index = next(i for i, entry in enumerate(flat) if entry)
         place = divmod(index, len(difference[0]))
         text = f"entry ({place[0] + 1}, {place[1] + 1}): derived minus printed is {shown[place]}{finding.text}"
-        return _Finding(finding.verdict, text, shown)
+        return _FormVerdict(finding.verdict, text, shown)
 
     def derived(self, quantity: str, independent: Sequence[str]) -> Matrix | None:
         """The derived matrix of a quantity; None when there is no closed form of that name."""
@@ -193,19 +193,19 @@ class _Judge:
 
     # zero or not
 
-    def _zero(self, values: Sequence[Quotient]) -> _Finding:
+    def _zero(self, values: Sequence[Quotient]) -> _FormVerdict:
         """Whether all values are zero: in the ring, at 40 digits, on the manifold, or not."""
         rest = [value for value in values if value]
         if not rest:
-            return _Finding(IDENTICAL, "")
+            return _FormVerdict(IDENTICAL, "")
         if not self.ring.is_complete and all(self._vanishes(value, self.free_points) for value in rest):
-            return _Finding(CHECKED, "; it contains what the ring does not hold and vanishes at 40 digits")
+            return _FormVerdict(CHECKED, "; it contains what the ring does not hold and vanishes at 40 digits")
         projected = [value for value in (self.manifold.restrict(value) for value in rest) if value]
         if not projected:
-            return _Finding(ON_MANIFOLD, "; it vanishes identically for qd = W nu and qdd = W nu-dot + W-dot nu")
+            return _FormVerdict(ON_MANIFOLD, "; it vanishes identically for qd = W nu and qdd = W nu-dot + W-dot nu")
         if self.exact.mechanics.residual and all(self._vanishes(value, self.points) for value in projected):
-            return _Finding(ON_MANIFOLD, "; it vanishes on V as checked at 40 digits")
-        return _Finding(MISPRINTED, f"; {self._sample(projected[0])} on the constraint manifold")
+            return _FormVerdict(ON_MANIFOLD, "; it vanishes on V as checked at 40 digits")
+        return _FormVerdict(MISPRINTED, f"; {self._sample(projected[0])} on the constraint manifold")
 
     def _vanishes(self, value: Quotient, points: Sequence[RingPoint]) -> bool:
         for point in points:
@@ -228,7 +228,7 @@ class _Judge:
 
     def _equations(
         self, equations: Sequence[tuple[Expression, Expression]], where: Mapping[str, Expression]
-    ) -> _Finding:
+    ) -> _FormVerdict:
         findings = [self._equation(self._value(a, where) - self._value(b, where)) for a, b in equations]
         worst = max(findings, key=lambda f: _ORDER.index(f.verdict))
         if worst.verdict == IDENTICAL:
@@ -236,17 +236,17 @@ class _Judge:
         index = findings.index(worst)
         return replace(worst, text=f"equation {index + 1}: {worst.text}")
 
-    def _equation(self, residual: Quotient) -> _Finding:
+    def _equation(self, residual: Quotient) -> _FormVerdict:
         """One equation `residual = 0`: a combination of the motion equations (3) or of the constraints, or not."""
         if not residual:
-            return _Finding(IDENTICAL, "both sides are the same")
+            return _FormVerdict(IDENTICAL, "both sides are the same")
         dynamic = [c.acceleration for c in self.model.coordinates] + [i.name for i in self.model.inputs]
         dynamic += [f"multiplier_{row.name}" for row in self.model.constraints]
         if any(self.translator.derivative(residual, name) for name in dynamic):
             return self._dynamic(residual)
         return self._kinematic(residual)
 
-    def _dynamic(self, residual: Quotient) -> _Finding:
+    def _dynamic(self, residual: Quotient) -> _FormVerdict:
         """Find c with residual = c^T E, E = tau + B^T lambda - M u; the remainder decides.
 
         c is unique: B c is the coefficient of lambda, W^T G c that of the accelerations along W.
@@ -262,16 +262,16 @@ class _Judge:
         right = (*reactions, *multiply(ring, kernel, slopes))
         weights = solve(left, right)
         if weights is None:
-            return _Finding(UNDECIDED, "the combination of motion equations is not unique")
+            return _FormVerdict(UNDECIDED, "the combination of motion equations is not unique")
         combination = dot(ring, [w for (w,) in weights], [e for (e,) in exact.reaction_load])
         remainder = residual - combination
         finding = self._zero([remainder])
         if finding.verdict == IDENTICAL:
-            return _Finding(IDENTICAL, "a combination c(q)^T of the motion equations (3), identically")
+            return _FormVerdict(IDENTICAL, "a combination c(q)^T of the motion equations (3), identically")
         shown = self.speller.quotient(remainder)
-        return _Finding(finding.verdict, f"the remainder over the motion equations (3) is {shown}{finding.text}")
+        return _FormVerdict(finding.verdict, f"the remainder over the motion equations (3) is {shown}{finding.text}")
 
-    def _kinematic(self, residual: Quotient) -> _Finding:
+    def _kinematic(self, residual: Quotient) -> _FormVerdict:
         """A combination of the rows of B times qd, or a function of q that vanishes on V."""
         translator = self.translator
         slopes = [translator.derivative(residual, c.rate) for c in self.model.coordinates]
@@ -280,30 +280,30 @@ class _Judge:
         if not rest and any(slopes):
             along = [dot(self.ring, slopes, vector) for vector in transpose(self.exact.kernel)]
             if not any(along):
-                return _Finding(IDENTICAL, "a combination of the rows of B")
+                return _FormVerdict(IDENTICAL, "a combination of the rows of B")
         finding = self._zero([residual])
         if finding.verdict == ON_MANIFOLD and not any(slopes):
-            return _Finding(CHECKED, "it vanishes on V as checked at 40 digits")
+            return _FormVerdict(CHECKED, "it vanishes on V as checked at 40 digits")
         return replace(finding, text=f"left minus right is {self.speller.quotient(residual)}{finding.text}")
 
     # singular sets
 
-    def _singular_set(self, item: PublishedSingularSet, where_zero: Expression) -> _Finding:
+    def _singular_set(self, item: PublishedSingularSet, where_zero: Expression) -> _FormVerdict:
         derived = self.derived(item.quantity, item.independent)
         if derived is None:
-            return _Finding(UNDECIDED, f"no closed form of {item.quantity}")
+            return _FormVerdict(UNDECIDED, f"no closed form of {item.quantity}")
         bottom = common_denominator(self.ring, [entry for row in derived for entry in row])
         own = self._zero_sets(bottom)
         printed = self._zero_sets(self.translator.value(where_zero).numerator)
         if own == printed:
             zeros = self._list(own)
-            return _Finding(IDENTICAL, f"the denominator vanishes with {zeros}" if own else "it vanishes nowhere")
+            return _FormVerdict(IDENTICAL, f"the denominator vanishes with {zeros}" if own else "it vanishes nowhere")
         parts = []
         if printed - own:
             parts.append(f"it exists where {self._list(printed - own)} vanishes, if nothing else does")
         if own - printed:
             parts.append(f"it does not exist where {self._list(own - printed)} vanishes")
-        return _Finding(MISPRINTED, "; ".join(parts))
+        return _FormVerdict(MISPRINTED, "; ".join(parts))
 
     def _zero_sets(self, p: PolyElement) -> set[PolyElement]:
         """The factors that can vanish; on V a factor that is the same everywhere cannot."""

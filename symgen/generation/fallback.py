@@ -49,7 +49,7 @@ Kernels: TypeAlias = Mapping[Scalar, Kernel]
 
 
 @dataclass(frozen=True, slots=True)
-class _Candidate:
+class _PassingWay:
     """A way with its kernels and its largest error in `scalars`, where it passes."""
 
     largest: float
@@ -78,7 +78,7 @@ class Fallback:
         self.measurements = Measurements()
         self._searched: dict[str, _Searched] = {}
         self._left: dict[tuple[str, int], deque[Alternative]] = {}
-        self._passing: defaultdict[str, list[_Candidate]] = defaultdict(list)
+        self._passing: defaultdict[str, list[_PassingWay]] = defaultdict(list)
         self._tried: defaultdict[str, list[tuple[str, str]]] = defaultdict(list)
         # by their hashes: kernels that were rejected need not stay
         self._seen: defaultdict[str, set[int]] = defaultdict(set)
@@ -165,7 +165,7 @@ class Fallback:
         if known == 0 and all(fault.what.startswith((INACCURATE, VIOLATES)) for fault in judged):
             self._inaccurate[quantity].append(draft.taken(quantity))
         if all(fault.scalar == "float32" for fault in faults):
-            passing.append(_Candidate(0.0, ("float64",), draft.taken(quantity), kernels))
+            passing.append(_PassingWay(0.0, ("float64",), draft.taken(quantity), kernels))
         found = self._next(draft, quantity, expected)
         # one type may have been left out before
         others = tuple(one for one in draft.left_out if one.quantity != quantity)
@@ -184,7 +184,7 @@ class Fallback:
         left_out = LeftOut(quantity, without, every, self._remedy(quantity, without))
         return replace(draft.without(quantity, without, REJECTED), left_out=(*others, left_out))
 
-    def _next(self, draft: Draft, quantity: str, expected: Expected) -> _Candidate | None:
+    def _next(self, draft: Draft, quantity: str, expected: Expected) -> _PassingWay | None:
         """The next way that passes with a margin, or else the best of those that pass; others are noted."""
         passing, needed = self._passing[quantity], tuple(draft.kernels(quantity))
         for tier in range(TIERS):
@@ -212,7 +212,7 @@ class Fallback:
         """The draft with a quantity that passes narrowly along a way with half of its error, where that is not long."""
         self._weighed.add(quantity)
         taken, kernels = draft.taken(quantity), draft.kernels(quantity)
-        here = _Candidate(largest, tuple(kernels), taken, kernels)
+        here = _PassingWay(largest, tuple(kernels), taken, kernels)
         self._seen[quantity].add(_digest(kernels))
         most = cost(scalars(taken.derived)).weight * (1 + MARGIN_WORTH)
         for one in self._candidates(draft, quantity, 0, expected, largest / 2):
@@ -227,7 +227,7 @@ class Fallback:
         taken, kernels = draft.taken(quantity), draft.kernels(quantity)
         if taken.choice.wide:
             return draft
-        here = _Candidate(largest, tuple(kernels), taken, kernels)
+        here = _PassingWay(largest, tuple(kernels), taken, kernels)
         self._inaccurate[quantity].append(taken)
         for one in self._with_more_digits(draft, quantity, expected):
             if one.scalars == here.scalars and one.largest <= MARGIN:
@@ -236,7 +236,7 @@ class Fallback:
                 self._passing[quantity].append(one)
         return draft
 
-    def _in_place_of(self, draft: Draft, here: _Candidate, one: _Candidate) -> Draft:
+    def _in_place_of(self, draft: Draft, here: _PassingWay, one: _PassingWay) -> Draft:
         """The draft with a way that keeps a margin in place of one that does not, which stays at hand."""
         quantity = here.way.choice.quantity
         self._passing[quantity].append(here)
@@ -246,7 +246,7 @@ class Fallback:
 
     def _candidates(
         self, draft: Draft, quantity: str, tier: int, expected: Expected, most: float
-    ) -> Iterator[_Candidate]:
+    ) -> Iterator[_PassingWay]:
         """The ways of a tier that are left, measured; what fails is noted.  Up to an error of `most` they are taken."""
         if self._options.forms.get(quantity, AUTO) != AUTO or self._alternatives is None:
             return
@@ -264,14 +264,14 @@ class Fallback:
                 # long ways are grouped where that may be what is taken: it takes longer than measuring
                 yield self._grouped(draft, one, expected) if one.largest <= most else one
 
-    def _grouped(self, draft: Draft, one: _Candidate, expected: Expected) -> _Candidate:
+    def _grouped(self, draft: Draft, one: _PassingWay, expected: Expected) -> _PassingWay:
         """A way that passes, with its numbers grouped and measured anew."""
         if one.way.grouped or "float64" not in one.scalars:
             return one
         way = grouped(one.way)
         return self._measured(draft, way, draft.kernels_along(way, tuple(one.kernels)), expected)
 
-    def _with_more_digits(self, draft: Draft, quantity: str, expected: Expected) -> Iterator[_Candidate]:
+    def _with_more_digits(self, draft: Draft, quantity: str, expected: Expected) -> Iterator[_PassingWay]:
         """What loses digits in float32 alone with twice as many there, then the shortest ways with more in both."""
         if quantity in self._widened or self._options.forms.get(quantity, AUTO) != AUTO:
             return
@@ -296,14 +296,14 @@ class Fallback:
 
     def _widened_way(
         self, draft: Draft, way: Alternative, scalars: tuple[Scalar, ...], wide: tuple[Scalar, ...], expected: Expected
-    ) -> _Candidate:
+    ) -> _PassingWay:
         """A way with twice the digits in some types, measured."""
         self._progress(f"twice the digits for {way.choice.quantity}, {way.choice.way}")
         way = grouped(way)
         way = replace(way, choice=replace(way.choice, wide=wide))
         return self._measured(draft, way, draft.kernels_along(way, scalars), expected)
 
-    def _measured(self, draft: Draft, way: Alternative, kernels: Kernels, expected: Expected) -> _Candidate:
+    def _measured(self, draft: Draft, way: Alternative, kernels: Kernels, expected: Expected) -> _PassingWay:
         """The scalar types in which kernels pass by interpretation, and the largest error there; the rest is noted."""
         passed: dict[Scalar, Kernel] = {}
         worst = 0.0
@@ -328,7 +328,7 @@ class Fallback:
         worst = max((worst, *(error for scalar, error in errors.items() if scalar in scalars)))
         if scalars and way.grouped:
             self._searched[way.choice.quantity] = _Searched(kernels, worst)
-        return _Candidate(worst, scalars, way, kernels)
+        return _PassingWay(worst, scalars, way, kernels)
 
     def _note(self, way: Alternative, fault: Fault, inaccurate: bool) -> None:
         """What speaks against a way; one that is inaccurate may work with more digits."""

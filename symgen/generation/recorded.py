@@ -38,7 +38,7 @@ class _Taken:
 
 
 @dataclass(frozen=True, slots=True)
-class _Record:
+class _VerificationRecord:
     """What a derivation.json tells of a verification."""
 
     rejected: tuple[Rejection, ...]
@@ -69,7 +69,7 @@ def as_recorded(model: Model, outputs: Sequence[str], options: Options) -> Draft
     return _with_record(draft, record, options.forms)
 
 
-def _read(file: Path, model: Model) -> _Record:
+def _read(file: Path, model: Model) -> _VerificationRecord:
     try:
         content = json.loads(file.read_bytes())
     except OSError as error:
@@ -86,9 +86,9 @@ def _read(file: Path, model: Model) -> _Record:
         raise _UnusableError("is damaged") from error
 
 
-def _record(content: Mapping[str, Any]) -> _Record:
+def _record(content: Mapping[str, Any]) -> _VerificationRecord:
     kernels = content["kernels"].items()
-    return _Record(
+    return _VerificationRecord(
         tuple(Rejection(str(r["quantity"]), str(r["way"]), str(r["why"])) for r in content.get("rejected", ())),
         {name: _Taken(str(one["way"]), tuple(one.get("twice_the_digits", ()))) for name, one in kernels},
         {str(one["quantity"]): tuple(one["scalars"]) for one in content.get("left_out", ())},
@@ -105,7 +105,7 @@ def _bounds(bounds: Mapping[str, Sequence[float | None]]) -> Iterator[Bound]:
         yield Bound(parameter, low, high)
 
 
-def _with_record(draft: Draft, record: _Record, asked: Container[str]) -> Draft:
+def _with_record(draft: Draft, record: _VerificationRecord, asked: Container[str]) -> Draft:
     """The draft with the ways that stand in the record in place of rejected ones, but where a form was `asked` for."""
     present = {choice.quantity for choice in draft.derivations.choices}
     bounds = {

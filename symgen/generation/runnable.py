@@ -37,7 +37,7 @@ DRIVEN = ("constraint_residual", "energy", "admissible_velocity", "projected_con
 
 
 @dataclass(frozen=True, slots=True)
-class _Way:
+class _NullSpaceWay:
     """The way to the null space by which a quantity is computed."""
 
     quantity: str
@@ -86,7 +86,7 @@ class Runner:
         return Outcome(int(status), tuple(outputs) or (math.nan,) * max(1, math.prod(kernel.shape)))
 
 
-class Kernels:
+class RunnableKernels:
     """Kernels by quantity name and scalar type, and the C they are made of (`files`, by path).
 
     They are those of OUT/<model>, where a run has verified some; `notes` say what is to be told of that.
@@ -105,7 +105,7 @@ class Kernels:
         draft = as_recorded(model, wanted, Options(scalars=SCALARS, measured=out))
         self.notes = draft.notes
         self.programs: Mapping[Scalar, Program] = draft.written
-        self._ways = tuple(_Way(choice.quantity, choice.way) for choice in draft.derivations.choices)
+        self._ways = tuple(_NullSpaceWay(choice.quantity, choice.way) for choice in draft.derivations.choices)
         self.runner = Runner(model, self.programs, folder)
         self.files, self.names, self.compiler = self.runner.files, self.runner.names, self.runner.compiler
 

@@ -61,8 +61,8 @@ def same_kernel(
     found = _residues(after)
     if quick == found:
         return
-    meant = _Nodes().meant(before) if isinstance(before, Lifted) else before
-    meant, exact = meant if whole else _plain(meant), _Nodes().meant(after)
+    meant = _NodeReader().meant(before) if isinstance(before, Lifted) else before
+    meant, exact = meant if whole else _plain(meant), _NodeReader().meant(after)
     if meant.kinds != exact.kinds:
         raise SymgenBug(f"{rule}: changes the checks of a kernel")
     same_values(rule, [*meant.outputs, *meant.compared], [*exact.outputs, *exact.compared], squares_roots)
@@ -73,7 +73,7 @@ def _residues(lifted: Lifted) -> Meant[int]:
     for kernel, found in _read:
         if kernel is lifted.kernel and not lifted.prepared:
             return found
-    found = _Residues().meant(lifted)
+    found = _ResidueReader().meant(lifted)
     if not lifted.prepared:
         _read.append((lifted.kernel, found))
     return found
@@ -92,7 +92,7 @@ def _plain(meant: Meant[Value]) -> Meant[Value]:
     return Meant(meant.outputs, tuple(meant.kinds[k] for k in kept), compared)
 
 
-class _Reader(Generic[Value]):
+class _StatementReader(Generic[Value]):
     """Values of locals, as they are assigned."""
 
     def __init__(self) -> None:
@@ -161,7 +161,7 @@ class _Reader(Generic[Value]):
         return found
 
 
-class _Nodes(_Reader[Node]):
+class _NodeReader(_StatementReader[Node]):
     """Scalars on a graph of their own, as they stand."""
 
     def __init__(self) -> None:
@@ -196,7 +196,7 @@ class _Nodes(_Reader[Node]):
         return value if rest.is_zero else self._graph.raw("add", (value, rest))
 
 
-class _Residues(_Reader[int]):
+class _ResidueReader(_StatementReader[int]):
     """Fingerprints; angles are read by what their sums were made of."""
 
     def __init__(self) -> None:

@@ -34,7 +34,7 @@ def relaxed(kernel: Kernel) -> Kernel:
     """The kernel in an order in which fewer values wait, where they do not fit into registers; else itself."""
     if not _is_ordered(kernel):
         return kernel
-    body = _Body(kernel)
+    body = _TestedSteps(kernel)
     waiting = body.waiting(body.written)
     if waiting < REGISTERS:
         return kernel
@@ -46,7 +46,7 @@ def waits(kernel: Kernel) -> int:
     """How many values wait at once in a kernel whose order is looked at; 0 for others."""
     if not _is_ordered(kernel):
         return 0
-    body = _Body(kernel)
+    body = _TestedSteps(kernel)
     return body.waiting(body.written)
 
 
@@ -57,7 +57,7 @@ def _is_ordered(kernel: Kernel) -> bool:
     return tested and not late and REGISTERS < len(kernel.statements) <= LONGEST_REORDERED
 
 
-class _Body:
+class _TestedSteps:
     """What follows the pairs of a kernel.  Steps are numbered: statements from 0 as they are written, then checks."""
 
     def __init__(self, kernel: Kernel) -> None:

@@ -81,7 +81,7 @@ def _exponent(value: Fraction) -> int:
     return exponent if value >= Fraction(2) ** exponent else exponent - 1
 
 
-class _Writer:
+class _SincosWriter:
     """Appends one statement per operation."""
 
     def __init__(self) -> None:
@@ -94,7 +94,7 @@ class _Writer:
 
 def sincos(scalar: Scalar, wide: bool = False) -> Function:
     """The function (sine, cosine) = sincos(x) for one scalar type and range."""
-    emit = _Writer()
+    emit = _SincosWriter()
     x = Local("x")
     rounder = Literal(ROUNDER[scalar])
     turns = emit("turns", "mul", x, Literal(2 / PI))
@@ -137,7 +137,7 @@ def sincos(scalar: Scalar, wide: bool = False) -> Function:
     return Function("sincos", ("x",), tuple(emit.statements), ("sine", "cosine"))
 
 
-def _horner(emit: _Writer, name: str, coefficients: tuple[float, ...], z: Local) -> Operand:
+def _horner(emit: _SincosWriter, name: str, coefficients: tuple[float, ...], z: Local) -> Operand:
     value: Operand = Literal(Fraction(coefficients[-1]))
     for place in range(len(coefficients) - 2, -1, -1):
         product = emit(f"{name}{place}p", "mul", z, value)

@@ -30,7 +30,7 @@ _Pair: TypeAlias = tuple[Operand, Operand]
 
 def widened(kernel: Kernel, scalar: Scalar) -> Kernel:
     """The kernel with pairs of numbers in place of numbers; its checks are those of the values."""
-    writer = _Writer(kernel, scalar)
+    writer = _PairWriter(kernel, scalar)
     blocks = [replace(block, statements=writer.block(block.statements)) for block in kernel.blocks]
     last, outputs = writer.rounded(kernel.outputs)
     blocks[-1] = replace(blocks[-1], statements=(*blocks[-1].statements, *last))
@@ -98,7 +98,7 @@ class _Thresholds:
         return Literal(single.value / 2 ** (times * GAINED))
 
 
-class _Writer:
+class _PairWriter:
     """Statements one by one, each on pairs."""
 
     def __init__(self, kernel: Kernel, scalar: Scalar) -> None:
@@ -265,30 +265,30 @@ class _Writer:
         return name
 
 
-_Rule: TypeAlias = Callable[[_Writer, Statement], Operand]
+_Rule: TypeAlias = Callable[[_PairWriter, Statement], Operand]
 
 
-def _neg(w: _Writer, s: Statement) -> Operand:
+def _neg(w: _PairWriter, s: Statement) -> Operand:
     rest = w.rest(s.operands[0])
     return rest if rest == ZERO else w.emit("neg", rest)
 
 
-def _sign(w: _Writer, x: Operand) -> Operand:
+def _sign(w: _PairWriter, x: Operand) -> Operand:
     return w.emit("copysign", ONE, x)
 
 
-def _abs(w: _Writer, s: Statement) -> Operand:
+def _abs(w: _PairWriter, s: Statement) -> Operand:
     rest = w.rest(s.operands[0])
     return rest if rest == ZERO else w.times(_sign(w, s.operands[0]), rest)
 
 
-def _copysign(w: _Writer, s: Statement) -> Operand:
+def _copysign(w: _PairWriter, s: Statement) -> Operand:
     size, sign = s.operands
     rest = w.rest(size)
     return rest if rest == ZERO else w.times(_sign(w, sign), w.times(_sign(w, size), rest))
 
 
-def _choice(w: _Writer, s: Statement) -> Operand:
+def _choice(w: _PairWriter, s: Statement) -> Operand:
     """The rest of what is chosen: of the second one where the first is something else."""
     first, second = map(w.rest, s.operands)
     if first == second:
@@ -298,25 +298,25 @@ def _choice(w: _Writer, s: Statement) -> Operand:
     return w.emit("add", first, w.emit("mul", other, w.emit("sub", second, first)))
 
 
-def _function(slope: Callable[[_Writer, Operand, Operand], Operand]) -> _Rule:
+def _function(slope: Callable[[_PairWriter, Operand, Operand], Operand]) -> _Rule:
     """A function of the library."""
 
-    def rule(w: _Writer, s: Statement) -> Operand:
+    def rule(w: _PairWriter, s: Statement) -> Operand:
         rest = w.rest(s.operands[0])
         return rest if rest == ZERO else w.times(slope(w, Local(s.targets[0]), s.operands[0]), rest)
 
     return rule
 
 
-def _one_and(w: _Writer, operation: OperationName, x: Operand) -> Operand:
+def _one_and(w: _PairWriter, operation: OperationName, x: Operand) -> Operand:
     return w.emit(operation, ONE, w.emit("mul", x, x))
 
 
-def _arc(w: _Writer, x: Operand) -> Operand:
+def _arc(w: _PairWriter, x: Operand) -> Operand:
     return w.emit("ratio_or_zero", ONE, w.emit("sqrt", _one_and(w, "sub", x)))
 
 
-def _atan2(w: _Writer, s: Statement) -> Operand:
+def _atan2(w: _PairWriter, s: Statement) -> Operand:
     y, x = s.operands
     if w.rest(y) == ZERO and w.rest(x) == ZERO:
         return ZERO
@@ -324,7 +324,7 @@ def _atan2(w: _Writer, s: Statement) -> Operand:
     return w.emit("ratio_or_zero", turned, w.emit("add", w.emit("mul", x, x), w.emit("mul", y, y)))
 
 
-def _pow(w: _Writer, s: Statement) -> Operand:
+def _pow(w: _PairWriter, s: Statement) -> Operand:
     base, exponent = s.operands
     rest = w.rest(base)
     if rest == ZERO:

@@ -34,7 +34,7 @@ class Lines:
         return Local(target)
 
 
-class _Body(Lines):
+class _PairLines(Lines):
     def __init__(self, scalar: Scalar) -> None:
         names = (f"x{place}" for place in range(100))
         super().__init__(lambda: next(names))
@@ -76,24 +76,24 @@ class _Body(Lines):
 A, A_REST, B, B_REST = (Local(name) for name in ("a", "a_rest", "b", "b_rest"))
 
 
-def _sum(w: _Body) -> tuple[Operand, Operand]:
+def _sum(w: _PairLines) -> tuple[Operand, Operand]:
     total = w.emit("add", A, B)
     return total, w.emit("add", w.of_sum(total, A, B), w.emit("add", A_REST, B_REST))
 
 
-def _difference(w: _Body) -> tuple[Operand, Operand]:
+def _difference(w: _PairLines) -> tuple[Operand, Operand]:
     total = w.emit("sub", A, B)
     return total, w.emit("add", w.of_difference(total, A, B), w.emit("sub", A_REST, B_REST))
 
 
-def _product(w: _Body) -> tuple[Operand, Operand]:
+def _product(w: _PairLines) -> tuple[Operand, Operand]:
     product = w.emit("mul", A, B)
     across = w.emit("add", w.emit("mul", A, B_REST), w.emit("mul", A_REST, B))
     return product, w.emit("add", w.of_product(product, A, B), across)
 
 
-def _quotient(division: OperationName) -> Callable[[_Body], tuple[Operand, Operand]]:
-    def body(w: _Body) -> tuple[Operand, Operand]:
+def _quotient(division: OperationName) -> Callable[[_PairLines], tuple[Operand, Operand]]:
+    def body(w: _PairLines) -> tuple[Operand, Operand]:
         quotient = w.emit(division, A, B)
         product = w.emit("mul", quotient, B)
         # a - q b is a number of the type
@@ -104,14 +104,14 @@ def _quotient(division: OperationName) -> Callable[[_Body], tuple[Operand, Opera
     return body
 
 
-def _root(w: _Body) -> tuple[Operand, Operand]:
+def _root(w: _PairLines) -> tuple[Operand, Operand]:
     root = w.emit("sqrt", A)
     square = w.emit("mul", root, root)
     left = w.emit("sub", w.emit("sub", A, square), w.of_product(square, root, root))
     return root, w.emit("ratio_or_zero", w.emit("add", left, A_REST), w.emit("mul", TWO, root))
 
 
-_BODIES: dict[OperationName, Callable[[_Body], tuple[Operand, Operand]]] = {
+_BODIES: dict[OperationName, Callable[[_PairLines], tuple[Operand, Operand]]] = {
     "wide_add": _sum,
     "wide_sub": _difference,
     "wide_mul": _product,
@@ -135,7 +135,7 @@ _PLAIN: dict[OperationName, OperationName] = {wide: plain for plain, wide in WID
 @lru_cache
 def wide_function(operation: OperationName, scalar: Scalar = "float64") -> Function:
     """(value, rest) = operation(a, a_rest, b, b_rest)."""
-    body = _Body(scalar)
+    body = _PairLines(scalar)
     results = body.pair(*_BODIES[operation](body))
     parameters = ("a", "a_rest") if operation == "wide_sqrt" else ("a", "a_rest", "b", "b_rest")
     return Function(operation, parameters, tuple(body.statements), results)

@@ -25,7 +25,7 @@ from symgen.symbolic.scalar import Graph, Scalar
 
 
 @dataclass(frozen=True)
-class _Part:
+class _BlockOfSpace:
     """One block: where its rows and coordinates stand, and its own null space."""
 
     places: ConnectedComponent
@@ -44,7 +44,7 @@ class BlockSpace:
     def __init__(self, graph: Graph, rows: Matrix, n: int) -> None:
         self.graph, self.rows, self.n = graph, rows, n
         self.delta = n - len(rows)
-        self._parts = [_Part(places, _space(graph, rows, places)) for places in components(rows)]
+        self._parts = [_BlockOfSpace(places, _space(graph, rows, places)) for places in components(rows)]
 
     @cached_property
     def guards(self) -> tuple[Guard, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from symgen.ir.kernel import Argument, Block, Kernel
 from symgen.ir.lifted import Lifted, Meant, same_kernel
-from symgen.lowering.writer import Writer, angles_among, angles_of
+from symgen.lowering.writer import ScalarWriter, angles_among, angles_of
 from symgen.mechanics.alike import TOGETHER, Alike
 from symgen.methods.quantity import Quantity
 from symgen.symbolic.angles.sharing import share_angles
@@ -23,7 +23,7 @@ def alike_kernel(derived: Quantity, alike: Alike, arguments: tuple[Argument, ...
     angles = angles_among(order)
     if any(angles_of([angle]) for angle in angles):
         return None
-    writer = Writer(alike.mechanics, [argument.name for argument in arguments], apart=False)
+    writer = ScalarWriter(alike.mechanics, [argument.name for argument in arguments], apart=False)
     blocks = [writer.angle_block(angles), Block(tuple(writer.pairs(angles, order)), ())]
     size, together = len(alike.names), []
     bodies = list(zip((regular[k : k + size] for k in range(0, len(given), size)), alike.results, strict=True))

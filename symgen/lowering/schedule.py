@@ -28,7 +28,7 @@ from symgen.ir.lifted import Kind, Lifted, Meant, same_kernel
 from symgen.ir.order import REGISTERS, relaxed, waits
 from symgen.ir.sincos import angle_limit, sincos
 from symgen.linear_algebra.guards import Guard, magnitude, where_negligible
-from symgen.lowering.writer import ANGLE, Test, Writer, angles_among, angles_of
+from symgen.lowering.writer import ANGLE, ScalarWriter, Test, angles_among, angles_of
 from symgen.mechanics.system import System
 from symgen.methods.quantity import Quantity
 from symgen.model.quantities import ROWS
@@ -50,7 +50,7 @@ def schedule(mechanics: System, quantities: Sequence[Quantity], scalars: Sequenc
     The order of statements is worked out once, but for kernels with bodies side by side; the thresholds, which differ,
     are filled in last.
     """
-    limits = _Limits(mechanics)
+    limits = _GuardTests(mechanics)
     ordered: dict[str, Kernel] = {}
     programs: dict[Scalar, Program] = {}
     for scalar in scalars:
@@ -66,7 +66,7 @@ def schedule(mechanics: System, quantities: Sequence[Quantity], scalars: Sequenc
     return programs
 
 
-class _Limits:
+class _GuardTests:
     """The tests of guards, each made once, with named thresholds in place of numbers."""
 
     def __init__(self, mechanics: System) -> None:
@@ -174,7 +174,7 @@ def _side_by_side(mechanics: System, derived: Quantity) -> Kernel | None:
     return None if kernel is None else with_constants_evaluated(kernel)
 
 
-def _ordered_kernel(mechanics: System, derived: Quantity, limits: _Limits) -> Kernel:
+def _ordered_kernel(mechanics: System, derived: Quantity, limits: _GuardTests) -> Kernel:
     """The kernel in which fewest values wait; what only a failure needs is computed there if registers run out."""
     kernel = _kernel(mechanics, derived, limits)
     waiting = waits(kernel)
@@ -184,13 +184,13 @@ def _ordered_kernel(mechanics: System, derived: Quantity, limits: _Limits) -> Ke
     return apart if waits(apart) < waiting else kernel
 
 
-def _kernel(mechanics: System, derived: Quantity, limits: _Limits, apart: bool = False) -> Kernel:
+def _kernel(mechanics: System, derived: Quantity, limits: _GuardTests, apart: bool = False) -> Kernel:
     tests = limits.tests(derived.guards)
     roots = [node for test in tests for node in (test.size, test.limit)]
     regular = share_angles(mechanics.graph, [*derived.outputs, *roots])
     outputs = regular[: len(derived.outputs)]
     image = dict(zip(roots, regular[len(outputs) :], strict=True))
-    writer = Writer(mechanics, ROWS[derived.name].arguments, apart)
+    writer = ScalarWriter(mechanics, ROWS[derived.name].arguments, apart)
     order = topological(regular)
     arguments = angles_among(order)
     # what only a failure looks at must not decide which angles a regular state evaluates

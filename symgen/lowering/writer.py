@@ -41,7 +41,7 @@ def angles_among(nodes: Sequence[Node]) -> list[Node]:
     return list(dict.fromkeys(node.args[0] for node in nodes if node.op in ("sin", "cos")))
 
 
-class Writer:
+class ScalarWriter:
     """Turns scalars into statements, each once per kernel."""
 
     def __init__(self, mechanics: System, arguments: Sequence[str], apart: bool) -> None:

@@ -15,7 +15,7 @@ from symgen.model.blocks.coordinates import read_coordinates
 from symgen.model.blocks.elements import read_forces, read_friction, read_springs
 from symgen.model.blocks.inputs import read_inputs
 from symgen.model.blocks.joint_forms import JointCoordinate, read_joints
-from symgen.model.blocks.loops import Rows
+from symgen.model.blocks.loops import LoopRows
 from symgen.model.blocks.paths import read_paths
 from symgen.model.blocks.published import read_published
 from symgen.model.checks.all_checks import check_mechanics, notice_efforts, notice_empty_outputs
@@ -71,7 +71,7 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
         *(coefficient for column in inputs for _, coefficient in column.acts_on), *_placing(mechanism),
     ]  # fmt: skip
     coordinates = read_coordinates(tree, ranges, definitions, used, joint_coordinates)
-    made = Rows(scope, mechanism, coordinates, without_components(definitions), defaults)
+    made = LoopRows(scope, mechanism, coordinates, without_components(definitions), defaults)
     constraints = (*written, *made.of_loops(tree), *joints.rows, *made.of_wheels(tree))
     names = tuple(coordinate.name for coordinate in coordinates)
     whole = not scope.mistakes

@@ -56,7 +56,7 @@ class Panel:
 
 
 @dataclass(frozen=True, slots=True)
-class _Frame:
+class _PanelArea:
     """Where a panel lies on the page, and the ranges of its axes."""
 
     left: float
@@ -93,7 +93,7 @@ def line_chart(times: Array, panels: Sequence[Panel], height: float) -> str:
     for position, panel in enumerate(panels):
         top = TOP + position * (height + GAP)
         span = float(times[0]), float(times[-1])
-        frame = _Frame(LEFT, WIDTH - beside, top, top + height, span, _limits(panel))
+        frame = _PanelArea(LEFT, WIDTH - beside, top, top + height, span, _limits(panel))
         parts += ['<g class="panel">', *_axes(frame, panel, last=position == len(panels) - 1)]
         for k, line in enumerate(panel.lines):
             parts += _curve(frame, times, line, k)
@@ -133,7 +133,7 @@ def _power(values: Sequence[float]) -> int:
     return exponent if not -3 <= exponent <= 4 else 0
 
 
-def _axes(frame: _Frame, panel: Panel, last: bool) -> Iterator[str]:
+def _axes(frame: _PanelArea, panel: Panel, last: bool) -> Iterator[str]:
     below = frame.bottom + 12
     for t in ticks(*frame.times):
         x = _n(frame.x(t))
@@ -162,7 +162,7 @@ def _axes(frame: _Frame, panel: Panel, last: bool) -> Iterator[str]:
         yield _text(_n((frame.left + frame.right) / 2), _n(frame.bottom + 26), "time in s", "middle")
 
 
-def _curve(frame: _Frame, times: Array, line: Line, k: int) -> Iterator[str]:
+def _curve(frame: _PanelArea, times: Array, line: Line, k: int) -> Iterator[str]:
     """The curve, interrupted where it has no value, with a triangle at each of its zeros."""
     steps, pen = [], "M"
     for t, value in zip(times, line.values, strict=True):
@@ -177,7 +177,7 @@ def _curve(frame: _Frame, times: Array, line: Line, k: int) -> Iterator[str]:
         yield f'<polygon class="zero" points="{corners}" fill="{colour}"/>'
 
 
-def _legend(frame: _Frame, panel: Panel) -> Iterator[str]:
+def _legend(frame: _PanelArea, panel: Panel) -> Iterator[str]:
     x, y = frame.right + 8, frame.top + 7
     if panel.title:
         yield _text(_n(x), _n(y), escape(panel.title), "start")

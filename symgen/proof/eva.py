@@ -39,7 +39,7 @@ class EntryView:
 
 
 @dataclass(frozen=True, slots=True)
-class DriverView:
+class EvaDriverView:
     """The entry function of one kernel."""
 
     name: str
@@ -63,7 +63,7 @@ class EvaView:
     not_finite: str
     has_parameters: bool
     tanh: str
-    drivers: tuple[DriverView, ...]
+    drivers: tuple[EvaDriverView, ...]
 
 
 def emit_eva(model: Model, program: Program) -> dict[str, str]:
@@ -105,7 +105,7 @@ def cut_coordinates(model: Model, program: Program, kernel: Kernel) -> frozenset
     return frozenset(view.index for view in _slices(program, kernel, box(model), model.trig_range == "wide"))
 
 
-def _driver(model: Model, program: Program, kernel: Kernel, members: dict[str, str]) -> DriverView:
+def _driver(model: Model, program: Program, kernel: Kernel, members: dict[str, str]) -> EvaDriverView:
     ranges = box(model)
     cut = _slices(program, kernel, ranges, model.trig_range == "wide")
     sliced = {view.index for view in cut}
@@ -113,7 +113,7 @@ def _driver(model: Model, program: Program, kernel: Kernel, members: dict[str, s
     places = [(f"{name}[{i}]", ranges[name][i]) for name, size in arrays for i in range(size)]
     places = [(place, pair) for place, pair in places if place not in {f"q[{index}]" for index in sliced}]
     places += [(f"p.{members[p.name]}", pair) for p, pair in zip(model.parameters, ranges["p"], strict=True)]
-    return DriverView(
+    return EvaDriverView(
         name=kernel.name,
         arrays=arrays,
         entries=tuple(EntryView(place, *_texts(program.scalar, pair)) for place, pair in places),

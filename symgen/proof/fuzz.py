@@ -29,7 +29,7 @@ BITS = {"float64": 64, "float32": 32}
 
 
 @dataclass(frozen=True, slots=True)
-class KernelView:
+class FuzzedFunctionView:
     """One function: the places of its arguments among q, qd, qdd, u, and the length of its result.
 
     `name` is the quantity with the ending of its variant; `same` names the function that must return the same bits.
@@ -63,7 +63,7 @@ class FuzzView:
     members: tuple[str, ...]
     given: tuple[tuple[str, bool, int, tuple[str, ...]], ...]
     ranges: tuple[tuple[str, str, str], ...]
-    kernels: tuple[KernelView, ...]
+    kernels: tuple[FuzzedFunctionView, ...]
     held: tuple[str, ...]
 
 
@@ -125,11 +125,11 @@ def _with_trig(program: Program) -> Iterator[GivenTrig]:
     return (one for one in found if one is not None)
 
 
-def _kernel(kernel: Kernel, ending: str) -> KernelView:
+def _kernel(kernel: Kernel, ending: str) -> FuzzedFunctionView:
     places = tuple(ARRAYS.index(argument.name) for argument in array_arguments(kernel))
     prepared, name = ending == PREPARED, kernel.name
     same = name if prepared else ""
-    return KernelView(
+    return FuzzedFunctionView(
         name + ending, prepared, ending == SINES_GIVEN, places, len(kernel.outputs), name in HELD, same
     )
 

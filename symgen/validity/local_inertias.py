@@ -40,7 +40,7 @@ def definite_by_frames(mechanics: System, factor: ArticulatedFactor) -> bool:
 def _definite_apart(model: Model) -> bool:
     """The same on a graph of its own, so that no kernel shares what is looked at here."""
     apart = System(model)
-    found = _Frames(apart, ArticulatedFactor(apart.bodies)).definite
+    found = _InertiasAtJoints(apart, ArticulatedFactor(apart.bodies)).definite
     apart.graph.dissolve()
     return found
 
@@ -51,7 +51,7 @@ def definite_along_motion(mechanics: System, factor: ArticulatedFactor) -> bool:
     return sound and not any(pivot.is_zero for pivot in factor.pivots)
 
 
-class _Frames:
+class _InertiasAtJoints:
     """The joints of one factor, each with the inertia it is sure to meet."""
 
     def __init__(self, mechanics: System, factor: ArticulatedFactor) -> None:

@@ -26,7 +26,7 @@ from symgen.verify.interpreted import outcomes
 from symgen.verify.reference.reference import ReferenceValueError, State
 from symgen.verify.running.compile import Outcome
 from symgen.verify.sampling.lanes import Lanes
-from symgen.verify.sampling.loops_in_lanes import Loops
+from symgen.verify.sampling.loops_in_lanes import LoopsInLanes
 from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, ranked_parts
 from symgen.verify.tolerance import FACTOR, expectations
 
@@ -59,7 +59,7 @@ class FarParameters:
 
     def __init__(self, expected: Expected) -> None:
         self._reference, self._drawn = expected.reference, expected.drawn
-        self._loops = Loops(expected.reference.system, [float(x) for x in expected.reference.literals()])
+        self._loops = LoopsInLanes(expected.reference.system, [float(x) for x in expected.reference.literals()])
         self._parts = ranked_parts(expected.reference.system, expected.reference.ranks)
 
     def bounds(

@@ -35,10 +35,10 @@ def run_many(
 ) -> list[tuple[Status, list[float]]]:
     """The status of each state and, where it is OK, the outputs; `arguments` hold the parameters `p`, too."""
     with np.errstate(all="ignore"):
-        return _Run(kernel, sincos, scalar, arguments).outcomes()
+        return _KernelRun(kernel, sincos, scalar, arguments).outcomes()
 
 
-class _Run:
+class _KernelRun:
     def __init__(
         self, kernel: Kernel, sincos: Function | None, scalar: Scalar, given: Sequence[Mapping[str, Sequence[float]]]
     ) -> None:

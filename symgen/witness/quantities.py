@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import casadi
 
-from symgen.model.configurations.assembly import Ranks
+from symgen.model.configurations.assembly import ConfigurationRanks
 from symgen.model.model import Model
 from symgen.witness.allocation import allocated
 from symgen.witness.lagrange import Lagrange, along
@@ -13,7 +13,7 @@ from symgen.witness.linear import compound, pseudoinverse, solve
 PROJECTION_STEPS = 2
 
 
-def derive(model: Model, s: Lagrange, ranks: Ranks) -> dict[str, casadi.SX]:
+def derive(model: Model, s: Lagrange, ranks: ConfigurationRanks) -> dict[str, casadi.SX]:
     """Every quantity of the model as a dense symbolic matrix over the symbols of `s`; empty ones are left out."""
     G, B, M = s.mass, s.jacobian, s.control
     identity = casadi.SX.eye(model.n)
@@ -72,7 +72,7 @@ def _at_rate(s: Lagrange, value: casadi.SX, rate: casadi.SX) -> casadi.SX:
     return casadi.substitute(value, s.qd, rate)
 
 
-def _projector_rate(s: Lagrange, N: casadi.SX, B_plus: casadi.SX, ranks: Ranks) -> casadi.SX:
+def _projector_rate(s: Lagrange, N: casadi.SX, B_plus: casadi.SX, ranks: ConfigurationRanks) -> casadi.SX:
     """Ṅ (n×n) along q̇ as given.
 
     Differentiated where rank B = r; for dependent rows N is differentiable along V only, so there Remark 9:
@@ -106,7 +106,7 @@ def _forward(s: Lagrange, B_plus: casadi.SX, dependent: bool) -> tuple[casadi.SX
     return solution[:n], solution[n:]
 
 
-def _configuration(s: Lagrange, ranks: Ranks) -> casadi.SX:
+def _configuration(s: Lagrange, ranks: ConfigurationRanks) -> casadi.SX:
     """Two Newton steps q − B⁺ g towards V with the geometric rows alone, n."""
     rows = s.residual.shape[0]
     step = s.q - pseudoinverse(s.jacobian[:rows, :], ranks.geometric) @ s.residual
@@ -116,7 +116,7 @@ def _configuration(s: Lagrange, ranks: Ranks) -> casadi.SX:
     return result
 
 
-def _singularity(s: Lagrange, N: casadi.SX, n: int, ranks: Ranks) -> casadi.SX:
+def _singularity(s: Lagrange, N: casadi.SX, n: int, ranks: ConfigurationRanks) -> casadi.SX:
     """Measures in [0, 1] of the distance to constraint and input singularities, 2; 0/0 counts as 0."""
     constraint = casadi.SX(1)
     rows = s.jacobian.shape[0]
@@ -135,7 +135,7 @@ def _ratio_or_zero(numerator: casadi.SX, denominator: casadi.SX) -> casadi.SX:
     return casadi.if_else(denominator == 0, 0, numerator / denominator)
 
 
-def _minimal(model: Model, s: Lagrange, ranks: Ranks) -> dict[str, casadi.SX]:
+def _minimal(model: Model, s: Lagrange, ranks: ConfigurationRanks) -> dict[str, casadi.SX]:
     """F (8) for the model's independent velocities, and the coefficients of (9) along q̇ as given."""
     names = [coordinate.name for coordinate in model.coordinates]
     independent = [names.index(name) for name in model.independent_velocities]

@@ -7,7 +7,7 @@ from itertools import islice
 import casadi
 import numpy as np
 
-from symgen.model.configurations.assembly import Ranks
+from symgen.model.configurations.assembly import ConfigurationRanks
 from symgen.model.model import Model
 from symgen.witness.configurations import RANK_TOLERANCE, Array, configurations
 from symgen.witness.lagrange import Lagrange
@@ -17,7 +17,7 @@ POINTS = 6
 TRIALS = 60
 
 
-def generic_ranks(model: Model, lagrange: Lagrange) -> Ranks:
+def generic_ranks(model: Model, lagrange: Lagrange) -> ConfigurationRanks:
     """The largest ranks met at random admissible configurations, default parameters; ValueError if there is none."""
     matrices = casadi.Function("matrices", [lagrange.q, lagrange.p], [lagrange.jacobian, lagrange.control])
     parameters = default_parameters(model)
@@ -31,7 +31,7 @@ def generic_ranks(model: Model, lagrange: Lagrange) -> Ranks:
     if not found:
         raise ValueError(f"{model.name}: no admissible configuration found")
     constraints, geometric, actuation = (max(column) for column in zip(*found, strict=True))
-    return Ranks(constraints, geometric, actuation)
+    return ConfigurationRanks(constraints, geometric, actuation)
 
 
 def _rank(matrix: Array, scale: float | None = None) -> int:

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from symgen.laboratory.bench.build import Footprint
+from symgen.laboratory.bench.build import CandidateFootprint
 from symgen.laboratory.bench.callgrind import inclusive_costs
 from symgen.laboratory.bench.candidate import Task
 from symgen.laboratory.bench.pareto import pareto_front
@@ -16,7 +16,7 @@ from symgen.laboratory.bench.reporting.charts import spread, time_against_error
 from symgen.laboratory.bench.reporting.goals import EARLY_COUNTS, GOALS, PAPER
 from symgen.laboratory.bench.reporting.pages import deviation_lines, page
 from symgen.laboratory.bench.reporting.tables import bench_tables
-from symgen.laboratory.bench.run import Benchmark, Comparison, Measured
+from symgen.laboratory.bench.run import Benchmark, Comparison, MeasuredCandidate
 from symgen.laboratory.bench.workload import Errors
 
 PROFILE = """version: 1
@@ -69,8 +69,8 @@ def test_labels_do_not_overlap(wanted: list[float]) -> None:
     assert all(-1e-12 <= height <= 1.0 for height in placed)
 
 
-def measured(generator: str, form: str, count: float, **changes: Any) -> Measured:
-    row = Measured(
+def measured(generator: str, form: str, count: float, **changes: Any) -> MeasuredCandidate:
+    row = MeasuredCandidate(
         generator=generator,
         form=form,
         language="C",
@@ -78,7 +78,7 @@ def measured(generator: str, form: str, count: float, **changes: Any) -> Measure
         nanoseconds=count / 5,
         single_nanoseconds=None,
         instructions=count,
-        footprint=Footprint(400, 64),
+        footprint=CandidateFootprint(400, 64),
         operations={"add": 3} if generator == "symgen" else None,
         errors=Errors(1e-16, 1e-15 * count / 100, 2e-15 * count / 100, 0.5, 0),
         chosen=generator == "symgen",

@@ -14,7 +14,7 @@ from symgen.cli.main import main
 from symgen.generation.draft import Draft
 from symgen.generation.recorded import as_recorded
 from symgen.generation.results import Options
-from symgen.generation.runnable import Kernels
+from symgen.generation.runnable import RunnableKernels
 from symgen.ir.kernel import Scalar
 from symgen.ir.wide_functions import works_with_pairs
 from symgen.laboratory.bench.candidate import Task
@@ -111,7 +111,7 @@ def test_what_verification_left_out_is_left_out_and_told(tmp_path: Path) -> None
 
 def test_stress_takes_the_record(tmp_path: Path) -> None:
     path, out = recorded(tmp_path, {"forward_dynamics": ["float32"]}, {"inverse_dynamics": ["float32"]})
-    kernels = Kernels(load_model(path), tmp_path, out=out)
+    kernels = RunnableKernels(load_model(path), tmp_path, out=out)
     assert works_with_pairs(kernels.kernel("forward_dynamics", "float32"))
     assert not works_with_pairs(kernels.kernel("forward_dynamics", "float64"))
     assert "inverse_dynamics" not in kernels.names

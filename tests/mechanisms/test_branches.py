@@ -18,7 +18,7 @@ from symgen.ir.kernel import Status
 from symgen.lowering.schedule import schedule
 from symgen.mechanics.genericity import genericity
 from symgen.mechanics.system import System
-from symgen.model.configurations.assembly import RankedConfiguration, Ranks
+from symgen.model.configurations.assembly import ConfigurationRanks, RankedConfiguration
 from symgen.model.load import load_text
 from symgen.model.model import Model
 from symgen.quantities.select import derive_quantities
@@ -171,7 +171,7 @@ def test_inputs_that_do_more_on_a_branch_nobody_found_give_a_status() -> None:
     text = row_of_four_bars(1, ground="0.7").replace("acts_on: {a0: 1}", "acts_on: {b1: 1}")
     known = load_text(text, "coupler.yaml")
     assert known.assembly is not None
-    place = RankedConfiguration((0.8, 0.8, 0.0), Ranks(2, 2, 0))
+    place = RankedConfiguration((0.8, 0.8, 0.0), ConfigurationRanks(2, 2, 0))
     model = replace(known, assembly=replace(known.assembly, ranks=place.ranks, places=(place,)))
     assert inverse(model, [0.8, 0.8, 0.0]) == (Status.OK, (0.0,))
     crossed = next(p.q for p in known.assembly.places if p.ranks.actuation == 1)

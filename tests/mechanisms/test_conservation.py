@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from shipped import ROOT
 
-from symgen.generation.runnable import Kernels
+from symgen.generation.runnable import RunnableKernels
 from symgen.mechanics.system import System
 from symgen.model.configurations.mechanics import default_values
 from symgen.model.load import load_model
@@ -22,7 +22,7 @@ MODELS["floating_body"] = Path(__file__).parent / "floating_body.yaml"
 
 def free_motion(name: str, folder: Path, duration: float, rates: dict[str, float]) -> SimulatedMotion:
     model = load_model(MODELS[name])
-    plant = Plant(model, tuple(default_values(model.parameters).values()), Kernels(model, folder, QUANTITIES))
+    plant = Plant(model, tuple(default_values(model.parameters).values()), RunnableKernels(model, folder, QUANTITIES))
     q = [float(dict(model.configuration).get(c.name, 0)) for c in model.coordinates]
     start = consistent_start(plant, q, [rates.get(c.name, 0.0) for c in model.coordinates])
     times = np.linspace(0, duration, 11).tolist()

@@ -10,7 +10,7 @@ from symgen.closedform.forms import derive_closed_forms
 from symgen.diagnostics import ModelError
 from symgen.model.load import load_text
 from symgen.model.model import Model
-from symgen.verify.reference.manifold import Ranks
+from symgen.verify.reference.manifold import ManifoldRanks
 from symgen.verify.reference.reference import Reference
 from symgen.verify.sampling.states import VerificationError, sample_states
 
@@ -175,6 +175,6 @@ def test_closed_forms_find_their_configurations_in_any_units_of_rows() -> None:
 
 def test_where_too_few_states_are_found_it_is_told_what_became_of_the_others() -> None:
     """For the ranks of a linkage of one row less, as if all of it were another branch."""
-    reference = Reference(latch("1.3"), Ranks(constraints=1, geometric=1, actuation=1))
+    reference = Reference(latch("1.3"), ManifoldRanks(constraints=1, geometric=1, actuation=1))
     with pytest.raises(VerificationError, match=r"only 0 regular configurations.*others looked at .* lie on other"):
         sample_states(reference, ("inverse_dynamics",), 8)

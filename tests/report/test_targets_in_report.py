@@ -9,7 +9,7 @@ from pathlib import Path
 
 from report_inputs import report_input
 
-from symgen.laboratory.target.footprint import Footprint
+from symgen.laboratory.target.footprint import KernelFootprint
 from symgen.laboratory.target.record import Cell, CoreReport, KernelCost, TargetReport
 from symgen.report.compose import compose
 from symgen.report.html import render_html
@@ -27,8 +27,8 @@ def _written(folder: Path, failures: tuple[str, ...] = ()) -> Path:
     )
     costs = (
         KernelCost("inverse_dynamics", "float32", "-O2", 256, 84, 84, 16, None),
-        KernelCost("inverse_dynamics", "float32", "-Os", 256, 73, 73, 12, Footprint(344, 344, 0, 16, ())),
-        KernelCost("forward_dynamics", "float64", "-Os", 256, 90210, 91017, 48, Footprint(5088, 9120, 0, 40, ())),
+        KernelCost("inverse_dynamics", "float32", "-Os", 256, 73, 73, 12, KernelFootprint(344, 344, 0, 16, ())),
+        KernelCost("forward_dynamics", "float64", "-Os", 256, 90210, 91017, 48, KernelFootprint(5088, 9120, 0, 40, ())),
     )
     digests = {Path(path).name: hashlib.sha256(text.encode()).hexdigest() for path, text in SOURCES.items()}
     report = TargetReport(

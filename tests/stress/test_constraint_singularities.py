@@ -6,7 +6,7 @@ from pathlib import Path
 
 from shipped import model
 
-from symgen.generation.runnable import Kernels
+from symgen.generation.runnable import RunnableKernels
 from symgen.laboratory.stress.determinants import choices, common_troubles
 from symgen.laboratory.stress.families import _family, _kind, near_redundant
 from symgen.laboratory.stress.series import SYMGEN
@@ -37,7 +37,7 @@ def test_a_four_bar_at_its_change_point(tmp_path: Path) -> None:
     assert [_kind(reference, place) for place in found] == ["constraint"]
     names = ("inverse_dynamics", "forward_dynamics", "nullspace_projector")
     family = _family(reference, "constraint", trouble, found)
-    sweeper = Sweeper(reference, Kernels(reference.model, tmp_path, names), [family])
+    sweeper = Sweeper(reference, RunnableKernels(reference.model, tmp_path, names), [family])
     sweeper.family(0)
     result = sweeper.result()
     assert result.failures == ()
@@ -54,7 +54,7 @@ def test_near_redundant_rows_cost_no_more_than_the_drift(tmp_path: Path) -> None
     assert twin is not None
     reference = Reference(twin)
     assert (reference.ranks.constraints, twin.r) == (2, 3)
-    sweeper = Sweeper(reference, Kernels(twin, tmp_path, ("inverse_dynamics",)), [near_redundant(reference)])
+    sweeper = Sweeper(reference, RunnableKernels(twin, tmp_path, ("inverse_dynamics",)), [near_redundant(reference)])
     sweeper.family(0)
     result = sweeper.result()
     assert result.failures == ()

@@ -10,7 +10,7 @@ import pytest
 from shipped import model
 from test_families import found, known, reference
 
-from symgen.generation.runnable import PIECES, Kernels, Outcome
+from symgen.generation.runnable import PIECES, Outcome, RunnableKernels
 from symgen.ir.kernel import Scalar
 from symgen.laboratory.stress.families import Family, _family
 from symgen.laboratory.stress.series import FIXED, PARTITION, SWITCHING, SYMGEN, Series
@@ -20,7 +20,7 @@ from symgen.verify.reference.reference import State
 
 
 def swept(name: str, family: Family, folder: Path, quantities: tuple[str, ...]) -> tuple[dict[str, Series], Sweeper]:
-    sweeper = Sweeper(reference(name), Kernels(model(name), folder, quantities), [family])
+    sweeper = Sweeper(reference(name), RunnableKernels(model(name), folder, quantities), [family])
     sweeper.family(0)
     series = {f"{s.quantity} {s.form} {s.scalar}": s for s in sweeper.result().series}
     return series, sweeper
@@ -66,7 +66,7 @@ def test_statuses_come_from_both_sides_of_an_input_singularity(name: str, tmp_pa
 def test_a_wrong_kernel_is_found_out(tmp_path: Path) -> None:
     """The sweep fails when results carry an error, and when a refusal is missing."""
     (family,) = [family for family in found("rear_car").families if family.kind == "input"]
-    kernels = Kernels(model("rear_car"), tmp_path, ("inverse_dynamics",))
+    kernels = RunnableKernels(model("rear_car"), tmp_path, ("inverse_dynamics",))
 
     class Spoiled:
         names = kernels.names

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from rows_that_meet import beside, wheels
 
-from symgen.generation.runnable import SCALARS, STRESSED, Kernels
+from symgen.generation.runnable import SCALARS, STRESSED, RunnableKernels
 from symgen.ir.kernel import Status
 from symgen.laboratory.stress.form_kernels import FormKernels
 from symgen.laboratory.stress.statuses.rule import of_more_draws
@@ -34,12 +34,12 @@ SYSTEMS = {
 )
 def test_no_digit_is_lost_twice(name: str, tmp_path: Path) -> None:
     model = wheels(name, SYSTEMS[name])
-    generated = Kernels(model, tmp_path, STRESSED)
+    generated = RunnableKernels(model, tmp_path, STRESSED)
     forms = FormKernels(model, tmp_path, generated.names)
     assert _beyond(model, generated, forms) == []
 
 
-def _beyond(model: Model, generated: Kernels, forms: FormKernels) -> list[str]:
+def _beyond(model: Model, generated: RunnableKernels, forms: FormKernels) -> list[str]:
     """What is beyond the tolerance with status 0; each kernel has to answer at most states."""
     reference, found = Reference(model), list[str]()
     for scalar in SCALARS:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from rows_that_meet import wheels
 
-from symgen.generation.runnable import SCALARS, STRESSED, Kernels, rounded_state
+from symgen.generation.runnable import SCALARS, STRESSED, RunnableKernels, rounded_state
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Scalar
 from symgen.laboratory.stress.families import search
@@ -88,7 +88,7 @@ def test_what_is_wrong_is_found(tmp_path: Path) -> None:
     reference = Reference(castors())
     states = [one for _, one in zip(range(3), far_apart(reference), strict=False)]
 
-    class Off(Kernels):
+    class Off(RunnableKernels):
         def run(self, name: str, state: State, scalar: Scalar) -> Outcome:
             found = super().run(name, state, scalar)
             if name == "multipliers":

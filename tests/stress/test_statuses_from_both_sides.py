@@ -12,7 +12,7 @@ import pytest
 from shipped import NAMES, model, sparing
 from test_families import reference
 
-from symgen.generation.runnable import SCALARS, STRESSED, Kernels, rounded_state
+from symgen.generation.runnable import SCALARS, STRESSED, RunnableKernels, rounded_state
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar, Status
 from symgen.laboratory.stress.variants.dimensions import parameter_dimensions
 from symgen.verify.reference.reference import ReferenceValueError, State
@@ -29,9 +29,9 @@ ACTUATION = {"rapkm_2rrr_rr", "rapkm_two_drives", "rear_car", "slider_crank"}
 
 
 @pytest.fixture(scope="module", params=sparing(NAMES))
-def kernels(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Kernels:
+def kernels(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> RunnableKernels:
     name: str = request.param
-    return Kernels(model(name), tmp_path_factory.mktemp(name), STRESSED)
+    return RunnableKernels(model(name), tmp_path_factory.mktemp(name), STRESSED)
 
 
 @cache
@@ -82,7 +82,7 @@ def units_off(name: str, state: State, quantity: str, scalar: Scalar, entries: S
 
 
 @pytest.mark.parametrize("scalar", SCALARS)
-def test_ranks_are_judged_as_the_exact_measures_do(kernels: Kernels, scalar: Scalar) -> None:
+def test_ranks_are_judged_as_the_exact_measures_do(kernels: RunnableKernels, scalar: Scalar) -> None:
     name, eps = kernels.model.name, float(UNIT_ROUNDOFF[scalar])
     low, high = (kernels.model.n * eps) ** 2, (1e3 * kernels.model.n * eps) ** 2
     for given in beside_special_angles(name):
@@ -120,7 +120,7 @@ def _line(name: str, code: Status) -> State | None:
 
 @pytest.mark.parametrize("code", [Status.CONSTRAINT_RANK, Status.ACTUATION_RANK])
 @pytest.mark.parametrize("scalar", SCALARS)
-def test_ranks_from_both_sides(kernels: Kernels, scalar: Scalar, code: Status) -> None:
+def test_ranks_from_both_sides(kernels: RunnableKernels, scalar: Scalar, code: Status) -> None:
     name = kernels.model.name
     at = _line(name, code)
     assert (at is not None) == (name in (CONSTRAINT if code == Status.CONSTRAINT_RANK else ACTUATION))
@@ -142,7 +142,7 @@ def test_ranks_from_both_sides(kernels: Kernels, scalar: Scalar, code: Status) -
 
 
 @pytest.mark.parametrize("scalar", SCALARS)
-def test_the_range_of_angles(kernels: Kernels, scalar: Scalar) -> None:
+def test_the_range_of_angles(kernels: RunnableKernels, scalar: Scalar) -> None:
     name, limit = kernels.model.name, {"float64": 1e5, "float32": 100.0}[scalar]
     given, reached = regular(name)[0], 0
     for i, coordinate in enumerate(kernels.model.coordinates):
@@ -161,7 +161,7 @@ def test_the_range_of_angles(kernels: Kernels, scalar: Scalar) -> None:
 
 
 @pytest.mark.parametrize("scalar", SCALARS)
-def test_no_mass_and_little_mass(kernels: Kernels, scalar: Scalar) -> None:
+def test_no_mass_and_little_mass(kernels: RunnableKernels, scalar: Scalar) -> None:
     given = regular(kernels.model.name)[0]
     heavy = [d is not None and d[0] == 1 and d[2] == 0 for d in parameter_dimensions(kernels.model)]
     for quantity in ("forward_dynamics", "multipliers"):
@@ -174,7 +174,7 @@ def test_no_mass_and_little_mass(kernels: Kernels, scalar: Scalar) -> None:
 
 
 @pytest.mark.parametrize("scalar", SCALARS)
-def test_what_is_not_finite(kernels: Kernels, scalar: Scalar) -> None:
+def test_what_is_not_finite(kernels: RunnableKernels, scalar: Scalar) -> None:
     given = rounded_state(regular(kernels.model.name)[0], scalar)
     for quantity in kernels.names:
         assert kernels.run(quantity, given, scalar).status == Status.OK

@@ -11,7 +11,7 @@ from shipped import model
 from test_families import reference
 
 from symgen.cli.main import main
-from symgen.generation.runnable import PIECES, STRESSED, Kernels
+from symgen.generation.runnable import PIECES, STRESSED, RunnableKernels
 from symgen.laboratory.stress.long_run import long_runs
 from symgen.laboratory.stress.odd_numbers import odd_numbers
 from symgen.laboratory.stress.reporting.pages import page
@@ -28,13 +28,13 @@ inputs: {F: {unit: N, acts_on: {x: 1}}}
 
 
 @pytest.fixture(scope="module")
-def slider_crank(tmp_path_factory: pytest.TempPathFactory) -> tuple[Kernels, Path]:
+def slider_crank(tmp_path_factory: pytest.TempPathFactory) -> tuple[RunnableKernels, Path]:
     folder = tmp_path_factory.mktemp("kernels")
     names = ("constraint_residual", "energy", "admissible_velocity", "projected_configuration")
-    return Kernels(model("slider_crank"), folder, (*PIECES, *STRESSED, *names)), folder
+    return RunnableKernels(model("slider_crank"), folder, (*PIECES, *STRESSED, *names)), folder
 
 
-def test_powers_of_two_change_no_bit_of_the_inputs(slider_crank: tuple[Kernels, Path], tmp_path: Path) -> None:
+def test_powers_of_two_change_no_bit_of_the_inputs(slider_crank: tuple[RunnableKernels, Path], tmp_path: Path) -> None:
     found, failures = scaling(reference("slider_crank"), slider_crank[0], tmp_path)
     assert failures == ()
     changes = {"lengths", "masses", "times", "all three", "m in mm", "rad in deg"}
@@ -48,7 +48,7 @@ def test_powers_of_two_change_no_bit_of_the_inputs(slider_crank: tuple[Kernels, 
 
 
 def test_no_odd_number_gives_an_odd_result_with_status_0(tmp_path: Path) -> None:
-    kernels = Kernels(model("skate"), tmp_path, STRESSED)
+    kernels = RunnableKernels(model("skate"), tmp_path, STRESSED)
     states = [sample.state for sample in sample_states(reference("skate"), (), 8)][:2]
     found, failures = odd_numbers(kernels, [name for name in STRESSED if name in kernels.names], states)
     assert failures == ()
@@ -57,7 +57,7 @@ def test_no_odd_number_gives_an_odd_result_with_status_0(tmp_path: Path) -> None
 
 @pytest.mark.toolchain
 def test_projections_keep_a_long_run_on_the_constraints(
-    slider_crank: tuple[Kernels, Path], tool: Callable[[str], str]
+    slider_crank: tuple[RunnableKernels, Path], tool: Callable[[str], str]
 ) -> None:
     tool("cc")
     (free, projected), _ = long_runs(reference("slider_crank"), *slider_crank, 10_000)

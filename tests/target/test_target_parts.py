@@ -14,7 +14,7 @@ from symgen.cli.main import main
 from symgen.ir.kernel import Scalar
 from symgen.laboratory.target.compare import BOUND, compare
 from symgen.laboratory.target.cores import BY_NAME, CORES, LEVELS, Compiler, Core
-from symgen.laboratory.target.driver import Record, Results, driver_source, pack_states, unpack_results
+from symgen.laboratory.target.driver import Results, RunRecord, driver_source, pack_states, unpack_results
 from symgen.laboratory.target.entries import Entries, plain_entries, with_companions
 from symgen.laboratory.target.selection import ALL, Share, beyond_pairs, selected, selection, share, small_kernels
 from symgen.laboratory.target.vectors import perturbed, vectors_of
@@ -28,7 +28,7 @@ def _entries() -> Entries:
 
 
 def _results(u: float, states: int = 2, status: int = 0) -> Results:
-    record = Record(status, struct.pack("<2f", u, 1.0))
+    record = RunRecord(status, struct.pack("<2f", u, 1.0))
     return Results(dict.fromkeys(("inverse_dynamics", "energy"), (record,) * states), {})
 
 

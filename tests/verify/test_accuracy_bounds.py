@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from shipped import SCALARS, model
 
-from symgen.generation.runnable import Kernels
+from symgen.generation.runnable import RunnableKernels
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
 from symgen.laboratory.bench.candidate import Task
 from symgen.laboratory.bench.workload import Errors, admissible_samples, errors_of, workload
@@ -35,7 +35,7 @@ def state_of(row: list[float], n: int) -> State:
 def errors(name: str, scalar: Scalar, folder: Path) -> tuple[Errors, list[float]]:
     """Relative errors, and those in units of the tolerance at the states where eps |y| does not cover them."""
     reference, samples = prepared(name)
-    kernels, n = Kernels(model(name), folder, (U,)), model(name).n
+    kernels, n = RunnableKernels(model(name), folder, (U,)), model(name).n
     load = workload(reference, samples, Task(U, "qdd", model(name).m), scalar, lambda _: None)
     results, units = [], []
     for number, row in enumerate(load.states.tolist()):

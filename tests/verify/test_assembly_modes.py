@@ -11,7 +11,7 @@ from symgen.model.load import load_text
 from symgen.model.model import Model
 from symgen.verify.reference.reference import Reference
 from symgen.verify.reference.system import default_parameters
-from symgen.verify.sampling.loops_in_lanes import Loops
+from symgen.verify.sampling.loops_in_lanes import LoopsInLanes
 from symgen.verify.sampling.modes import modes
 from symgen.verify.sampling.nearby import Surroundings
 from symgen.verify.sampling.states import sample_states
@@ -113,7 +113,7 @@ def test_trees_have_none() -> None:
 
 def test_damped_steps_lead_onto_the_loops_from_anywhere() -> None:
     reference = Reference(built(PIN))
-    loops = Loops(reference.system, [float(x) for x in reference.literals()])
+    loops = LoopsInLanes(reference.system, [float(x) for x in reference.literals()])
     starts = np.random.default_rng(5).uniform(-pi, pi, (200, 4))
     p = np.broadcast_to([float(x) for x in default_parameters(reference.model)], (200, 3))
     assert loops.shut(loops.damped(starts, p), p, 1e-9).mean() > 0.95

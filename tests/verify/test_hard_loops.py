@@ -8,7 +8,7 @@ import pytest
 
 from symgen.model.load import load_text
 from symgen.verify.reference.reference import Reference
-from symgen.verify.reference.system import System
+from symgen.verify.reference.system import ReferenceSystem
 from symgen.verify.reference.tape import precision
 from symgen.verify.sampling.regular import FEWEST_STATES, SAMPLING_BITS, RegularStateSearch
 
@@ -50,13 +50,13 @@ ranges: {a_4: [1.21, 2.37]}
 def test_states_are_found_from_those_that_are_known(monkeypatch: pytest.MonkeyPatch) -> None:
     """Draw 1116:175: every start that did not close was followed by eleven more, and fifty seconds went by."""
     reference = Reference(load_text(ARM, "arm.yaml"))
-    calls, geometry = [0], System.loop_geometry
+    calls, geometry = [0], ReferenceSystem.loop_geometry
 
-    def counted(system: System, *given: Any) -> Any:
+    def counted(system: ReferenceSystem, *given: Any) -> Any:
         calls[0] += 1
         return geometry(system, *given)
 
-    monkeypatch.setattr(System, "loop_geometry", counted)
+    monkeypatch.setattr(ReferenceSystem, "loop_geometry", counted)
     with precision(SAMPLING_BITS):
         found = list(RegularStateSearch(reference, 64, 0).candidates())
     inside = [regular.state.q for regular, in_range in found if in_range]

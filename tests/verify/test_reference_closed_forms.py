@@ -14,7 +14,7 @@ from mechanisms import build, double_pendulum, skate, slider_crank, three_cranks
 from symgen.model.model import Model
 from symgen.verify.reference.closing import onto_manifold
 from symgen.verify.reference.linear import column, identity, norm, pseudoinverse
-from symgen.verify.reference.manifold import Ranks, starts
+from symgen.verify.reference.manifold import ManifoldRanks, starts
 from symgen.verify.reference.reference import DIGITS, Reference, ReferenceValueError, State
 from symgen.verify.reference.system import default_parameters
 from symgen.verify.reference.tape import precision
@@ -59,7 +59,7 @@ def small(matrix: Any, limit: float = 1e-45) -> bool:
 
 def test_skate_agrees_with_equations_34_and_36() -> None:
     reference = Reference(skate())
-    assert reference.ranks == Ranks(constraints=1, geometric=0, actuation=2)
+    assert reference.ranks == ManifoldRanks(constraints=1, geometric=0, actuation=2)
     state = state_of(reference)
     y = everything(reference, state)
     with precision(BITS):
@@ -250,8 +250,9 @@ def test_results_hold_fifty_digits_and_a_singular_state_is_refused() -> None:
         size = max(abs(float(entry)) for entry in entries)
         assert all(float(entry.rad()) <= 10.0**-DIGITS * max(size, 1e-10) for entry in entries), name
     folded = build("folded", "x y", "x_dot**2/2 + y_dot**2/2", geometric=("(x**2 + y**2 - 1)*x",))
+    state = State((0, 1), (0, 0), (0, 0), (), ())
     with pytest.raises(ReferenceValueError, match="rank drops"):
-        Reference(folded, Ranks(1, 1, 0)).evaluate(State((0, 1), (0, 0), (0, 0), (), ()), ["nullspace_projector"])
+        Reference(folded, ManifoldRanks(1, 1, 0)).evaluate(state, ["nullspace_projector"])
 
 
 def test_projected_configuration_is_two_newton_steps() -> None:

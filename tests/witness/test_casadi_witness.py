@@ -12,7 +12,7 @@ import pytest
 from shipped import NAMES
 from witness_models import EXTRA
 
-from symgen.model.configurations.assembly import Ranks
+from symgen.model.configurations.assembly import ConfigurationRanks
 from symgen.model.load import load_model, load_text
 from symgen.model.model import Model
 from symgen.witness.casadi_derivation import witness_functions
@@ -65,14 +65,14 @@ CONSTRAINED = [name for name in EVERY if name not in ("double_pendulum", "under_
 @pytest.mark.parametrize(
     ("name", "ranks"),
     [
-        ("front_car", Ranks(2, 0, 2)),
-        ("rapkm_2rrr_rr", Ranks(4, 4, 2)),
-        ("slider_crank", Ranks(2, 2, 1)),
-        ("cranks", Ranks(5, 5, 1)),
-        ("under_actuated", Ranks(0, 0, 1)),
+        ("front_car", ConfigurationRanks(2, 0, 2)),
+        ("rapkm_2rrr_rr", ConfigurationRanks(4, 4, 2)),
+        ("slider_crank", ConfigurationRanks(2, 2, 1)),
+        ("cranks", ConfigurationRanks(5, 5, 1)),
+        ("under_actuated", ConfigurationRanks(0, 0, 1)),
     ],
 )
-def test_generic_ranks(name: str, ranks: Ranks) -> None:
+def test_generic_ranks(name: str, ranks: ConfigurationRanks) -> None:
     assert generic_ranks(case(name).model, differentiate(case(name).model)) == ranks
 
 

@@ -23,7 +23,7 @@ _INSIDE = ("xp", "status", "like", "entries")
 
 
 @dataclass(frozen=True, slots=True)
-class FunctionView:
+class ArrayFunctionView:
     """One quantity: names and lengths of its arrays, docstring, body lines, entries of the result and its shape."""
 
     name: str
@@ -44,7 +44,7 @@ class ModuleView:
     statuses: tuple[tuple[str, int, str], ...]
     not_finite: int
     fields: tuple[tuple[str, str, str], ...]
-    functions: tuple[FunctionView, ...]
+    functions: tuple[ArrayFunctionView, ...]
     needs_ratio: bool
     wide: tuple[tuple[str, Helper], ...]
 
@@ -73,7 +73,7 @@ def emit_array_api(model: Model, program: Program) -> dict[str, str]:
     return {f"array_api/{file_stem(model.c_name, program.scalar)}.py": render("array_api/module.py.jinja", view)}
 
 
-def _function(program: Program, kernel: Kernel, names: Names) -> FunctionView:
+def _function(program: Program, kernel: Kernel, names: Names) -> ArrayFunctionView:
     used = used_locals(kernel)
     printer = ArrayStatements(program.scalar, names.locals, used)
     body = []
@@ -85,7 +85,7 @@ def _function(program: Program, kernel: Kernel, names: Names) -> FunctionView:
     arguments = tuple((argument.name, argument.length) for argument in array_arguments(kernel))
     given = ", ".join(f"{name} (..., {length})" for name, length in arguments)
     result = ", ".join(str(extent) for extent in kernel.shape)
-    return FunctionView(
+    return ArrayFunctionView(
         name=kernel.name,
         arguments=arguments,
         docstring=docstring_lines(f"{meaning(kernel)}: {given} -> (..., {result}), and the status of each state."),

@@ -12,7 +12,7 @@ from fractions import Fraction
 from symgen.backends.c.endings import BATCH
 from symgen.backends.c.file import file_view, files
 from symgen.backends.c.finite import rests
-from symgen.backends.c.functions import FunctionView
+from symgen.backends.c.functions import CFunctionView
 from symgen.backends.c.names import c_members, global_name, guard, names_in_file, status_name
 from symgen.backends.c.pairs import pair_body
 from symgen.backends.c.statements import CStatements, c_literal
@@ -117,7 +117,7 @@ def emit_c_batch(model: Model, program: Program) -> dict[str, str]:
         ratio=ratio if "ratio_or_zero" in operations else "",
     )
     about = tuple(_ABOUT.format(plain=plain, plain_batch=stem).splitlines())
-    shown = tuple(FunctionView(one.comment, one.prototype, ()) for one in functions)
+    shown = tuple(CFunctionView(one.comment, one.prototype, ()) for one in functions)
     header = file_view(model, few, BATCH, about, shown)
     return files(replace(header, includes=(*header.includes, "<stddef.h>")), view, "c/batch.c.jinja")
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symgen.backends.c.functions import FunctionView
+from symgen.backends.c.functions import CFunctionView
 from symgen.backends.c.lanes import each_macro
 from symgen.backends.c.names import guard
 from symgen.backends.c.pairs import PairsView, pairs_view
@@ -42,7 +42,7 @@ class FileView:
     scalar: str
     about: tuple[str, ...]
     includes: tuple[str, ...]
-    functions: tuple[FunctionView, ...]
+    functions: tuple[CFunctionView, ...]
     struct: StructView | None
     statuses: StatusView | None
     includes_math: bool
@@ -59,7 +59,7 @@ def file_view(
     program: Program,
     ending: str,
     about: tuple[str, ...],
-    functions: tuple[FunctionView, ...],
+    functions: tuple[CFunctionView, ...],
     struct: StructView | None = None,
     statuses: StatusView | None = None,
 ) -> FileView:

@@ -23,7 +23,7 @@ from symgen.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class FunctionView:
+class CFunctionView:
     """One function: comment, prototype without semicolon, body lines, and the functions it needs."""
 
     comment: tuple[str, ...]
@@ -34,13 +34,13 @@ class FunctionView:
 
 def kernel_function(
     model: Model, program: Program, kernel: Kernel, names: Names, about: str, given: Mapping[str, str], ending: str = ""
-) -> FunctionView:
+) -> CFunctionView:
     """The function of a kernel; `given` declares what it gets besides arrays: `*p` behind them, and before `*sc`."""
     scalar, name = C_TYPE[program.scalar], global_name(model.c_name, program.scalar, kernel.name, ending)
     arguments = [given[struct] for struct in ("sc",) if struct in given]
     arguments += [f"const {scalar} {argument.name}[{argument.length}]" for argument in array_arguments(kernel)]
     arguments += [given["p"], f"{scalar} {names.outputs[kernel.name]}[{len(kernel.outputs)}]"]
-    return FunctionView(
+    return CFunctionView(
         c_comment_lines(about),
         f"{model.c_name}_status {name}({', '.join(arguments)})",
         _body(model, program, kernel, names, name),

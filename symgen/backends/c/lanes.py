@@ -21,7 +21,7 @@ _LANE, _GIVEN, _RESULTS = "lane", "given", "found"
 
 
 @dataclass(frozen=True, slots=True)
-class Loop:
+class LaneLoop:
     """Blocks `first` to `last` as one loop: what every lane is given and what others need of its results.
 
     `statements` are those of one lane; its operands from outside are locals named by their place in `given`.
@@ -34,9 +34,9 @@ class Loop:
     results: tuple[tuple[str, ...], ...]
 
 
-def lane_loops(kernel: Kernel, scalar: Scalar) -> dict[int, Loop]:
+def lane_loops(kernel: Kernel, scalar: Scalar) -> dict[int, LaneLoop]:
     """The loops of a kernel by the number of their first block: where there are as many blocks as lanes."""
-    loops: dict[int, Loop] = {}
+    loops: dict[int, LaneLoop] = {}
     for numbers in kernel.alike:
         if len(numbers) == LANES[scalar]:
             loops[numbers[0]] = _loop(kernel, numbers, len(loops) + 1)
@@ -60,7 +60,7 @@ def lane_names(program: Program) -> set[str]:
     return {f"{name}_{k}" for name in (_GIVEN, _RESULTS) for k in range(1, most + 1)} | ({_LANE} if most else set())
 
 
-def loop_lines(loop: Loop, printer: CStatements, macro: str) -> tuple[str, ...]:
+def loop_lines(loop: LaneLoop, printer: CStatements, macro: str) -> tuple[str, ...]:
     """The arrays and the loop."""
     kind, lanes = C_TYPE[printer.scalar], len(loop.given[0])
     given, found = f"{_GIVEN}_{loop.number}", f"{_RESULTS}_{loop.number}"
@@ -81,7 +81,7 @@ def loop_lines(loop: Loop, printer: CStatements, macro: str) -> tuple[str, ...]:
     )
 
 
-def results_of(loop: Loop, scalar: Scalar, names: Mapping[str, str]) -> dict[str, str]:
+def results_of(loop: LaneLoop, scalar: Scalar, names: Mapping[str, str]) -> dict[str, str]:
     """The declarations of what others need of the results, by local."""
     return {
         target: f"const {C_TYPE[scalar]} {names[target]} = {_RESULTS}_{loop.number}[{k}][{lane}];"
@@ -95,7 +95,7 @@ def place(number: int) -> str:
     return f"given {number}"
 
 
-def _loop(kernel: Kernel, numbers: Sequence[int], number: int) -> Loop:
+def _loop(kernel: Kernel, numbers: Sequence[int], number: int) -> LaneLoop:
     blocks = [kernel.blocks[k] for k in numbers]
     rows = {row: k for k, row in enumerate(_ordered(kernel, dict.fromkeys(_from_outside(blocks))))}
     inside = {target for statement in blocks[0].statements for target in statement.targets}
@@ -117,7 +117,7 @@ def _loop(kernel: Kernel, numbers: Sequence[int], number: int) -> Loop:
         for lanes in zip(*(block.statements for block in blocks), strict=True)
         if any(one.targets[0] in needed for one in lanes)
     )
-    return Loop(number, numbers[-1], statements, tuple(rows), found)
+    return LaneLoop(number, numbers[-1], statements, tuple(rows), found)
 
 
 def _ordered(kernel: Kernel, rows: Iterable[tuple[Operand, ...]]) -> list[tuple[Operand, ...]]:

@@ -14,7 +14,7 @@ from symgen.backends.about import (
     unit_text,
 )
 from symgen.backends.c.file import StatusView, StructView, file_view, files
-from symgen.backends.c.functions import FunctionView, kernel_function
+from symgen.backends.c.functions import CFunctionView, kernel_function
 from symgen.backends.c.names import c_names, global_name, status_name
 from symgen.backends.c.statements import c_literal
 from symgen.backends.comments import c_comment, c_comment_lines, indent_of
@@ -45,7 +45,7 @@ def emit_c(model: Model, program: Program) -> dict[str, str]:
     names = c_names(model, program)
     params = global_name(model.c_name, program.scalar, "params")
     members = _members(model, program, names)
-    default = FunctionView(
+    default = CFunctionView(
         (),
         f"{params} {global_name(model.c_name, program.scalar, 'default_params')}(void)",
         (f"{params} p;", *(f"p.{member.name} = {member.default};" for member in members), "return p;"),

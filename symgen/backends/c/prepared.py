@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from symgen.backends.c.endings import PREPARED
 from symgen.backends.c.file import StructView, file_view, files
-from symgen.backends.c.functions import FunctionView, kernel_function
+from symgen.backends.c.functions import CFunctionView, kernel_function
 from symgen.backends.c.names import global_name, variant_names
 from symgen.backends.c.pairs import pairs_view
 from symgen.backends.c.statements import CStatements
@@ -38,12 +38,12 @@ def emit_c_prepared(model: Model, program: Program) -> dict[str, str]:
     before = {kernel.name: count_operations(kernel.statements).total for kernel in program.kernels}
     placed, given = replace(names, members=names.members | values), {"p": f"const {struct} *p"}
 
-    def function(kernel: Kernel) -> FunctionView:
+    def function(kernel: Kernel) -> CFunctionView:
         now = count_operations(kernel.statements).total
         about = f"{meaning(kernel)}; {now} operations instead of {before[kernel.name]}"
         return kernel_function(model, program, kernel, placed, about, given, PREPARED)
 
-    made = FunctionView((), f"{struct} {make}(const {params} *p)", _lines(model, program, prepared, names, struct))
+    made = CFunctionView((), f"{struct} {make}(const {params} *p)", _lines(model, program, prepared, names, struct))
     view = file_view(
         model,
         replace(program, kernels=prepared.kernels),

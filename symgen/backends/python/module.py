@@ -36,7 +36,7 @@ class FieldView:
 
 
 @dataclass(frozen=True, slots=True)
-class FunctionView:
+class NumpyFunctionView:
     """One quantity: name, argument names and lengths, docstring, body lines and entries of the result."""
 
     name: str
@@ -60,7 +60,7 @@ class PythonView:
     about: tuple[str, ...]
     statuses: tuple[tuple[str, int, str], ...]
     fields: tuple[FieldView, ...]
-    functions: tuple[FunctionView, ...]
+    functions: tuple[NumpyFunctionView, ...]
     sincos: Helper | None
     needs_ratio: bool
     wide: tuple[tuple[str, Helper], ...]
@@ -110,7 +110,7 @@ def _fields(model: Model, names: Names) -> tuple[FieldView, ...]:
     )
 
 
-def _kernel(kernel: Kernel, names: Names, sincos: str | None) -> FunctionView:
+def _kernel(kernel: Kernel, names: Names, sincos: str | None) -> NumpyFunctionView:
     used = used_locals(kernel)
     printer = NumpyStatements(names.locals, used, sincos)
     body = []
@@ -123,7 +123,7 @@ def _kernel(kernel: Kernel, names: Names, sincos: str | None) -> FunctionView:
     given = ", ".join(f"{name} (..., {length})" for name, length in arguments)
     result = ", ".join(str(extent) for extent in kernel.shape)
     about = f"{meaning(kernel)[:1].upper()}{meaning(kernel)[1:]}: {given} -> (..., {result})."
-    return FunctionView(
+    return NumpyFunctionView(
         name=kernel.name,
         arguments=arguments,
         signature=", ".join([*(name for name, _ in arguments), "p=PARAMETERS"]),

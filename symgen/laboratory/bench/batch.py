@@ -59,7 +59,7 @@ class LoopsView:
 
 
 @dataclass(frozen=True, slots=True)
-class _Way:
+class _BatchCandidate:
     generator: str
     form: str
     language: str
@@ -93,7 +93,7 @@ def many_states(
     )
 
 
-def _times(ways: Sequence[_Way], count: int) -> list[float]:
+def _times(ways: Sequence[_BatchCandidate], count: int) -> list[float]:
     repeats = max(1, STREAMED // count // 16)
     times: list[list[float]] = [[] for _ in ways]
     for turn in range(PASSES + 1):
@@ -124,7 +124,7 @@ def _library(folder: Path, model: Model, program: Program) -> ctypes.CDLL:
 
 def _batches(
     folder: Path, model: Model, programs: Mapping[Scalar, Program], parts: Sequence[Any], parameters: Any
-) -> list[_Way]:
+) -> list[_BatchCandidate]:
     import numpy as np
 
     ways = []
@@ -135,7 +135,7 @@ def _batches(
         result = np.empty((len(kernel.outputs), STREAMED), dtype=scalar)
         run = _call(function, [*rows, np.array([*parameters, 0.0], dtype=scalar), result], (STREAMED,), (None,))
 
-        ways.append(_Way("symgen", "batch", "C", scalar, run))
+        ways.append(_BatchCandidate("symgen", "batch", "C", scalar, run))
     return ways
 
 
@@ -154,7 +154,7 @@ def _call(
 
 def _numpy(
     folder: Path, model: Model, programs: Mapping[Scalar, Program], parts: Sequence[Any], parameters: Any
-) -> list[_Way]:
+) -> list[_BatchCandidate]:
     program = programs["float64"]
     (kernel,) = program.kernels
     module = PythonModule(next(iter(emit_python(model, program).values()))).module
@@ -174,12 +174,12 @@ def _numpy(
         compiled(*(array[:count] for array in arrays), p)
 
     named = {"compile()": through_c, "NumPy, whole arrays": whole, f"NumPy, blocks of {NUMPY_BLOCK}": blocks}
-    return [_Way("symgen", form, "Python", "float64", run) for form, run in named.items()]
+    return [_BatchCandidate("symgen", form, "Python", "float64", run) for form, run in named.items()]
 
 
 def _loops(
     folder: Path, model: Model, task: Task, loops: Sequence[CCandidate], parts: Sequence[Any], parameters: Any
-) -> list[_Way]:
+) -> list[_BatchCandidate]:
     import numpy as np
 
     if not loops:
@@ -198,6 +198,6 @@ def _loops(
     result = np.empty((STREAMED, task.size))
     given = [*parts, np.array([*parameters, 0.0]), result]
     return [
-        _Way(c.generator, f"{c.form}, in a loop", "C", "float64", _call(library[f"{c.entry}_loop"], given))
+        _BatchCandidate(c.generator, f"{c.form}, in a loop", "C", "float64", _call(library[f"{c.entry}_loop"], given))
         for c in loops
     ]

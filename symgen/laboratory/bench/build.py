@@ -41,7 +41,7 @@ class DriverGroup:
 
 
 @dataclass(frozen=True, slots=True)
-class DriverView:
+class BenchDriverView:
     """What the driver's template prints."""
 
     n: int
@@ -53,7 +53,7 @@ class DriverView:
 
 
 @dataclass(frozen=True, slots=True)
-class Footprint:
+class CandidateFootprint:
     """Bytes of code of the functions of a candidate, and bytes of stack they take (library functions excluded)."""
 
     code: int
@@ -65,7 +65,7 @@ class Built:
     """The program, and the footprint of each candidate by entry."""
 
     program: Path
-    footprints: Mapping[str, Footprint]
+    footprints: Mapping[str, CandidateFootprint]
 
 
 def find_gcc() -> str | None:
@@ -80,7 +80,7 @@ def build(
     with ThreadPoolExecutor(PROCESSES) as pool:
         compiled = list(pool.map(lambda c: compile_candidate(folder / c.entry, c), candidates))
     scalars = [scalar for scalar in loads if any(c.scalar == scalar for c in candidates)]
-    view = DriverView(
+    view = BenchDriverView(
         n=model.n,
         third=len(loads[scalars[0]].states[0]) - 2 * model.n - len(model.parameters),
         parameters=len(model.parameters),
@@ -120,7 +120,7 @@ def nanoseconds(built: Built, passes: int) -> dict[str, float]:
 
 def compile_candidate(
     folder: Path, candidate: CCandidate, common: Sequence[str] | None = None
-) -> tuple[list[Path], Footprint]:
+) -> tuple[list[Path], CandidateFootprint]:
     """The objects of a candidate and what they take; `common` stands in for the usual flags of all candidates.
 
     Raises BuildError with the compiler's words.
@@ -144,7 +144,7 @@ def compile_candidate(
             functions = {unit.renamed.get(name, name) for name in candidate.functions}
             code += _code_bytes(target, functions)
             stack += _stack_bytes(target.with_suffix(".su"), functions)
-    return objects, Footprint(code, stack)
+    return objects, CandidateFootprint(code, stack)
 
 
 def gcc(arguments: Sequence[str], what: str) -> None:

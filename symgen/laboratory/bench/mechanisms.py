@@ -16,7 +16,7 @@ from typing import Any
 
 import symgen
 from symgen.generation.results import WrongUseError
-from symgen.laboratory.bench.build import TIMED_STATES, Footprint, build, find_gcc, nanoseconds, results_of
+from symgen.laboratory.bench.build import TIMED_STATES, CandidateFootprint, build, find_gcc, nanoseconds, results_of
 from symgen.laboratory.bench.callgrind import count_instructions, find_valgrind
 from symgen.laboratory.bench.candidate import Task
 from symgen.laboratory.bench.peers.mechanism_roster import mechanism_peers
@@ -35,14 +35,14 @@ PASSES = 101
 
 
 @dataclass(frozen=True, slots=True)
-class Kernel:
+class MeasuredKernel:
     """What one kernel took; `difference` is the median of |u - u'|/|u'| against the cheapest peer."""
 
     generator: str
     form: str
     nanoseconds: float
     instructions: float | None
-    footprint: Footprint
+    footprint: CandidateFootprint
     operations: Mapping[str, int] | None
     difference: float
 
@@ -53,7 +53,7 @@ class MechanismBenchmark:
 
     model: str
     form: str
-    kernels: tuple[Kernel, ...]
+    kernels: tuple[MeasuredKernel, ...]
     left_out: tuple[tuple[str, str], ...]
     pinocchio: tuple[float, float] | str
     notes: tuple[str, ...] = ()
@@ -99,7 +99,7 @@ def mechanism_benchmark(path: Path, progress: Progress, out: Path | None = None)
         counts = count_instructions(built.program, COUNTED_STATES, entries) if find_valgrind() else {}
         exact = results[min(found, key=lambda c: counts.get(c.entry, times[c.entry])).entry]
         kernels = [
-            Kernel(
+            MeasuredKernel(
                 generator=c.generator,
                 form=c.form,
                 nanoseconds=times[c.entry],

@@ -14,7 +14,7 @@ from symgen.generation.draft import Draft
 from symgen.generation.results import WrongUseError
 from symgen.ir.kernel import Program, Scalar
 from symgen.laboratory.bench.batch import BEST_PEERS, Many, many_states
-from symgen.laboratory.bench.build import Built, Footprint, build, find_gcc, nanoseconds, results_of
+from symgen.laboratory.bench.build import Built, CandidateFootprint, build, find_gcc, nanoseconds, results_of
 from symgen.laboratory.bench.callgrind import count_instructions, find_valgrind
 from symgen.laboratory.bench.candidate import CCandidate, PythonCandidate, Task
 from symgen.laboratory.bench.pareto import pareto_front
@@ -38,7 +38,7 @@ Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True, slots=True)
-class Measured:
+class MeasuredCandidate:
     """What one candidate took and how far off it was.
 
     `beyond` is the number of states at which symgen's generated kernel is beyond the tolerance, None for all others.
@@ -53,7 +53,7 @@ class Measured:
     nanoseconds: float
     single_nanoseconds: float | None
     instructions: float | None
-    footprint: Footprint | None
+    footprint: CandidateFootprint | None
     operations: Mapping[str, int] | None
     errors: Errors
     chosen: bool
@@ -72,7 +72,7 @@ class Comparison:
 
     task: Task
     states: int
-    measured: tuple[Measured, ...]
+    measured: tuple[MeasuredCandidate, ...]
     left_out: tuple[tuple[str, str], ...]
     many: tuple[Many, ...] = ()
 
@@ -165,7 +165,7 @@ def _compare(
     for candidate in _python(model, task, programs, full_rank):
         results, together, alone = run_python(model, candidate, loads["float64"])
         errors = errors_of(loads["float64"], results)
-        row = Measured(
+        row = MeasuredCandidate(
             generator=candidate.generator,
             form=candidate.form,
             language="Python",
@@ -182,7 +182,7 @@ def _compare(
     return Comparison(task, len(samples), _with_front(measured), left_out, many)
 
 
-def _loops(candidates: Sequence[CCandidate], measured: Sequence[Measured]) -> list[CCandidate]:
+def _loops(candidates: Sequence[CCandidate], measured: Sequence[MeasuredCandidate]) -> list[CCandidate]:
     """symgen's kernel and the fastest peers, to be called state by state; a library holds no -fPIE."""
     timed = [(m.nanoseconds, c) for c, m in zip(candidates, measured, strict=True) if c.scalar == "float64"]
     own = [c for _, c in timed if c.chosen][:1]
@@ -197,14 +197,14 @@ def _measure(
     candidates: Sequence[CCandidate],
     loads: Mapping[Scalar, Workload],
     beyond: Callable[[Scalar, Any], int],
-) -> list[Measured]:
+) -> list[MeasuredCandidate]:
     results = results_of(built, folder, candidates, task)
     times = nanoseconds(built, PASSES)
     entries = [candidate.entry for candidate in candidates]
     states = min(COUNTED_STATES, len(loads["float64"].states))
     counts = count_instructions(built.program, states, entries) if find_valgrind() else {}
     return [
-        Measured(
+        MeasuredCandidate(
             generator=c.generator,
             form=c.form,
             language="C",
@@ -228,7 +228,7 @@ def _python(
     return [*symgen_python(model, programs, task), *(python_peers(model, task) if full_rank else [])]
 
 
-def _with_front(measured: Sequence[Measured]) -> tuple[Measured, ...]:
+def _with_front(measured: Sequence[MeasuredCandidate]) -> tuple[MeasuredCandidate, ...]:
     """Marks what nothing else of its language and scalar type beats in both time and 99 % error."""
     marked = list(measured)
     for group in dict.fromkeys((m.language, m.scalar) for m in measured):

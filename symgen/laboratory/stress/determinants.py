@@ -43,7 +43,7 @@ class Trouble:
 
 
 @dataclass
-class _Factor:
+class _DeterminantFactor:
     value: PolyElement
     label: str
     partitions: list[tuple[int, ...]] = field(default_factory=list)
@@ -126,16 +126,16 @@ def _factors(model: Model, exact: Exact) -> Choices:
 
     ring = exact.ring
     speller = Speller(ring, ())
-    found: dict[PolyElement, _Factor] = {}
+    found: dict[PolyElement, _DeterminantFactor] = {}
 
-    def factors(p: PolyElement) -> list[_Factor]:
+    def factors(p: PolyElement) -> list[_DeterminantFactor]:
         result = []
         for value in essential_factors(ring, p):
             if value not in found:
                 spelled = speller.polynomial(ring.normal(value))
                 unsigned = -spelled if spelled.could_extract_minus_sign() else spelled
                 label = " ".join(render_text_math(unsigned, model, width=10_000).split())
-                found[value] = _Factor(value, label)
+                found[value] = _DeterminantFactor(value, label)
             result.append(found[value])
         return result
 

@@ -13,7 +13,7 @@ from pathlib import Path as FilePath
 import numpy as np
 
 from symgen.backends.render import render
-from symgen.generation.runnable import Kernels
+from symgen.generation.runnable import RunnableKernels
 from symgen.model.model import Model, Path
 from symgen.paths.path_equations import PathError
 from symgen.paths.trajectory import solve_path
@@ -31,7 +31,7 @@ LONGEST_SECONDS = LONGEST_COMPILATION = 300.0
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class LongRun:
     """Records over a run: time in s, and the largest since the record before of |g|, |B q̇|, |q − q_ref|, and of the
     energy that neither inputs nor applied forces account for (in J); `complaint` where it ended early.
     """
@@ -47,7 +47,9 @@ class Run:
     complaint: str
 
 
-def long_runs(reference: Reference, kernels: Kernels, folder: FilePath, steps: int) -> tuple[tuple[Run, ...], str]:
+def long_runs(
+    reference: Reference, kernels: RunnableKernels, folder: FilePath, steps: int
+) -> tuple[tuple[LongRun, ...], str]:
     """Both runs along the first path of a model, and why there are none."""
     model = reference.model
     if not model.paths:
@@ -72,7 +74,7 @@ def _table(model: Model, path: Path) -> np.ndarray[tuple[int, ...], np.dtype[np.
     return np.ascontiguousarray(np.stack([lap.q, lap.qd, lap.qdd], axis=1), dtype=np.float64)
 
 
-def _built(model: Model, path: Path, kernels: Kernels, folder: FilePath) -> FilePath:
+def _built(model: Model, path: Path, kernels: RunnableKernels, folder: FilePath) -> FilePath:
     assert kernels.compiler is not None
     stem = model.c_name
     period = float(path.duration)
@@ -99,7 +101,7 @@ def _built(model: Model, path: Path, kernels: Kernels, folder: FilePath) -> File
     return target
 
 
-def _run(program: FilePath, table: FilePath, path: str, steps: int, projected: bool) -> Run:
+def _run(program: FilePath, table: FilePath, path: str, steps: int, projected: bool) -> LongRun:
     command = [str(program), str(table), str(steps), str(int(projected))]
     try:
         done = processes.run(command, LONGEST_SECONDS)
@@ -108,10 +110,10 @@ def _run(program: FilePath, table: FilePath, path: str, steps: int, projected: b
         output, complaint = "", str(error)
     rows = [tuple(map(float, line.split())) for line in output.splitlines()]
     time, drift, slip, tracking, energy = zip(*rows, strict=True) if rows else ((),) * 5
-    return Run(path, projected, steps, time, drift, slip, tracking, energy, complaint)
+    return LongRun(path, projected, steps, time, drift, slip, tracking, energy, complaint)
 
 
-def complaints(runs: tuple[Run, ...]) -> tuple[str, ...]:
+def complaints(runs: tuple[LongRun, ...]) -> tuple[str, ...]:
     """What ended a run early, or left it without finite numbers."""
     found = [f"long run along {run.path}: {run.complaint}" for run in runs if run.complaint]
     for run in runs:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import inf, isfinite, nan
 
-from symgen.generation.runnable import SCALARS, Kernels, rounded_state
+from symgen.generation.runnable import SCALARS, RunnableKernels, rounded_state
 from symgen.ir.kernel import Scalar, Status
 from symgen.verify.reference.reference import State
 
@@ -28,7 +28,7 @@ class OddNumbers:
 
 
 def odd_numbers(
-    kernels: Kernels, names: Sequence[str], states: Sequence[State]
+    kernels: RunnableKernels, names: Sequence[str], states: Sequence[State]
 ) -> tuple[tuple[OddNumbers, ...], tuple[str, ...]]:
     """Every argument of every kernel set to each odd number in turn."""
     found: list[OddNumbers] = []

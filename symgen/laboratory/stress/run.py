@@ -11,10 +11,10 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
-from symgen.generation.runnable import STRESSED, Kernels
+from symgen.generation.runnable import STRESSED, RunnableKernels
 from symgen.laboratory.stress.families import Family, SingularFamilies, near_redundant, search
 from symgen.laboratory.stress.form_kernels import FormKernels
-from symgen.laboratory.stress.long_run import Run, complaints, long_runs
+from symgen.laboratory.stress.long_run import LongRun, complaints, long_runs
 from symgen.laboratory.stress.odd_numbers import OddNumbers, odd_numbers
 from symgen.laboratory.stress.series import Series
 from symgen.laboratory.stress.statuses.rule import Held, breaches, counted
@@ -44,7 +44,7 @@ class Stress:
     statuses: tuple[StatusCount, ...]
     scaled: tuple[Scaled, ...]
     odd: tuple[OddNumbers, ...]
-    runs: tuple[Run, ...]
+    runs: tuple[LongRun, ...]
     no_run: str
     rule: tuple[Held, ...]
     failures: tuple[str, ...]
@@ -104,7 +104,7 @@ def stress(
     with tempfile.TemporaryDirectory(prefix="symgen-stress-") as name:
         folder = Path(name)
         progress("deriving and compiling")
-        kernels = Kernels(model, folder, out=out)
+        kernels = RunnableKernels(model, folder, out=out)
         progress("looking for singularities")
         searched = search(reference)
         forms = FormKernels(model, folder, kernels.names)
@@ -126,7 +126,7 @@ def stress(
         stressed = tuple(name for name in STRESSED if name in kernels.names)
         states = [sample.state for sample in sample_states(reference, (), FEWEST_STATES)][:ODD_STATES]
         odd, wrong_numbers = odd_numbers(kernels, stressed, states)
-        runs: tuple[Run, ...] = ()
+        runs: tuple[LongRun, ...] = ()
         no_run = "not asked for"
         if steps:
             progress("a long run")
@@ -154,7 +154,7 @@ def _near_redundant(twin: Model, searched: SingularFamilies, folder: Path) -> tu
     reference = Reference(twin)
     known = replace(searched, families=(*searched.families, near_redundant(reference)))
     folder.mkdir()
-    sweeper = Sweeper(reference, Kernels(twin, folder, STRESSED), known.families)
+    sweeper = Sweeper(reference, RunnableKernels(twin, folder, STRESSED), known.families)
     sweeper.family(len(searched.families))
     return known, sweeper.result()
 

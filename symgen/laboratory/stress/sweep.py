@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from symgen.generation.runnable import PIECES, STRESSED, Kernels, rounded_state
+from symgen.generation.runnable import PIECES, STRESSED, RunnableKernels, rounded_state
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar, Status
 from symgen.laboratory.stress.conditions import MASSIVE, Conditions, Measures
 from symgen.laboratory.stress.families import Family
@@ -82,7 +82,11 @@ class Sweeper:
     """One model's families run through the generated kernels, the paper's formulas, and other `forms`."""
 
     def __init__(
-        self, reference: Reference, kernels: Kernels, families: Sequence[Family], forms: FormKernels | None = None
+        self,
+        reference: Reference,
+        kernels: RunnableKernels,
+        families: Sequence[Family],
+        forms: FormKernels | None = None,
     ) -> None:
         self._reference = reference
         self._conditions = Conditions(reference)

@@ -9,7 +9,7 @@ from math import hypot, isfinite
 
 from symgen.backends.c.endings import SINES_GIVEN
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
-from symgen.laboratory.target.driver import FORMAT, SIZE, Record, Results
+from symgen.laboratory.target.driver import FORMAT, SIZE, Results, RunRecord
 from symgen.laboratory.target.entries import Entries, Entry
 from symgen.laboratory.target.vectors import PERTURBATIONS
 
@@ -84,13 +84,13 @@ def units_of(entries: Entries, scalar: Scalar, exact: Results, moved: Results) -
     return found
 
 
-def numbers(record: Record, scalar: Scalar) -> tuple[float, ...]:
+def numbers(record: RunRecord, scalar: Scalar) -> tuple[float, ...]:
     """The outputs of a record as numbers."""
     count = len(record.outputs) // SIZE[scalar]
     return struct.unpack(f"<{count}{FORMAT[scalar]}", record.outputs)
 
 
-def _distance(a: Record, b: Record, scalar: Scalar, unit: float) -> float:
+def _distance(a: RunRecord, b: RunRecord, scalar: Scalar, unit: float) -> float:
     if a.status != b.status:
         return float("inf")
     if a.status:

@@ -21,7 +21,7 @@ SIZE: dict[Scalar, int] = {"float64": 8, "float32": 4}
 
 
 @dataclass(frozen=True, slots=True)
-class Record:
+class RunRecord:
     """What one kernel made of one state: status and the bytes of its outputs (the driver's filling if untouched)."""
 
     status: int
@@ -32,12 +32,12 @@ class Record:
 class Results:
     """Records by entry, in the order of the states, and the deepest painted stack of each in bytes."""
 
-    records: Mapping[str, tuple[Record, ...]]
+    records: Mapping[str, tuple[RunRecord, ...]]
     stack: Mapping[str, int]
 
 
 @dataclass(frozen=True, slots=True)
-class KernelView:
+class DriverCallView:
     """How the driver calls one function."""
 
     caller: str
@@ -62,7 +62,7 @@ class GroupView:
     arrays: tuple[Argument | OwnArray, ...]
     parameters: int
     widest: int
-    kernels: tuple[KernelView, ...]
+    kernels: tuple[DriverCallView, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +74,7 @@ class OwnArray:
 
 
 @dataclass(frozen=True, slots=True)
-class DriverView:
+class TargetDriverView:
     """What the driver's template prints."""
 
     groups: tuple[GroupView, ...]
@@ -92,7 +92,7 @@ def results_file(scalar: Scalar) -> str:
 
 def driver_source(model: Model, entries: Mapping[Scalar, Entries]) -> str:
     """The driver for the functions of all scalar types."""
-    return render("target/driver.c.jinja", DriverView(tuple(_group(model, e) for e in entries.values())))
+    return render("target/driver.c.jinja", TargetDriverView(tuple(_group(model, e) for e in entries.values())))
 
 
 def pack_states(states: Sequence[State], scalar: Scalar) -> bytes:
@@ -110,12 +110,12 @@ def unpack_results(data: bytes, entries: Entries, states: int) -> Results:
     expected = states * sum(4 + size for size in sizes.values()) + 4 * len(sizes)
     if len(data) != expected:
         raise ValueError(f"{len(data)} bytes of results instead of {expected}")
-    records: dict[str, list[Record]] = {name: [] for name in sizes}
+    records: dict[str, list[RunRecord]] = {name: [] for name in sizes}
     place = 0
     for _ in range(states):
         for name, size in sizes.items():
             (status,) = struct.unpack_from("<I", data, place)
-            records[name].append(Record(status, data[place + 4 : place + 4 + size]))
+            records[name].append(RunRecord(status, data[place + 4 : place + 4 + size]))
             place += 4 + size
     stack = struct.unpack_from(f"<{len(sizes)}I", data, place)
     return Results({name: tuple(r) for name, r in records.items()}, dict(zip(sizes, stack, strict=True)))
@@ -158,5 +158,5 @@ def _group(model: Model, entries: Entries) -> GroupView:
     )
 
 
-def _kernel(kind: str, entry: Entry, place: int) -> KernelView:
-    return KernelView(f"call_{kind}_{place}", entry.call, entry.size)
+def _kernel(kind: str, entry: Entry, place: int) -> DriverCallView:
+    return DriverCallView(f"call_{kind}_{place}", entry.call, entry.size)

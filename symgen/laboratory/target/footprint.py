@@ -12,7 +12,7 @@ from symgen.laboratory.target.tools import run, toolchain
 
 
 @dataclass(frozen=True, slots=True)
-class Footprint:
+class KernelFootprint:
     """Bytes of one kernel: `code` with its constants and the helpers of its own file, `linked` also with what it takes
     from the libraries of C and compiler, `ram` its static data, `frame` the deepest chain of frames in its own file by
     -fstack-usage, and the undefined symbols of the kernel's part of the object.
@@ -27,7 +27,7 @@ class Footprint:
 
 def footprints(
     workshop: Workshop, target: Path, functions: Sequence[str], deep: Collection[str] = ()
-) -> dict[str, Footprint]:
+) -> dict[str, KernelFootprint]:
     """Footprints of functions of one object by name; a helper of `deep` ones, which run through steps, calls others."""
     frames = _frames(target.with_suffix(".su"))
     return {name: _footprint(workshop, target, name, frames, 2 if name in deep else 1) for name in functions}
@@ -39,7 +39,9 @@ def deepest_frame(targets: Iterable[Path]) -> int:
     return max(map(sum, frames), default=0)
 
 
-def _footprint(workshop: Workshop, target: Path, function: str, frames: Mapping[str, int], depth: int) -> Footprint:
+def _footprint(
+    workshop: Workshop, target: Path, function: str, frames: Mapping[str, int], depth: int
+) -> KernelFootprint:
     part = target.with_suffix(f".{function}.o")
     run([workshop.tool("ld"), *_emulation(workshop), "-r", "--gc-sections", "-e", function, "-o", str(part),
          str(target)])
@@ -49,7 +51,7 @@ def _footprint(workshop: Workshop, target: Path, function: str, frames: Mapping[
     # only what runs through steps calls other helpers: the chain is the function and the largest of them
     helpers = sorted(frames.get(name, 0) for name in own if name != function)[-depth:]
     part.unlink()
-    return Footprint(code, linked, ram, frames.get(function, 0) + sum(helpers), undefined)
+    return KernelFootprint(code, linked, ram, frames.get(function, 0) + sum(helpers), undefined)
 
 
 def _symbols(workshop: Workshop, part: Path) -> tuple[set[str], tuple[str, ...]]:

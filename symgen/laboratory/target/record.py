@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from symgen.ir.kernel import Scalar
-from symgen.laboratory.target.footprint import Footprint
+from symgen.laboratory.target.footprint import KernelFootprint
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ class KernelCost:
     fewest: int
     most: int
     stack: int
-    footprint: Footprint | None
+    footprint: KernelFootprint | None
 
 
 @dataclass(frozen=True, slots=True)

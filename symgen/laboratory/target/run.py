@@ -32,7 +32,7 @@ from symgen.laboratory.target.driver import (
 )
 from symgen.laboratory.target.emulator import addresses, build_counter, count_calls, run_image, stage
 from symgen.laboratory.target.entries import Entries, plain_entries, with_companions
-from symgen.laboratory.target.footprint import Footprint, deepest_frame, footprints
+from symgen.laboratory.target.footprint import KernelFootprint, deepest_frame, footprints
 from symgen.laboratory.target.package_build import CMAKE, WITHOUT_CMAKE, has_cmake, package_of
 from symgen.laboratory.target.package_run import run_package
 from symgen.laboratory.target.record import Cell, CoreReport, KernelCost, TargetReport
@@ -42,7 +42,7 @@ from symgen.laboratory.target.selection import (
     LIBM,
     PORTABLE,
     SMALL,
-    Selection,
+    BuildSelection,
     Share,
     beyond_pairs,
     has_unit,
@@ -79,7 +79,7 @@ class _Build:
         return "host" if self.core is None else self.core.name
 
     @property
-    def selection(self) -> Selection:
+    def selection(self) -> BuildSelection:
         """Which kernels it holds."""
         return selection(self.core, self.compiler, self.level, self.trig, self.share)
 
@@ -89,7 +89,7 @@ class _Build:
 
 
 @dataclass(frozen=True, slots=True)
-class _Kernels:
+class _SelectedKernels:
     """What a selection of kernels is built of; `number` tells selections apart."""
 
     number: int
@@ -106,7 +106,7 @@ class _Bench:
         self.model, self.folder, self.vectors, self.progress = model, folder, vectors, progress
         wide = (f"{one.quantity} works{one.digits.lstrip(',')}" for one in draft.derivations.choices if one.wide)
         self.programs, self.notes = programs, (*draft.notes, *wide)
-        self.known: dict[Selection, _Kernels] = {}
+        self.known: dict[BuildSelection, _SelectedKernels] = {}
         self.beyond = tuple(kernel.name for kernel in beyond_pairs(programs["float64"]))
         self.published = self._files(programs, emit_c)
         self.states = {scalar: vectors.rounded(scalar) for scalar in programs}
@@ -118,7 +118,7 @@ class _Bench:
         self.expected = {trig: self._run(build, images[trig]) for trig, build in base.items()}
         self.units = {scalar: self._units(scalar, images[PORTABLE]) for scalar in programs}
 
-    def kernels(self, chosen: Selection) -> _Kernels:
+    def kernels(self, chosen: BuildSelection) -> _SelectedKernels:
         """What a selection is built of."""
         if chosen not in self.known:
             programs = selected(chosen, self.programs)
@@ -129,7 +129,7 @@ class _Bench:
                 entries = {scalar: with_companions(self.model, own, small[scalar]) for scalar, own in entries.items()}
                 files |= {**self._files(small, emit_c_prepared), **self._files(small, emit_c_sc)}
             sources = {"driver.c": driver_source(self.model, entries), **files}
-            self.known[chosen] = _Kernels(len(self.known), entries, sources)
+            self.known[chosen] = _SelectedKernels(len(self.known), entries, sources)
         return self.known[chosen]
 
     def entries(self, build: _Build) -> dict[Scalar, Entries]:
@@ -154,7 +154,7 @@ class _Bench:
         stage(image, self.inputs)
         return shop, image
 
-    def workshop(self, build: _Build, kernels: _Kernels) -> Workshop:
+    def workshop(self, build: _Build, kernels: _SelectedKernels) -> Workshop:
         """A folder for one core and one set of kernels."""
         shop = Workshop(self.folder / f"{build.where} {kernels.number}".replace(" ", "-"), build.core)
         if not shop.folder.exists():
@@ -326,9 +326,9 @@ def _costed(bench: _Bench, build: _Build, core: Core) -> tuple[dict[Scalar, Resu
     return results, costs
 
 
-def _sizes(shop: Workshop, build: _Build, entries: Entries) -> dict[str, Footprint]:
+def _sizes(shop: Workshop, build: _Build, entries: Entries) -> dict[str, KernelFootprint]:
     """Footprints by function; each file has an object of its own."""
-    found: dict[str, Footprint] = {}
+    found: dict[str, KernelFootprint] = {}
     for unit in dict.fromkeys(entry.unit for entry in entries.functions):
         target = shop.object(f"{unit}.c", build.level, build.compiler)
         here = [entry for entry in entries.functions if entry.unit == unit]

@@ -36,7 +36,7 @@ ALL: Share = (0, 1)
 
 
 @dataclass(frozen=True, slots=True)
-class Selection:
+class BuildSelection:
     """Shares of the small and the large kernels; `pairs` are the large ones in float64, `companions` other forms."""
 
     small: Share
@@ -46,20 +46,20 @@ class Selection:
     library: bool = False
 
 
-def selection(core: Core | None, compiler: Compiler, level: str, trig: str, share: Share) -> Selection:
+def selection(core: Core | None, compiler: Compiler, level: str, trig: str, share: Share) -> BuildSelection:
     """What is built for a core (None: the host) that has this share."""
     if trig == LIBM:
-        return Selection(share, library=True)
+        return BuildSelection(share, library=True)
     alone = core is not None and share == ALL
     if (compiler, level) not in WITH_LARGE and not alone:
-        return Selection(share)
+        return BuildSelection(share)
     if core is None:
-        return Selection(ALL, ALL, companions=True)
+        return BuildSelection(ALL, ALL, companions=True)
     if compiler == "clang":
-        return Selection(share, share, companions=True)
+        return BuildSelection(share, share, companions=True)
     if level == SMALL or alone:
-        return Selection(ALL, ALL, "all" if has_unit(core) else "fitting", companions=True)
-    return Selection(ALL, share, "all" if has_unit(core) else "none", companions=True)
+        return BuildSelection(ALL, ALL, "all" if has_unit(core) else "fitting", companions=True)
+    return BuildSelection(ALL, share, "all" if has_unit(core) else "none", companions=True)
 
 
 def share(build: int, core: int, cores: int) -> Share:
@@ -73,7 +73,7 @@ def has_unit(core: Core | None) -> bool:
     return core is None or "float64" in core.native
 
 
-def selected(chosen: Selection, programs: Mapping[Scalar, Program]) -> dict[Scalar, Program]:
+def selected(chosen: BuildSelection, programs: Mapping[Scalar, Program]) -> dict[Scalar, Program]:
     """The kernels of a selection by scalar type, where there are any."""
     found = {scalar: replace(program, kernels=tuple(_kept(chosen, scalar, program)))
              for scalar, program in programs.items()}
@@ -91,7 +91,7 @@ def beyond_pairs(double: Program) -> tuple[Kernel, ...]:
     return tuple(kernel for kernel in double.kernels if not _fits(kernel))
 
 
-def _kept(chosen: Selection, scalar: Scalar, program: Program) -> Iterator[Kernel]:
+def _kept(chosen: BuildSelection, scalar: Scalar, program: Program) -> Iterator[Kernel]:
     # where all are large the smallest stands for the small ones
     smallest = min(program.kernels, key=_size)
     for number, kernel in enumerate(program.kernels):

@@ -38,7 +38,7 @@ from symgen.validity.definiteness import definite_beside_rows
 from symgen.validity.local_inertias import definite_along_motion, definite_by_frames
 
 
-class _Loops(Problem):
+class _SpatialLoops(Problem):
     """Loops in space are accelerated as their points are; each has its rows along the axes of the frame beside it."""
 
     def __init__(
@@ -108,7 +108,7 @@ class BodyEquations:
             for i, column, load in zip(places, own, loads, strict=True):
                 columns[i], self._forces[i] = column, (self._forces[i][0], load)
             loops.append((loop, frame))
-        self._problem = _Loops(mechanics, guards, loops)
+        self._problem = _SpatialLoops(mechanics, guards, loops)
         self._completed = held.multipliers(mechanics)
         self._apart = LengthsApart(self._problem, factor, columns, held, rank)
         self.guards = self._apart.guards

@@ -14,7 +14,7 @@ from functools import cached_property
 
 from symgen.mechanics.never_zero import Definite
 from symgen.methods.forward_dynamics.motion import Motion, Problem
-from symgen.methods.forward_dynamics.schur import Factor, OrderedCholesky, elimination_order
+from symgen.methods.forward_dynamics.schur import MassMatrixFactor, OrderedCholesky, elimination_order
 from symgen.records import dataclass
 from symgen.symbolic.matrix import Matrix, Vector, dot
 from symgen.symbolic.scalar import Scalar
@@ -40,7 +40,7 @@ class ColumnsApart(Problem):
     def __init__(self, problem: Problem, shares: Mapping[int, Share], rows: Matrix) -> None:
         super().__init__(problem.mechanics, problem.guards)
         self._problem, self._shares, self._rows = problem, shares, rows
-        self.factor: Factor = _Turned(problem, shares)
+        self.factor: MassMatrixFactor = _Turned(problem, shares)
 
     @cached_property
     def mass_matrix(self) -> Matrix:

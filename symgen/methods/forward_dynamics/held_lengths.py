@@ -16,7 +16,7 @@ from symgen.linear_algebra.refinement import Solution
 from symgen.mechanics.quaternion_joints import QuaternionJoint, quaternion_joint
 from symgen.mechanics.system import System
 from symgen.methods.forward_dynamics.motion import Problem
-from symgen.methods.forward_dynamics.schur import Factor, SchurElimination
+from symgen.methods.forward_dynamics.schur import MassMatrixFactor, SchurElimination
 from symgen.model.expressions.expression import Expression, Number
 from symgen.model.expressions.walk import names_in
 from symgen.model.mechanism import Frame, Quaternion
@@ -138,7 +138,7 @@ class LengthsApart:
     """
 
     def __init__(
-        self, problem: Problem, factor: Factor, columns: Sequence[Vector], held: HeldLengths, rank: int
+        self, problem: Problem, factor: MassMatrixFactor, columns: Sequence[Vector], held: HeldLengths, rank: int
     ) -> None:
         self._graph, self._factor, self._held, self._count = problem.graph, factor, held, problem.r
         self._others = held.others(problem.r)

@@ -21,7 +21,7 @@ from symgen.symbolic.matrix import Matrix, Vector, subtract_vectors
 from symgen.symbolic.scalar import Graph, Scalar
 
 
-class Factor(Protocol):
+class MassMatrixFactor(Protocol):
     """G = L D L^T with the pivots D; L may be triangular in any order of the coordinates."""
 
     @property
@@ -45,7 +45,7 @@ class SchurQR:
     `factor` is that of G where it is known.
     """
 
-    def __init__(self, problem: Problem, rank: int, factor: Factor | None = None) -> None:
+    def __init__(self, problem: Problem, rank: int, factor: MassMatrixFactor | None = None) -> None:
         self._graph = problem.graph
         self._factor = OrderedCholesky(problem.graph, problem.mass_matrix) if factor is None else factor
         columns = [self._factor.lowered(row) for row in problem.rows]
@@ -65,7 +65,7 @@ class SchurQR:
         return elimination.motion(factor.lowered(force), asked, left_over)
 
 
-def schur_qr(problem: Problem, rank: int, factor: Factor | None = None) -> Motion:
+def schur_qr(problem: Problem, rank: int, factor: MassMatrixFactor | None = None) -> Motion:
     """q_ddot and lambda of a system's own right-hand sides."""
     return SchurQR(problem, rank, factor).motion(problem.force, problem.bias)
 
@@ -76,7 +76,7 @@ class SchurElimination:
     `guards` are the denominators.
     """
 
-    def __init__(self, problem: Problem, factor: Factor, columns: Sequence[Vector], rank: int) -> None:
+    def __init__(self, problem: Problem, factor: MassMatrixFactor, columns: Sequence[Vector], rank: int) -> None:
         graph, r = problem.graph, problem.r
         self._graph, self._r, self._factor = graph, r, factor
         self.weights: Vector = tuple(1 / pivot for pivot in factor.pivots)

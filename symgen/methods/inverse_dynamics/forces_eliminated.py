@@ -55,7 +55,7 @@ def elimination_form(
         return None
     graph = mechanics.graph
     core = tuple(tuple(row.coefficients.get(j, graph.zero) for j in names) for row in rows)
-    solved = _Core(elimination, mechanics, names, core, tuple(row.right for row in rows))
+    solved = _CoreEquations(elimination, mechanics, names, core, tuple(row.right for row in rows))
     definite = Definite(mechanics)
     u, guards = solved.inputs(internal)
     open_guards = [guard for guard in guards if not definite.holds(guard.denominator)]
@@ -66,7 +66,7 @@ def elimination_form(
     return solved_for_u(MethodInput(mechanics, generic), outputs, moved, own)
 
 
-class _Core:
+class _CoreEquations:
     """The rows A x = b that elimination leaves, solved for any x, and the inputs that belong to it."""
 
     def __init__(

@@ -42,7 +42,7 @@ class _Basis:
 
 
 @dataclass(frozen=True, slots=True)
-class _Kernel:
+class _NullVectors:
     """Null vectors of the rest, and the determinants that make them independent."""
 
     vectors: Matrix
@@ -121,20 +121,20 @@ def _parts(rest: Rates) -> list[tuple[list[int], list[int]]]:
     return parts
 
 
-def _kernels(graph: Graph, rest: Rates, rows: list[int], rates: list[int]) -> list[_Kernel]:
+def _kernels(graph: Graph, rest: Rates, rows: list[int], rates: list[int]) -> list[_NullVectors]:
     """Bases of the null space of one component, the cheapest first."""
     part = tuple(tuple(rest.core[i][j] for j in rates) for i in rows)
     width = rest.width
     if len(rows) > len(rates) or not small_family([[0]], part, len(part)):
         return []
     if not rows:
-        return [_Kernel(_spread(graph, identity(graph, len(rates)), rates, width), ())]
+        return [_NullVectors(_spread(graph, identity(graph, len(rates)), rates, width), ())]
     if len(rates) == len(rows):
-        return [_Kernel((), ())]
+        return [_NullVectors((), ())]
     if len(rates) == len(rows) + 1:
-        return [_Kernel(_spread(graph, (cross_product(graph, part, len(rates)),), rates, width), ())]
+        return [_NullVectors(_spread(graph, (cross_product(graph, part, len(rates)),), rates, width), ())]
     found = [_solved(graph, part, chosen) for chosen in combinations(range(len(rates)), len(rows))]
-    kernels = [_Kernel(_spread(graph, k.vectors, rates, width), k.pivots) for k in found if k is not None]
+    kernels = [_NullVectors(_spread(graph, k.vectors, rates, width), k.pivots) for k in found if k is not None]
     return sorted(kernels, key=lambda kernel: cost(x for v in kernel.vectors for x in v).weight)
 
 
@@ -144,7 +144,7 @@ def _spread(graph: Graph, vectors: Matrix, rates: list[int], width: int) -> Matr
     return tuple(tuple(values.get(j, graph.zero) for j in range(width)) for values in placed)
 
 
-def _solved(graph: Graph, core: Matrix, chosen: tuple[int, ...]) -> _Kernel | None:
+def _solved(graph: Graph, core: Matrix, chosen: tuple[int, ...]) -> _NullVectors | None:
     """Null vectors with the rates `chosen` solved for, and det C_S; None where that is always 0.
 
     The vector of a free rate f is the cross product of the rows on the columns S and f.
@@ -160,7 +160,7 @@ def _solved(graph: Graph, core: Matrix, chosen: tuple[int, ...]) -> _Kernel | No
             return None
         values = dict(zip(places, part, strict=True))
         vectors.append(tuple(values.get(j, graph.zero) for j in range(width)))
-    return _Kernel(tuple(vectors), (determinant,))
+    return _NullVectors(tuple(vectors), (determinant,))
 
 
 def _nullspace(workspace: Workspace) -> Candidate | str:

@@ -30,7 +30,7 @@ class Rates:
 
 
 @dataclass(frozen=True, slots=True)
-class _Turn:
+class _TurnOfPair:
     """A pair (k cos x, k sin x) at `first` and `second` of a row (`by_columns`) or of a column of the core."""
 
     by_columns: bool
@@ -84,18 +84,18 @@ def _solved(definite: Definite, rates: Rates, i: int, j: int) -> Rates:
     return Rates(tuple(map(without, rates.motion)), tuple(map(without, others)))
 
 
-def _turns(graph: Graph, definite: Definite, rates: Rates) -> list[_Turn]:
+def _turns(graph: Graph, definite: Definite, rates: Rates) -> list[_TurnOfPair]:
     found = []
     for i, row in enumerate(rates.core):
         for j, k in combinations(range(rates.width), 2):
             pair = _unit_pair(graph, definite, row[j], row[k])
             if pair is not None:
-                found.append(_Turn(True, i, j, k, *pair))
+                found.append(_TurnOfPair(True, i, j, k, *pair))
     for j in range(rates.width):
         for i, k in combinations(range(len(rates.core)), 2):
             pair = _unit_pair(graph, definite, rates.core[i][j], rates.core[k][j])
             if pair is not None:
-                found.append(_Turn(False, j, i, k, *pair))
+                found.append(_TurnOfPair(False, j, i, k, *pair))
     return found
 
 
@@ -115,7 +115,7 @@ def _unit_pair(graph: Graph, definite: Definite, a: Scalar, b: Scalar) -> tuple[
     return (f, g if p == q else -g, size) if definite.holds(size) else None
 
 
-def _touched(rates: Rates, turn: _Turn) -> tuple[int, int, int, int]:
+def _touched(rates: Rates, turn: _TurnOfPair) -> tuple[int, int, int, int]:
     """How many entries a turn changes; its place decides between equals."""
     if turn.by_columns:
         lines = (_column(rates.core, turn.first), _column(rates.core, turn.second))
@@ -126,7 +126,7 @@ def _touched(rates: Rates, turn: _Turn) -> tuple[int, int, int, int]:
     return cost, turn.line, turn.first, turn.second
 
 
-def _turned(rates: Rates, turn: _Turn) -> Rates:
+def _turned(rates: Rates, turn: _TurnOfPair) -> Rates:
     """(x, y) -> (c x + s y, c y - s x) for two rows, or for the coefficients of two rates."""
     c, s = turn.cosine, turn.sine
     zero = c.graph.zero

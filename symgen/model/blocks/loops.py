@@ -36,7 +36,7 @@ ONE = Number(Fraction(1))
 TWO = Fraction(2)
 
 
-class Rows:
+class LoopRows:
     """Rows of loops and wheels, without those that hold in every configuration of a plane mechanism."""
 
     def __init__(

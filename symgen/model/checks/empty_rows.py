@@ -24,7 +24,7 @@ VALUE = -1  # the number under which the value of a row stands beside its entrie
 ZERO = Number(Fraction(0))
 
 
-class _Rows:
+class _ShakenRows:
     """The rows shaken at a few random configurations; the value of a geometric row is one of its entries."""
 
     def __init__(self, mechanics: NumericSystem) -> None:
@@ -58,7 +58,7 @@ def parameters_that_count(mechanics: NumericSystem) -> tuple[str, ...]:
     With others there would be one more constraint, so that kernels for both cannot be one: these take the numbers.
     A gap that no motion changes in length is none of them, since there is no machine then.
     """
-    usual = _Rows(mechanics) if mechanics.constraints else None
+    usual = _ShakenRows(mechanics) if mechanics.constraints else None
     if usual is None or not usual.known:
         return ()
     rows = mechanics.constraints
@@ -74,13 +74,13 @@ def parameters_that_count(mechanics: NumericSystem) -> tuple[str, ...]:
 def _other_parameters(mechanics: NumericSystem, counting: Sequence[int], but: set[str]) -> str | None:
     """The first parameter that keeps a row from being empty, with all that it takes besides; None where none does."""
     for values in _draws(mechanics, but, OTHERS) if counting else ():
-        drawn = _Rows(mechanics.having(values))
+        drawn = _ShakenRows(mechanics.having(values))
         row = next((i for i in counting if not drawn.is_empty(i)), None)
         if row is None:
             continue
         needed = []
         for name, default in mechanics.defaults.items():
-            without = _Rows(mechanics.having({**values, name: default}))
+            without = _ShakenRows(mechanics.having({**values, name: default}))
             if values[name] != default and without.known and not without.is_empty(row):
                 values[name] = default
             elif values[name] != default:
@@ -93,7 +93,7 @@ def _draws(mechanics: NumericSystem, but: set[str], count: int) -> Iterator[dict
     """Random parameters for which the rows are known, with some at their defaults."""
     for _, parameters in mechanics.anywhere(ATTEMPTS):
         values = {**parameters, **{name: mechanics.defaults[name] for name in but}}
-        if _Rows(mechanics.having(values)).known:
+        if _ShakenRows(mechanics.having(values)).known:
             yield values
             count -= 1
         if not count:
@@ -106,13 +106,13 @@ def check_empty_rows(mechanics: NumericSystem) -> tuple[tuple[ConstraintRow, ...
     `parameters_that_count` are numbers here.
     """
     rows = mechanics.constraints
-    usual = _Rows(mechanics) if rows else None
+    usual = _ShakenRows(mechanics) if rows else None
     if usual is None or not usual.known:
         return rows, []
     empty = [i for i in range(len(rows)) if usual.is_empty(i)]
     if not empty:
         return rows, []
-    others = [_Rows(mechanics.having(values)) for values in _draws(mechanics, set(), OTHERS)]
+    others = [_ShakenRows(mechanics.having(values)) for values in _draws(mechanics, set(), OTHERS)]
     reports: list[Mistake | Notice] = []
     idle: dict[Span | None, list[str]] = {}
     fitting: dict[Span | None, list[str]] = {}

@@ -25,7 +25,7 @@ CLOSING = 4  # Newton steps: each doubles the digits that floats have left
 
 
 @dataclass(frozen=True, slots=True)
-class _Limits:
+class _ZeroLimits:
     """What is nothing: a component of a motion of length 1, an energy beside its terms, beside what entries of G
     usually are, and a pivot of G.
     """
@@ -38,9 +38,9 @@ class _Limits:
 
 
 # rounding in G itself is of second order where the places of masses cancel
-IN_FLOATS = _Limits(1e-13, 1e-12, 1e-24, RELATIVE, (RELATIVE,))
+IN_FLOATS = _ZeroLimits(1e-13, 1e-12, 1e-24, RELATIVE, (RELATIVE,))
 # masses that are 1e18 apart count, and rounding of the file's numbers to 16 digits does not, squared as it is in G
-IN_MANY_DIGITS = _Limits(1e-60, 1e-60, 1e-28, 1e-24, (1e-24, 1e-12, RELATIVE))
+IN_MANY_DIGITS = _ZeroLimits(1e-60, 1e-60, 1e-28, 1e-24, (1e-24, 1e-12, RELATIVE))
 
 
 def check_masses(
@@ -57,7 +57,7 @@ def check_masses(
 class _Masses:
     """G at some configurations that satisfy the constraints."""
 
-    def __init__(self, mechanics: NumericSystem, places: Sequence[list[float]], limits: _Limits) -> None:
+    def __init__(self, mechanics: NumericSystem, places: Sequence[list[float]], limits: _ZeroLimits) -> None:
         self._mechanics, self._limits = mechanics, limits
         self._places = [(q, mechanics.jacobian(q)) for q in places]
         self._usual = self._usual_mass()

@@ -6,7 +6,7 @@ from symgen.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class Ranks:
+class ConfigurationRanks:
     """At a configuration: of B, of its geometric rows, and how many admissible directions the inputs span (26)."""
 
     constraints: int
@@ -19,7 +19,7 @@ class RankedConfiguration:
     """A configuration on the geometric constraints and the ranks there."""
 
     q: tuple[float, ...]
-    ranks: Ranks
+    ranks: ConfigurationRanks
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,7 @@ class Assembly:
     Rows times 2 to the power of their `units` are of ordinary size; rows that depend on each other share one.
     """
 
-    ranks: Ranks
+    ranks: ConfigurationRanks
     places: tuple[RankedConfiguration, ...]
     others: tuple[RankedConfiguration, ...] = ()
     bound: tuple[int, int] = (0, 0)

@@ -20,7 +20,7 @@ from dataclasses import replace
 from itertools import islice
 
 from symgen.model.checks.shaken import Shaken
-from symgen.model.configurations.assembly import Assembly, RankedConfiguration, Ranks
+from symgen.model.configurations.assembly import Assembly, ConfigurationRanks, RankedConfiguration
 from symgen.model.configurations.closing import CLOSED, Closer, KinematicLoop, row_unit
 from symgen.model.configurations.dense import null_space
 from symgen.model.configurations.mechanics import NumericSystem
@@ -156,7 +156,7 @@ class _Search:
             return None
         return rows if all(math.isfinite(value) for row in rows for value in row.values()) else None
 
-    def _ranks(self, q: Sequence[float], plain: float = PLAIN) -> Ranks | None:
+    def _ranks(self, q: Sequence[float], plain: float = PLAIN) -> ConfigurationRanks | None:
         rows = self._rows(q)
         if rows is None:
             return None
@@ -167,7 +167,7 @@ class _Search:
         together = constraints if r == len(rows) else clear_rank(rows, plain)
         if geometric is None or constraints is None or together is None:
             return None
-        return Ranks(constraints, geometric, together - constraints)
+        return ConfigurationRanks(constraints, geometric, together - constraints)
 
     def _anywhere(self, whole: bool) -> list[float]:
         """A random configuration in the ranges, angles from the whole circle if asked for."""
@@ -225,7 +225,7 @@ class _Search:
     def _closed(self) -> Iterator[tuple[float, ...]]:
         """Configurations on the geometric constraints, where the start leads first."""
         found: list[tuple[float, ...]] = []
-        reached: list[Ranks] = []
+        reached: list[ConfigurationRanks] = []
         regular = False
         for number, (guess, held) in enumerate(self._guesses(found)):
             q = self._close(guess, held)
@@ -242,7 +242,7 @@ class _Search:
             if self._closer.effort > EFFORT and (regular or self._closer.effort > LONGEST * EFFORT):
                 return
 
-    def _at_bound(self, reached: Sequence[Ranks]) -> bool:
+    def _at_bound(self, reached: Sequence[ConfigurationRanks]) -> bool:
         """Whether no rank can be greater than those found, and motion is left."""
         constraints = self._bound[0]
         most = min(len(self._inputs), self._n - constraints, self._bound[1] - constraints)
@@ -274,7 +274,7 @@ class _Search:
         return tuple(turned) if self._closer.rest(turned) <= CLOSED else q
 
     def _chosen(self, places: Sequence[RankedConfiguration], first: tuple[float, ...]) -> Assembly:
-        kinds: dict[Ranks, list[RankedConfiguration]] = {}
+        kinds: dict[ConfigurationRanks, list[RankedConfiguration]] = {}
         for place in places:
             kinds.setdefault(place.ranks, []).append(place)
         if not self._r_geometric:
@@ -302,7 +302,8 @@ class _Search:
             count = Counter(place.ranks for place in places)
             ranks = rigid[0] if rigid else max(count, key=lambda kind: (count[kind], kind.constraints, kind.actuation))
         others = tuple(place for kind, place in branch.items() if kind != ranks)
-        singular = None if start_is_regular else RankedConfiguration(first, begin.ranks if begin else Ranks(0, 0, 0))
+        there = begin.ranks if begin else ConfigurationRanks(0, 0, 0)
+        singular = None if start_is_regular else RankedConfiguration(first, there)
         these = kinds[ranks]
         if singular is not None:
             these = sorted(these, key=self._nearness)

@@ -49,12 +49,12 @@ def parse_expression(node: ScalarNode) -> Expression | Mistake:
         if len(text) > MAXIMUM_LENGTH:
             message = f"an expression of {len(text)} characters, at most {MAXIMUM_LENGTH} are read"
             raise ExpressionError(message, SPLIT_REMEDY, 0)
-        return _Parser(node, tokenize(text)).whole()
+        return _ExpressionParser(node, tokenize(text)).whole()
     except ExpressionError as mistake:
         return Mistake(mistake.message, mistake.remedy, node.place(mistake.offset, mistake.length))
 
 
-class _Parser:
+class _ExpressionParser:
     """One pass over the tokens; each method returns a tree and its height."""
 
     def __init__(self, node: ScalarNode, tokens: list[Token]) -> None:

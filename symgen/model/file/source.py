@@ -93,7 +93,7 @@ def read_tree(text: str) -> tuple[MappingNode | None, tuple[Mistake, ...]]:
         except yaml.YAMLError:
             # PyYAML's own parser decides, and words the error: libyaml's differs in details, and may not be there.
             root, mistakes = _build(text, yaml.parse(text, Loader=yaml.SafeLoader))
-    except _RefusedError as refused:
+    except _RefusedYamlError as refused:
         return None, (refused.mistake,)
     except yaml.YAMLError as error:
         return None, (_syntax_mistake(text, error),)
@@ -109,7 +109,7 @@ def read_tree(text: str) -> tuple[MappingNode | None, tuple[Mistake, ...]]:
     return root, tuple(mistakes)
 
 
-class _RefusedError(Exception):
+class _RefusedYamlError(Exception):
     def __init__(self, message: str, remedy: str, span: Span) -> None:
         self.mistake = Mistake(message, remedy, span)
 
@@ -123,9 +123,9 @@ def _build(text: str, events: Iterator[yaml.Event]) -> tuple[Node | None, list[M
         node: Node | None = None
         match event:
             case yaml.DocumentStartEvent() if root is not None:
-                raise _RefusedError("a second document begins here", "keep one model per file", _span(event))
+                raise _RefusedYamlError("a second document begins here", "keep one model per file", _span(event))
             case yaml.AliasEvent():
-                raise _RefusedError(f"YAML aliases are not read: `*{event.anchor}`", PLAIN_REMEDY, _span(event))
+                raise _RefusedYamlError(f"YAML aliases are not read: `*{event.anchor}`", PLAIN_REMEDY, _span(event))
             case yaml.ScalarEvent():
                 _refuse_decoration(event)
                 node = _scalar(text, event)
@@ -134,14 +134,15 @@ def _build(text: str, events: Iterator[yaml.Event]) -> tuple[Node | None, list[M
                 mapping = isinstance(event, yaml.MappingStartEvent)
                 open_collections.append(_Open(mapping, bool(event.flow_style), _span(event), []))
                 if len(open_collections) > MAXIMUM_DEPTH:
-                    raise _RefusedError(f"nested deeper than {MAXIMUM_DEPTH} levels", "flatten the file", _span(event))
+                    message = f"nested deeper than {MAXIMUM_DEPTH} levels"
+                    raise _RefusedYamlError(message, "flatten the file", _span(event))
             case yaml.MappingEndEvent() | yaml.SequenceEndEvent():
                 node = _close(open_collections.pop(), mistakes)
             case _:
                 continue
         nodes += 1
         if nodes > MAXIMUM_NODES:
-            raise _RefusedError(f"more than {MAXIMUM_NODES} values", "split the model", _span(event))
+            raise _RefusedYamlError(f"more than {MAXIMUM_NODES} values", "split the model", _span(event))
         if node is not None and open_collections:
             _append(open_collections[-1], node)
         elif node is not None:
@@ -152,11 +153,11 @@ def _build(text: str, events: Iterator[yaml.Event]) -> tuple[Node | None, list[M
 def _append(collection: _Open, node: Node) -> None:
     if collection.mapping and len(collection.items) % 2 == 0:
         if not isinstance(node, ScalarNode):
-            raise _RefusedError(
+            raise _RefusedYamlError(
                 "a key that is a list or a mapping", "use a plain name as key, or quote the text", node.span
             )
         if node.value == "<<" and not node.quoted:
-            raise _RefusedError("YAML merge keys are not read", PLAIN_REMEDY, node.span)
+            raise _RefusedYamlError("YAML merge keys are not read", PLAIN_REMEDY, node.span)
     collection.items.append(node)
 
 
@@ -178,10 +179,10 @@ def _close(collection: _Open, mistakes: list[Mistake]) -> Node:
 
 def _refuse_decoration(event: yaml.ScalarEvent | yaml.CollectionStartEvent) -> None:
     if event.anchor is not None:
-        raise _RefusedError(f"YAML anchors are not read: `&{event.anchor}`", PLAIN_REMEDY, _span(event))
+        raise _RefusedYamlError(f"YAML anchors are not read: `&{event.anchor}`", PLAIN_REMEDY, _span(event))
     if event.tag is not None:
         remedy = "remove it; symgen knows what each value is"
-        raise _RefusedError(f"YAML tags are not read: `{event.tag}`", remedy, _span(event))
+        raise _RefusedYamlError(f"YAML tags are not read: `{event.tag}`", remedy, _span(event))
 
 
 def _scalar(text: str, event: yaml.ScalarEvent) -> ScalarNode:

@@ -28,7 +28,7 @@ def energy_form(model: Model) -> Model:
     mechanism = model.mechanism
     if not (mechanism.frames or mechanism.bodies or mechanism.rotor_inertias or model.forces or mechanism.points):
         return model
-    return _Writer(model).written()
+    return _EnergyWriter(model).written()
 
 
 def points_written(model: Model) -> tuple[Model, tuple[str, ...], tuple[str, ...]]:
@@ -37,10 +37,11 @@ def points_written(model: Model) -> tuple[Model, tuple[str, ...], tuple[str, ...
     points = model.mechanism.points
     places = tuple(f"{point.name}.{axis}" for point in points for axis in "xyz")
     velocities = tuple(f"{point.name}.v{axis}" for point in points for axis in "xyz")
-    return (_Writer(model, (*places, *velocities)).written() if points else energy_form(model)), places, velocities
+    written = _EnergyWriter(model, (*places, *velocities)).written() if points else energy_form(model)
+    return written, places, velocities
 
 
-class _Writer:
+class _EnergyWriter:
     def __init__(self, model: Model, more: tuple[str, ...] = ()) -> None:
         self.model, self.more = model, more
         self.before = definitions_before_frames(model)

@@ -34,12 +34,12 @@ MECHANICAL = {
 
 def read_robot(root: Element, unread: frozenset[str]) -> tuple[Robot, tuple[Mistake, ...]]:
     """The robot as far as it is understood, and every mistake; `unread` is what the user wants left out, by name."""
-    reading = _Reading(unread)
+    reading = _RobotReader(unread)
     robot = reading.robot(root)
     return robot, tuple(reading.mistakes)
 
 
-class _Reading:
+class _RobotReader:
     def __init__(self, unread: frozenset[str]) -> None:
         self.unread = unread
         self.owner = ""

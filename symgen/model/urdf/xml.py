@@ -67,7 +67,7 @@ class Element:
         return self.document.span(found.start(1) + 1 + start, len(value) if length is None else length)
 
 
-class _RefusedError(Exception):
+class _RefusedXmlError(Exception):
     pass
 
 
@@ -78,10 +78,10 @@ def parse_xml(text: str, file: str) -> Element | Mistake:
         return Mistake(message, "remove what does not belong to the mechanism", Span(1, 1, 2, file))
     lines = text.replace("\r\n", "\n").replace("\r", "\n")
     starts = (0, *(match.end() for match in re.finditer("\n", lines)))
-    reading = _Reading(XmlDocument(lines, file, starts))
+    reading = _XmlReader(XmlDocument(lines, file, starts))
     try:
         return reading.root()
-    except _RefusedError:
+    except _RefusedXmlError:
         assert reading.mistake is not None
         return reading.mistake
     except expat.ExpatError as error:
@@ -96,7 +96,7 @@ def parse_xml(text: str, file: str) -> Element | Mistake:
         return Mistake(message, "check brackets, quotes and closing tags", Span(line, column, column + 1, file))
 
 
-class _Reading:
+class _XmlReader:
     """One pass of expat over a document."""
 
     def __init__(self, document: XmlDocument) -> None:
@@ -118,7 +118,7 @@ class _Reading:
         return self._open[-1] if self._open else None
 
     def root(self) -> Element:
-        """The root; raises _RefusedError with a mistake noted, and expat's error."""
+        """The root; raises _RefusedXmlError with a mistake noted, and expat's error."""
         self._parser.Parse(self.document.text, True)
         assert self._root is not None
         return self._root
@@ -156,4 +156,4 @@ class _Reading:
 
     def _refuse(self, message: str, remedy: str, span: Span) -> None:
         self.mistake = Mistake(message, remedy, span)
-        raise _RefusedError
+        raise _RefusedXmlError

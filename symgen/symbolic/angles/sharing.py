@@ -24,7 +24,7 @@ def share_angles(graph: Graph, outputs: Sequence[Scalar], evaluated: Sequence[Sc
     The pairs of the angles in `evaluated` exist already.
     """
     needed = [angle for angle in angles_of(outputs) if angle not in evaluated]
-    kept = _Kept()
+    kept = _EvaluatedAngles()
     for angle in evaluated:
         kept.add(angle, angle_form(angle))
     image: dict[Scalar, Scalar] = {}
@@ -64,7 +64,7 @@ def angles_of(outputs: Sequence[Scalar]) -> list[Scalar]:
     return sorted(arguments, key=lambda a: (len(forms[a]), sum(map(abs, forms[a].values())), a.serial))
 
 
-class _Kept:
+class _EvaluatedAngles:
     """Angles whose pairs exist, in the order in which they are tried.
 
     A sum over the leaves, linear like the form, tells nearly always that a difference is none of them: the pairs of

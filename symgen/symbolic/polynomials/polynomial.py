@@ -24,7 +24,7 @@ MOST_EXPANDED_TERMS = 120
 MOST_EXPANDED_OPERATIONS = 4000
 
 
-class _TooLongError(Exception):
+class _TooManyTermsError(Exception):
     """More terms than are worth handling."""
 
 
@@ -63,7 +63,7 @@ class Multiplier:
     def _polynomial(self, node: Scalar) -> Polynomial | None:
         try:
             terms, _ = self._expand(node)
-        except _TooLongError:
+        except _TooManyTermsError:
             return None
         read = self._monomials.read
         return {read(key): value for key, value in self._monomials.reduced(terms).items()}
@@ -74,7 +74,7 @@ class Multiplier:
         if known is None:
             known = self._known[node] = self._expanded(node)
         if len(known[0]) > MOST_EXPANDED_TERMS or known[1] > LARGEST_POWER:
-            raise _TooLongError
+            raise _TooManyTermsError
         return known
 
     def _expanded(self, node: Scalar) -> tuple[Terms, int]:
@@ -110,7 +110,7 @@ class Multiplier:
     def _times(self, a: tuple[Terms, int], b: tuple[Terms, int]) -> tuple[Terms, int]:
         power = a[1] + b[1]
         if len(a[0]) * len(b[0]) > 8 * MOST_EXPANDED_TERMS or power > LARGEST_POWER:
-            raise _TooLongError
+            raise _TooManyTermsError
         return self._monomials.product(a[0], b[0]), power
 
 

@@ -10,7 +10,7 @@ from flint import arb_mat
 
 from symgen.verify.reference.linear import column, identity, norm
 from symgen.verify.reference.parts import Part, piece, placed
-from symgen.verify.reference.system import System
+from symgen.verify.reference.system import ReferenceSystem
 
 MOST_STEPS = 60
 MOST_SLOW_STEPS = 6
@@ -20,7 +20,7 @@ ROUNDED = 1e-13
 
 
 def onto_manifold(
-    system: System,
+    system: ReferenceSystem,
     start: Sequence[Any],
     parameters: Sequence[Any],
     literals: Sequence[Any],
@@ -33,7 +33,7 @@ def onto_manifold(
 
 
 def closed(
-    system: System,
+    system: ReferenceSystem,
     start: Sequence[Any],
     parameters: Sequence[Any],
     literals: Sequence[Any],
@@ -53,7 +53,7 @@ def closed(
     geometry = system.loop_geometry(q, parameters, literals)
     units = _units(system, geometry)
     own = zip(system.loops, units, geometry, strict=True)
-    loops = [_Loop(place, part, unit, q, found) for place, (part, unit, found) in enumerate(own)]
+    loops = [_PartIteration(place, part, unit, q, found) for place, (part, unit, found) in enumerate(own)]
     for _ in range(MOST_STEPS):
         moving = [loop for loop in loops if not loop.ended and not loop.size <= tolerance]
         if not moving:
@@ -73,7 +73,7 @@ def closed(
     return [entry.mid() for entry in q], [x.part for x in loops if not x.size <= max(tolerance, near[x])]
 
 
-class _Loop:
+class _PartIteration:
     """The rows of a part and what they know of Newton's method; `place` is its number."""
 
     def __init__(
@@ -134,7 +134,11 @@ def _step(residual: Any, jacobian: Any, damping: float) -> Any:
 
 
 def admissible(
-    system: System, q: Sequence[Any], shift: Sequence[float], parameters: Sequence[Any], literals: Sequence[Any]
+    system: ReferenceSystem,
+    q: Sequence[Any],
+    shift: Sequence[float],
+    parameters: Sequence[Any],
+    literals: Sequence[Any],
 ) -> list[Any]:
     """The part of a shift that leaves the geometric rows as they are to first order; rows may depend on each other."""
     geometry = system.loop_geometry(column(q).entries(), parameters, literals)
@@ -147,7 +151,7 @@ def admissible(
     return list((moved - placed(system.n, 1, found)).mid().entries())
 
 
-def _units(system: System, geometry: Sequence[tuple[Any, Any]]) -> list[list[int]]:
+def _units(system: ReferenceSystem, geometry: Sequence[tuple[Any, Any]]) -> list[list[int]]:
     """Powers of 2 that bring the rows of each loop to ordinary size.
 
     Where loading found what rows usually are that counts: of some nothing but rounding is left on V.

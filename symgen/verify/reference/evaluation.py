@@ -19,9 +19,9 @@ from symgen.verify.reference.linear import (
     rows_of,
     solve,
 )
-from symgen.verify.reference.manifold import Ranks
+from symgen.verify.reference.manifold import ManifoldRanks
 from symgen.verify.reference.parts import piece, placed
-from symgen.verify.reference.system import Configuration, System
+from symgen.verify.reference.system import Configuration, ReferenceSystem
 
 Derivative: TypeAlias = Callable[["Evaluation", Any], Any]
 
@@ -43,8 +43,8 @@ def _once_a_velocity(derivative: Derivative) -> Derivative:
 class Evaluation:
     """One state; every intermediate is computed once, when it is needed."""
 
-    system: System
-    ranks: Ranks
+    system: ReferenceSystem
+    ranks: ManifoldRanks
     q: Sequence[Any]
     qd: Sequence[Any]
     qdd: Sequence[Any]

@@ -19,7 +19,7 @@ from symgen.verify.reference.linear import (
     rows_of,
 )
 from symgen.verify.reference.parts import piece, placed
-from symgen.verify.reference.system import System, default_parameters
+from symgen.verify.reference.system import ReferenceSystem, default_parameters
 from symgen.verify.reference.tape import precision
 from symgen.verify.reference.translation import literal_values
 
@@ -33,7 +33,7 @@ ROUNDED_DIRECTION = -44
 
 
 @dataclass(frozen=True)
-class Ranks:
+class ManifoldRanks:
     """Generic ranks: of B, of its geometric rows, and of F'M (the degree of actuation).
 
     `rounded` says that loops close up to rounding only: an overconstrained linkage whose lengths are rounded numbers.
@@ -47,7 +47,7 @@ class Ranks:
     of_parts: tuple[tuple[int, int], ...] = field(default=(), compare=False)
 
 
-def generic_ranks(system: System) -> Ranks | None:
+def generic_ranks(system: ReferenceSystem) -> ManifoldRanks | None:
     """The largest ranks over points of V at the default parameters; None when no point of V is found.
 
     Where loading found configurations, these say which branch of V is meant, else points are random.
@@ -58,11 +58,11 @@ def generic_ranks(system: System) -> Ranks | None:
         return _sampled_ranks(system, rounded=False) or _sampled_ranks(system, rounded=True)
 
 
-def _sampled_ranks(system: System, rounded: bool) -> Ranks | None:
+def _sampled_ranks(system: ReferenceSystem, rounded: bool) -> ManifoldRanks | None:
     parameters = default_parameters(system.model)
     literals = literal_values(system.literals)
     generator = random.Random("ranks")
-    found: list[Ranks] = []
+    found: list[ManifoldRanks] = []
     known = () if system.model.assembly is None else system.model.assembly.places[:RANK_POINTS]
     for start in (*(place.q for place in known), *(() if known else starts(system, generator, RANK_STARTS))):
         q = onto_manifold(system, start, parameters, literals, 2.0**-170, rounded)
@@ -76,11 +76,11 @@ def _sampled_ranks(system: System, rounded: bool) -> Ranks | None:
     constraints = max(ranks.constraints for ranks in found)
     regular = [ranks for ranks in found if ranks.constraints == constraints]
     best = max(regular, key=lambda ranks: ranks.actuation)
-    return Ranks(constraints, max(r.geometric for r in regular), best.actuation, rounded, best.of_parts)
+    return ManifoldRanks(constraints, max(r.geometric for r in regular), best.actuation, rounded, best.of_parts)
 
 
 def exceeds(
-    system: System, ranks: Ranks, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]
+    system: ReferenceSystem, ranks: ManifoldRanks, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]
 ) -> bool:
     """Whether a point of V has greater ranks than are meant, as other branches may: kernels give a status there."""
     if ranks.constraints == system.r and ranks.actuation == min(system.m, system.n - ranks.constraints):
@@ -91,7 +91,7 @@ def exceeds(
     return found.actuation > ranks.actuation
 
 
-def starts(system: System, generator: random.Random, count: int) -> list[list[float]]:
+def starts(system: ReferenceSystem, generator: random.Random, count: int) -> list[list[float]]:
     """Starting points: the model's `configuration` (where loading found it singular, a regular one), then random ones
     in the ranges of the coordinates."""
     given: dict[str, Any] = dict(system.model.configuration)
@@ -108,8 +108,8 @@ def starts(system: System, generator: random.Random, count: int) -> list[list[fl
 
 
 def _ranks_at(
-    system: System, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any], rounded: bool
-) -> Ranks | None:
+    system: ReferenceSystem, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any], rounded: bool
+) -> ManifoldRanks | None:
     """Ranks at one point of V; the degree of actuation is rank [B; M'] minus rank B."""
     noise, signal = (ROUNDED_NOISE, ROUNDED_SIGNAL) if rounded else (RANK_NOISE, RANK_SIGNAL)
     constraints, control = system.matrices(q, parameters, literals)
@@ -136,10 +136,10 @@ def _ranks_at(
     of_parts = (
         (len({*rows} & {*part.rows}), len({*reached} & {*part.coordinates})) for part in system.parts
     )
-    return Ranks(len(rows), geometric, len(reached), rounded, tuple(of_parts))
+    return ManifoldRanks(len(rows), geometric, len(reached), rounded, tuple(of_parts))
 
 
-def _projected(system: System, constraints: Any, control: Any, rows: Sequence[int]) -> Any:
+def _projected(system: ReferenceSystem, constraints: Any, control: Any, rows: Sequence[int]) -> Any:
     """N M by rows that span all: on V, where sums over all subsets of rows in other units lose far more digits."""
     found = []
     for part in system.parts:

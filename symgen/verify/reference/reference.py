@@ -20,10 +20,10 @@ from symgen.model.model import Model
 from symgen.model.quantities import ROWS
 from symgen.verify.reference.evaluation import Evaluation
 from symgen.verify.reference.linear import square
-from symgen.verify.reference.manifold import Ranks, generic_ranks
+from symgen.verify.reference.manifold import ManifoldRanks, generic_ranks
 from symgen.verify.reference.measures import measures_of_parts
 from symgen.verify.reference.quantities import QUANTITIES
-from symgen.verify.reference.system import System
+from symgen.verify.reference.system import ReferenceSystem
 from symgen.verify.reference.tape import ball, precision
 from symgen.verify.reference.translation import literal_values
 
@@ -58,9 +58,9 @@ class Reference:
     Raises ReferenceValueError when no point of the constraint manifold is found.
     """
 
-    def __init__(self, model: Model, ranks: Ranks | None = None) -> None:
+    def __init__(self, model: Model, ranks: ManifoldRanks | None = None) -> None:
         self.model = model
-        self.system = System(model)
+        self.system = ReferenceSystem(model)
         known = ranks or generic_ranks(self.system)
         if known is None:
             raise ReferenceValueError(

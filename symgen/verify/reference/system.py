@@ -88,7 +88,7 @@ class Configuration:
         return self.written_mass * vector + self.jacobian.mass_times(vector, self.weights.entries())
 
 
-class System:
+class ReferenceSystem:
     """The model as replays."""
 
     def __init__(self, model: Model) -> None:

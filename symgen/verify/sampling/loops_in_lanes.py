@@ -12,7 +12,7 @@ import numpy as np
 
 from symgen.verify.reference.manifold import ROUNDED_DIRECTION
 from symgen.verify.reference.parts import Part
-from symgen.verify.reference.system import System
+from symgen.verify.reference.system import ReferenceSystem
 from symgen.verify.reference.tape import Replay
 from symgen.verify.sampling.lanes import Lanes
 
@@ -32,10 +32,10 @@ FUNCTIONS: dict[str, Callable[..., Lanes]] = {
 }  # fmt: skip
 
 
-class Loops:
+class LoopsInLanes:
     """The loops of a system; `literals` are the values of its literals."""
 
-    def __init__(self, system: System, literals: Sequence[float]) -> None:
+    def __init__(self, system: ReferenceSystem, literals: Sequence[float]) -> None:
         self._system, self._literals = system, list(literals)
 
     def run(self, replay: Replay, q: Lanes, p: Lanes) -> list[Lanes]:

@@ -20,7 +20,7 @@ from symgen.verify.reference.reference import Reference
 from symgen.verify.reference.system import default_parameters
 from symgen.verify.reference.tape import precision
 from symgen.verify.sampling.lanes import Lanes
-from symgen.verify.sampling.loops_in_lanes import DAMPED_STEPS, Loops
+from symgen.verify.sampling.loops_in_lanes import DAMPED_STEPS, LoopsInLanes
 from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, ranked_parts
 
 BITS = 128
@@ -58,7 +58,7 @@ def modes(reference: Reference) -> tuple[tuple[float, ...], ...]:
 class _Modes:
     def __init__(self, reference: Reference, parameters: Sequence[float], literals: Sequence[float]) -> None:
         system, coordinates = reference.system, reference.model.coordinates
-        self._system, self._loops = system, Loops(system, literals)
+        self._system, self._loops = system, LoopsInLanes(system, literals)
         self._parts = ranked_parts(system, reference.ranks)
         self._dice = random.Random("modes")
         self._parameters = np.array(parameters)

@@ -18,7 +18,7 @@ import numpy as np
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference.system import default_parameters
 from symgen.verify.sampling.lanes import Lanes
-from symgen.verify.sampling.loops_in_lanes import DEPENDENT, Loops, lengths_of, times
+from symgen.verify.sampling.loops_in_lanes import DEPENDENT, LoopsInLanes, lengths_of, times
 from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, measures, ranked_parts
 from symgen.verify.sampling.regular import values_at
 from symgen.verify.sampling.states import Sample
@@ -76,7 +76,7 @@ class Surroundings:
         self, reference: Reference, samples: Sequence[Sample], modes: Sequence[Sequence[float]] = ()
     ) -> None:
         self._system, self._parts = reference.system, ranked_parts(reference.system, reference.ranks)
-        self._loops = Loops(reference.system, [float(x) for x in reference.literals()])
+        self._loops = LoopsInLanes(reference.system, [float(x) for x in reference.literals()])
         states = [sample.state for sample in samples]
         parts = {name: _rows([getattr(state, name) for state in states]) for name in ("q", "qd", "qdd", "u")}
         parts["p"] = _rows([state.parameters for state in states])

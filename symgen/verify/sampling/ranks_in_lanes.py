@@ -9,10 +9,10 @@ from math import comb
 
 import numpy as np
 
-from symgen.verify.reference.manifold import Ranks
-from symgen.verify.reference.system import System
+from symgen.verify.reference.manifold import ManifoldRanks
+from symgen.verify.reference.system import ReferenceSystem
 from symgen.verify.sampling.lanes import Lanes
-from symgen.verify.sampling.loops_in_lanes import DEPENDENT, Loops, block, lengths_of
+from symgen.verify.sampling.loops_in_lanes import DEPENDENT, LoopsInLanes, block, lengths_of
 from symgen.verify.sampling.regular import REGULAR
 
 # Of rows of length 1: what is more than rounding leaves of rows that depend on others.
@@ -30,7 +30,7 @@ class RankedPart:
     actuation: int
 
 
-def ranked_parts(system: System, ranks: Ranks) -> list[RankedPart]:
+def ranked_parts(system: ReferenceSystem, ranks: ManifoldRanks) -> list[RankedPart]:
     """The parts of a system; all of it where it is not known which parts lack ranks."""
     if len(ranks.of_parts) != len(system.parts):
         return [RankedPart(range(system.n), range(system.r), range(system.m), ranks.constraints, ranks.actuation)]
@@ -39,7 +39,7 @@ def ranked_parts(system: System, ranks: Ranks) -> list[RankedPart]:
 
 
 def matrices(
-    system: System, parts: Sequence[RankedPart], loops: Loops, q: Lanes, p: Lanes
+    system: ReferenceSystem, parts: Sequence[RankedPart], loops: LoopsInLanes, q: Lanes, p: Lanes
 ) -> list[tuple[Lanes, Lanes]]:
     """B and M of each part."""
     n, m, r = system.n, system.m, system.r

@@ -65,7 +65,7 @@ def tree_text(model: Model, states: Sequence[Sequence[float]]) -> str:
 
     Raises NoTreeError for a mechanism that it does not know.
     """
-    return _Tree(model).text(states)
+    return _NumberedTree(model).text(states)
 
 
 @lru_cache(maxsize=1)
@@ -100,7 +100,7 @@ def _folder() -> tempfile.TemporaryDirectory[str]:
     return folder
 
 
-class _Tree:
+class _NumberedTree:
     """Joints in the order in which Pinocchio numbers them, and where every frame is against its joint."""
 
     def __init__(self, model: Model) -> None:

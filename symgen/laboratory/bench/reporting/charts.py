@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from math import isfinite, log10
 from typing import Any
 
-from symgen.laboratory.bench.run import SCALARS, Comparison, Measured
+from symgen.laboratory.bench.run import SCALARS, Comparison, MeasuredCandidate
 from symgen.paths.drawing import svg
 from symgen.paths.line_chart import COLOURS
 
@@ -30,7 +30,7 @@ SMALLEST, LARGEST = 1e-18, 10.0  # errors are drawn within; an exact result has 
 
 def time_against_error(comparison: Comparison) -> str:
     """A panel for the C of each scalar type and one for Python; the same numbers give the same text."""
-    groups: dict[str, list[Measured]] = {f"C, {scalar}": [] for scalar in SCALARS}
+    groups: dict[str, list[MeasuredCandidate]] = {f"C, {scalar}": [] for scalar in SCALARS}
     groups[PYTHON_TITLE] = []
     for m in comparison.measured:
         groups[PYTHON_TITLE if m.language == "Python" else f"C, {m.scalar}"].append(m)
@@ -56,7 +56,7 @@ def _numbered(text: str) -> str:
     return text
 
 
-def _panel(panel: Any, measured: Sequence[Measured]) -> None:
+def _panel(panel: Any, measured: Sequence[MeasuredCandidate]) -> None:
     panel.set_xscale("log")
     panel.set_yscale("log")
     for m in measured:
@@ -80,7 +80,7 @@ def _panel(panel: Any, measured: Sequence[Measured]) -> None:
     _labels(panel, measured, bottom, top)
 
 
-def _time_axis(panel: Any, measured: Sequence[Measured]) -> None:
+def _time_axis(panel: Any, measured: Sequence[MeasuredCandidate]) -> None:
     """Numbers, not powers of ten, because all candidates lie within a decade or two."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
@@ -92,7 +92,7 @@ def _time_axis(panel: Any, measured: Sequence[Measured]) -> None:
     panel.xaxis.set_minor_formatter(NullFormatter())
 
 
-def _labels(panel: Any, measured: Sequence[Measured], bottom: float, top: float) -> None:
+def _labels(panel: Any, measured: Sequence[MeasuredCandidate], bottom: float, top: float) -> None:
     """Names in a column beside the panel, in the order of the marks, each tied to its mark."""
     ordered = sorted(measured, key=lambda m: (-_drawn(m.errors.percentile_99), -m.nanoseconds, m.label))
     wanted = [(log10(_drawn(m.errors.percentile_99)) - bottom) / (top - bottom) for m in ordered]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symgen.laboratory.bench.reporting.batch_pages import many_lines
-from symgen.laboratory.bench.run import Benchmark, Comparison, Measured
+from symgen.laboratory.bench.run import Benchmark, Comparison, MeasuredCandidate
 from symgen.terminal import columns
 
 HEAD = ("", "", "ns", "instructions", "code", "stack", "median", "99 %", "largest", "units", "front")
@@ -30,7 +30,7 @@ def _table(comparison: Comparison) -> str:
     )
 
 
-def _row(m: Measured) -> tuple[str, ...]:
+def _row(m: MeasuredCandidate) -> tuple[str, ...]:
     return (
         m.label + (" *" if m.chosen and m.language == "C" else ""),
         m.scalar,

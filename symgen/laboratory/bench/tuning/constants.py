@@ -89,7 +89,7 @@ class Change:
 
 
 @dataclass(frozen=True, slots=True)
-class Measured:
+class MeasuredConstants:
     """All constants, models as they are, and what changes."""
 
     constants: Sequence[Constant]
@@ -97,7 +97,7 @@ class Measured:
     changes: Sequence[Change]
 
 
-def measured(constants: Sequence[Constant], models: Sequence[Path]) -> Measured:
+def measured(constants: Sequence[Constant], models: Sequence[Path]) -> MeasuredConstants:
     """Every constant on every model that it can change."""
     tried = [one for one in constants if not one.numerical and not one.outside]
     modules = sorted({one.module for one in tried})
@@ -114,7 +114,7 @@ def measured(constants: Sequence[Constant], models: Sequence[Path]) -> Measured:
                 if places:
                     tasks.append((constant, how, {str(models[at]): plain[at] for at in places}))
         changes = list(pool.map(lambda task: _changed(*task), tasks))
-    return Measured(constants, {model.stem: one for model, one in zip(models, plain, strict=True)}, changes)
+    return MeasuredConstants(constants, {model.stem: one for model, one in zip(models, plain, strict=True)}, changes)
 
 
 def _changed(constant: Constant, how: str, plain: Mapping[str, Derived]) -> Change:
@@ -139,7 +139,7 @@ def _derived(told: Mapping[str, Any]) -> Derived:
     return Derived(kernels, told["c"], told["seconds"], frozenset((key, how) for key, how in told["noticed"]))
 
 
-def page(found: Measured) -> str:
+def page(found: MeasuredConstants) -> str:
     """The page docs/constants.md."""
     count = sum(len(one.kernels) for one in found.plain.values())
     by_constant = {key: list(group) for key, group in groupby(found.changes, key=lambda one: one.constant.key)}

@@ -46,11 +46,11 @@ class Skipped:
     model: str
     generated: int
     minor: int | None  # None where B has too many minors
-    kept: tuple[Kept, ...]
+    kept: tuple[KeptWeight, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Kept:
+class KeptWeight:
     """The weight with one thing kept, and without; None where there is nothing of the kind, or too long a form."""
 
     what: str
@@ -64,7 +64,7 @@ class Kept:
         return f"{self.weight} ({self.weight - self.without:+d})"
 
 
-class _Kept(System):
+class _HidingSystem(System):
     """A system some of whose known numbers hide behind symbols."""
 
     def __init__(self, model: Model, hide: Callable[[Scalar], bool], columns: Sequence[bool], forces: bool) -> None:
@@ -143,14 +143,14 @@ def skipped(model: Model) -> Skipped:
     generic = genericity(plain)
     (chosen,) = derive_quantities(model, ("inverse_dynamics",)).quantities
     if generic.minors > MOST_CHOICES:
-        none = (Kept(what, None, 0, too_long=True) for what in BY_MINORS)
+        none = (KeptWeight(what, None, 0, too_long=True) for what in BY_MINORS)
         return Skipped(model.name, counted_cost(chosen.outputs), None, (*none, _of_axes(model, generic)))
     outputs = _minor(plain, generic)
     kept = (*_of_minors(plain, generic, outputs), *_of_matrices(model, generic), _of_axes(model, generic))
     return Skipped(model.name, counted_cost(chosen.outputs), counted_cost(outputs), kept)
 
 
-def _of_minors(plain: System, generic: Genericity, outputs: Vector) -> Iterator[Kept]:
+def _of_minors(plain: System, generic: Genericity, outputs: Vector) -> Iterator[KeptWeight]:
     """What the minor form skips."""
     model, b = plain.model, plain.constraint_jacobian
     free = [bool(b) and all(row[j].is_zero for row in b) for j in range(model.n)]
@@ -160,30 +160,31 @@ def _of_minors(plain: System, generic: Genericity, outputs: Vector) -> Iterator[
     def weight(mechanics: System) -> int:
         return counted_cost(_minor(mechanics, generic))
 
-    touched = weight(_Kept(model, lambda x: x.is_zero, free, False)) if any(free) else None
-    yield Kept("coordinates no constraint touches", touched, minor)
+    touched = weight(_HidingSystem(model, lambda x: x.is_zero, free, False)) if any(free) else None
+    yield KeptWeight("coordinates no constraint touches", touched, minor)
     too_long = 2**model.n > MOST_CHOICES
-    full = None if too_long else weight(_Kept(model, lambda x: x.is_zero, everywhere, False))
-    yield Kept("zeros of B and M", full, minor, too_long)
-    yield Kept("constants of B and M", weight(_Kept(model, lambda x: bool(x.constant), everywhere, False)), minor)
+    full = None if too_long else weight(_HidingSystem(model, lambda x: x.is_zero, everywhere, False))
+    yield KeptWeight("zeros of B and M", full, minor, too_long)
+    constants = weight(_HidingSystem(model, lambda x: bool(x.constant), everywhere, False))
+    yield KeptWeight("constants of B and M", constants, minor)
     vanishing = any(x.is_zero for x in plain.potential_force)
-    forces = weight(_Kept(model, lambda _: False, nowhere, True)) if vanishing else None
-    yield Kept("forces that vanish", forces, minor)
-    yield Kept("τ without G and C", counted_cost(_by_matrices(System(model), generic)), minor)
+    forces = weight(_HidingSystem(model, lambda _: False, nowhere, True)) if vanishing else None
+    yield KeptWeight("forces that vanish", forces, minor)
+    yield KeptWeight("τ without G and C", counted_cost(_by_matrices(System(model), generic)), minor)
     square = generic.m == generic.delta == generic.alpha and generic.rank == generic.r
-    yield Kept("m = δ", counted_cost(_summed(model, generic)) if square else None, minor)
-    yield Kept("groups of parameters", _each_time(plain, outputs), minor)
+    yield KeptWeight("m = δ", counted_cost(_summed(model, generic)) if square else None, minor)
+    yield KeptWeight("groups of parameters", _each_time(plain, outputs), minor)
     unshared = cost(outputs).weight
-    yield Kept("sines by addition", unshared if unshared != minor else None, minor)
+    yield KeptWeight("sines by addition", unshared if unshared != minor else None, minor)
 
 
-def _of_matrices(model: Model, generic: Genericity) -> Iterator[Kept]:
+def _of_matrices(model: Model, generic: Genericity) -> Iterator[KeptWeight]:
     """What the matrices G and C skip, where u is formed from them."""
     plain, full = (counted_cost(_by_matrices(system, generic)) for system in (System(model), _FullMatrices(model)))
-    yield Kept("zeros of G and C", full if full != plain else None, plain)
+    yield KeptWeight("zeros of G and C", full if full != plain else None, plain)
 
 
-def _of_axes(model: Model, generic: Genericity) -> Kept:
+def _of_axes(model: Model, generic: Genericity) -> KeptWeight:
     """What body-fixed axes save in elimination."""
 
     def weight(steps: Callable[[System], Elimination]) -> int | None:
@@ -194,7 +195,7 @@ def _of_axes(model: Model, generic: Genericity) -> Kept:
         return None if form is None else counted_cost(form.derived.outputs)
 
     plain, world = weight(Elimination), weight(_WorldAxes)
-    return Kept("body-fixed axes", None if plain is None or world == plain else world, plain or 0)
+    return KeptWeight("body-fixed axes", None if plain is None or world == plain else world, plain or 0)
 
 
 def _minor(mechanics: System, generic: Genericity) -> Vector:

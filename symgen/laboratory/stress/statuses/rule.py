@@ -13,7 +13,7 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
-from symgen.generation.runnable import SCALARS, STRESSED, Kernels, rounded_state
+from symgen.generation.runnable import SCALARS, STRESSED, RunnableKernels, rounded_state
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar, Status
 from symgen.laboratory.stress.families import SingularFamilies, search
 from symgen.laboratory.stress.statuses.rule_measures import ScaledMeasures
@@ -87,7 +87,7 @@ def held_to_the_rule(
     Raises ReferenceValueError or VerificationError where the model has no regular states.
     """
     reference = Reference(model)
-    kernels = Kernels(model, folder, quantities)
+    kernels = RunnableKernels(model, folder, quantities)
     found = search(reference) if searched is None else searched
     pushed = chain(towards_singular_sets(found, closest), far_apart(reference, states, decades))
     return counted(reference, kernels, pushed, quantities, progress)
@@ -95,7 +95,7 @@ def held_to_the_rule(
 
 def counted(
     reference: Reference,
-    kernels: Kernels,
+    kernels: RunnableKernels,
     pushed: Iterable[Pushed],
     quantities: Sequence[str] = STRESSED,
     progress: Callable[[str], None] = lambda _: None,
@@ -154,7 +154,7 @@ class _Count:
 
 def _cases(
     reference: Reference,
-    kernels: Kernels,
+    kernels: RunnableKernels,
     names: Sequence[str],
     measures: ScaledMeasures,
     pushed: Pushed,

@@ -12,7 +12,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from symgen.generation.runnable import SCALARS, Kernels, rounded_state
+from symgen.generation.runnable import SCALARS, RunnableKernels, rounded_state
 from symgen.ir.kernel import Scalar, Status
 from symgen.laboratory.stress.variants.degrees import DEGREES, in_degrees
 from symgen.laboratory.stress.variants.dimensions import (
@@ -60,7 +60,7 @@ class Scaled:
     required: bool
 
 
-def scaling(reference: Reference, kernels: Kernels, folder: Path) -> tuple[tuple[Scaled, ...], tuple[str, ...]]:
+def scaling(reference: Reference, kernels: RunnableKernels, folder: Path) -> tuple[tuple[Scaled, ...], tuple[str, ...]]:
     """All changes of units of a model, and what is wrong (empty: nothing)."""
     model = reference.model
     names = tuple(name for name in MAIN if name in kernels.names)
@@ -80,7 +80,7 @@ def scaling(reference: Reference, kernels: Kernels, folder: Path) -> tuple[tuple
         other = Reference(turned, reference.ranks)
         converted = [_in_degrees(model, state) for state in states]
         (folder / "degrees").mkdir()
-        names_other = Kernels(turned, folder / "degrees", names, kernels.out)
+        names_other = RunnableKernels(turned, folder / "degrees", names, kernels.out)
         found += _compare("rad in deg", reference, kernels, other, names_other, states, converted, names, False)
     return tuple(found), tuple(_failures(found))
 
@@ -99,9 +99,9 @@ def _failures(found: Sequence[Scaled]) -> list[str]:
 def _compare(
     what: str,
     reference: Reference,
-    kernels: Kernels,
+    kernels: RunnableKernels,
     other: Reference,
-    other_kernels: Kernels,
+    other_kernels: RunnableKernels,
     states: Sequence[State],
     converted: Sequence[State],
     names: Sequence[str],

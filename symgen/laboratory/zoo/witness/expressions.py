@@ -23,10 +23,10 @@ def read_expression(tape: NodeTape, text: str, lookup: Lookup) -> Node:
         tree = ast.parse(source, mode="eval").body
     except SyntaxError as reason:
         raise NotReadError(f"{source!r}: {reason}") from reason
-    return _Reader(tape, source, lookup).node(tree)
+    return _SyntaxReader(tape, source, lookup).node(tree)
 
 
-class _Reader:
+class _SyntaxReader:
     def __init__(self, tape: NodeTape, source: str, lookup: Lookup) -> None:
         self._tape, self._source, self._lookup = tape, source, lookup
 

@@ -34,7 +34,7 @@ SAME = 1e-10
 
 def tree_of(
     blocks: Mapping[str, Any], parameters: Mapping[str, float], files: Mapping[str, str]
-) -> tuple[Tree, SystemReader] | None:
+) -> tuple[PinocchioTree, SystemReader] | None:
     """The joints and bodies of a file as Pinocchio's, and alone as the zoo reads them; None where these are no tree."""
     alone = {name: block for name, block in expanded(blocks, files).items() if name in ALONE}
     system = SystemReader(alone)
@@ -51,7 +51,7 @@ def tree_of(
     return _Joints(pinocchio, system, parameters).tree, system
 
 
-def disagreement(tree: Tree, system: SystemReader, parameters: Mapping[str, float], dice: Dice) -> float:
+def disagreement(tree: PinocchioTree, system: SystemReader, parameters: Mapping[str, float], dice: Dice) -> float:
     """The largest difference of G and of all other forces relative to the largest entry, at random states."""
     found = equations(system)
     evaluate = EquationEvaluator(NodeProgram(system.tape, found.flat), found)
@@ -87,7 +87,7 @@ def is_fixed(system: SystemReader, frame: Relative) -> bool:
 
 
 def _apart(
-    tree: Tree, system: SystemReader, evaluate: EquationEvaluator, parameters: Mapping[str, float], dice: Dice
+    tree: PinocchioTree, system: SystemReader, evaluate: EquationEvaluator, parameters: Mapping[str, float], dice: Dice
 ) -> float:
     """At one state."""
     n = len(system.coordinates)
@@ -110,7 +110,7 @@ def _apart(
 
 
 @dataclass(frozen=True)
-class _Part:
+class _PinocchioJoint:
     """A joint of Pinocchio's: places of its coordinates in the file's q, of its q and v in Pinocchio's."""
 
     single: tuple[int, ...]
@@ -122,7 +122,7 @@ class _Part:
 
 
 @dataclass(frozen=True)
-class _Kinematics:
+class _PinocchioState:
     """Pinocchio's q and v at a state of the file: v = rates q', v' = rates q'' + drift."""
 
     place: Any
@@ -130,10 +130,10 @@ class _Kinematics:
     drift: Any
 
 
-class Tree:
+class PinocchioTree:
     """A model of Pinocchio's with the coordinates of a file."""
 
-    def __init__(self, pinocchio: Any, model: Any, parts: list[_Part], gravity: Any) -> None:
+    def __init__(self, pinocchio: Any, model: Any, parts: list[_PinocchioJoint], gravity: Any) -> None:
         self._pin, self._model, self.parts = pinocchio, model, parts
         model.gravity = pinocchio.Motion(gravity, np.zeros(3))
         self._data = model.createData()
@@ -178,7 +178,7 @@ class Tree:
                 accelerations[places] -= q[places] * (qd[places] @ qd[places])
         return accelerations
 
-    def _kinematics(self, q: Any, qd: Any) -> _Kinematics:
+    def _kinematics(self, q: Any, qd: Any) -> _PinocchioState:
         here = self._pin.neutral(self._model)
         rates = np.zeros((self._model.nv, len(q)))
         drift = np.zeros(self._model.nv)
@@ -202,18 +202,18 @@ class Tree:
                 at += 3
             rates[at : at + 3, list(part.quaternion)] = spin
             here[part.in_q + len(part.way) : part.in_q + len(part.way) + 4] = (x, y, z, w)
-        return _Kinematics(here, rates, drift)
+        return _PinocchioState(here, rates, drift)
 
 
-def _robot(pinocchio: Any, system: SystemReader, parameters: Mapping[str, float], text: str) -> Tree:
+def _robot(pinocchio: Any, system: SystemReader, parameters: Mapping[str, float], text: str) -> PinocchioTree:
     """A URDF as Pinocchio reads it."""
     model = pinocchio.buildModelFromXML(text)
     names = system.coordinates
     parts = []
     for joint, name in zip(list(model.joints)[1:], list(model.names)[1:], strict=True):
-        parts.append(_Part((names.index(name),), (), (), joint.idx_q, joint.idx_v, joint.nq == 2))
+        parts.append(_PinocchioJoint((names.index(name),), (), (), joint.idx_q, joint.idx_v, joint.nq == 2))
     read = read_vector(system.tape, system.blocks.get("gravity"), system.read)
-    return Tree(pinocchio, model, parts, np.array(system.tape.evaluate(read, parameters, Floats()), dtype=float))
+    return PinocchioTree(pinocchio, model, parts, np.array(system.tape.evaluate(read, parameters, Floats()), dtype=float))
 
 
 class _Joints:
@@ -222,7 +222,7 @@ class _Joints:
     def __init__(self, pinocchio: Any, system: SystemReader, parameters: Mapping[str, float]) -> None:
         self._pin, self._system, self._parameters = pinocchio, system, parameters
         self._model = pinocchio.Model()
-        self._parts: list[_Part] = []
+        self._parts: list[_PinocchioJoint] = []
         self._frames = read_frames(system.tape, system.blocks, system.read)
         # the joint that a frame moves with, and where it stands on that
         self._known: dict[str, tuple[int, Any]] = {"world": (0, pinocchio.SE3.Identity())}
@@ -236,7 +236,7 @@ class _Joints:
             waiting += self._carried(carrier)
         for name, body in (system.blocks.get("bodies") or {}).items():
             self._load(name, body or {})
-        self.tree = Tree(pinocchio, self._model, self._parts, self._vector(system.blocks.get("gravity")))
+        self.tree = PinocchioTree(pinocchio, self._model, self._parts, self._vector(system.blocks.get("gravity")))
 
     def _vector(self, given: Any) -> Any:
         return self._numbers(read_vector(self._system.tape, given, self._system.read))
@@ -298,7 +298,7 @@ class _Joints:
     def _joint(self, parent: int, kind: Any, placement: Any, name: str, places: tuple[Any, Any, Any]) -> int:
         index: int = self._model.addJoint(parent, kind, placement, name)
         joint = self._model.joints[index]
-        self._parts.append(_Part(*places, joint.idx_q, joint.idx_v))
+        self._parts.append(_PinocchioJoint(*places, joint.idx_q, joint.idx_v))
         return index
 
     def _load(self, name: str, body: Mapping[str, Any]) -> None:
