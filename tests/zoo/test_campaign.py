@@ -16,7 +16,7 @@ from symgen.laboratory.zoo.records import DrawRecord, read_records, summary, wri
 from symgen.laboratory.zoo.refusals import NOT_TOLD
 from symgen.laboratory.zoo.run import CommandRun
 from symgen.laboratory.zoo.verdict import FAILED, REFUSED, VERIFIED, DrawVerdict
-from symgen.laboratory.zoo.witness.comparison import Comparison
+from symgen.laboratory.zoo.witness.coverage import Coverage
 from symgen.laboratory.zoo.witness.expressions import NotReadError
 from symgen.laboratory.zoo.witness.states import LOST_STEPS, NOT_CLOSED, STUCK
 from symgen.laboratory.zoo.witness.urdf_file import expanded
@@ -145,16 +145,16 @@ def test_a_draw_that_the_witness_cannot_read_is_a_failure(ends, tmp_path: Path, 
 @pytest.mark.parametrize(
     ("compared", "kind", "signature"),
     [
-        (Comparison(20), "", ""),
-        (Comparison(7, LOST_STEPS), "", ""),
-        (Comparison(0, LOST_STEPS), "no state to compare", LOST_STEPS),
-        (Comparison(0, NOT_CLOSED), "no state to compare", NOT_CLOSED),
+        (Coverage(20), "", ""),
+        (Coverage(7, LOST_STEPS), "", ""),
+        (Coverage(0, LOST_STEPS), "no state to compare", LOST_STEPS),
+        (Coverage(0, NOT_CLOSED), "no state to compare", NOT_CLOSED),
         # several branches meet there: which one is meant nobody can say
-        (Comparison(0, STUCK), "", f"no state to compare: {STUCK}"),
+        (Coverage(0, STUCK), "", f"no state to compare: {STUCK}"),
     ],
 )
 def test_a_draw_without_a_state_is_a_failure_unless_its_start_is_singular(
-    compared: Comparison, kind: str, signature: str, ends, tmp_path: Path, monkeypatch
+    compared: Coverage, kind: str, signature: str, ends, tmp_path: Path, monkeypatch
 ) -> None:
     ends(CommandRun(0, "", "", 1, 1))
     wrote(tmp_path)
@@ -167,10 +167,10 @@ def test_a_draw_without_a_state_is_a_failure_unless_its_start_is_singular(
 def test_what_was_compared_is_recorded_and_summed_up(tmp_path: Path) -> None:
     names = ("inverse_dynamics", "forward_dynamics", "multipliers")
     compared = [
-        Comparison(20, "", names, (), 180, 0, 0, 0.0, 0, 40),
-        Comparison(20, "", names[:2], names[2:], 100, 2, 18, 3.1e-3),
-        Comparison(13, LOST_STEPS, names[1:2], (), 26, 0, 0, 0.0, 4),
-        Comparison(0, STUCK, (), names),
+        Coverage(20, "", names, (), 180, 0, 0, 0.0, 0, 40),
+        Coverage(20, "", names[:2], names[2:], 100, 2, 18, 3.1e-3),
+        Coverage(13, LOST_STEPS, names[1:2], (), 26, 0, 0, 0.0, 4),
+        Coverage(0, STUCK, (), names),
         None,
     ]
     for index, each in enumerate(compared):
@@ -239,7 +239,7 @@ def test_a_mistake_that_was_not_told_is_kept_with_the_mistake(tmp_path: Path) ->
 
 def test_a_draw_that_ends_well_leaves_nothing(ends, tmp_path: Path, monkeypatch) -> None:
     ends(CommandRun(0, "", "", 1, 1))
-    monkeypatch.setattr(campaign, "_witnessed", lambda *_: (DrawVerdict(VERIFIED), "", Comparison(20)))
+    monkeypatch.setattr(campaign, "_witnessed", lambda *_: (DrawVerdict(VERIFIED), "", Coverage(20)))
     record, _ = one_draw(Campaign(1, tmp_path, "disc"), 0)
     assert not record.failed
     assert not list(tmp_path.iterdir())

@@ -206,7 +206,7 @@ def test_a_false_result_of_a_tree_is_found_beside_pinocchio(tmp_path: Path, monk
     checked = Witness(CRANE).check(tmp_path / "out" / "crane", count=5)
     assert checked.findings == ()
     # u and accelerations of Python and C in double
-    assert checked.comparison.pinocchio == 5 * 2 * 2
+    assert checked.coverage.pinocchio == 5 * 2 * 2
     right = Tree.accelerations
     monkeypatch.setattr(Tree, "accelerations", lambda self, *given: right(self, *given) * (1 + 1e-6))
     (finding,) = Witness(CRANE).check(tmp_path / "out" / "crane", count=5).findings

@@ -147,7 +147,7 @@ def test_generated_numbers_are_right(generated: Path) -> None:
     assert checked.states == 20
     assert checked.findings == ()
     assert 0 < checked.largest < 1
-    compared = checked.comparison
+    compared = checked.coverage
     assert compared.quantities == ("inverse_dynamics", "forward_dynamics", "multipliers")
     assert (compared.lack, compared.missing, compared.unknown) == ("", (), 0)
     # of Python and of the C of both types
@@ -416,7 +416,7 @@ def test_statuses_that_are_passed_over_are_counted(tmp_path: Path) -> None:
     assert run.code == 0, run.err
     checked = Witness(FLAT).check(tmp_path / "out" / "flat", count=4)
     assert checked.findings == ()
-    compared = checked.comparison
+    compared = checked.coverage
     assert (compared.states, compared.missing) == (4, ("inverse_dynamics", "multipliers"))
     assert compared.numbers + compared.statuses == 4 * 3
 

@@ -21,7 +21,7 @@ from symgen.laboratory.zoo.refusals import NOT_TOLD, judged
 from symgen.laboratory.zoo.run import run_command
 from symgen.laboratory.zoo.shrink import shrink
 from symgen.laboratory.zoo.verdict import FAILED, REFUSED, DrawVerdict, verdict_of, without_numbers
-from symgen.laboratory.zoo.witness.comparison import Comparison
+from symgen.laboratory.zoo.witness.coverage import Coverage
 from symgen.laboratory.zoo.witness.states import STUCK
 from symgen.laboratory.zoo.witness.witness import check
 
@@ -61,7 +61,7 @@ class JudgedDraw:
     verdict: DrawVerdict
     cpu: float
     megabytes: float
-    compared: Comparison | None = None
+    compared: Coverage | None = None
 
 
 def judge(description: Description, model: Path) -> JudgedDraw:
@@ -79,7 +79,7 @@ def judge(description: Description, model: Path) -> JudgedDraw:
 
 def _witnessed(
     description: Description, folder: Path, verdict: DrawVerdict
-) -> tuple[DrawVerdict, str, Comparison | None]:
+) -> tuple[DrawVerdict, str, Coverage | None]:
     """What the numbers make of a verdict, what there is to say about it, and what was compared."""
     made = folder / str(description.blocks["model"])
     if not (made / "derivation.json").exists():
@@ -92,10 +92,10 @@ def _witnessed(
     if checked.findings:
         first = checked.findings[0]
         told = "".join(f"{finding.text}\n" for finding in checked.findings)
-        return DrawVerdict(FAILED, first.kind, without_numbers(first.text)), told, checked.comparison
+        return DrawVerdict(FAILED, first.kind, without_numbers(first.text)), told, checked.coverage
     if not checked.states:
-        verdict = without_states(verdict, checked.comparison.lack)
-    return verdict, "", checked.comparison
+        verdict = without_states(verdict, checked.coverage.lack)
+    return verdict, "", checked.coverage
 
 
 def without_states(verdict: DrawVerdict, lack: str) -> DrawVerdict:

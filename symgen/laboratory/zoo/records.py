@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symgen.laboratory.zoo.verdict import VERIFIED
-from symgen.laboratory.zoo.witness.comparison import Comparison, comparison_of
+from symgen.laboratory.zoo.witness.coverage import Coverage, coverage_of
 from symgen.laboratory.zoo.witness.witness import STATES
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ class DrawRecord:
     cpu: float
     megabytes: float
     file: str = ""
-    compared: Comparison | None = None
+    compared: Coverage | None = None
 
     @property
     def failed(self) -> bool:
@@ -53,7 +53,7 @@ def read_records(paths: Iterable[Path]) -> list[DrawRecord]:
         for line in path.read_text(encoding="utf-8").splitlines():
             given: dict[str, Any] = json.loads(line)
             compared = given.pop("compared", None)
-            record = DrawRecord(**given, compared=comparison_of(compared) if compared else None)
+            record = DrawRecord(**given, compared=coverage_of(compared) if compared else None)
             found[record.seed, record.index, record.family] = record
     return list(found.values())
 

@@ -33,10 +33,10 @@ NUMBERS = 4_000_000
 KEPT, DIRECTIONS, STEPS = 32, 8, 3
 # Units; what is estimated counts every rounding with all that it may do, and d for less than it is.
 DOUBTFUL = FACTOR / 2
-# How near to singular states u, accelerations and multipliers are judged, beside samples; these measures are squares.
-# The others keep to where samples are: most of N_B and of admissible velocities lose digits beside stretched knees, and
-# hardly anybody wants them there at ten times the operations.
-NEARER = 1e-3
+# How near to singular states u, accelerations and multipliers are judged, beside samples: a thousandth, of measures
+# that are squares.  The others keep to where samples are: beside stretched knees N_B and admissible velocities lose
+# digits, and hardly anybody wants them there at ten times the operations.
+NEARER = 1e-6
 # How many are judged, and how many are brought onto V at most: not all that lie near come to a regular state.
 JUDGED, SETTLED = 8, 32
 

@@ -15,7 +15,7 @@ from symgen.laboratory.zoo.witness.allocation import directed, preloads
 from symgen.laboratory.zoo.witness.fields import Floats
 from symgen.laboratory.zoo.witness.kkt import EquationEvaluator, EquationValues, GenericRanks
 from symgen.laboratory.zoo.witness.mechanics import equations
-from symgen.laboratory.zoo.witness.pinocchio_trees import Tree
+from symgen.laboratory.zoo.witness.pinocchio_trees import PinocchioTree
 from symgen.laboratory.zoo.witness.reader import SystemReader
 from symgen.laboratory.zoo.witness.states import FloatState, null_space
 from symgen.laboratory.zoo.witness.tape import NodeProgram
@@ -29,7 +29,7 @@ COMPARED = ("inverse_dynamics", "forward_dynamics")
 class PinocchioAnswers:
     """A tree, and what acts on it beside gravity."""
 
-    def __init__(self, tree: Tree, blocks: Mapping[str, Any], ranks: GenericRanks) -> None:
+    def __init__(self, tree: PinocchioTree, blocks: Mapping[str, Any], ranks: GenericRanks) -> None:
         self._tree, self._ranks = tree, ranks
         self._system = SystemReader({name: block for name, block in blocks.items() if name not in WITHOUT})
         found = equations(self._system)

@@ -213,7 +213,8 @@ def _robot(pinocchio: Any, system: SystemReader, parameters: Mapping[str, float]
     for joint, name in zip(list(model.joints)[1:], list(model.names)[1:], strict=True):
         parts.append(_PinocchioJoint((names.index(name),), (), (), joint.idx_q, joint.idx_v, joint.nq == 2))
     read = read_vector(system.tape, system.blocks.get("gravity"), system.read)
-    return PinocchioTree(pinocchio, model, parts, np.array(system.tape.evaluate(read, parameters, Floats()), dtype=float))
+    gravity = np.array(system.tape.evaluate(read, parameters, Floats()), dtype=float)
+    return PinocchioTree(pinocchio, model, parts, gravity)
 
 
 class _Joints:

@@ -15,7 +15,7 @@ import yaml
 from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.draws.describe import Description
 from symgen.laboratory.zoo.witness.allocation import directed, members, preloads
-from symgen.laboratory.zoo.witness.comparison import Comparison, Tally
+from symgen.laboratory.zoo.witness.coverage import Coverage, Tally
 from symgen.laboratory.zoo.witness.fields import Balls, Floats, precision
 from symgen.laboratory.zoo.witness.generated import ARGUMENTS, Answer, Target, targets
 from symgen.laboratory.zoo.witness.kkt import (
@@ -61,14 +61,14 @@ class Finding:
 class CheckResult:
     """What was compared, the largest error in units of what is allowed, and what is wrong."""
 
-    comparison: Comparison
+    coverage: Coverage
     largest: float
     findings: tuple[Finding, ...]
 
     @property
     def states(self) -> int:
         """At how many states."""
-        return self.comparison.states
+        return self.coverage.states
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Any
 
 
 @dataclass(frozen=True)
-class Comparison:
+class Coverage:
     """States and results that were held against the witness.
 
     `lack` says why there are fewer states than were asked for. `quantities` are those with a number beside its truth at
@@ -35,10 +35,10 @@ class Comparison:
         return self.statuses_float64 + self.statuses_float32
 
 
-def comparison_of(given: Mapping[str, Any]) -> Comparison:
-    """A comparison back from JSON."""
+def coverage_of(given: Mapping[str, Any]) -> Coverage:
+    """A coverage back from JSON."""
     listed = {name: tuple(given[name]) for name in ("quantities", "missing")}
-    return Comparison(**{**given, **listed})
+    return Coverage(**{**given, **listed})
 
 
 class Tally:
@@ -63,11 +63,11 @@ class Tally:
         """A result without a truth."""
         self._unknown += 1
 
-    def total(self, states: int, lack: str, there: tuple[str, ...]) -> Comparison:
+    def total(self, states: int, lack: str, there: tuple[str, ...]) -> Coverage:
         """All of it, `there` being the quantities that the model has."""
         compared = tuple(name for name in there if name in self._numbers)
         missing = tuple(name for name in there if name not in self._numbers)
         statuses = self._statuses["float64"], self._statuses["float32"]
         numbers = sum(self._numbers.values())
         clearest = float(f"{self._clearest:.2g}")
-        return Comparison(states, lack, compared, missing, numbers, *statuses, clearest, self._unknown, self.pinocchio)
+        return Coverage(states, lack, compared, missing, numbers, *statuses, clearest, self._unknown, self.pinocchio)
