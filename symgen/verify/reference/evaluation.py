@@ -12,6 +12,7 @@ from functools import cached_property, wraps
 from typing import Any, TypeAlias
 
 from symgen.verify.reference.blocks import pseudoinverse_of_parts, right_pseudoinverse_of_parts
+from symgen.verify.reference.driven import Driven, driven
 from symgen.verify.reference.linear import (
     column,
     columns_of,
@@ -191,10 +192,32 @@ class Evaluation:
         """N_B M (21)."""
         found = []
         for part in self.system.parts:
-            projector = piece(self.projector, part.coordinates, part.coordinates)
+            inverse = piece(self.inverse, part.coordinates, part.rows)
+            rows = piece(self.at.constraints, part.rows, part.coordinates)
             control = piece(self.at.control, part.coordinates, part.inputs)
-            found.append((part.coordinates, part.inputs, projector * control))
+            found.append((part.coordinates, part.inputs, control - inverse * (rows * control)))
         return placed(self.system.n, self.system.m, found)
+
+    @cached_property
+    def driven(self) -> tuple[Driven, ...] | None:
+        """Each part by its inputs, where all of these are independent and more than rows; None where they are not."""
+        if self.ranks.actuation < self.system.m or self.ranks.constraints < self.system.r or not self.system.m:
+            return None
+        found = [
+            driven(piece(self.at.constraints, x.rows, x.coordinates), piece(self.at.control, x.coordinates, x.inputs))
+            for x in self.system.parts
+        ]
+        known = tuple(x for x in found if x is not None)
+        return known if len(known) == len(found) else None
+
+    @cached_property
+    def inputs(self) -> Any:
+        """u (27)."""
+        if self.driven is None:
+            return self.control_inverse * (self.projector * self.load)
+        pairs = zip(self.system.parts, self.driven, strict=True)
+        found = ((x.inputs, (0,), own.inputs(piece(self.load, x.coordinates, (0,)))) for x, own in pairs)
+        return placed(self.system.m, 1, found)
 
     @cached_property
     def control_inverse(self) -> Any:

@@ -158,6 +158,8 @@ def pivots(matrix: Any) -> Iterator[tuple[float, int]]:
 
 RANK_NOISE = -100
 RANK_SIGNAL = -60
+# Of rows of ordinary size: what elimination in floats leaves in doubt is far below.
+PLAIN_PIVOT = 2.0**-16
 
 
 def numerical_rank(matrix: Any, noise: int = RANK_NOISE, signal: int = RANK_SIGNAL) -> int | None:
@@ -169,7 +171,8 @@ def numerical_rank(matrix: Any, noise: int = RANK_NOISE, signal: int = RANK_SIGN
 def independent_rows(matrix: Any, noise: int = RANK_NOISE, signal: int = RANK_SIGNAL) -> list[int] | None:
     """Rows that span all of them, by pivots: above 2^signal of a row's size they count, below 2^noise they do not.
 
-    None when a pivot falls between (the point is too close to a singularity to tell).
+    None when a pivot falls between (the point is too close to a singularity to tell).  Where all pivots are so large
+    that floats tell them, floats do: of a long chain that takes a hundredth.
     """
     rows = [{j: arb(x.mid()) for j, x in enumerate(row) if x.mid() != 0} for row in matrix.tolist()]
     sizes = [max((float(abs(entry)) for entry in row.values()), default=0.0) for row in rows]
@@ -179,6 +182,8 @@ def independent_rows(matrix: Any, noise: int = RANK_NOISE, signal: int = RANK_SI
         for i, (row, size) in enumerate(zip(rows, sizes, strict=True))
         if size > largest * 2.0**noise
     }
+    if (plain := _plainly_independent(left, matrix.ncols())) is not None:
+        return plain
     # rows of many machines have few entries: only those that an elimination touches are looked at again
     heads = {i: _largest(row) for i, row in left.items()}
     chosen: list[int] = []
@@ -198,6 +203,33 @@ def independent_rows(matrix: Any, noise: int = RANK_NOISE, signal: int = RANK_SI
                 heads[k] = _largest(row)
         chosen.append(i)
     return sorted(chosen)
+
+
+def _plainly_independent(rows: Mapping[int, Mapping[int, Any]], columns: int) -> list[int] | None:
+    """As many rows as there are, or as columns, where no pivot is near what rounding leaves; None where one is."""
+    left = {i: [float(row[j]) if j in row else 0.0 for j in range(columns)] for i, row in rows.items()}
+    heads = {i: _largest_of(row) for i, row in left.items()}
+    chosen: list[int] = []
+    for _ in range(min(len(left), columns)):
+        size, i, j = max((size, i, j) for i, (size, j) in heads.items())
+        if not size >= PLAIN_PIVOT:
+            return None
+        pivot = left.pop(i)
+        del heads[i]
+        for k, row in left.items():
+            if row[j]:
+                share = row[j] / pivot[j]
+                left[k] = changed = [x - share * y for x, y in zip(row, pivot, strict=True)]
+                changed[j] = 0.0
+                heads[k] = _largest_of(changed)
+        chosen.append(i)
+    return sorted(chosen)
+
+
+def _largest_of(row: Sequence[float]) -> tuple[float, int]:
+    """The size of the largest number, and where it stands."""
+    size = max(map(abs, row))
+    return size, next((j for j, x in enumerate(row) if abs(x) == size), 0)
 
 
 def _largest(row: Mapping[int, Any]) -> tuple[float, int]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import comb
+from contextlib import suppress
+from math import comb, prod
 from typing import Any
 
 from flint import arb, arb_mat
@@ -54,6 +55,10 @@ def _constraints(e: Evaluation, parts: Sequence[Part], rank: int) -> Any:
 
 
 def _inputs(e: Evaluation, parts: Sequence[Part], rank: int) -> Any:
+    if e.driven is not None:
+        own = (x for part, x in zip(e.system.parts, e.driven, strict=True) if part in parts)
+        with suppress(ZeroDivisionError):  # where inputs act alike, or rows are, minors of the whole say what counts
+            return prod((x.share() for x in own), start=arb(1))
     columns = [
         [piece(matrix, part.coordinates, part.inputs) for part in parts]
         for matrix in (e.projected_control, e.at.control)

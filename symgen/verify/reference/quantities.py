@@ -19,11 +19,11 @@ def _inverse_dynamics(e: Evaluation) -> Any:
     allocation = e.system.model.allocation
     if allocation is not None:
         return allocated(e, allocation)
-    return e.control_inverse * (e.projector * e.load)
+    return e.inputs
 
 
 def _inverse_dynamics_residual(e: Evaluation) -> Any:
-    return e.projector * (e.load - e.at.control * (e.control_inverse * (e.projector * e.load)))
+    return e.projector * (e.load - e.at.control * e.inputs)
 
 
 def _weighted_pseudoinverse(e: Evaluation) -> Any:

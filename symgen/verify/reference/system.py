@@ -20,6 +20,7 @@ from flint import arb_mat
 from symgen.model.expressions.expression import Expression
 from symgen.model.mechanism import component
 from symgen.model.model import Model
+from symgen.verify.reference.adjoints import shorter_gradients
 from symgen.verify.reference.bodies import BodyJacobian, BodyRows, weights_of
 from symgen.verify.reference.frames import Frames
 from symgen.verify.reference.matrix_rates import MatrixRates
@@ -104,7 +105,7 @@ class ReferenceSystem:
         self._bodies = BodyRows(model.mechanism, self._frames, n, self._tape.zero)
         energy = self._quadratic_energy()
         potential = self._potential_energy(1)
-        rows = [self._constraint_row(index) for index in range(r)]
+        rows = self._constraint_rows()
         zero = self._tape.zero
         blocks = [
             [self._rate_coefficient(energy, i, j) for i in range(n) for j in range(n)],
@@ -216,7 +217,7 @@ class ReferenceSystem:
     def operations(self, rates: Iterable[str]) -> int:
         """Number of recorded operations, for estimates of cost, with those of the `rates` of matrices."""
         needed = {*rates, *(("mass", "constraints") if self.motion is None else ())}
-        return len(self._tape.records) + sum(map(self.rates.operations, sorted(needed)))
+        return len(self._tape.records) + sum(self.rates.operations(matrix) for matrix in sorted(needed))
 
     @cached_property
     def _energies(self) -> Replay:
@@ -309,6 +310,17 @@ class ReferenceSystem:
         """Register of d2T/dqd_i dqd_j."""
         register = energy.get(((), (min(i, j), max(i, j))), self._tape.zero)
         return self._tape.scaled(Fraction(2), register) if i == j else register
+
+    def _constraint_rows(self) -> list[tuple[list[Register], Register]]:
+        """Rows of B with the residuals of the geometric ones, by Taylor polynomials or backwards, what takes less."""
+        rows = [self._constraint_row(index) for index in range(self.r)]
+        geometric = rows[: self.r_geometric]
+        residuals = [residual for _, residual in geometric]
+        known = [*residuals, *(entry for row, _ in geometric for entry in row)]
+        gradients = shorter_gradients(self._tape, residuals, known, self.n)
+        if gradients is None:
+            return rows
+        return [*zip(gradients, residuals, strict=True), *rows[self.r_geometric :]]
 
     def _constraint_row(self, index: int) -> tuple[list[Register], Register]:
         """Row of B, and the residual of a geometric row."""

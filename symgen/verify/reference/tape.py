@@ -209,22 +209,28 @@ def replay_of(tape: Tape, outputs: Iterable[Register]) -> Replay:
     )
 
 
-def _depths(tape: Tape, wanted: Sequence[Register]) -> dict[Register, int]:
-    """Depth of every register that `wanted` need, in recording order (operands come before their use)."""
+def needed_for(tape: Tape, wanted: Iterable[Register]) -> set[Register]:
+    """All registers that `wanted` need, and these."""
     needed: set[Register] = set()
     pending = list(wanted)
     while pending:
         register = pending.pop()
         if register not in needed:
             needed.add(register)
-            pending.extend(_operands(tape.records[register]))
+            pending.extend(operands(tape.records[register]))
+    return needed
+
+
+def _depths(tape: Tape, wanted: Sequence[Register]) -> dict[Register, int]:
+    """Depth of every register that `wanted` need, in recording order (operands come before their use)."""
     depth: dict[Register, int] = {}
-    for register in sorted(needed):
-        depth[register] = max((depth[o] + 1 for o in _operands(tape.records[register])), default=0)
+    for register in sorted(needed_for(tape, wanted)):
+        depth[register] = max((depth[o] + 1 for o in operands(tape.records[register])), default=0)
     return depth
 
 
-def _operands(record: Key) -> tuple[Register, ...]:
+def operands(record: Key) -> tuple[Register, ...]:
+    """The registers that an operation works on."""
     operation, left, right = record
     if operation in ("constant", "input"):
         return ()

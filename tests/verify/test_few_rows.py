@@ -1,0 +1,115 @@
+"""Many coordinates under few rows: what takes least in the reference gives what the definition gives."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+from flint import arb, arb_mat
+
+from symgen.model.load import load_text
+from symgen.verify.reference import system as reference_system
+from symgen.verify.reference.adjoints import shorter_gradients
+from symgen.verify.reference.driven import driven
+from symgen.verify.reference.linear import (
+    determinant,
+    identity,
+    independent_rows,
+    pseudoinverse,
+    right_pseudoinverse,
+)
+from symgen.verify.reference.system import System
+from symgen.verify.reference.tape import FUNCTIONS, Tape, precision, replay_of
+from symgen.verify.reference.translation import literal_values
+
+
+def chain(links: int) -> str:
+    """A chain whose end is pinned to the ground, with a drive at every other joint."""
+    lines = ["model: necklace", "gravity: [0, -9.81, 0]", "joints:"]
+    for k in range(links):
+        parent = f", parent: j{k - 1}, at: [0.3, 0, 0]" if k else ""
+        lines.append(f"  j{k}: {{type: revolute, axis: z, coordinate: a{k}{parent}}}")
+    lines += ["frames:", f"  end: {{parent: j{links - 1}, translation: [0.3, 0, 0]}}", "bodies:"]
+    lines += [f"  j{k}: {{mass: 1, com: [0.15, 0, 0], inertia: {{zz: 0.01}}}}" for k in range(links)]
+    lines += ["constraints:", "  geometric: {across: end.x - 0.7, up: end.y}", "inputs:"]
+    lines += [f"  u{k}: {{joint: a{k}}}" for k in range(0, links, 2)]
+    lines += ["configuration: {" + ", ".join(f"a{k}: {1.2 if k == 0 else -0.5}" for k in range(links)) + "}"]
+    return "\n".join([*lines, "outputs: [inverse_dynamics]", ""])
+
+
+def drawn(dice: random.Random, rows: int, columns: int) -> arb_mat:
+    return arb_mat(rows, columns, [dice.uniform(-1, 1) for _ in range(rows * columns)])
+
+
+@pytest.mark.parametrize("linked", [False, True], ids=["inputs apart", "inputs of common coordinates"])
+def test_u_by_the_rows_is_u_by_the_pseudoinverse(linked: bool) -> None:
+    dice = random.Random(f"u {linked}")
+    rows, control, load = drawn(dice, 2, 9), arb_mat(9, 6), drawn(dice, 9, 1)
+    for j in range(6):
+        control[j, j] = dice.uniform(1, 2)
+        if linked and j % 2:
+            control[j - 1, j] = dice.uniform(1, 2)
+    with precision(256):
+        projector = identity(9) - right_pseudoinverse(rows, 2) * rows
+        projected = projector * control
+        own = driven(rows, control)
+        assert own is not None
+        assert len([block for block in own.blocks if block.inputs]) == (3 if linked else 6)
+        apart = own.inputs(load) - pseudoinverse(projected, 6) * (projector * load)
+        assert all(abs(float(x)) < 1e-60 for x in apart.entries())
+        share = determinant(projected.transpose() * projected) / determinant(control.transpose() * control)
+        assert abs(float(own.share() - share)) < 1e-60
+
+
+def test_inputs_that_act_alike_are_told() -> None:
+    rows, control = arb_mat(1, 4, [1, 1, 1, 1]), arb_mat(4, 2, [1, 2, 0, 0, 0, 0, 1, 2])
+    own = driven(rows, control)
+    assert own is not None
+    with pytest.raises(ZeroDivisionError):
+        own.inputs(arb_mat(4, 1, [1, 2, 3, 4]))
+
+
+def test_gradients_backwards_are_those_of_taylor_polynomials(monkeypatch: pytest.MonkeyPatch) -> None:
+    model = load_text(chain(20), "necklace.yaml")
+    backwards = System(model)
+    monkeypatch.setattr(reference_system, "shorter_gradients", lambda *_: None)
+    forwards = System(model)
+    assert 3 * backwards.geometry_replay.operations < forwards.geometry_replay.operations
+    with precision(200):
+        q = [arb(k) / 7 for k in range(20)]
+        literals = literal_values(forwards.literals)
+        residuals, rows = backwards.geometry(q, (), literals)
+        also, expected = forwards.geometry(q, (), literals)
+        assert all(x == 0 or abs(float(x)) < 1e-50 for x in (residuals - also).entries())
+        assert all(abs(float(x)) < 1e-50 for x in (rows - expected).entries())
+
+
+@pytest.mark.parametrize("name", [name for name in FUNCTIONS if name not in ("div", "pow", "atan2", "sub", "neg")])
+def test_every_function_has_its_derivative_backwards(name: str) -> None:
+    """Against differences, of a quotient and a difference of it too."""
+    tape = Tape()
+    x, y = tape.input(0), tape.input(1)
+    two = name in ("add", "mul")
+    made = tape.binary(name, x, y) if two else tape.unary(name, x)
+    result = tape.binary("sub", tape.binary("atan2", made, y), tape.unary("neg", tape.binary("div", y, made)))
+    padding = [tape.unary("sin", tape.input(k)) for k in range(2, 90)]
+    (gradient,) = shorter_gradients(tape, [result], padding, 2) or [[]]
+    values, slopes = replay_of(tape, [result]), replay_of(tape, gradient)
+    with precision(300):
+        step, at = arb(2) ** -90, [arb("0.4"), arb("0.7")]
+        for k, slope in enumerate(slopes.run(at)):
+            ahead, behind = ([v + s * step * (k == j) for j, v in enumerate(at)] for s in (1, -1))
+            difference = (values.run(ahead)[0] - values.run(behind)[0]) / (2 * step)
+            assert abs(float(slope - difference)) < 1e-50
+
+
+def test_pivots_that_floats_tell_are_told_by_floats() -> None:
+    dice = random.Random("ranks")
+    tall = drawn(dice, 9, 4)
+    chosen = independent_rows(tall)
+    assert chosen is not None
+    assert len(chosen) == 4
+    nearly = arb_mat(3, 3, [1, 0, 0, 0, 1, 0, 1, 1, arb(2) ** -50])
+    assert independent_rows(nearly) == [0, 1, 2]
+    assert independent_rows(arb_mat(3, 2, [1, 2, 2, 4, 3, 6])) is not None
+    assert len(independent_rows(arb_mat(3, 2, [1, 2, 2, 4, 3, 6])) or []) == 1
