@@ -73,11 +73,12 @@ def _laws(evaluation: Evaluation, admissible: bool) -> Iterator[tuple[tuple[str,
     )
     if admissible:
         q = "forward_dynamics"
-        weight = evaluation.at.mass * evaluation.rate
-        rest = _power_without_accelerations(evaluation)
+        # neither is worked out where no accelerations are looked at: both may take longer than all that is
+        weight = cache(lambda: evaluation.at.mass * evaluation.rate)
+        rest = cache(partial(_power_without_accelerations, evaluation))
         yield (
             (q,),
-            ("power balance", lambda y: weight.transpose() * y[q] + rest, lambda _, e: norm(weight) * e[q]),
+            ("power balance", lambda y: weight().transpose() * y[q] + rest(), lambda _, e: norm(weight()) * e[q]),
         )
 
 

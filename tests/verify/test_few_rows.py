@@ -15,9 +15,12 @@ from symgen.verify.reference.linear import (
     determinant,
     identity,
     independent_rows,
+    norm,
     pseudoinverse,
     right_pseudoinverse,
 )
+from symgen.verify.reference.manifold import Ranks
+from symgen.verify.reference.reference import Reference, State
 from symgen.verify.reference.system import System
 from symgen.verify.reference.tape import FUNCTIONS, Tape, precision, replay_of
 from symgen.verify.reference.translation import literal_values
@@ -113,3 +116,21 @@ def test_pivots_that_floats_tell_are_told_by_floats() -> None:
     assert independent_rows(nearly) == [0, 1, 2]
     assert independent_rows(arb_mat(3, 2, [1, 2, 2, 4, 3, 6])) is not None
     assert len(independent_rows(arb_mat(3, 2, [1, 2, 2, 4, 3, 6])) or []) == 1
+
+
+def test_loads_by_the_power_of_bodies_are_those_by_their_jacobians(monkeypatch: pytest.MonkeyPatch) -> None:
+    model = load_text(chain(24), "necklace.yaml")
+    dice = random.Random("loads")
+    q, qd, qdd, u = (tuple(dice.uniform(-1, 1) for _ in range(count)) for count in (24, 24, 24, 12))
+    state = State(q, qd, qdd, u, ())
+    found = []
+    for at_hand in (None, True):
+        if at_hand:
+            monkeypatch.setattr(System, "has_jacobians_at_hand", at_hand)
+        reference = Reference(model, Ranks(2, 2, 12))
+        assert reference.system.has_jacobians_at_hand is bool(at_hand)
+        with precision(256):
+            at = reference.evaluation(state)
+            found.append((at.load, at.motion(at.rate)[0], at.mass_dot(at.rate)))
+    for backwards, expected in zip(*found, strict=True):
+        assert norm(backwards - expected) <= 1e-60 * norm(expected)

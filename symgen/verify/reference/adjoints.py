@@ -23,23 +23,30 @@ def shorter_gradients(
     values = sum(len(needed_for(tape, [result])) for result in results)
     if (1 + BACKWARDS) * values >= len(needed_for(tape, known)):
         return None
-    return [_gradient(tape, result, count) for result in results]
+    return [gradient(tape, result, range(count)) for result in results]
 
 
-def _gradient(tape: Tape, result: Register, count: int) -> list[Register]:
-    """The derivatives of one result by the first `count` inputs."""
+def gradient(tape: Tape, result: Register, inputs: range) -> list[Register]:
+    """The derivatives of one result by these inputs."""
     slopes: dict[Register, Register] = {result: tape.one}
-    found = [tape.zero] * count
-    for register in sorted(needed_for(tape, [result]), reverse=True):
+    found = [tape.zero] * len(inputs)
+    cone = sorted(needed_for(tape, [result]))
+    moving: set[Register] = set()
+    for register in cone:
+        operation, left, _ = tape.records[register]
+        if left in inputs if operation == "input" else not moving.isdisjoint(operands(tape.records[register])):
+            moving.add(register)
+    for register in reversed(cone):
         slope = slopes.get(register, tape.zero)
         operation, left, _ = tape.records[register]
-        if slope == tape.zero or operation == "constant":
+        if slope == tape.zero or register not in moving:
             continue
         if operation == "input":
-            if left < count:
-                found[left] = slope
+            found[left - inputs.start] = slope
             continue
         for operand, change in _changes(tape, register):
+            if operand not in moving:
+                continue
             share = tape.binary("mul", slope, change)
             before = slopes.get(operand)
             slopes[operand] = share if before is None else tape.binary("add", before, share)

@@ -36,7 +36,7 @@ class BodyJacobian:
         found = []
         for part, rows in zip(self.parts, self.pieces, strict=True):
             own = [x for k in part.bodies for x in weights[WEIGHTS * k : WEIGHTS * (k + 1)]]
-            found.append((part.coordinates, part.coordinates, rows.transpose() * _weighted(rows, own)))
+            found.append((part.coordinates, part.coordinates, rows.transpose() * weighted(rows, own)))
         return placed(self.n, self.n, found)
 
     def mass_times(self, vector: Any, weights: Sequence[Any]) -> Any:
@@ -45,7 +45,7 @@ class BodyJacobian:
         for part, rows in zip(self.parts, self.pieces, strict=True):
             own = [x for k in part.bodies for x in weights[WEIGHTS * k : WEIGHTS * (k + 1)]]
             moved = rows * piece(vector, part.coordinates, (0,))
-            found.append((part.coordinates, (0,), rows.transpose() * _weighted(moved, own)))
+            found.append((part.coordinates, (0,), rows.transpose() * weighted(moved, own)))
         return placed(self.n, 1, found)
 
     def coriolis(self, rates: Sequence[Any], velocity: Any, weights: Sequence[Any]) -> Any:
@@ -59,7 +59,7 @@ class BodyJacobian:
         for part, rows, change in zip(self.parts, self.pieces, rates, strict=True):
             own = [x for k in part.bodies for x in weights[WEIGHTS * k : WEIGHTS * (k + 1)]]
             moved = rows * piece(velocity, part.coordinates, (0,))
-            force = _weighted(change, own) + _turned(rows, moved.entries(), own)
+            force = weighted(change, own) + _turned(rows, moved.entries(), own)
             found.append((part.coordinates, part.coordinates, rows.transpose() * force))
         return placed(self.n, self.n, found)
 
@@ -68,7 +68,7 @@ class BodyJacobian:
         found = []
         for part, rows, change in zip(self.parts, self.pieces, rates, strict=True):
             own = [x for k in part.bodies for x in weights[WEIGHTS * k : WEIGHTS * (k + 1)]]
-            half = rows.transpose() * _weighted(change, own)
+            half = rows.transpose() * weighted(change, own)
             found.append((part.coordinates, part.coordinates, half + half.transpose()))
         return placed(self.n, self.n, found)
 
@@ -138,7 +138,7 @@ def constants(plain: Translation, expressions: Sequence[Expression]) -> list[Reg
     return [plain.polynomial(expression).get(CONSTANT, zero) for expression in expressions]
 
 
-def _weighted(rows: Any, weights: Sequence[Any]) -> Any:
+def weighted(rows: Any, weights: Sequence[Any]) -> Any:
     """Velocities of centres times masses and turning rates times inertias, for each column of `rows`."""
     columns = rows.ncols()
     table = rows.tolist()

@@ -84,7 +84,8 @@ class Evaluation:
         motion = self.system.motion
         if motion is None:
             return self.coriolis(velocity) * velocity, self.constraints_dot(velocity) * velocity
-        return motion.along(self.q, velocity.entries(), self.parameters, self.literals, self.at.jacobian)
+        jacobian = (lambda: self.at.jacobian) if self.system.has_jacobians_at_hand else None
+        return motion.along(self.q, velocity.entries(), self.parameters, self.literals, jacobian)
 
     @cached_property
     def inverse(self) -> Any:
@@ -172,7 +173,12 @@ class Evaluation:
     @cached_property
     def load(self) -> Any:
         """tau = G qdd + C qd + Q - Q_a."""
-        return self.at.mass_times(column(self.qdd)) + self.bias
+        motion, at, accelerations = self.system.motion, self.at, column(self.qdd)
+        if motion is None or self.system.has_jacobians_at_hand:
+            return at.mass_times(accelerations) + self.bias
+        inputs = self._at(accelerations)
+        momenta = motion.bodies.momenta(inputs, at.weights.entries())
+        return at.written_mass * accelerations + motion.bodies.force(inputs, momenta) + self.bias
 
     @cached_property
     def weighted(self) -> Any:

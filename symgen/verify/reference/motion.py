@@ -8,7 +8,7 @@ in the rates.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -19,6 +19,7 @@ from symgen.model.mechanism import Body, component
 from symgen.model.model import Model
 from symgen.verify.reference.bodies import BodyJacobian, constants
 from symgen.verify.reference.frames import Frames
+from symgen.verify.reference.moved_bodies import MovedBodies
 from symgen.verify.reference.tape import Register, Tape, replay_of
 from symgen.verify.reference.taylor import CONSTANT, Monomial, Polynomial, Taylor
 from symgen.verify.reference.translation import Moving, Translation, translation
@@ -42,6 +43,8 @@ class DriftAlongRate:
         plain = self._plain()
         wrenches = [x for body in model.mechanism.bodies for x in self._wrench(body, plain)]
         self._replay = replay_of(tape, [*rows, *written, *wrenches])
+        given = 2 * self._n + len(model.parameters) + len(literals)
+        self.bodies = MovedBodies(tape, self._velocities(), self._n, given)
 
     def along(
         self,
@@ -49,16 +52,29 @@ class DriftAlongRate:
         velocity: Sequence[Any],
         parameters: Sequence[Any],
         literals: Sequence[Any],
-        jacobian: BodyJacobian,
+        jacobian: Callable[[], BodyJacobian] | None,
     ) -> tuple[Any, Any]:
-        """C v (n x 1) and B_dot v (r x 1); `jacobian` is that of the bodies at q."""
-        values = self._replay.run([*q, *velocity, *parameters, *literals])
+        """C v (n x 1) and B_dot v (r x 1); `jacobian` is that of the bodies at q, where it takes less."""
+        inputs = [*q, *velocity, *parameters, *literals]
+        values = self._replay.run(inputs)
         n, r = self._n, self._r
         force = arb_mat(n, 1, values[r : r + n])
         wrenches = values[r + n :]
         if wrenches:
-            force = force + jacobian.force(wrenches)
+            force += self.bodies.force(inputs, wrenches) if jacobian is None else jacobian().force(wrenches)
         return force, arb_mat(r, 1, values[:r])
+
+    def _velocities(self) -> list[Register]:
+        """Velocities of centres in world axes and turning rates in body axes, along the line."""
+        zero = self._tape.zero
+        return [
+            x
+            for body in self._model.mechanism.bodies
+            for x in (
+                *(place.get(((TIME,), ()), zero) for place in self._frames.center(body)),
+                *(rate.get(SPEED, zero) for rate in self._frames.turning(body)),
+            )
+        ]
 
     def _constraint_bias(self, index: int) -> Register:
         row = self._model.constraints[index]

@@ -9,7 +9,7 @@ length.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -72,8 +72,13 @@ class Configuration:
     residual: Any  # r_g x 1
     control: Any  # n x m
     potential_gradient: Any  # n x 1
-    jacobian: BodyJacobian
     weights: Any  # 10 a body x 1: its mass and the entries of its inertia
+    bodies: Callable[[], BodyJacobian]
+
+    @cached_property
+    def jacobian(self) -> BodyJacobian:
+        """That of the bodies."""
+        return self.bodies()
 
     @cached_property
     def mass(self) -> Any:
@@ -106,19 +111,18 @@ class ReferenceSystem:
         energy = self._quadratic_energy()
         potential = self._potential_energy(1)
         rows = self._constraint_rows()
-        zero = self._tape.zero
         blocks = [
             [self._rate_coefficient(energy, i, j) for i in range(n) for j in range(n)],
             [entry for row, _ in rows for entry in row],
             [residual for _, residual in rows[: self.r_geometric]],
             self._control(),
-            [potential.get(((k,), ()), zero) for k in range(n)],
+            self._slopes(potential),
             weights_of(model.mechanism, self._translation(0, 0)),
         ]
         self._shapes = ((n, n), (r, n), (self.r_geometric, 1), (n, m), (n, 1), (len(blocks[5]), 1))
         self._set_parts(blocks)
-        blocks.append(self._bodies.needed(self.heavy))
-        self._configuration = replay_of(self._tape, [x for block in blocks for x in block])
+        self._at_configuration = [x for block in blocks for x in block]
+        self._jacobian = replay_of(self._tape, self._bodies.needed(self.heavy))
         self.geometry_replay = replay_of(self._tape, [*blocks[2], *blocks[1][: self.r_geometric * n]])
         self.matrices_replay = replay_of(self._tape, [*blocks[1], *blocks[3]])
 
@@ -132,8 +136,25 @@ class ReferenceSystem:
             matrices.append(arb_mat(rows, columns, values[start:end]))
             start = end
         mass, constraints, residual, control, gradient, weights = matrices
-        bodies = BodyJacobian(self.heavy, self._bodies.split(self.heavy, values[start:]), self.n)
-        return Configuration(mass, constraints, residual, control, gradient, bodies, weights)
+        known = values[start:] if self.has_jacobians_at_hand else None
+
+        def bodies() -> BodyJacobian:
+            entries = known
+            if entries is None:
+                entries = self._jacobian.run([*q, *([None] * self.n), *parameters, *literals])
+            return BodyJacobian(self.heavy, self._bodies.split(self.heavy, entries), self.n)
+
+        return Configuration(mass, constraints, residual, control, gradient, weights, bodies)
+
+    @cached_property
+    def has_jacobians_at_hand(self) -> bool:
+        """Whether Jacobians of bodies take no longer than what rates and forces of these need of them."""
+        return self.motion is None or self._jacobian.operations <= self.motion.bodies.operations
+
+    @cached_property
+    def _configuration(self) -> Replay:
+        bodies = self._bodies.needed(self.heavy) if self.has_jacobians_at_hand else []
+        return replay_of(self._tape, [*self._at_configuration, *bodies])
 
     def _set_parts(self, blocks: Sequence[Sequence[Register]]) -> None:
         """What nothing couples: by geometric rows (`loops`), by rows and inputs (`parts`), by masses too (`heavy`)."""
@@ -310,6 +331,14 @@ class ReferenceSystem:
         """Register of d2T/dqd_i dqd_j."""
         register = energy.get(((), (min(i, j), max(i, j))), self._tape.zero)
         return self._tape.scaled(Fraction(2), register) if i == j else register
+
+    def _slopes(self, potential: Polynomial) -> list[Register]:
+        """The gradient of U, in the same ways."""
+        zero = self._tape.zero
+        known = [potential.get(((k,), ()), zero) for k in range(self.n)]
+        value = potential.get(CONSTANT, zero)
+        gradients = shorter_gradients(self._tape, [value], [value, *known], self.n)
+        return known if gradients is None else gradients[0]
 
     def _constraint_rows(self) -> list[tuple[list[Register], Register]]:
         """Rows of B with the residuals of the geometric ones, by Taylor polynomials or backwards, what takes less."""
