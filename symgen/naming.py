@@ -15,6 +15,14 @@ from symgen.registered import endings, hiding
 _KINDS = r"(?:_(?:batch|prepared|sc))?(?:_f)?"
 _STEM = re.compile(rf"(.*?)({_KINDS})")
 _RENAMED = "_model"
+# Names of letters that are shown as letters.
+GREEK: dict[str, str] = {
+    "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "zeta": "ζ", "eta": "η", "theta": "θ",
+    "iota": "ι", "kappa": "κ", "lamda": "λ", "lambda": "λ", "lam": "λ", "mu": "μ", "nu": "ν", "xi": "ξ", "pi": "π",
+    "rho": "ρ", "sigma": "σ", "tau": "τ", "upsilon": "υ", "phi": "φ", "varphi": "φ", "chi": "χ", "psi": "ψ",
+    "omega": "ω", "Gamma": "Γ", "Delta": "Δ", "Theta": "Θ", "Lambda": "Λ", "Xi": "Ξ", "Pi": "Π", "Sigma": "Σ",
+    "Upsilon": "Υ", "Phi": "Φ", "Psi": "Ψ", "Omega": "Ω", "vartheta": "ϑ",
+}  # fmt: skip
 
 
 def identifiers(

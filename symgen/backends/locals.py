@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 
 from symgen.backends.quantities import output_argument
-from symgen.ir.kernel import Argument, Block, Check, Kernel, Local, Operand, Program, Statement
+from symgen.ir.kernel import Argument, Check, Kernel, Local, Operand, Program, Statement
 from symgen.model.model import Model
 from symgen.naming import identifiers
 from symgen.records import dataclass
@@ -65,7 +65,7 @@ def array_arguments(kernel: Kernel) -> tuple[Argument, ...]:
 def all_statements(kernel: Kernel) -> Iterator[Statement]:
     """Every statement, those that run only when a check fails included."""
     for block in kernel.blocks:
-        yield from _block_statements(block)
+        yield from block.all_statements()
 
 
 def kernel_locals(kernel: Kernel) -> Iterator[str]:
@@ -80,13 +80,6 @@ def used_locals(kernel: Kernel) -> frozenset[str]:
     operands = [operand for statement in all_statements(kernel) for operand in statement.operands]
     checked = [o for block in kernel.blocks for check in block.checks for o in check_operands(check)]
     return frozenset(o.name for o in (*operands, *checked, *kernel.outputs) if isinstance(o, Local))
-
-
-def _block_statements(block: Block) -> Iterator[Statement]:
-    yield from block.statements
-    for check in block.checks:
-        if check.first is not None:
-            yield from _block_statements(check.first)
 
 
 def check_operands(check: Check) -> Iterator[Operand]:

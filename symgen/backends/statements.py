@@ -11,9 +11,9 @@ from symgen.ir.wide_functions import is_wide
 from symgen.naming import identifiers
 from symgen.records import dataclass
 
-_INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
+INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
 _CHOICES = {"min": "<", "max": ">"}
-_OPERATORS = {*_INFIX, "neg"}
+_OPERATORS = {*INFIX, "neg"}
 
 
 class Statements(ABC):
@@ -92,8 +92,8 @@ class Statements(ABC):
 
     def expression(self, operation: str, operands: Sequence[str]) -> str:
         """An operation with one result."""
-        if operation in _INFIX:
-            return f"{operands[0]} {_INFIX[operation]} {operands[1]}"
+        if operation in INFIX:
+            return f"{operands[0]} {INFIX[operation]} {operands[1]}"
         if operation == "neg":
             return f"-{operands[0]}"
         if operation == "ratio_or_zero":

@@ -6,7 +6,7 @@ whose rounding error the kernel carries along.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
 
@@ -48,7 +48,7 @@ def given_trig(kernel: Kernel) -> GivenTrig | None:
     used = {name for parts in sums.values() for name in parts}
     given = sorted((coordinates[name] for name in used), key=lambda load: load.index)
     taken = {load.local for load in kernel.loads}
-    taken |= {target for block in kernel.blocks for s in _all_statements(block) for target in s.targets}
+    taken |= {target for block in kernel.blocks for s in block.all_statements() for target in s.targets}
     rewriter = _Rewriter(sums, _Fresh(taken), given)
     blocks = tuple(rewriter.block(block) for block in kernel.blocks)
     changed = replace(kernel, loads=(*kernel.loads, *rewriter.loads), blocks=blocks)
@@ -63,7 +63,7 @@ def _sums(kernel: Kernel, coordinates: Mapping[str, Load]) -> dict[Operand, Sum]
     made = {
         statement.targets[0]: statement
         for block in kernel.blocks
-        for statement in _all_statements(block)
+        for statement in block.all_statements()
         if len(statement.targets) == 1
     }
 
@@ -82,7 +82,7 @@ def _sums(kernel: Kernel, coordinates: Mapping[str, Load]) -> dict[Operand, Sum]
                 return _combined(parts(a), int(value), {}, 0) if value.denominator == 1 else None
         return None
 
-    arguments = [s.operands[0] for block in kernel.blocks for s in _all_statements(block) if s.operation == "sincos"]
+    arguments = [s.operands[0] for block in kernel.blocks for s in block.all_statements() if s.operation == "sincos"]
     found = {a: parts(a) for a in arguments}
     return {a: p for a, p in found.items() if p and sum(map(abs, p.values())) <= LONGEST_SUM}
 
@@ -190,10 +190,3 @@ class _Rewriter:
             emit(plus, emit("mul", sine, c), emit("mul", cosine, s)),
             emit(minus, emit("mul", cosine, c), emit("mul", sine, s)),
         )
-
-
-def _all_statements(block: Block) -> Iterator[Statement]:
-    yield from block.statements
-    for check in block.checks:
-        if check.first is not None:
-            yield from _all_statements(check.first)

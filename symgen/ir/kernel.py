@@ -7,6 +7,7 @@ thresholds and the sine/cosine function differ between float64 and float32.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from enum import IntEnum
 from fractions import Fraction
 from typing import Literal as Choice
@@ -112,6 +113,13 @@ class Block:
 
     statements: tuple[Statement, ...]
     checks: tuple[Check, ...]
+
+    def all_statements(self) -> Iterator[Statement]:
+        """Every statement, those that run only when a check fails included."""
+        yield from self.statements
+        for check in self.checks:
+            if check.first is not None:
+                yield from check.first.all_statements()
 
 
 @dataclass(frozen=True, slots=True)

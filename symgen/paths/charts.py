@@ -6,12 +6,11 @@ import re
 from collections.abc import Sequence
 
 from symgen.model.model import Model
+from symgen.naming import GREEK
 from symgen.paths.figures import FigureData
 from symgen.paths.line_chart import Label, Line, Panel, line_chart, plain
 from symgen.paths.path_equations import Array
 
-_NAMES = "alpha beta gamma delta epsilon zeta eta theta kappa lambda mu nu xi rho sigma tau phi chi psi omega"
-GREEK = dict(zip(_NAMES.split(), "αβγδεζηθκλμνξρστφχψω", strict=True))
 PANEL_HEIGHT = 148.0  # points
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from symgen.backends.locals import array_arguments
 from symgen.backends.scalars import file_stem
+from symgen.backends.statements import INFIX
 from symgen.ir.kernel import Kernel, Literal, Operand, Program
 from symgen.ir.wide_functions import works_with_pairs
 from symgen.model.model import Model
@@ -18,7 +19,6 @@ from symgen.proof.intervals import enclose
 from symgen.proof.quadrants import overflowing_angles
 
 _LONGEST = 160
-_INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
 
 
 def emit_proofs(model: Model, programs: Sequence[Program]) -> dict[str, str]:
@@ -122,8 +122,8 @@ def _texts(kernel: Kernel) -> dict[str, str]:
         for target in statement.targets:
             if statement.operation == "sincos":
                 text = f"{'sin' if statement.targets[0] == target else 'cos'}({parts[0]})"
-            elif statement.operation in _INFIX:
-                text = f"({parts[0]} {_INFIX[statement.operation]} {parts[1]})"
+            elif statement.operation in INFIX:
+                text = f"({parts[0]} {INFIX[statement.operation]} {parts[1]})"
             elif statement.operation == "neg":
                 text = f"-{parts[0]}"
             else:

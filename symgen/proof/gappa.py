@@ -18,6 +18,7 @@ from symgen.backends.literals import decimal_text, round_to
 from symgen.backends.locals import array_arguments
 from symgen.backends.render import render
 from symgen.backends.scalars import SUFFIX, file_stem
+from symgen.backends.statements import INFIX
 from symgen.ir.kernel import Kernel, Literal, Local, Operand, Program, Statement
 from symgen.model.model import Model, Range
 from symgen.proof.box import box
@@ -26,7 +27,6 @@ from symgen.proof.intervals import Interval, enclose
 QUANTITY = "inverse_dynamics"
 TRIG_ERROR = Fraction(1, 2**23)
 POINTS = 1_000_000
-_INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +72,7 @@ def emit_gappa(model: Model, program: Program) -> dict[str, str]:
 
 def obstacle(model: Model, kernel: Kernel) -> str:
     """Why there is no script; empty where there is one."""
-    known = {*_INFIX, "neg", "sqrt", "sincos", "abs"}
+    known = {*INFIX, "neg", "sqrt", "sincos", "abs"}
     if foreign := sorted({s.operation for s in _needed(kernel)} - known):
         return f"it uses {', '.join(foreign)}"
     if not any(isinstance(output, Local) for output in kernel.outputs):
@@ -231,7 +231,7 @@ def _expression(statement: Statement, operands: list[str]) -> str:
         case "sqrt":
             return f"sqrt({operands[0]})"
         case operation:
-            return f"{operands[0]} {_INFIX[operation]} {operands[1]}"
+            return f"{operands[0]} {INFIX[operation]} {operands[1]}"
 
 
 def _within(name: str, interval: Interval) -> str:

@@ -11,10 +11,11 @@ from __future__ import annotations
 
 import math
 import random
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import lru_cache
 from operator import add
+from typing import TypeVar
 
 from symgen.linear_algebra.constrained_inverse import Cholesky
 from symgen.mechanics.genericity import parameter_values
@@ -26,6 +27,8 @@ from symgen.symbolic.matrix import flatten, matmul, transpose
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import topological
 from symgen.validity.precise import PreciseEvaluator, UndefinedError, precise
+
+Decided = TypeVar("Decided")
 
 SEED = 15
 # Configurations from which the smallest pivot is driven down.
@@ -61,11 +64,8 @@ def indefinite(mechanics: System) -> Indefinite | None:
 
 @lru_cache(maxsize=2)  # asked for each quantity, along each way to it
 def indefinite_model(model: Model) -> Indefinite | None:
-    """The same, on a graph of its own, so that no kernel shares the pivots."""
-    mechanics = System(model)
-    found = _indefinite(mechanics)
-    mechanics.graph.dissolve()
-    return found
+    """The same of a model."""
+    return _decided_apart(model, _indefinite)
 
 
 @lru_cache(maxsize=2)
@@ -75,10 +75,15 @@ def definite_beside_rows(model: Model) -> bool:
     With H = G + B^T W B each pivot of G is at most that of H, and both vanish there.  Where a row holds what has no
     mass, one of G vanishes beside its own of H.  W makes rows as large as the inertia that they act on.
     """
+    return _decided_apart(model, _definite_beside_rows)
+
+
+def _decided_apart(model: Model, decide: Callable[[System], Decided]) -> Decided:
+    """What is decided of a model on a graph of its own, so that no kernel shares what it takes."""
     mechanics = System(model)
-    definite = _definite_beside_rows(mechanics)
+    decided = decide(mechanics)
     mechanics.graph.dissolve()
-    return definite
+    return decided
 
 
 def _definite_beside_rows(mechanics: System) -> bool:

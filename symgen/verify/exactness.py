@@ -148,11 +148,6 @@ class ExactFunction:
         return -len(self._numbers)
 
 
-def exact_outputs(kernel: Kernel, state: State) -> list[Any]:
-    """The outputs in balls of the working precision; checks are left out."""
-    return ExactFunction(kernel)(state)
-
-
 def _of_pairs(function: Callable[..., Any]) -> Callable[..., tuple[Any, Any]]:
     """A function of numbers that are pairs: of their sums, with nothing left for the second number of the result."""
     return lambda *parts: (function(*map(operator.add, parts[::2], parts[1::2])), arb(0))

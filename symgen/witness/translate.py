@@ -32,13 +32,13 @@ def translate(expression: Expression, scope: Mapping[str, casadi.SX]) -> casadi.
         case Binary(left=left, right=right):
             return translate(left, scope) / translate(right, scope)
         case Power(base=base, exponent=exponent):
-            return _power(translate(base, scope), exponent)
+            return power(translate(base, scope), exponent)
         case Call(function=function, arguments=arguments):
             result: casadi.SX = getattr(casadi, function)(*(translate(argument, scope) for argument in arguments))
             return result
 
 
-def _power(base: casadi.SX, exponent: Fraction) -> casadi.SX:
+def power(base: casadi.SX, exponent: Fraction) -> casadi.SX:
     """Square roots stay roots: CasADi differentiates `sqrt` better than a power with exponent 1/2."""
     if exponent.denominator == 2:
         return casadi.sqrt(base) ** exponent.numerator

@@ -33,7 +33,7 @@ from symgen.ir.sincos import sincos
 from symgen.ir.wide import GAINED, widened, with_sharp_thresholds
 from symgen.ir.wide_angles import MOST_PARTS
 from symgen.ir.wide_functions import WIDE, wide_function
-from symgen.verify.exactness import EXACT, exact_outputs
+from symgen.verify.exactness import EXACT, ExactFunction
 from symgen.verify.many_states import run_many
 from symgen.verify.reference.reference import State
 from symgen.verify.reference.tape import precision
@@ -163,7 +163,7 @@ def assert_digits_come_back(
     lost = []
     for one in states:
         with precision(200):
-            (exact,) = exact_outputs(plain, _state(one))
+            (exact,) = ExactFunction(plain)(_state(one))
         relative = []
         for kernel in (plain, wide):
             status, (entry,) = interpreter.run(kernel, one, one["p"])

@@ -13,17 +13,9 @@ from symgen.diagnostics import Notice, Span
 from symgen.model.checks.bodies import check_bodies
 from symgen.model.expressions.expression import Number
 from symgen.model.file.source import MappingNode, Node, ScalarNode, SequenceNode
+from symgen.model.kinematics.triples import plus, transposed
 from symgen.model.mechanism import INERTIA_ELEMENTS, NO_VECTOR, Body, Inertia, Mechanism
-from symgen.model.urdf.numbers import (
-    IDENTITY,
-    Matrix,
-    Vector,
-    added,
-    applied,
-    product,
-    transposed,
-    written,
-)
+from symgen.model.urdf.numbers import IDENTITY, Matrix, Vector, applied, product, written
 from symgen.model.urdf.robot import Inertial, Robot, UrdfJoint
 
 ZERO = Fraction(0)
@@ -62,7 +54,7 @@ def placed_links(robot: Robot) -> dict[str, LinkPose]:
         for joint in held.get(name, ()):
             waiting.append(joint.child)
             if joint.kind == "fixed":
-                shift = added(place.shift, applied(place.axes, joint.origin.shift))
+                shift = plus(place.shift, applied(place.axes, joint.origin.shift))
                 places[joint.child] = LinkPose(place.carrier, shift, product(place.axes, joint.origin.axes))
             else:
                 places[joint.child] = LinkPose(joint.child, NOWHERE, IDENTITY)
@@ -128,7 +120,7 @@ def _solid(inertial: Inertial, shift: Vector, axes: Matrix) -> Solid:
     xx, yy, zz, xy, xz, yz = (entry.value for entry in inertial.tensor)
     turned = product(axes, inertial.origin.axes)
     tensor: Matrix = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
-    com = added(shift, applied(axes, inertial.origin.shift))
+    com = plus(shift, applied(axes, inertial.origin.shift))
     return Solid(inertial.mass.value, com, product(product(turned, tensor), transposed(turned)))
 
 

@@ -14,7 +14,9 @@ from typing import TypeAlias
 
 from symgen.diagnostics import Span
 from symgen.model.file.source import ScalarNode
+from symgen.model.kinematics import triples
 from symgen.model.kinematics.fixed_angles import QUARTER_TOLERANCE
+from symgen.model.kinematics.triples import transposed
 
 MAXIMUM_DIGITS = 40
 MAXIMUM_EXPONENT = 300
@@ -94,19 +96,8 @@ def product(left: Matrix, right: Matrix) -> Matrix:
 
 def applied(matrix: Matrix, vector: Vector) -> Vector:
     """matrix vector."""
-    x, y, z = (_short(sum((a * b for a, b in zip(row, vector, strict=True)), Fraction(0))) for row in matrix)
+    x, y, z = map(_short, triples.applied(matrix, vector))
     return x, y, z
-
-
-def transposed(matrix: Matrix) -> Matrix:
-    """The transpose."""
-    x, y, z = zip(*matrix, strict=True)
-    return x, y, z
-
-
-def added(left: Vector, right: Vector) -> Vector:
-    """left + right."""
-    return left[0] + right[0], left[1] + right[1], left[2] + right[2]
 
 
 def _short(value: Fraction) -> Fraction:

@@ -7,6 +7,7 @@ from functools import cache
 from typing import Literal
 
 from symgen.model.mechanism import WORLD, Component, component, is_component
+from symgen.naming import GREEK
 from symgen.report.mathematics.layout import (
     Accent,
     Layout,
@@ -17,13 +18,6 @@ from symgen.report.mathematics.layout import (
     Scripts,
 )
 
-GREEK: dict[str, str] = {
-    "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "zeta": "ζ", "eta": "η", "theta": "θ",
-    "iota": "ι", "kappa": "κ", "lamda": "λ", "lambda": "λ", "lam": "λ", "mu": "μ", "nu": "ν", "xi": "ξ", "pi": "π",
-    "rho": "ρ", "sigma": "σ", "tau": "τ", "upsilon": "υ", "phi": "φ", "varphi": "φ", "chi": "χ", "psi": "ψ",
-    "omega": "ω", "Gamma": "Γ", "Delta": "Δ", "Theta": "Θ", "Lambda": "Λ", "Xi": "Ξ", "Pi": "Π", "Sigma": "Σ",
-    "Upsilon": "Υ", "Phi": "Φ", "Psi": "Ψ", "Omega": "Ω", "vartheta": "ϑ",
-}  # fmt: skip
 MULTIPLIER = "multiplier_"
 RATE_MARKS: tuple[tuple[str, Literal["ddot", "dot"]], ...] = (("_ddot", "ddot"), ("_dot", "dot"))
 

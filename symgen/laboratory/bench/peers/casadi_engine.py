@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 import casadi
 
 from symgen.laboratory.bench.peers.engine import Engine, Inputs, Symbol
+from symgen.witness.translate import power
 
 
 class CasadiEngine(Engine):
@@ -35,9 +36,7 @@ class CasadiEngine(Engine):
 
     def power(self, base: Symbol, exponent: Fraction) -> Symbol:
         """base ** exponent; half-integer ones by the square root."""
-        if exponent.denominator == 2:
-            return casadi.sqrt(base) ** exponent.numerator
-        return base ** float(exponent)
+        return power(base, exponent)
 
     def call(self, function: str, arguments: Sequence[Symbol]) -> Symbol:
         """The function of CasADi with that name."""

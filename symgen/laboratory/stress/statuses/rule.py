@@ -9,15 +9,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
-from itertools import chain
-from pathlib import Path
 from typing import Any
 
 from symgen.generation.runnable import SCALARS, STRESSED, RunnableKernels, rounded_state
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar, Status
-from symgen.laboratory.stress.families import SingularFamilies, search
 from symgen.laboratory.stress.statuses.rule_measures import ScaledMeasures
-from symgen.laboratory.stress.statuses.rule_states import CLOSEST, DECADES, Pushed, far_apart, towards_singular_sets
+from symgen.laboratory.stress.statuses.rule_states import Pushed
 from symgen.model.model import Model
 from symgen.records import dataclass
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
@@ -70,27 +67,6 @@ class Held:
             "beyond": len(self.beyond),
             "unexplained": len(self.unexplained),
         }
-
-
-def held_to_the_rule(
-    model: Model,
-    folder: Path,
-    searched: SingularFamilies | None = None,
-    closest: int = CLOSEST,
-    decades: Sequence[int] = DECADES,
-    states: int = 1,
-    quantities: Sequence[str] = STRESSED,
-    progress: Callable[[str], None] = lambda _: None,
-) -> tuple[Held, ...]:
-    """Sweeps the generated kernels of a model; smaller numbers make it shorter.
-
-    Raises ReferenceValueError or VerificationError where the model has no regular states.
-    """
-    reference = Reference(model)
-    kernels = RunnableKernels(model, folder, quantities)
-    found = search(reference) if searched is None else searched
-    pushed = chain(towards_singular_sets(found, closest), far_apart(reference, states, decades))
-    return counted(reference, kernels, pushed, quantities, progress)
 
 
 def counted(
