@@ -38,7 +38,7 @@ def test_files_and_table(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(run, "PASSES", 3)
-    monkeypatch.setattr(run, "QUANTITIES", ("inverse_dynamics",))
+    monkeypatch.setattr(run, "MAIN", ("inverse_dynamics",))
     monkeypatch.setattr(run, "SCALARS", ("float64",))
     monkeypatch.setattr(charts, "SCALARS", ("float64",))
     monkeypatch.setattr(roster, "_engines", lambda: [CasadiEngine])
@@ -79,7 +79,7 @@ def test_without_valgrind_instructions_are_left_out(
 ) -> None:
     monkeypatch.setattr(run, "find_valgrind", lambda: None)
     monkeypatch.setattr(run, "PASSES", 3)
-    monkeypatch.setattr(run, "QUANTITIES", ("multipliers",))
+    monkeypatch.setattr(run, "MAIN", ("multipliers",))
     monkeypatch.setattr(build, "FLAGS", ("-O0", *build.FLAGS[1:]))
     monkeypatch.setattr(command, "time_against_error", lambda _: "")
     assert main(["bench", SKATE, "--states", "8", "--quiet", "--out", str(tmp_path)]) == 0

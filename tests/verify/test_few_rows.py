@@ -19,7 +19,7 @@ from symgen.verify.reference.linear import (
     pseudoinverse,
     right_pseudoinverse,
 )
-from symgen.verify.reference.manifold import Ranks
+from symgen.verify.reference.manifold import ManifoldRanks
 from symgen.verify.reference.reference import Reference, State
 from symgen.verify.reference.system import System
 from symgen.verify.reference.tape import FUNCTIONS, Tape, precision, replay_of
@@ -127,7 +127,7 @@ def test_loads_by_the_power_of_bodies_are_those_by_their_jacobians(monkeypatch: 
     for at_hand in (None, True):
         if at_hand:
             monkeypatch.setattr(System, "has_jacobians_at_hand", at_hand)
-        reference = Reference(model, Ranks(2, 2, 12))
+        reference = Reference(model, ManifoldRanks(2, 2, 12))
         assert reference.system.has_jacobians_at_hand is bool(at_hand)
         with precision(256):
             at = reference.evaluation(state)

@@ -17,7 +17,7 @@ from symgen.laboratory.zoo.run import run_command
 from symgen.laboratory.zoo.witness import pinocchio_trees
 from symgen.laboratory.zoo.witness.fields import Floats, precision
 from symgen.laboratory.zoo.witness.pinocchio_answers import COMPARED, PinocchioAnswers
-from symgen.laboratory.zoo.witness.pinocchio_trees import SAME, Tree, disagreement, tree_of
+from symgen.laboratory.zoo.witness.pinocchio_trees import SAME, PinocchioTree, disagreement, tree_of
 from symgen.laboratory.zoo.witness.reader import SystemReader
 from symgen.laboratory.zoo.witness.urdf_file import exact_angles, expanded
 from symgen.laboratory.zoo.witness.witness import Witness
@@ -207,8 +207,8 @@ def test_a_false_result_of_a_tree_is_found_beside_pinocchio(tmp_path: Path, monk
     assert checked.findings == ()
     # u and accelerations of Python and C in double
     assert checked.coverage.pinocchio == 5 * 2 * 2
-    right = Tree.accelerations
-    monkeypatch.setattr(Tree, "accelerations", lambda self, *given: right(self, *given) * (1 + 1e-6))
+    right = PinocchioTree.accelerations
+    monkeypatch.setattr(PinocchioTree, "accelerations", lambda self, *given: right(self, *given) * (1 + 1e-6))
     (finding,) = Witness(CRANE).check(tmp_path / "out" / "crane", count=5).findings
     assert finding.kind == "witness: Pinocchio"
     assert "forward_dynamics" in finding.text
