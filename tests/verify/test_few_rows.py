@@ -21,7 +21,7 @@ from symgen.verify.reference.linear import (
 )
 from symgen.verify.reference.manifold import ManifoldRanks
 from symgen.verify.reference.reference import Reference, State
-from symgen.verify.reference.system import System
+from symgen.verify.reference.system import ReferenceSystem
 from symgen.verify.reference.tape import FUNCTIONS, Tape, precision, replay_of
 from symgen.verify.reference.translation import literal_values
 
@@ -74,9 +74,9 @@ def test_inputs_that_act_alike_are_told() -> None:
 
 def test_gradients_backwards_are_those_of_taylor_polynomials(monkeypatch: pytest.MonkeyPatch) -> None:
     model = load_text(chain(20), "necklace.yaml")
-    backwards = System(model)
+    backwards = ReferenceSystem(model)
     monkeypatch.setattr(reference_system, "shorter_gradients", lambda *_: None)
-    forwards = System(model)
+    forwards = ReferenceSystem(model)
     assert 3 * backwards.geometry_replay.operations < forwards.geometry_replay.operations
     with precision(200):
         q = [arb(k) / 7 for k in range(20)]
@@ -126,7 +126,7 @@ def test_loads_by_the_power_of_bodies_are_those_by_their_jacobians(monkeypatch: 
     found = []
     for at_hand in (None, True):
         if at_hand:
-            monkeypatch.setattr(System, "has_jacobians_at_hand", at_hand)
+            monkeypatch.setattr(ReferenceSystem, "has_jacobians_at_hand", at_hand)
         reference = Reference(model, ManifoldRanks(2, 2, 12))
         assert reference.system.has_jacobians_at_hand is bool(at_hand)
         with precision(256):
