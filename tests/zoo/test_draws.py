@@ -117,3 +117,10 @@ def test_outputs_that_are_named_hold_what_the_witness_compares() -> None:
             assert len(set(outputs)) == len(outputs)
             firsts.add(outputs[0])
     assert firsts == set(MAIN)
+
+
+def test_a_link_with_a_reserved_name_is_a_mistake() -> None:
+    """A robot description may call a link what model files must not: that is to be told."""
+    drawn = draw(4002, 42, "")
+    assert '<link name="delete">' in drawn.files["robot.urdf"]
+    assert MISTAKE in drawn.marks

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -58,7 +59,7 @@ def finish(sketch: Sketch) -> Description:
             ranges.setdefault(name, [decimal(lower, 3), decimal(upper, 3)])
     if dice.chance(0.03):
         blocks["trig_range"] = "wide"
-    if set(ILLEGAL) & set(_names(blocks, start)):
+    if set(ILLEGAL) & {*_names(blocks, start), *_links(sketch.files)}:
         sketch.mark("reserved name")
         sketch.mark(MISTAKE)
     elif dice.chance(0.02):
@@ -75,6 +76,12 @@ def _names(blocks: Mapping[str, Any], start: Mapping[str, float]) -> Iterator[st
         yield entry.get("child", name)
     for rows in (blocks.get("constraints") or {}).values():
         yield from rows
+
+
+def _links(files: Mapping[str, str]) -> Iterator[str]:
+    """The links of a robot description, which become frames."""
+    for text in files.values():
+        yield from re.findall('<link name="([^"]*)"', text)
 
 
 def _mistake(sketch: Sketch) -> None:
