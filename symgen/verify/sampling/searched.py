@@ -29,6 +29,8 @@ from symgen.verify.tolerance import FACTOR, Expectation, expectations
 # States drawn; fewer of long kernels, so that no more numbers are held at a time.
 DRAWN, ALIGNED, IN_MODES = 512, 256, 256
 NUMBERS = 4_000_000
+# Of each kind also fewer where decompositions of large parts would take longest: the cube of their coordinates counts.
+CUBES, FEWEST = 200_000_000, 8
 # Of the worst of them, how many go further, in how many directions, and how often.
 KEPT, DIRECTIONS, STEPS = 32, 8, 3
 # Units; what is estimated counts every rounding with all that it may do, and d for less than it is.
@@ -100,7 +102,7 @@ class WorstStateSearch:
         units = self._units(errors, states, least)
         for step in range(STEPS if units.max() > DOUBTFUL else 0):
             worst = states.only(_worst(units, KEPT))
-            starts = worst.only(np.arange(len(worst)).repeat(DIRECTIONS))
+            starts = worst.only(np.arange(len(worst)).repeat(DIRECTIONS)[: self._affordable(KEPT * DIRECTIONS)])
             further = self._surroundings.moved(starts, f"{kernel.name} {step}")
             if len(further):
                 states, units = joined(states, further), np.append(units, self._units(errors, further, least))
@@ -119,8 +121,15 @@ class WorstStateSearch:
     @cached_property
     def _drawn(self) -> Nearby:
         around = self._surroundings
-        found = joined(around.samples, around.aligned(ALIGNED))
-        return joined(joined(found, around.in_modes(IN_MODES)), around.drawn(DRAWN))
+        found = joined(around.samples, around.aligned(self._affordable(ALIGNED)))
+        found = joined(found, around.in_modes(self._affordable(IN_MODES)))
+        return joined(found, around.drawn(self._affordable(DRAWN)))
+
+    def _affordable(self, count: int) -> int:
+        """So many states, or as many as large parts leave time for."""
+        system = self._expected.reference.system
+        cubes = sum(len(part.coordinates) ** 3 for part in system.parts)
+        return min(count, max(FEWEST, CUBES // cubes))
 
     def _settling(self, quantity: str) -> Settling:
         return self._settlings[quantity in MAIN]
