@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import random
 
+import numpy as np
 import pytest
 from flint import arb, arb_mat
 
 from symgen.model.load import load_text
 from symgen.verify.reference import system as reference_system
 from symgen.verify.reference.adjoints import shorter_gradients
-from symgen.verify.reference.driven import driven
+from symgen.verify.reference.driven import Driven, blocks_of_inputs
 from symgen.verify.reference.linear import (
     determinant,
     identity,
@@ -20,10 +21,13 @@ from symgen.verify.reference.linear import (
     right_pseudoinverse,
 )
 from symgen.verify.reference.manifold import ManifoldRanks
+from symgen.verify.reference.parts import Part
 from symgen.verify.reference.reference import Reference, State
 from symgen.verify.reference.system import ReferenceSystem
 from symgen.verify.reference.tape import FUNCTIONS, Tape, precision, replay_of
 from symgen.verify.reference.translation import literal_values
+from symgen.verify.sampling import ranks_in_lanes
+from symgen.verify.sampling.ranks_in_lanes import RankedPart, is_regular
 
 
 def chain(links: int) -> str:
@@ -44,6 +48,12 @@ def drawn(dice: random.Random, rows: int, columns: int) -> arb_mat:
     return arb_mat(rows, columns, [dice.uniform(-1, 1) for _ in range(rows * columns)])
 
 
+def with_blocks(rows: arb_mat, control: arb_mat) -> Driven:
+    n, m = control.nrows(), control.ncols()
+    acted_on = [[i for i in range(n) if control[i, j] != 0] for j in range(m)]
+    return Driven(rows, control, blocks_of_inputs(Part(tuple(range(n)), inputs=tuple(range(m))), acted_on))
+
+
 @pytest.mark.parametrize("linked", [False, True], ids=["inputs apart", "inputs of common coordinates"])
 def test_u_by_the_rows_is_u_by_the_pseudoinverse(linked: bool) -> None:
     dice = random.Random(f"u {linked}")
@@ -55,8 +65,7 @@ def test_u_by_the_rows_is_u_by_the_pseudoinverse(linked: bool) -> None:
     with precision(256):
         projector = identity(9) - right_pseudoinverse(rows, 2) * rows
         projected = projector * control
-        own = driven(rows, control)
-        assert own is not None
+        own = with_blocks(rows, control)
         assert len([block for block in own.blocks if block.inputs]) == (3 if linked else 6)
         apart = own.inputs(load) - pseudoinverse(projected, 6) * (projector * load)
         assert all(abs(float(x)) < 1e-60 for x in apart.entries())
@@ -66,8 +75,7 @@ def test_u_by_the_rows_is_u_by_the_pseudoinverse(linked: bool) -> None:
 
 def test_inputs_that_act_alike_are_told() -> None:
     rows, control = arb_mat(1, 4, [1, 1, 1, 1]), arb_mat(4, 2, [1, 2, 0, 0, 0, 0, 1, 2])
-    own = driven(rows, control)
-    assert own is not None
+    own = with_blocks(rows, control)
     with pytest.raises(ZeroDivisionError):
         own.inputs(arb_mat(4, 1, [1, 2, 3, 4]))
 
@@ -134,3 +142,22 @@ def test_loads_by_the_power_of_bodies_are_those_by_their_jacobians(monkeypatch: 
             found.append((at.load, at.motion(at.rate)[0], at.mass_dot(at.rate)))
     for backwards, expected in zip(*found, strict=True):
         assert norm(backwards - expected) <= 1e-60 * norm(expected)
+
+
+@pytest.mark.parametrize("drives", [45, 58], ids=["fewer than directions", "as many as directions"])
+def test_many_drives_under_few_rows_are_regular_where_a_decomposition_says_so(
+    drives: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Along some of the rows drives reach nothing, or nearly so."""
+    dice = np.random.default_rng(7)
+    rows, control = dice.standard_normal((12, 2, 60)), np.zeros((12, 60, drives))
+    control[:, np.arange(drives), np.arange(drives)] = 3.0
+    rows[::3, :, 44:] *= 0.0
+    rows[1::3, :, 44:] *= 1e-4
+    part = RankedPart(range(60), range(2), range(drives), 2, drives)
+    found = is_regular(part, rows, control)
+    monkeypatch.setattr(ranks_in_lanes, "MANY", 1000)
+    assert (found == is_regular(part, rows, control)).all()
+    assert found[2::3].all()
+    assert not found[::3].any()
+    assert not found[1::3].any()

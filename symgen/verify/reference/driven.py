@@ -61,14 +61,7 @@ class Driven:
                 yield block, block.coordinates, piece(self.control, block.coordinates, block.inputs)
 
 
-def driven(rows: Any, control: Any) -> Driven | None:
-    """None where inputs are not more than rows: the Gram matrix of M~ is no larger than that of B then."""
-    n, m = control.nrows(), control.ncols()
-    if m <= rows.nrows():
-        return None
-    columns: list[list[int]] = [[] for _ in range(m)]
-    for i, entries in enumerate(control.tolist()):
-        for j, entry in enumerate(entries):
-            if not entry.is_zero():
-                columns[j].append(i)
-    return Driven(rows, control, parts(n, (), columns))
+def blocks_of_inputs(part: Part, acted_on: Sequence[Sequence[int]]) -> tuple[Part, ...]:
+    """The blocks of M of a part by its own numbers, from the coordinates that each input of the system acts on."""
+    place = {j: k for k, j in enumerate(part.coordinates)}
+    return parts(len(place), (), [[place[j] for j in acted_on[control]] for control in part.inputs])

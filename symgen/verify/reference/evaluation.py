@@ -12,7 +12,7 @@ from functools import cached_property, wraps
 from typing import Any, TypeAlias
 
 from symgen.verify.reference.blocks import pseudoinverse_of_parts, right_pseudoinverse_of_parts
-from symgen.verify.reference.driven import Driven, driven
+from symgen.verify.reference.driven import Driven
 from symgen.verify.reference.linear import (
     column,
     columns_of,
@@ -209,12 +209,18 @@ class Evaluation:
         """Each part by its inputs, where all of these are independent and more than rows; None where they are not."""
         if self.ranks.actuation < self.system.m or self.ranks.constraints < self.system.r or not self.system.m:
             return None
-        found = [
-            driven(piece(self.at.constraints, x.rows, x.coordinates), piece(self.at.control, x.coordinates, x.inputs))
-            for x in self.system.parts
-        ]
-        known = tuple(x for x in found if x is not None)
-        return known if len(known) == len(found) else None
+        parts = self.system.parts
+        # no fewer rows than inputs: the Gram matrix of M~ is no larger than that of B then
+        if any(len(part.inputs) <= len(part.rows) for part in parts):
+            return None
+        return tuple(
+            Driven(
+                piece(self.at.constraints, part.rows, part.coordinates),
+                piece(self.at.control, part.coordinates, part.inputs),
+                blocks,
+            )
+            for part, blocks in zip(parts, self.system.input_blocks, strict=True)
+        )
 
     @cached_property
     def inputs(self) -> Any:

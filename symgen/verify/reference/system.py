@@ -22,6 +22,7 @@ from symgen.model.mechanism import component
 from symgen.model.model import Model
 from symgen.verify.reference.adjoints import shorter_gradients
 from symgen.verify.reference.bodies import BodyJacobian, BodyRows, weights_of
+from symgen.verify.reference.driven import blocks_of_inputs
 from symgen.verify.reference.frames import Frames
 from symgen.verify.reference.matrix_rates import MatrixRates
 from symgen.verify.reference.motion import DriftAlongRate
@@ -179,6 +180,7 @@ class ReferenceSystem:
         )
         self.parts = parts(n, rows, inputs)
         self.heavy = parts(n, rows, inputs, bodies, pairs)
+        self.input_blocks = tuple(blocks_of_inputs(part, inputs) for part in self.parts)
 
     def matrices(self, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]) -> tuple[Any, Any]:
         """B (r x n) and M (n x m) at q."""

@@ -17,6 +17,8 @@ from symgen.verify.sampling.regular import REGULAR
 
 # Of rows of length 1: what is more than rounding leaves of rows that depend on others.
 INDEPENDENT = 1e2 * DEPENDENT
+# Inputs from which on a decomposition of all of them takes longest.
+MANY = 40
 
 
 @dataclass(frozen=True)
@@ -62,22 +64,46 @@ def is_regular(part: RankedPart, rows: Lanes, control: Lanes, other_branches: bo
     rows, control = rows.copy(), control.copy()
     rows[~good], control[~good] = 0.0, 0.0
     count, r, n = rows.shape
+    columns = np.swapaxes(control, 1, 2)
+    columns = columns / lengths_of(columns)
+    apart = _few_rows(r, columns[good])
     free = np.broadcast_to(np.eye(n), (count, n, n))
+    held = np.zeros((count, 0, n))
     if r:
-        sizes, directions = np.linalg.svd(rows / lengths_of(rows))[1:]
+        sizes, directions = np.linalg.svd(rows / lengths_of(rows), full_matrices=not apart)[1:]
         rank = part.constraints
         good &= sizes[:, rank - 1] >= REGULAR * sizes[:, 0] if rank else True
         if not other_branches:
             good &= (sizes[:, rank:] <= INDEPENDENT).all(axis=1)
-        free = directions[:, rank:]
+        held, free = directions[:, :rank], directions[:, rank:]
     if part.actuation or not other_branches:
-        columns = np.swapaxes(control, 1, 2)
-        moved = free @ np.swapaxes(columns / lengths_of(columns), 1, 2)
-        sizes = np.linalg.svd(moved, compute_uv=False)
+        along = np.swapaxes(columns, 1, 2)
+        sizes = _along_few_rows(held @ along) if apart else np.linalg.svd(free @ along, compute_uv=False)
         good &= sizes[:, part.actuation - 1] >= REGULAR if part.actuation else True
         if not other_branches:
             good &= (sizes[:, part.actuation :] <= INDEPENDENT).all(axis=1)
     return good
+
+
+def _few_rows(r: int, columns: Lanes) -> bool:
+    """Whether there are many more inputs than rows, and inputs stand at right angles to each other, as drives do."""
+    m, n = columns.shape[1:]
+    if m < MANY or m <= r or m > n:
+        return False
+    return bool(np.all(np.count_nonzero(columns, axis=1) <= 1) and np.all(np.count_nonzero(columns, axis=2) == 1))
+
+
+def _along_few_rows(held: Lanes) -> Lanes:
+    """The singular values of inputs of length 1 at right angles along what rows leave free, the largest first.
+
+    They are 1 but for as many as there are rows, and those follow from the shares that the rows hold.  What is below
+    1e-8 is rounding.
+    """
+    count, rank, m = held.shape
+    sizes = np.ones((count, m))
+    shares = np.linalg.svd(held, compute_uv=False)
+    sizes[:, m - rank :] = np.sqrt(np.maximum(1 - shares[:, ::-1] ** 2, 0))
+    return sizes
 
 
 def measures(parts: Sequence[RankedPart], blocks: Sequence[tuple[Lanes, Lanes]]) -> Lanes:
