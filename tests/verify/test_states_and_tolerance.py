@@ -303,3 +303,21 @@ def test_where_too_few_states_are_left_once_they_are_rounded_a_remedy_is_told() 
     assert len(expected.values("float64")) == 24
     with pytest.raises(VerificationError, match=r"only 0 regular .* rounded to float32 .*; give .*--scalar float64"):
         expected.values("float32")
+
+
+def test_independent_velocities_that_fail_at_the_start_are_no_matter_of_verification() -> None:
+    """A ring on a sphere, told by its first two places: on the equator, where it starts, the third is anything."""
+    text = """\
+model: ring
+coordinates: {x: {}, y: {}, z: {}}
+kinetic_energy: x_dot**2 + y_dot**2 + z_dot**2
+constraints: {geometric: {sphere: x**2 + y**2 + z**2 - 1}}
+inputs: {u: {acts_on: {z: 1}}}
+independent_velocities: [x, y]
+configuration: {x: 0.6, y: 0.8, z: 0}
+"""
+    reference = Reference(load_text(text, "ring.yaml"))
+    heights = {name: [abs(s.state.q[2]) for s in sample_states(reference, [name], 16)] for name in
+               ("mass_matrix", "minimal_mass_matrix")}  # fmt: skip
+    assert min(heights["mass_matrix"]) == 0
+    assert min(heights["minimal_mass_matrix"]) > 1e-4

@@ -10,12 +10,14 @@ from math import comb, isfinite
 from typing import Any
 
 from symgen.ir.kernel import Scalar
+from symgen.model.quantities import PARTITION, ROWS
 from symgen.runtime.activity import working
 from symgen.verify.reference.quantities import RATES
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference.tape import precision
 from symgen.verify.sampling.regular import (
     FEWEST_STATES,
+    REGULAR,
     SAMPLING_BITS,
     Regular,
     RegularStateSearch,
@@ -129,5 +131,16 @@ def _sample(reference: Reference, quantities: Sequence[str], regular: Regular) -
         return None
     if not all(isfinite(x) for matrix in everything.values() for x in floats(matrix)):
         return None
+    if any(ROWS[name].needs == PARTITION for name in quantities) and not _is_free(reference, state):
+        return None
     first, second = values["singularity"]
     return Sample(state, regular.admissible, (first, second))
+
+
+def _is_free(reference: Reference, state: State) -> bool:
+    """Whether the independent velocities determine the others, as far from where they fail as regular states are.
+
+    Where they fail the system may be regular: their quantities have a status there.
+    """
+    (complement,) = values_at(reference, state, ("orthogonal_complement",)).values()
+    return max(map(abs, complement)) * REGULAR < 1
