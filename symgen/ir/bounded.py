@@ -42,8 +42,7 @@ def bounded(kernel: Kernel, bounds: Sequence[Bound], parameters: Sequence[str], 
             name = _new(f"size_of_{size.name}", taken)
             size, statements = Local(name), (Statement((name,), "abs", (size,)),)
         blocks.append(Block(statements, tuple(_checks(size, bound))))
-    alike = tuple(tuple(place + len(blocks) for place in places) for places in kernel.alike)
-    return replace(kernel, loads=tuple(loads), blocks=(*blocks, *kernel.blocks), alike=alike)
+    return replace(kernel, loads=tuple(loads), blocks=(*blocks, *kernel.blocks))
 
 
 def bounds_of(kernel: Kernel) -> Iterator[tuple[Bound, bool]]:

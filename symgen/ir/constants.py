@@ -19,21 +19,17 @@ _EXACT = {"add": Fraction.__add__, "sub": Fraction.__sub__, "mul": Fraction.__mu
 
 
 def with_constants_evaluated(kernel: Kernel) -> Kernel:
-    """The kernel without statements whose operands are numbers: their values stand where they were read.
-
-    Blocks side by side stay as they are, statement by statement.
-    """
-    together = {number for numbers in kernel.alike for number in numbers}
+    """The kernel without statements whose operands are numbers: their values stand where they were read."""
     known: dict[str, Literal] = {}
-    blocks = tuple(_block(block, known, number in together) for number, block in enumerate(kernel.blocks))
+    blocks = tuple(_block(block, known) for block in kernel.blocks)
     return replace(kernel, blocks=blocks, outputs=_read(kernel.outputs, known))
 
 
-def _block(block: Block, known: dict[str, Literal], as_written: bool) -> Block:
+def _block(block: Block, known: dict[str, Literal]) -> Block:
     statements = []
     for statement in block.statements:
         operands = _read(statement.operands, known)
-        values = None if as_written else _values(statement, operands)
+        values = _values(statement, operands)
         if values is None:
             statements.append(replace(statement, operands=operands))
         else:
@@ -48,7 +44,7 @@ def _check(check: Check, known: dict[str, Literal]) -> Check | None:
     if check.status is Status.ANGLE_RANGE and isinstance(size, Local) and size.name in known:
         return None
     value, limit = _read((check.value, check.limit), known)
-    first = None if check.first is None else _block(check.first, dict(known), False)
+    first = None if check.first is None else _block(check.first, dict(known))
     return replace(check, value=value, limit=limit, first=first)
 
 

@@ -154,8 +154,7 @@ class Kernel:
 
     Order at run time: loads, then `blocks` one after the other (statements, then their checks), then the test that
     every output is finite (status NOT_FINITE), then the stores.  `outputs` are row-major entries of `shape`.
-    `remark` is for the comments of its functions.  `alike` numbers blocks side by side whose statements are the same
-    one by one, on other operands: none of them reads what another one of them assigns.
+    `remark` is for the comments of its functions.
     """
 
     name: str
@@ -165,7 +164,6 @@ class Kernel:
     outputs: tuple[Operand, ...]
     shape: tuple[int, ...]
     remark: str = ""
-    alike: tuple[tuple[int, ...], ...] = ()
 
     @property
     def statements(self) -> tuple[Statement, ...]:

@@ -35,7 +35,7 @@ def widened(kernel: Kernel, scalar: Scalar) -> Kernel:
     last, outputs = writer.rounded(kernel.outputs)
     blocks[-1] = replace(blocks[-1], statements=(*blocks[-1].statements, *last))
     blocks = with_ranges(blocks, writer.further_angles, writer.taken)
-    made = pruned(replace(kernel, blocks=tuple(blocks), outputs=outputs, alike=()))
+    made = pruned(replace(kernel, blocks=tuple(blocks), outputs=outputs))
     same_kernel(f"twice the digits in {kernel.name}", Lifted(kernel), Lifted(made), squares_roots=True)
     return made
 

@@ -40,29 +40,20 @@ from symgen.symbolic.traverse import topological
 
 # The order in which statuses are reported (interface, section 4).
 ORDER = (Status.ANGLE_RANGE, Status.CONSTRAINT_RANK, Status.MASS_RANK, Status.ACTUATION_RANK)
-# Two bodies are computed side by side where a vector of 16 bytes holds two values.
-IN_TWOS: Scalar = "float64"
 
 
 def schedule(mechanics: System, quantities: Sequence[Quantity], scalars: Sequence[Scalar]) -> dict[Scalar, Program]:
     """All quantities as kernels, for each scalar type.
 
-    The order of statements is worked out once, but for kernels with bodies side by side; the thresholds, which differ,
-    are filled in last.
+    The order of statements is worked out once; the thresholds, which differ, are filled in last.
     """
     limits = _GuardTests(mechanics)
-    ordered: dict[str, Kernel] = {}
+    named = each("statements", quantities, lambda one: one.name)
+    kernels = tuple(_ordered_kernel(mechanics, derived, limits) for derived in named)
     programs: dict[Scalar, Program] = {}
     for scalar in scalars:
-        kernels = []
-        for derived in each(f"statements in {scalar}", quantities, lambda one: one.name):
-            kernel = _side_by_side(mechanics, derived) if scalar == IN_TWOS else None
-            if kernel is None and derived.name not in ordered:
-                ordered[derived.name] = _ordered_kernel(mechanics, derived, limits)
-            kernels.append(ordered[derived.name] if kernel is None else kernel)
         filler = _Filler(limits.values(scalar))
-        filled = tuple(filler.kernel(kernel) for kernel in kernels)
-        programs[scalar] = Program(scalar, sincos(scalar, limits.wide), filled)
+        programs[scalar] = Program(scalar, sincos(scalar, limits.wide), tuple(map(filler.kernel, kernels)))
     return programs
 
 
@@ -162,16 +153,6 @@ class _Filler:
 
     def _operand(self, operand: Operand) -> Operand:
         return self._values.get(operand.name, operand) if isinstance(operand, Local) else operand
-
-
-def _side_by_side(mechanics: System, derived: Quantity) -> Kernel | None:
-    """The kernel in which bodies take the same statements; None where they do not."""
-    if derived.alike is None:
-        return None
-    from symgen.lowering.alike import alike_kernel  # models given by energies start without it
-
-    kernel = alike_kernel(derived, derived.alike, _arguments(mechanics, derived.name))
-    return None if kernel is None else with_constants_evaluated(kernel)
 
 
 def _ordered_kernel(mechanics: System, derived: Quantity, limits: _GuardTests) -> Kernel:

@@ -142,28 +142,6 @@ class ScalarWriter:
             self.operand(output)
         return statements
 
-    def instance(
-        self, function: Sequence[Node], values: Mapping[str, Operand], results: Sequence[Node]
-    ) -> list[Statement]:
-        """The statements of a function of symbols for one set of `values`; the symbols `results` are its results.
-
-        The function is on a graph of its own; with other values its statements are the same one by one.
-        """
-        known: dict[Node, Operand] = {}
-        statements: list[Statement] = []
-        for node in topological(function):
-            if node.op == "symbol":
-                known[node] = values[str(node.payload)]
-            elif node.constant is not None:
-                known[node] = Literal(node.constant)
-            else:
-                target = self._fresh()
-                operands = tuple(known[argument] for argument in node.args)
-                statements.append(Statement((target,), node.op, operands))  # type: ignore[arg-type]
-                known[node] = Local(target)
-        self._written |= zip(results, (known[result] for result in function), strict=True)
-        return statements
-
     def _plain(self, node: Node) -> list[Statement]:
         """The node's statement, or none where the same operation on the same operands stands already."""
         operands = tuple(self.operand(argument) for argument in node.args)

@@ -9,7 +9,7 @@ Lumped (lumps.py), the bodies of a frame are one.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
@@ -63,7 +63,6 @@ def newton_euler(
     gravity: Vector3,
     lumped: bool = False,
     twists: Mapping[str, Sequence[int]] = MappingProxyType({}),
-    named: Callable[[Body, FrameMotion], Wrench | None] = lambda *_: None,
 ) -> Vector:
     """d/dt dT/dq_dot - dT/dq + dU/dq of all bodies and rotors for the accelerations `qdd`.
 
@@ -71,32 +70,8 @@ def newton_euler(
     `lumped` tells whether parameters are regrouped first: cheaper where frames share parameters.
     The frames of `twists` hand nothing on: force and moment about their origin, in their axes, stand in six places of
     the result.
-    `named` may give the inertial wrench of a body a name, which stands in the result for what it is.
     """
-    return _Recursion(bodies, qd, qdd, gravity, named).forces(lumped, twists)
-
-
-def inertial_wrench(
-    motion: FrameMotion, mass: Scalar, com: Vector3, tensor: Rows[Scalar], apart: bool = False
-) -> Wrench:
-    """What moving a body so takes: m a of its centre of mass; the moment of that and I w' + w x I w.
-
-    With `apart` centrifugal forces stand apart from the others, c x (w x (w x c)) = (w.c) (c x w): without a rounding
-    they have no moment about w, which c x (m a) gives a rest of.
-    """
-    x, y, z = (mass * a for a in plus(motion.linear, applied(motion.field, com)))
-    if not apart:
-        return Wrench((x, y, z), plus(_turning_moment(tensor, motion), cross(com, (x, y, z))))
-    along = inner(motion.velocity, com)
-    others = cross(com, plus(motion.linear, cross(motion.acceleration, com)))
-    centrifugal = (along * a for a in cross(com, motion.velocity))
-    a, b, c = (mass * (one + other) for one, other in zip(others, centrifugal, strict=True))
-    return Wrench((x, y, z), plus(_turning_moment(tensor, motion), (a, b, c)))
-
-
-def motion(velocity: Vector3, acceleration: Vector3, linear: Vector3) -> FrameMotion:
-    """A motion by angular velocity, angular acceleration and acceleration of the origin."""
-    return FrameMotion(velocity, acceleration, linear, _field(velocity, acceleration))
+    return _Recursion(bodies, qd, qdd, gravity).forces(lumped, twists)
 
 
 def inertial_wrenches(bodies: Bodies, qd: Vector, qdd: Vector, gravity: Vector3) -> dict[str, Wrench]:
@@ -119,20 +94,13 @@ def joint_motions(bodies: Bodies, qd: Vector, gravity: Vector3) -> JointMotions:
     frames = bodies.mechanism.frames
     for frame in frames:
         moved = added[frame.name] = recursion.step(frame.name)
-        recursion.motions[frame.name] = motion(moved.velocity, recursion.none, recursion.none)
+        turning = _field(moved.velocity, recursion.none)
+        recursion.motions[frame.name] = FrameMotion(moved.velocity, recursion.none, recursion.none, turning)
     return JointMotions(added, recursion.motions, recursion.wrenches(frames, recursion.motions))
 
 
 class _Recursion:
-    def __init__(
-        self,
-        bodies: Bodies,
-        qd: Vector,
-        qdd: Vector,
-        gravity: Vector3,
-        named: Callable[[Body, FrameMotion], Wrench | None] = lambda *_: None,
-    ) -> None:
-        self.named = named
+    def __init__(self, bodies: Bodies, qd: Vector, qdd: Vector, gravity: Vector3) -> None:
         self.bodies, self.graph, self.kinematics = bodies, bodies.graph, bodies.kinematics
         self.at_rest = all(rate.is_zero for rate in qd)
         # relative velocities are linear in the rates: at rest their derivatives have terms in q_ddot alone
@@ -251,11 +219,21 @@ class _Recursion:
         return replace(motion, field=_field(self.none, motion.acceleration))
 
     def _inertial(self, body: Body, motion: FrameMotion) -> Wrench:
-        """What the body takes of its frame, or the name of that."""
+        """What moving a body so takes: m a of its centre of mass; the moment of that and I w' + w x I w.
+
+        On a parent that is still, centrifugal forces stand apart from the others, c x (w x (w x c)) = (w.c) (c x w):
+        without a rounding they have no moment about w, which c x (m a) gives a rest of.
+        """
         mass, com = self.bodies.scalars.value(body.mass), self.kinematics.space.values(body.com)
-        apart = motion is self.motions[body.frame] and self._on_still_parent(body.frame)
-        found = None if apart else self.named(body, motion)
-        return inertial_wrench(motion, mass, com, self.bodies.inertia(body.name), apart) if found is None else found
+        tensor = self.bodies.inertia(body.name)
+        x, y, z = (mass * a for a in plus(motion.linear, applied(motion.field, com)))
+        if motion is not self.motions[body.frame] or not self._on_still_parent(body.frame):
+            return Wrench((x, y, z), plus(_turning_moment(tensor, motion), cross(com, (x, y, z))))
+        along = inner(motion.velocity, com)
+        others = cross(com, plus(motion.linear, cross(motion.acceleration, com)))
+        centrifugal = (along * a for a in cross(com, motion.velocity))
+        a, b, c = (mass * (one + other) for one, other in zip(others, centrifugal, strict=True))
+        return Wrench((x, y, z), plus(_turning_moment(tensor, motion), (a, b, c)))
 
     def _on_still_parent(self, name: str) -> bool:
         """Whether a frame turns about a fixed place: what its own rate alone loads its joint with is exactly 0 then."""

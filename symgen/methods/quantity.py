@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from symgen.linear_algebra.guards import Guard
 from symgen.records import dataclass
 from symgen.symbolic.matrix import Vector
 from symgen.symbolic.scalar import Scalar
-
-if TYPE_CHECKING:
-    from symgen.mechanics.alike import Alike
 
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
     """A quantity as scalars: row-major outputs of `shape`, and the denominators they depend on.
 
-    `remark` is what its reader must know for this system.  `alike` gives the same outputs to kernels by a function
-    that several bodies have in common, where that is worth it.
+    `remark` is what its reader must know for this system.
     """
 
     name: str
@@ -26,7 +20,6 @@ class Quantity:
     outputs: Vector
     guards: tuple[Guard, ...]
     remark: str = ""
-    alike: Alike | None = None
 
 
 def resting_on(guards: tuple[Guard, ...], name: str, outputs: Vector) -> Quantity:

@@ -8,7 +8,6 @@ from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
 from symgen.methods.method import INPUTS, MOTIONS
 from symgen.methods.quantity import Quantity, is_fixed, scalars
-from symgen.model.model import Model
 from symgen.quantities.excess import with_test_of_excess
 from symgen.quantities.row_units import in_units_of_the_file
 from symgen.symbolic.hidden_zeros import without_hidden_zeros
@@ -30,15 +29,6 @@ def complete(mechanics: System, generic: Genericity, derived: Quantity) -> Quant
     tested = with_test_of_excess(mechanics, generic, derived)
     tested = in_units_of_the_file(mechanics.graph, mechanics.model, tested)
     return _remarked(tested, generic)
-
-
-def with_alike_bodies(model: Model, derived: Quantity) -> Quantity:
-    """u with what its bodies have in common, where there are bodies."""
-    if derived.name != INPUTS or not model.mechanism.has_mass:
-        return derived
-    from symgen.mechanics.alike import alike_bodies  # models given by energies start without it
-
-    return replace(derived, alike=alike_bodies(model, derived.outputs))
 
 
 def _remarked(derived: Quantity, generic: Genericity) -> Quantity:

@@ -17,7 +17,7 @@ from symgen.model.quantities import POINTS
 from symgen.quantities.candidates import Candidates
 from symgen.quantities.catalogue import BY_NAME, CATALOGUE, missing
 from symgen.quantities.everything import WorkBudget, too_long
-from symgen.quantities.finish import finished, with_alike_bodies
+from symgen.quantities.finish import finished
 from symgen.quantities.row_units import in_ordinary_units
 from symgen.records import dataclass
 from symgen.runtime.activity import each, working
@@ -132,8 +132,6 @@ def derive_quantities(
     lengths = [len(reached(scalars(derived))) for derived in made.values()]
     named_so = each("shortening", tuple(made.values()), lambda derived: derived.name, lengths)
     quantities = tuple(finished(mechanics, generic, derived) for derived in named_so)
-    if forms.get(INPUTS, AUTO) == AUTO:
-        quantities = tuple(with_alike_bodies(model, derived) for derived in quantities)
     form = compared.pop(INPUTS, None)
     named = tuple(compared.items())
     return Selection(mechanics, generic, quantities, tuple(choices.values()), tuple(absent), form, named, methods)

@@ -25,7 +25,6 @@ PLAIN = Kernel(
     ),
     outputs=(Local("t4"),),
     shape=(1,),
-    alike=((1, 2),),
 )
 PARAMETERS = ("mass", "size_of_offset", "reach")
 BOUNDS = (Bound("mass", None, Fraction(40)), Bound("size_of_offset", Fraction(1, 4), Fraction(8)))
@@ -70,13 +69,6 @@ def test_bounds_are_read_back() -> None:
     made = bounded(PLAIN, BOUNDS, PARAMETERS, {"mass"})
     assert list(bounds_of(made)) == [(BOUNDS[0], False), (BOUNDS[1], True)]
     assert list(bounds_of(PLAIN)) == []
-
-
-def test_blocks_that_are_alike_stay_so() -> None:
-    made = bounded(PLAIN, BOUNDS, PARAMETERS, {"mass"})
-    first, second = (made.blocks[place] for place in made.alike[0])
-    assert first == PLAIN.blocks[1]
-    assert second == PLAIN.blocks[2]
 
 
 @pytest.mark.parametrize("read", [True, False])

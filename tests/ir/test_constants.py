@@ -72,23 +72,6 @@ def test_what_cannot_be_divided_or_rooted_stays_for_run_time() -> None:
     assert with_constants_evaluated(before) == before
 
 
-def test_blocks_side_by_side_keep_the_same_statements() -> None:
-    root = Statement(("r",), "sqrt", (Literal(Fraction(2)),))
-    other = Statement(("s",), "sqrt", (X,))
-    total = Statement(("y",), "add", (Local("r"), Local("s")))
-    blocks = (Block((), ()), Block((root,), ()), Block((other,), ()), Block((total,), ()))
-    before = Kernel(
-        name="inverse_dynamics",
-        arguments=(Argument("q", 1),),
-        loads=(Load("x", "q", 0),),
-        blocks=blocks,
-        outputs=(Local("y"),),
-        shape=(1,),
-        alike=((1, 2),),
-    )
-    assert with_constants_evaluated(before) == before
-
-
 def test_numbers_are_those_of_the_statements() -> None:
     third = Literal(Fraction(1, 3))
     before = kernel(

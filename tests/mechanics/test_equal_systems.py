@@ -8,7 +8,6 @@ from collections.abc import Sequence
 import pytest
 from flint import fmpz_mod_ctx, fmpz_mod_mat
 
-from symgen.mechanics import alike
 from symgen.mechanics.absolute_angles import AbsoluteAngles
 from symgen.mechanics.never_zero import Definite
 from symgen.mechanics.system import System
@@ -22,7 +21,6 @@ from symgen.symbolic.identity import every_identity_evaluated, same_values
 from symgen.symbolic.matrix import Matrix, flatten, identity, matmul, matvec, transpose
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.transplant import transplanted
-from symgen.symbolic.traverse import substitute
 
 FIELD = fmpz_mod_ctx(PRIME)
 
@@ -205,17 +203,3 @@ def test_lumped_bodies_take_the_same_forces() -> None:
     model = load_text(ARM, "arm.yaml")
     apart_, together = (System(model, lumped=lumped) for lumped in (False, True))
     _same("lumping", apart_.balance, together.balance)
-
-
-def test_bodies_by_one_function_take_the_same_forces(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(alike, "LANES_WORTH", 10)  # whatever it costs
-    model = load_text(ARM, "arm.yaml")
-    plain = System(model)
-    found = alike.alike_bodies(model, plain.balance)
-    assert found is not None
-    graph, values = found.mechanics.graph, dict[Scalar, Scalar]()
-    # outwards from the root: what a body takes holds nothing of what others give
-    for arguments, results in zip(found.arguments, found.results, strict=True):
-        given = dict(zip(found.names, substitute(graph, arguments, values), strict=True))
-        values |= dict(zip(results, transplanted(graph, found.function, given), strict=True))
-    _same("one function", plain.balance, substitute(graph, found.inputs, values))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from symgen.backends.c.functions import CFunctionView
-from symgen.backends.c.lanes import each_macro
 from symgen.backends.c.names import guard
 from symgen.backends.c.pairs import PairsView, pairs_view
 from symgen.backends.c.steps import StepsView, steps_view
@@ -50,7 +49,6 @@ class FileView:
     both: LibraryPair | None
     steps: StepsView | None
     rare: str
-    each: str
     apart: str
 
 
@@ -83,7 +81,6 @@ def file_view(
         both=library_pair(prefix, program),
         steps=steps_view(prefix, suffix, program),
         rare=rare_macro(prefix, program),
-        each=each_macro(prefix, program),
         apart=apart_macro(prefix, program),
     )
 

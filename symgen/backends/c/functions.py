@@ -7,7 +7,6 @@ from dataclasses import replace
 
 from symgen.backends.c.causes import Cause, CauseView, cause_view, causes_of, operands_of, place
 from symgen.backends.c.finite import SUM, FiniteTest
-from symgen.backends.c.lanes import each_name, lane_loops, loop_lines, results_of
 from symgen.backends.c.names import global_name, status_name
 from symgen.backends.c.pairs import GROUP_NAMES, group_lines, leading_group
 from symgen.backends.c.statements import CStatements
@@ -99,16 +98,7 @@ def _body(model: Model, program: Program, kernel: Kernel, names: Names, function
         # read where first needed: fewer values are alive across the calls of the sine and cosine
         return [waiting.pop(o.name) for o in operands if isinstance(o, Local) and o.name in waiting]
 
-    loops, behind = lane_loops(kernel, program.scalar), -1
-    for number, block in enumerate(kernel.blocks):
-        if number <= behind:
-            continue
-        if (loop := loops.get(number)) is not None:
-            lines += due(operand for row in loop.given for operand in row)
-            lines += loop_lines(loop, printer, each_name(model.c_name, suffix))
-            waiting |= results_of(loop, program.scalar, names.locals)
-            behind = loop.last
-            continue
+    for block in kernel.blocks:
         for statement in block.statements:
             if statement.operation == "sincos" and statement in group:
                 if statement is group[0]:

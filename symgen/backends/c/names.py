@@ -6,7 +6,6 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from symgen.backends.c.causes import cause_names
-from symgen.backends.c.lanes import lane_names
 from symgen.backends.c.pairs import pair_names
 from symgen.backends.c.reserved import is_taken
 from symgen.backends.c.steps import local_names
@@ -59,7 +58,7 @@ def variant_names(
 
 def names_in_file(model: Model, program: Program, own: Iterable[str]) -> Names:
     """Names of a file whose global names are `own`."""
-    return names_of(model, program, is_taken, own, {*_INSIDE, *lane_names(program), *local_names(program)})
+    return names_of(model, program, is_taken, own, {*_INSIDE, *local_names(program)})
 
 
 def _own_names(model: Model, program: Program) -> set[str]:

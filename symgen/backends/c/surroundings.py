@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from symgen.backends.c.lanes import each_name
 from symgen.backends.c.steps import step_names
 from symgen.backends.locals import all_statements, used_locals
 from symgen.backends.scalars import C_TYPE, SUFFIX
@@ -72,7 +71,7 @@ def both_name(name: str, suffix: str) -> str:
 
 def surrounding_names(name: str, suffix: str) -> set[str]:
     """Every name that stands before the kernels of a file."""
-    macros = {rare_name(name, suffix), apart_name(name, suffix), both_name(name, suffix), each_name(name, suffix)}
+    macros = {rare_name(name, suffix), apart_name(name, suffix), both_name(name, suffix)}
     return macros | step_names(name, suffix)
 
 
