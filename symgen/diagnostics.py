@@ -91,7 +91,9 @@ class SymgenBug(Exception):
     """A fault of symgen itself, never of the user: names the stage and what was being worked on."""
 
 
+# Characters of a line of the file that are shown; of a longer one the part about the mistake.
 EXCERPT_WIDTH = 110
+# Places of mistakes of one kind that are listed; the others are counted.
 MOST_PLACES = 8
 
 

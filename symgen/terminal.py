@@ -20,8 +20,10 @@ from symgen.runtime.clock import Clock
 
 _ERROR_NOTE = "  * in units of what rounding the inputs and the result does to it"
 _CLEAR_LINE = "\r\x1b[K"
+# Columns of a terminal that does not say how wide it is.
 USUAL_WIDTH = 80
-_MARGIN = 2 + 3  # before a table, and between two columns
+# Columns before a table, and between two columns.
+_MARGIN = 2 + 3
 SPELLED = "symgen-spelled"
 _SPELLINGS = {"─": "-", "−": "-", "·": "*", "×": "x", "√": "sqrt", "≠": "!=", "≤": "<=", "≥": ">=", "→": "->"}
 _SPELLINGS |= {"\u0303": "~", "\u0307": "_dot", "\u0308": "_ddot"}  # accents that stand behind their letter

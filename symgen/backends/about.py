@@ -11,6 +11,7 @@ from symgen.ir.bounded import Bound, bounds_of
 from symgen.ir.kernel import Kernel, Program, Status
 from symgen.model.model import Allocation, Model, Parameter
 
+# Bounds of a parameter that stand on one line.
 BOUNDS_A_LINE = 4
 STATUS_MEANING: dict[Status, str] = {
     Status.OK: "the result is valid",

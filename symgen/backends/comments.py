@@ -6,7 +6,8 @@ import re
 import textwrap
 import unicodedata
 
-WIDTH = 110
+# Characters of a line of a comment or docstring, without what opens and closes it.
+COMMENT_WIDTH = 110
 
 
 def one_line(text: str) -> str:
@@ -24,13 +25,13 @@ def c_comment(text: str) -> str:
 
 def c_comment_lines(text: str, indent: str = "") -> tuple[str, ...]:
     """Text wrapped for a C comment; continuation lines are indented by `indent`."""
-    wrapped = textwrap.wrap(one_line(text), WIDTH, subsequent_indent=indent, break_long_words=False)
+    wrapped = textwrap.wrap(one_line(text), COMMENT_WIDTH, subsequent_indent=indent, break_long_words=False)
     return tuple(indent_of(line) + c_comment(line) for line in wrapped)
 
 
 def docstring_lines(text: str, indent: str = "") -> tuple[str, ...]:
     """Text wrapped for a Python docstring, backslashes and quotes escaped."""
-    wrapped = textwrap.wrap(one_line(text), WIDTH, subsequent_indent=indent, break_long_words=False)
+    wrapped = textwrap.wrap(one_line(text), COMMENT_WIDTH, subsequent_indent=indent, break_long_words=False)
     return tuple(line.replace("\\", "\\\\").replace('"""', '\\"\\"\\"') for line in wrapped)
 
 

@@ -10,8 +10,11 @@ from functools import cache
 
 from symgen.ir.kernel import Literal, Program, Scalar
 
+# Binary digits of a float32.
 _FLOAT32_DIGITS = 24
+# The power of two of the smallest float32, a subnormal one.
 _FLOAT32_LOWEST_EXPONENT = -149
+# What no float32 reaches: what is rounded to this is infinite.
 _FLOAT32_LIMIT = Fraction(2**128)
 
 

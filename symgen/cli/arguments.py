@@ -11,7 +11,8 @@ from typing import NoReturn
 from symgen.generation.results import ALL_PARTS, AUTO, DEFAULT_STATES, FORMS, TRIG
 from symgen.model.expressions.names import did_you_mean, nearest
 
-FEWEST_STATES = 8
+# States that a user may ask for at least: with fewer a verification would say too little.
+FEWEST_ASKED_FOR = 8
 USUAL = "inverse_dynamics"
 # Names that methods once had.
 FORMER = {(USUAL, "range"): "elimination"}
@@ -129,8 +130,8 @@ def number_of_states(text: str) -> int:
         count = int(text)
     except ValueError:
         count = 0
-    if count < FEWEST_STATES:
-        raise argparse.ArgumentTypeError(f"{text!r} is no whole number from {FEWEST_STATES} up")
+    if count < FEWEST_ASKED_FOR:
+        raise argparse.ArgumentTypeError(f"{text!r} is no whole number from {FEWEST_ASKED_FOR} up")
     return count
 
 

@@ -24,7 +24,8 @@ from symgen.registered import USUAL
 from symgen.runtime.processes import ToolError
 from symgen.terminal import SPELLED, Progress, notice_line, summary_table, terminal_width
 
-INTERRUPTED, READER_GONE = 130, 141  # as a shell reports these signals
+# Exit codes, as a shell reports these signals.
+INTERRUPTED, READER_GONE = 130, 141
 _SCALARS: dict[str, tuple[Scalar, ...]] = {
     "float64": ("float64",),
     "float32": ("float32",),

@@ -14,6 +14,7 @@ from symgen.generation.results import WrongUseError
 from symgen.runtime.processes import ToolError
 from symgen.terminal import Progress
 
+# Exit codes: all went well, a model is wrong, or the command or symgen itself is.
 DONE, MODEL_WRONG, WRONG_USE = 0, 1, 2
 
 

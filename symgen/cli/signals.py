@@ -12,7 +12,8 @@ from types import FrameType
 from symgen.runtime import processes
 
 _MEANINGS = {"SIGINT": "interrupted", "SIGTERM": "terminated", "SIGHUP": "ended with its terminal"}
-_SAME_MOMENT = 1.0  # seconds in which a second signal must not break off the cleaning up after the first
+# Seconds in which a second signal must not break off the cleaning up after the first.
+_SAME_MOMENT = 1.0
 
 
 class EndedError(SystemExit):

@@ -13,7 +13,7 @@ from symgen.closedform.allocated import structured_allocation
 from symgen.closedform.display import latex_name
 from symgen.closedform.exact import Exact
 from symgen.closedform.mechanics import ExactSystem, make_translator
-from symgen.closedform.points import DIGITS, generic_points
+from symgen.closedform.points import POINT_DIGITS, generic_points
 from symgen.closedform.singular import SingularSet, derive_singular_sets
 from symgen.closedform.spelling import Speller
 from symgen.closedform.structure import Integrability, RankStructure, derive_integrability, derive_structure
@@ -87,7 +87,7 @@ def derive_closed_forms(model: Model, straight_line_operations: Mapping[str, int
     points = generic_points(model, mechanics, 3)
     if not points:
         # ranks are those on V: off it, rows that depend on each other are independent
-        raise TooLargeError(f"no configuration was found that satisfies the constraints to {DIGITS} digits")
+        raise TooLargeError(f"no configuration was found that satisfies the constraints to {POINT_DIGITS} digits")
     structure = derive_structure(model, mechanics, points)
     exact = Exact(model, mechanics, structure)
     speller = Speller(exact.ring, dynamic_names(model))

@@ -20,7 +20,8 @@ from symgen.model.expressions.expression import Binary, Call, Expression, Name, 
 from symgen.model.model import Model
 from symgen.validity.descent import Evaluated, zero_beside
 
-DIGITS = 40
+# Decimal digits to which a point satisfies the constraints.
+POINT_DIGITS = 40
 RANK_THRESHOLD = mpf(10) ** -18
 # Newton steps towards a point on the constraints.
 MOST_STEPS = 60
@@ -167,7 +168,7 @@ def generic_points(model: Model, mechanics: ExactSystem, count: int, on_constrai
     Fewer than `count` when Newton's method does not reach V or expressions have no real value.  They lie near the
     configurations that loading found on the branch of V that is meant.
     """
-    mp.dps = DIGITS + 10
+    mp.dps = POINT_DIGITS + 10
     source = random.Random(1)
     parameters = parameter_values(model)
     known = model.assembly
@@ -217,7 +218,7 @@ def _onto_constraints(model: Model, mechanics: ExactSystem, values: dict[str, mp
 
     with _working_precision():
         start = [flint.arb(values[name]) for name in names]
-        found = zero_beside(evaluate, start, 10.0**-DIGITS, MOST_STEPS, 1e-3)
+        found = zero_beside(evaluate, start, 10.0**-POINT_DIGITS, MOST_STEPS, 1e-3)
     return None if found is None else at(found)
 
 

@@ -9,7 +9,8 @@ from symgen.methods.selection import MethodChoice
 from symgen.report.content import ReportInput
 from symgen.report.terminal import render_text_math
 
-WIDEST = 120
+# Characters of a line at most, in however wide a terminal.
+WIDEST_TEXT = 120
 
 
 def overview(report: ReportInput) -> str:
@@ -39,7 +40,7 @@ def quantity_text(report: ReportInput, quantity: str) -> str:
     """One quantity: its closed form with intermediates, or why there is none, and what its kernel costs."""
     lines: list[str] = []
     form = report.forms.get(quantity)
-    width = min(WIDEST, shutil.get_terminal_size((100, 24)).columns)
+    width = min(WIDEST_TEXT, shutil.get_terminal_size((100, 24)).columns)
     if form is None or form.matrix is None:
         note = form.note if form is not None else "the closed form of this quantity is not printed"
         lines.append(f"{quantity}: {note}")
@@ -75,5 +76,5 @@ def _singular(report: ReportInput) -> list[str]:
 def _section(title: str, entries: list[str]) -> list[str]:
     if not entries:
         return []
-    wrapped = [line for entry in entries for line in textwrap.wrap(entry, WIDEST - 4, subsequent_indent="    ")]
+    wrapped = [line for entry in entries for line in textwrap.wrap(entry, WIDEST_TEXT - 4, subsequent_indent="    ")]
     return ["", f"{title}:", *(f"  {line}" for line in wrapped)]

@@ -14,7 +14,7 @@ from symgen.ir.kernel import Block, Check, Kernel, Literal, Local, Operand, Stat
 from symgen.symbolic.scalar import PI
 
 # Numbers are kept to this many bits; PI is given to 235.
-BITS = 220
+CONSTANT_BITS = 220
 _EXACT = {"add": Fraction.__add__, "sub": Fraction.__sub__, "mul": Fraction.__mul__}
 
 
@@ -74,15 +74,15 @@ def _values(statement: Statement, operands: Sequence[Operand]) -> tuple[Fraction
 
 
 def square_root(value: Fraction) -> Fraction:
-    """The root of what is not negative, to a relative 2^-BITS."""
-    shift = max(0, BITS + value.denominator.bit_length() - value.numerator.bit_length() // 2)
+    """The root of what is not negative, to a relative 2^-CONSTANT_BITS."""
+    shift = max(0, CONSTANT_BITS + value.denominator.bit_length() - value.numerator.bit_length() // 2)
     return Fraction(isqrt((value.numerator << 2 * shift) // value.denominator), 1 << shift)
 
 
 def sine_and_cosine(angle: Fraction) -> tuple[Fraction, Fraction]:
-    """Both to 2^-BITS plus |angle| 2^-232, by Taylor's series of what is left beside quarter turns."""
+    """Both to 2^-CONSTANT_BITS plus |angle| 2^-232, by Taylor's series of what is left beside quarter turns."""
     quarters = round(angle / (PI / 2))
-    one = 1 << BITS + 20
+    one = 1 << CONSTANT_BITS + 20
     rest = angle - quarters * PI / 2
     scaled = rest.numerator * one // rest.denominator
     sums, term, degree = [0, 0], one, 0
@@ -99,8 +99,8 @@ def sine_and_cosine(angle: Fraction) -> tuple[Fraction, Fraction]:
 
 
 def _rounded(value: Fraction) -> Fraction:
-    """To BITS significant bits, so that numbers do not grow from one operation to the next."""
-    shift = BITS + value.denominator.bit_length() - value.numerator.bit_length()
+    """To CONSTANT_BITS significant bits, so that numbers do not grow from one operation to the next."""
+    shift = CONSTANT_BITS + value.denominator.bit_length() - value.numerator.bit_length()
     if shift <= 0 or value.denominator.bit_length() <= shift:
         return value
     return Fraction((value.numerator << shift) // value.denominator, 1 << shift)

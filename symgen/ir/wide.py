@@ -24,6 +24,7 @@ from symgen.ir.wide_functions import HALF, ONE, WIDE, Lines
 ZERO = Literal(Fraction(0))
 # Digits of a float32 that thresholds for the rounding errors of plain operations leave unused by pairs.
 GAINED = 22
+# Binary digits that a float64 has more than a float32: thresholds in eps of the two types differ by powers of it.
 BETWEEN_TYPES = 29
 _Pair: TypeAlias = tuple[Operand, Operand]
 

@@ -25,6 +25,7 @@ from symgen.records import dataclass
 
 # p + q sqrt(s)
 Surd: TypeAlias = tuple[Fraction, Fraction]
+# 0, as a surd.
 NOTHING: Surd = (Fraction(0), Fraction(0))
 
 

@@ -17,7 +17,8 @@ from symgen.symbolic.traverse import topological
 
 # floats are infinities only
 Bound: TypeAlias = Fraction | float
-DIGITS = 10**20
+# Bounds of roots are whole multiples of one part in this, 20 decimal places.
+ROOT_UNITS = 10**20
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,8 +150,8 @@ def _product(a: Interval, b: Interval) -> Interval:
 
 def _root(a: Interval) -> Interval:
     """Of what is not negative, to 20 digits: axes are divided by their lengths."""
-    ends = [x if x == inf else Fraction(isqrt(int(x * DIGITS**2)), DIGITS) for x in (a.low, a.high)]
-    return Interval(ends[0], ends[1] if ends[1] == inf else ends[1] + Fraction(1, DIGITS), a.nonzero)
+    ends = [x if x == inf else Fraction(isqrt(int(x * ROOT_UNITS**2)), ROOT_UNITS) for x in (a.low, a.high)]
+    return Interval(ends[0], ends[1] if ends[1] == inf else ends[1] + Fraction(1, ROOT_UNITS), a.nonzero)
 
 
 def _inverse(a: Interval) -> Interval:

@@ -13,8 +13,11 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 LOCK = ".symgen-lock"
-LONGEST_WAIT = 60.0  # seconds; a run holds the lock for less than one while it writes
-PATIENCE = 0.5  # seconds before the wait is told
+# Seconds after which waiting ends; a run holds the lock for less than one while it writes.
+LONGEST_WAIT = 60.0
+# Seconds before the wait is told.
+PATIENCE = 0.5
+# Seconds between two looks at the lock.
 _PAUSE = 0.01
 
 

@@ -23,6 +23,7 @@ MEASURED = (
     "certificate.json", "*.pdf", "bench.*", "stress.*", "target.*", "proof.json", "simulation.*", ".symgen-*"
 )
 _HELD_SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+# Files that are named; the others are counted.
 _MOST_LISTED = 5
 _NOT_AS_MADE = "not made by symgen, or changed since,"
 _changed: list[Path] = []

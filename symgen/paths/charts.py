@@ -11,7 +11,8 @@ from symgen.paths.figures import FigureData
 from symgen.paths.line_chart import Label, Line, Panel, line_chart, plain
 from symgen.paths.path_equations import Array
 
-PANEL_HEIGHT = 148.0  # points
+# The height of a panel, in points.
+PANEL_HEIGHT = 148.0
 
 
 def charts(model: Model, data: FigureData) -> dict[str, str]:

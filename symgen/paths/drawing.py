@@ -22,7 +22,8 @@ STYLE = {
     "svg.hashsalt": "symgen",
     "svg.fonttype": "path",
 }
-WIDTH = 6.4  # inches
+# The width of a chart, in inches.
+FIGURE_WIDTH = 6.4
 
 
 def svg(draw: Any, height: float) -> str:
@@ -32,7 +33,7 @@ def svg(draw: Any, height: float) -> str:
     from matplotlib.figure import Figure
 
     with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(WIDTH, height), layout="constrained")
+        figure = Figure(figsize=(FIGURE_WIDTH, height), layout="constrained")
         FigureCanvasSVG(figure)
         draw(figure)
         text = StringIO()

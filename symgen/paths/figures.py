@@ -14,7 +14,8 @@ from symgen.paths.printed import SwitchedInputs, switched_inverse_dynamics
 from symgen.paths.trajectory import PathSolver, Trajectory, solve_path
 from symgen.paths.zeros import SingularPoses
 
-SWITCHING_SHARE = 0.05  # of the largest determinant met on the path: where (28) is repartitioned
+# Of the largest determinant met on the path: where (28) is repartitioned.
+SWITCHING_SHARE = 0.05
 
 
 @dataclass(frozen=True, slots=True)

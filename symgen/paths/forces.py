@@ -9,9 +9,7 @@ import numpy as np
 
 from symgen.model.model import Model
 from symgen.paths.path_equations import Array
-from symgen.paths.trajectory import Trajectory
-
-RANK_TOLERANCE = 1e-9
+from symgen.paths.trajectory import RANK_TOLERANCE, Trajectory
 
 
 @dataclass(frozen=True, slots=True)

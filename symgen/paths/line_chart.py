@@ -13,12 +13,17 @@ from html import escape
 from symgen.paths.path_equations import Array
 
 FONT = "'New Computer Modern', 'Latin Modern Roman', serif"
+# The size of letters, in points.
 SIZE = 9.5
-WIDTH = 461.0  # points: as wide as a text of A4
-LEFT, TOP, GAP, BOTTOM = 56.0, 14.0, 20.0, 34.0
+# The width of a chart, in points: as wide as a text of A4.
+CHART_WIDTH = 461.0
+# Room in points left of a panel, above the first one, between two, and below the last one.
+LEFT_MARGIN, TOP_MARGIN, PANEL_GAP, BOTTOM_MARGIN = 56.0, 14.0, 20.0, 34.0
 LETTER = 0.52 * SIZE  # mean width
+# Ticks of an axis, at least.
 FEWEST_TICKS = 4
-FLAT = 1e-9  # curves that vary less are drawn as constants
+# Of their size: curves that vary less are drawn as constants.
+FLAT = 1e-9
 GREY, FAINT, DARK = "#888888", "#DDDDDD", "#555555"
 DASHES = ("", "6 2.5", "8 2.5 1.6 2.5", "1.6 2.6")
 # Okabe and Ito's palette: told apart with every common colour blindness, and by dashes in black and white.
@@ -83,17 +88,17 @@ def plain(text: str) -> Label:
 def line_chart(times: Array, panels: Sequence[Panel], height: float) -> str:
     """The chart over `times` (s, at least two, growing), each panel `height` points high; the same text every time."""
     beside = max(_room(panel) for panel in panels)
-    total = TOP + len(panels) * (height + GAP) - GAP + BOTTOM
+    total = TOP_MARGIN + len(panels) * (height + PANEL_GAP) - PANEL_GAP + BOTTOM_MARGIN
     parts = [
         '<?xml version="1.0" encoding="utf-8"?>',
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{_n(WIDTH)}pt" height="{_n(total)}pt" '
-        f'viewBox="0 0 {_n(WIDTH)} {_n(total)}" font-family="{FONT}" font-size="{SIZE}">',
-        f'<rect width="{_n(WIDTH)}" height="{_n(total)}" fill="white"/>',
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{_n(CHART_WIDTH)}pt" height="{_n(total)}pt" '
+        f'viewBox="0 0 {_n(CHART_WIDTH)} {_n(total)}" font-family="{FONT}" font-size="{SIZE}">',
+        f'<rect width="{_n(CHART_WIDTH)}" height="{_n(total)}" fill="white"/>',
     ]
     for position, panel in enumerate(panels):
-        top = TOP + position * (height + GAP)
+        top = TOP_MARGIN + position * (height + PANEL_GAP)
         span = float(times[0]), float(times[-1])
-        frame = _PanelArea(LEFT, WIDTH - beside, top, top + height, span, _limits(panel))
+        frame = _PanelArea(LEFT_MARGIN, CHART_WIDTH - beside, top, top + height, span, _limits(panel))
         parts += ['<g class="panel">', *_axes(frame, panel, last=position == len(panels) - 1)]
         for k, line in enumerate(panel.lines):
             parts += _curve(frame, times, line, k)

@@ -11,11 +11,16 @@ from symgen.model.configurations.closing import row_unit
 from symgen.model.model import Model, Path
 from symgen.paths.path_equations import Array, PathEquations, PathError, path_equations
 
-RESIDUAL = 1e-12  # of constraints and conditions, in their own units unless these are far from those of coordinates
+# Of constraints and conditions on a path, in their own units unless these are far from those of coordinates.
+PATH_RESIDUAL = 1e-12
+# Of the largest singular value: up to this, one is 0.
 RANK_TOLERANCE = 1e-9
-NEWTON_STEPS = 30
+# Newton steps to the nearest point of the path.
+PATH_NEWTON_STEPS = 30
+# Beside 1 and the largest rate: what the conditions of a path may violate non-holonomic rows by.
 NONHOLONOMIC_RESIDUAL = 1e-9
-SMALLEST_STEP = 1e-6  # of a grid interval, where continuation gives up
+# Of a grid interval, where continuation gives up.
+SMALLEST_STEP = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +111,7 @@ class PathSolver:
     def _newton(self, q: Array, t: float) -> Array | None:
         """The nearest solution that (damped) Gauss-Newton steps reach, polished to rounding; None if there is none."""
         h, jacobian = self._position(q, t)
-        for _ in range(NEWTON_STEPS):
+        for _ in range(PATH_NEWTON_STEPS):
             if not (np.all(np.isfinite(h)) and np.all(np.isfinite(jacobian))):
                 return None
             correction = _least_squares(jacobian, h)
@@ -114,13 +119,13 @@ class PathSolver:
             while fraction > 1e-4:
                 trial = q - fraction * correction
                 h, jacobian = self._position(trial, t)
-                if np.linalg.norm(h) < before or before < RESIDUAL:
+                if np.linalg.norm(h) < before or before < PATH_RESIDUAL:
                     break
                 fraction /= 2
             q = trial
             if np.max(np.abs(correction), initial=0) <= 1e-14 * (1 + np.max(np.abs(q))):
                 break
-        return q if np.max(np.abs(h), initial=0) < RESIDUAL else None
+        return q if np.max(np.abs(h), initial=0) < PATH_RESIDUAL else None
 
     def _check_count(self, q: Array) -> None:
         """As many conditions as V has dimensions, no more, no fewer."""

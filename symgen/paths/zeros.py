@@ -11,9 +11,12 @@ from symgen.paths.forces import Forces, kernel_bases, oriented
 from symgen.paths.path_equations import Array
 from symgen.paths.trajectory import PathSolver, Trajectory
 
-TIME_TOLERANCE = 1e-12  # of a grid interval
-MOST_STEPS = 60
-NEGLIGIBLE = 1e-12  # of the largest determinant: a sample that is itself singular
+# Of a grid interval, to which the time of a zero is found.
+TIME_TOLERANCE = 1e-12
+# Steps to a zero between two samples.
+REFINING_STEPS = 60
+# Of the largest determinant, at a sample that is itself singular; of the two at the ends, where a zero is found.
+SINGULAR_SAMPLE = 1e-12
 
 
 class SingularPoses:
@@ -39,7 +42,7 @@ class SingularPoses:
     def of(self, J: tuple[int, ...]) -> tuple[tuple[float, Array], ...]:
         """Times and configurations q (n) of the zeros; zeros of even order between two samples are not seen."""
         signed = self.determinants(J)
-        zero = np.abs(signed) <= NEGLIGIBLE * np.max(np.abs(signed), initial=0)
+        zero = np.abs(signed) <= SINGULAR_SAMPLE * np.max(np.abs(signed), initial=0)
         if np.all(zero):
             return ()
         found: list[tuple[float, Array]] = []
@@ -59,11 +62,11 @@ class SingularPoses:
         low, high = float(self._trajectory.t[k]), float(self._trajectory.t[k + 1])
         q, W, tolerance = self._trajectory.q[k], self._forces.W[k], TIME_TOLERANCE * (high - low)
         t, moved = low, 0
-        for _ in range(MOST_STEPS):
+        for _ in range(REFINING_STEPS):
             t = (low * end - high * begin) / (end - begin)
             q_t = self._solver.follow(q, low, t)
             W_t, value = self._signed(q_t, W, J)
-            if abs(value) <= NEGLIGIBLE * abs(end - begin) or high - low <= tolerance:
+            if abs(value) <= SINGULAR_SAMPLE * abs(end - begin) or high - low <= tolerance:
                 return t, q_t
             if (value > 0) == (begin > 0):
                 low, begin, q, W = t, value, q_t, W_t

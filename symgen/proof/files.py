@@ -18,6 +18,7 @@ from symgen.proof.gappa import QUANTITY, emit_gappa, obstacle
 from symgen.proof.intervals import enclose
 from symgen.proof.quadrants import overflowing_angles
 
+# Characters of a value in terms of the inputs; a longer one is shown by its name.
 _LONGEST = 160
 
 

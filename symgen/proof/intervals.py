@@ -17,9 +17,10 @@ from symgen.model.model import Range
 Interval = tuple[float, float]
 Pair = Callable[[Operand, Interval], tuple[Interval, ...]]
 EVERYTHING: Interval = (-math.inf, math.inf)
+# Of an end of an interval, by which it is moved outwards: far more than rounding to a double moves it.
 _SLACK = 1e-14
 # Of a value, more than what a pair holds beside it.
-REST = 2.0**-20
+PAIR_REST = 2.0**-20
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +92,7 @@ def _pair_values(statement: Statement, operands: Sequence[Interval]) -> tuple[In
     plain = next(plain for plain, wide in WIDE.items() if wide == statement.operation)
     rule = _RULES.get(plain)
     low, high = EVERYTHING if rule is None else rule(*operands[::2])
-    rest = REST * max(abs(low), abs(high))
+    rest = PAIR_REST * max(abs(low), abs(high))
     return (low - rest, high + rest), (-rest, rest)
 
 

@@ -19,6 +19,7 @@ from symgen.ir.sincos import ROUNDER, angle_limit
 from symgen.model.model import Range
 from symgen.symbolic.scalar import PI
 
+# The width of a slice in rad, at most.
 WIDEST = 0.25
 _FORMAT: dict[Scalar, tuple[str, str]] = {"float64": ("<d", "<q"), "float32": ("<f", "<i")}
 

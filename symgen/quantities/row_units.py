@@ -18,7 +18,8 @@ from symgen.model.expressions.expression import Binary, Number
 from symgen.model.model import Model
 from symgen.symbolic.scalar import Graph
 
-TWO = Fraction(2)
+# Units are powers of this, so that nothing is rounded.
+UNIT_BASE = Fraction(2)
 
 Exponent: TypeAlias = Callable[[tuple[int, ...], int, int], int]
 """Of the factor of an entry, from the exponents of the rows, the number of the entry, and the length of a row."""
@@ -41,7 +42,7 @@ def in_ordinary_units(model: Model) -> Model:
         return model
     units = found.units
     rows = tuple(
-        replace(row, expression=Binary("*", Number(TWO**unit), row.expression)) if unit else row
+        replace(row, expression=Binary("*", Number(UNIT_BASE**unit), row.expression)) if unit else row
         for row, unit in zip(model.constraints, units, strict=True)
     )
     return replace(model, constraints=rows, row_units=units)
@@ -53,6 +54,6 @@ def in_units_of_the_file(graph: Graph, model: Model, derived: Quantity) -> Quant
     if exponent is None or not any(model.row_units):
         return derived
     length = derived.shape[-1]
-    factors = [TWO ** exponent(model.row_units, entry, length) for entry in range(len(derived.outputs))]
+    factors = [UNIT_BASE ** exponent(model.row_units, entry, length) for entry in range(len(derived.outputs))]
     outputs = tuple(graph.const(factor) * x for factor, x in zip(factors, derived.outputs, strict=True))
     return replace(derived, outputs=outputs)

@@ -19,8 +19,9 @@ from symgen.report.mathematics.latex import GREEK, RELATIONS, latex_math
 from symgen.report.mathematics.layout import Layout, Row
 from symgen.report.mathematics.measure import page_width
 
+# The width of a line of text, in em.
 LINE = 44.0
-COLUMN_GAP = 1.3
+TABLE_GAP = 1.3
 """Widths in em of a line of text, and of the space between the columns of a table."""
 SPECIAL: dict[str, str] = {
     "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%", "_": r"\_",
@@ -116,10 +117,10 @@ class _LatexView(Markup):
 def _columns(table: Table) -> list[str]:
     """Column types: narrow columns as wide as their content, the others share what is left of the line."""
     cells = zip(table.headings, *table.rows, strict=True)
-    natural = [max(_text_width(cell) for cell in column) + COLUMN_GAP for column in cells]
+    natural = [max(_text_width(cell) for cell in column) + TABLE_GAP for column in cells]
     taken = sum(width for width, share in zip(natural, table.widths, strict=True) if share == 0)
     shares = sum(table.widths)
-    left = max(LINE - taken - COLUMN_GAP * sum(share > 0 for share in table.widths), 12.0)
+    left = max(LINE - taken - TABLE_GAP * sum(share > 0 for share in table.widths), 12.0)
     return [
         rf">{{\raggedright\arraybackslash}}p{{{left * share / shares:.1f}em}}" if share else "l"
         for share in table.widths

@@ -17,7 +17,8 @@ from symgen.diagnostics import SymgenBug
 
 Answer = TypeVar("Answer")
 Receive: TypeAlias = Callable[[], Any]
-_PR_SET_PDEATHSIG = 1  # sys/prctl.h
+# The number of an option of prctl, from sys/prctl.h.
+_PR_SET_PDEATHSIG = 1
 # Keeps a pool of threads once it has typeset something: a fork has the pool without its threads, and waits for ever.
 _THREADED = "typst"
 

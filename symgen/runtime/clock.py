@@ -11,6 +11,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from types import FrameType
 
+# Seconds between two calls.
 SECONDS = 2.0
 
 

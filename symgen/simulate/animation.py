@@ -12,8 +12,10 @@ from typing import TypeAlias
 from symgen.backends.render import render
 from symgen.simulate.scene import Place, Scene
 
+# Lengths up to which a machine is a point, and a motion stays in a plane.
 SMALLEST_RADIUS = 1e-6
-FAR = 6  # times the machine at the start
+# Times the machine at the start, beyond which the view follows it.
+FAR = 6
 
 Box: TypeAlias = tuple[Place, Place]
 

@@ -26,6 +26,7 @@ from symgen.verify.running.compile import find_compiler
 from symgen.verify.tolerance import FACTOR
 
 Progress = Callable[[str], None]
+# What a coordinate changes by at most where it stands still.
 STILL = 1e-9
 ACCELERATIONS = "forward_dynamics"
 

@@ -11,9 +11,12 @@ from scipy.integrate import solve_ivp
 
 from symgen.simulate.plant import Plant, PlantError
 
-RELATIVE, ABSOLUTE = 1e-10, 1e-12
+# Errors that a step of the integrator may make: of the size of its numbers, and in their units.
+RELATIVE_ERROR, ABSOLUTE_ERROR = 1e-10, 1e-12
+# Times that a start is projected onto the constraints, by two Newton steps each.
 NEWTON_ROUNDS = 25
-CLOSED = 1e-12
+# What is left of the constraints of a start that satisfies them.
+CLOSED_START = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +35,7 @@ def consistent_start(plant: Plant, q: Sequence[float], qd: Sequence[float]) -> t
     """The start brought onto the constraints; raises PlantError where Newton's method does not arrive."""
     here = list(q)
     for _ in range(NEWTON_ROUNDS):
-        if plant.residual(here) <= CLOSED:
+        if plant.residual(here) <= CLOSED_START:
             return here, list(plant.admissible(here, qd))
         here = list(plant.projected(here))
     raise PlantError(
@@ -63,7 +66,13 @@ def integrate(
         first = None if step is None else min(step, end - begin)
         try:
             solved = solve_ivp(
-                derivative, (begin, end), [*q, *qd], "DOP853", rtol=RELATIVE, atol=ABSOLUTE, first_step=first
+                derivative,
+                (begin, end),
+                [*q, *qd],
+                "DOP853",
+                rtol=RELATIVE_ERROR,
+                atol=ABSOLUTE_ERROR,
+                first_step=first,
             )
             if not solved.success:
                 raise PlantError(str(solved.message))

@@ -8,11 +8,13 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 
 from symgen.model.model import Model
-from symgen.paths.drawing import STYLE, STYLES
+from symgen.paths.drawing import FIGURE_WIDTH, STYLE, STYLES
 from symgen.paths.line_chart import COLOURS
 from symgen.simulate.integrate import SimulatedMotion
 
-WIDTH, PANEL_HEIGHT = 6.4, 2.4  # inches
+# Inches that the chart of one panel is high.
+CURVES_HEIGHT = 2.4
+# Curves that one panel shows: those of the first coordinates.
 MOST_CURVES = 8
 
 
@@ -34,7 +36,7 @@ def motion_chart(model: Model, motion: SimulatedMotion) -> str:
     geometric = any(row.kind == "geometric" for row in model.constraints)
     with mpl.rc_context(STYLE):
         count = len(panels) + 1 + geometric
-        figure = Figure(figsize=(WIDTH, PANEL_HEIGHT * count), layout="constrained")
+        figure = Figure(figsize=(FIGURE_WIDTH, CURVES_HEIGHT * count), layout="constrained")
         axes = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
         for axis, (title, members) in zip(axes, panels, strict=False):
             for k, i in enumerate(members[:MOST_CURVES]):

@@ -30,7 +30,8 @@ from symgen.validity.precise import PreciseEvaluator, UndefinedError, precise
 
 Decided = TypeVar("Decided")
 
-SEED = 15
+# The seed of configurations: the same model is looked at at the same ones.
+PIVOT_SEED = 15
 # Configurations from which the smallest pivot is driven down.
 PIVOT_STARTS = 4
 # Configurations that tell how large an entry gets.
@@ -140,7 +141,7 @@ def _beside_the_largest(mechanics: System, entries: Sequence[Scalar]) -> list[Sc
 
 def _largest(mechanics: System, entries: Sequence[Scalar]) -> list[float]:
     """The largest magnitude found of each."""
-    evaluate, source = Evaluator(entries), random.Random(SEED)
+    evaluate, source = Evaluator(entries), random.Random(PIVOT_SEED)
     known, ranges = parameter_values(mechanics), _ranges(mechanics, entries)
     points = ({name: source.uniform(*limits) for name, limits in ranges.items()} for _ in range(LOOKED_AT))
     found = zip(*(evaluate(known | point) for point in points), strict=True)
@@ -174,7 +175,7 @@ def smallest(mechanics: System, pivots: Sequence[Scalar]) -> tuple[float, dict[s
             return measure(point)
         return min((float(value), index) for index, value in enumerate(values))
 
-    source = random.Random(SEED)
+    source = random.Random(PIVOT_SEED)
     best, place, index = math.inf, known, 0
     for start in range(PIVOT_STARTS):
         point = known | {

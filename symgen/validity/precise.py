@@ -20,7 +20,8 @@ from symgen.symbolic.traverse import topological
 
 # A number of Arb without a bound.
 Precise: TypeAlias = Any
-BITS = 136
+# Binary digits, 40 decimal ones.
+GRADIENT_BITS = 136
 
 
 class UndefinedError(Exception):
@@ -29,7 +30,7 @@ class UndefinedError(Exception):
 
 def precision() -> AbstractContextManager[None]:
     """The working precision, for a while."""
-    working: AbstractContextManager[None] = ctx.workprec(BITS)
+    working: AbstractContextManager[None] = ctx.workprec(GRADIENT_BITS)
     return working
 
 

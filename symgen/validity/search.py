@@ -27,7 +27,8 @@ from symgen.validity.descent import STALLED, STALLED_STEPS, Evaluated, zero_besi
 from symgen.validity.floats import FloatGradients
 from symgen.validity.precise import Precise, PreciseEvaluator, UndefinedError, precise, precision
 
-SEED = 20120731
+# The seed of starts: a search finds the same for the same model.
+SEARCH_SEED = 20120731
 # Points from which a search for zeros starts.
 SEARCH_STARTS = 12
 # Newton steps of a search from one start.
@@ -106,7 +107,7 @@ class ZeroSearch:
             names = [name for name in self._box if name in reached]
             evaluator = PreciseEvaluator([*residuals, *terms])
             floats = FloatGradients([*residuals, *terms], names)
-            source = random.Random(SEED)
+            source = random.Random(SEARCH_SEED)
             sizes: list[float] = []
             for start in range(SEARCH_STARTS):
                 point = self._start(source, inner=start < SEARCH_STARTS // 2)
@@ -219,7 +220,7 @@ class ZeroSearch:
     @cached_property
     def _lengths(self) -> list[float]:
         """The largest length of each row of [B; M^T] at some points: a row that all but vanishes is a drop of rank."""
-        source = random.Random(SEED)
+        source = random.Random(SEARCH_SEED)
         lengths = [0.0] * (self._generic.r + self._generic.m)
         for _ in range(LENGTH_POINTS):
             try:

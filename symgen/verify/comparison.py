@@ -15,6 +15,7 @@ from symgen.verify.sampling.states import Sample
 from symgen.verify.tolerance import FACTOR, Expectation
 
 Results: TypeAlias = Mapping[str, Sequence[Outcome]]
+# The error of a result that is no number.
 INFINITE = float("inf")
 # How faults begin that are a matter of digits.
 INACCURATE = "error"

@@ -24,13 +24,16 @@ from symgen.verify.reference.reference import Reference, ReferenceValueError, St
 from symgen.verify.reference.system import ParameterValues
 from symgen.verify.reference.tape import ball, precision
 
+# Binary digits that functions are compared in.
 EXACT_BITS = 256
+# What is left of the rows at states that are brought onto V for that.
 ON_MANIFOLD = 2.0**-170
 # What literals of 60 digits and points on V leave open, in radii of balls: a result may be a sum that cancels.
 LEFT_OPEN = 2.0**110
 # Of d / eps + |y*|, what the state makes of relative changes; more is left open where loops close up to rounding only.
 SAME, SAME_ROUNDED = 2.0**-80, 2.0**-20
-STATES = 8
+# States of a verification that are looked at, beside the worst.
+EXACT_STATES = 8
 
 
 class ExactStates:
@@ -54,7 +57,7 @@ class ExactStates:
         samples, values = expected.samples("float64"), expected.values("float64")
         with precision(EXACT_BITS):
             function = ExactFunction(kernel)
-            for index in dict.fromkeys((worst, *range(0, len(samples), max(1, len(samples) // STATES)))):
+            for index in dict.fromkeys((worst, *range(0, len(samples), max(1, len(samples) // EXACT_STATES)))):
                 distance = self._distance(function, kernel.name, index)
                 unit, size = values[index][kernel.name].unit, values[index][kernel.name].size
                 if distance > same * unit / float(UNIT_ROUNDOFF["float64"]):

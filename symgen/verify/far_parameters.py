@@ -35,15 +35,15 @@ FURTHEST = 9
 # Of a power of ten: steps in which the first one that is too far is looked at again.  A bound is one before the loss.
 QUARTER = 0.25
 # Digits in which a bound is given.
-DIGITS = 2
+BOUND_DIGITS = 2
 # Below and above, as signs of powers.
 SIDES = (-1, 1)
 # States at which that is looked at, fewer for long kernels.
-STATES = 4
+FAR_STATES = 4
 # Numbers that are held at a time, and that are worked out for the powers of one kernel.
-HELD, MOST = 4_000_000, 60_000_000
+NUMBERS_HELD, MOST = 4_000_000, 60_000_000
 # Up to this power the reference judges so many of the worst.
-JUDGED_UP_TO, JUDGED = 1.0, 2
+JUDGED_UP_TO, JUDGED_FAR = 1.0, 2
 
 
 @dataclass(frozen=True)
@@ -157,7 +157,7 @@ class FarParameters:
 
     @cached_property
     def _starts(self) -> dict[str, Lanes]:
-        states = [sample.state for sample in self._drawn[:STATES]]
+        states = [sample.state for sample in self._drawn[:FAR_STATES]]
         parts = {"q": "q", "qd": "qd", "qdd": "qdd", "u": "u", "p": "parameters"}
         rows = {name: [list(map(float, getattr(state, part))) for state in states] for name, part in parts.items()}
         return {name: np.array(values).reshape(len(states), -1) for name, values in rows.items()}
@@ -179,7 +179,7 @@ class _Bounds:
 
     def of(self, read: Sequence[int]) -> dict[Scalar, tuple[Bound, ...]]:
         """By scalar type, those of the parameters that are `read`, given by their places."""
-        states = max(1, min(STATES, MOST // (self._size * len(read) * 2 * FURTHEST)))
+        states = max(1, min(FAR_STATES, MOST // (self._size * len(read) * 2 * FURTHEST)))
         decades = [(index, sign * power) for index in read for sign in SIDES for power in range(1, FURTHEST + 1)]
         lost = self._lost(self._far.led(decades, states))
         first = {scalar: _nearest(far) for scalar, far in lost.items()}
@@ -211,7 +211,7 @@ class _Bounds:
         worst: dict[tuple[int, float], list[int]] = {}
         for place, step in enumerate(zip(lost.parameters.tolist(), lost.powers.tolist(), strict=True)):
             at = worst.setdefault(step, [])
-            if abs(step[1]) <= JUDGED_UP_TO and len(at) < JUDGED:
+            if abs(step[1]) <= JUDGED_UP_TO and len(at) < JUDGED_FAR:
                 at.append(place)
         judged = lost.only(np.array([place for at in worst.values() for place in at], dtype=int))
         kernel, program = self._kernels[scalar], self._programs[scalar]
@@ -244,7 +244,7 @@ class _Bounds:
 
     def _parts(self, far: Far) -> Iterator[Far]:
         """As many states at a time as may be held."""
-        held = max(1, HELD // self._size)
+        held = max(1, NUMBERS_HELD // self._size)
         return (far.only(slice(start, start + held)) for start in range(0, len(far), held))
 
 
@@ -258,7 +258,7 @@ def _nearest(far: Far) -> dict[tuple[int, int], float]:
 
 
 def _in_digits(value: float, up: bool) -> Fraction:
-    """A positive number in DIGITS digits, rounded up or down."""
-    size = Fraction(10) ** (floor(log10(value)) - DIGITS + 1)
+    """A positive number in BOUND_DIGITS digits, rounded up or down."""
+    size = Fraction(10) ** (floor(log10(value)) - BOUND_DIGITS + 1)
     parts = Fraction(value) / size
     return size * (-floor(-parts) if up else floor(parts))

@@ -14,7 +14,7 @@ from flint import arb_mat
 
 from symgen.verify.reference.evaluation import Evaluation
 from symgen.verify.reference.linear import column, norm
-from symgen.verify.reference.reference import BITS, Reference
+from symgen.verify.reference.reference import REFERENCE_BITS, Reference
 from symgen.verify.sampling.states import Sample
 from symgen.verify.tolerance import FACTOR, Expectation
 
@@ -33,7 +33,7 @@ def defects(
     def evaluated() -> list[tuple[str, str, float]]:
         return list(_defects(reference.evaluation(sample.state), sample.admissible, expected, results))
 
-    yield from reference.regular(evaluated, BITS)
+    yield from reference.regular(evaluated, REFERENCE_BITS)
 
 
 def _defects(

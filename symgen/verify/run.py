@@ -40,6 +40,7 @@ from symgen.verify.running.prepared import run_prepared
 from symgen.verify.running.python_module import PythonModule
 from symgen.verify.sampling.states import USUAL_STATES, Sample, VerificationError
 
+# Characters of what a compiler said that are kept in a fault.
 LONGEST_EXCERPT = 2000
 NO_COMPILER = "no C compiler was found, the C is not verified: install gcc or clang, or name one in CC"
 

@@ -26,9 +26,13 @@ from symgen.verify.reference.linear import norm
 from symgen.verify.reference.reference import Reference, State
 from symgen.verify.reference.tape import ball, precision
 
+# Units of error that a correct kernel may be away.
 FACTOR = 16.0
+# Random changes of which d is the largest effect.
 PERTURBATIONS = 8
+# Binary digits of states that are moved, and of what they make of results.
 PERTURBED_BITS = 160
+# Binary digits of a distance: only its size counts.
 DISTANCE_BITS = 64
 
 

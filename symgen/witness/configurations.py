@@ -12,10 +12,15 @@ from symgen.model.model import Model
 from symgen.witness.lagrange import Lagrange
 
 Array = NDArray[np.float64]
-NEWTON_STEPS = 60
+# Newton steps towards the constraints.
+WITNESS_NEWTON_STEPS = 60
+# What is left of the constraints of a configuration.
 RESIDUAL = 1e-12
-RANK_TOLERANCE = 1e-7  # far above what a residual of 1e-13 leaves in dependent rows, far below a regular singular value
-SPREAD = 0.3  # of the starts around `configuration`, in the units of the coordinates
+# Of the largest singular value: far above what a residual of 1e-13 leaves in dependent rows, far below a regular
+# singular value.
+WITNESS_RANK_TOLERANCE = 1e-7
+# How far starts lie around `configuration`, in the units of the coordinates.
+SPREAD = 0.3
 
 
 def configurations(model: Model, lagrange: Lagrange, parameters: casadi.DM, seed: int, trials: int) -> Iterator[Array]:
@@ -28,11 +33,11 @@ def configurations(model: Model, lagrange: Lagrange, parameters: casadi.DM, seed
     generator = np.random.default_rng(seed)
     for trial in range(trials):
         q = _start(model, generator, near_configuration=trial % 2 == 0)
-        for _ in range(NEWTON_STEPS):
+        for _ in range(WITNESS_NEWTON_STEPS):
             g, jacobian = (part.full() for part in system(q, parameters))
             if not np.all(np.isfinite(jacobian)) or np.max(np.abs(g), initial=0) < RESIDUAL / 10:
                 break
-            q = q - np.linalg.lstsq(jacobian, g.ravel(), rcond=RANK_TOLERANCE)[0]
+            q = q - np.linalg.lstsq(jacobian, g.ravel(), rcond=WITNESS_RANK_TOLERANCE)[0]
         g, jacobian = (part.full() for part in system(q, parameters))
         if np.all(np.isfinite(jacobian)) and np.max(np.abs(g), initial=0) < RESIDUAL:
             yield q

@@ -10,6 +10,7 @@ from symgen.witness.allocation import allocated
 from symgen.witness.lagrange import Lagrange, along
 from symgen.witness.linear import compound, pseudoinverse, solve
 
+# Newton steps towards V of the configuration that is projected.
 PROJECTION_STEPS = 2
 
 

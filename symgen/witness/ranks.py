@@ -9,11 +9,13 @@ import numpy as np
 
 from symgen.model.configurations.assembly import ConfigurationRanks
 from symgen.model.model import Model
-from symgen.witness.configurations import RANK_TOLERANCE, Array, configurations
+from symgen.witness.configurations import WITNESS_RANK_TOLERANCE, Array, configurations
 from symgen.witness.lagrange import Lagrange
 from symgen.witness.translate import default_parameters
 
-POINTS = 6
+# Random points of V at which ranks are looked at.
+GENERIC_POINTS = 6
+# Starts for as many, at most.
 TRIALS = 60
 
 
@@ -23,7 +25,7 @@ def generic_ranks(model: Model, lagrange: Lagrange) -> ConfigurationRanks:
     parameters = default_parameters(model)
     geometric_rows = lagrange.residual.shape[0]
     found: list[tuple[int, int, int]] = []
-    for q in islice(configurations(model, lagrange, parameters, seed=1, trials=TRIALS), POINTS):
+    for q in islice(configurations(model, lagrange, parameters, seed=1, trials=TRIALS), GENERIC_POINTS):
         B, M = (part.full() for part in matrices(q, parameters))
         if np.all(np.isfinite(B)) and np.all(np.isfinite(M)):
             seen = _null_projector(B) @ M
@@ -39,13 +41,13 @@ def _rank(matrix: Array, scale: float | None = None) -> int:
     if matrix.size == 0:
         return 0
     values = np.linalg.svd(matrix, compute_uv=False)
-    return int(np.sum(values > RANK_TOLERANCE * (values[0] if scale is None else scale)))
+    return int(np.sum(values > WITNESS_RANK_TOLERANCE * (values[0] if scale is None else scale)))
 
 
 def _null_projector(B: Array) -> Array:
     if B.size == 0:
         return np.eye(B.shape[1])
     _, values, Vt = np.linalg.svd(B)
-    F = Vt[int(np.sum(values > RANK_TOLERANCE * values[0])) :].T
+    F = Vt[int(np.sum(values > WITNESS_RANK_TOLERANCE * values[0])) :].T
     projector: Array = F @ F.T
     return projector

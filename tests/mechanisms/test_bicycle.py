@@ -25,7 +25,7 @@ from symgen.methods.selection import Methods
 from symgen.model.configurations.mechanics import default_values
 from symgen.model.load import load_model
 from symgen.validity.resolution import distinguishable
-from symgen.verify.reference.reference import BITS, Reference, State
+from symgen.verify.reference.reference import REFERENCE_BITS, Reference, State
 from symgen.verify.reference.tape import ball, precision
 
 M = np.array([[80.81722, 2.31941332208709], [2.31941332208709, 0.29784188199686]])
@@ -56,7 +56,7 @@ def accelerations(
     still = (0,) * model.n
     at = tuple(place.get(name, 0) for name in names)
     rows = bicycle().matrices(State(at, still, still, (0, 0, 0), parameters), ["constraint_jacobian"])
-    with precision(BITS):
+    with precision(REFERENCE_BITS):
         columns = list(zip(*rows["constraint_jacobian"].tolist(), strict=True))
         free = [k for k, name in enumerate(names) if name in own]
         held = [k for k in range(model.n) if k not in free]
@@ -72,7 +72,7 @@ def accelerations(
 
 
 def difference(one: Numbers, other: Numbers, over: Number) -> list[float]:
-    with precision(BITS):
+    with precision(REFERENCE_BITS):
         return [float((x - y) / ball(over)) for x, y in zip(one, other, strict=True)]
 
 

@@ -45,7 +45,7 @@ def test_the_certificate_is_the_same(monkeypatch: pytest.MonkeyPatch, tool: Call
     kernels = shipped.programs(NAME)["float64"].kernels
     first = verify(model, kernels, *generated_sources(model, files), STATES)
     monkeypatch.setattr(compiling, "LARGE", 100)
-    monkeypatch.setattr(python_module, "LARGE", 100)
+    monkeypatch.setattr(python_module, "LARGE_MODULE", 100)
     assert verify(model, kernels, *generated_sources(model, files), STATES) == first
     assert first.passed
     assert "Python float64" in first.targets

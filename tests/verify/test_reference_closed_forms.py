@@ -15,7 +15,7 @@ from symgen.model.model import Model
 from symgen.verify.reference.closing import onto_manifold
 from symgen.verify.reference.linear import column, identity, norm, pseudoinverse
 from symgen.verify.reference.manifold import ManifoldRanks, starts
-from symgen.verify.reference.reference import DIGITS, Reference, ReferenceValueError, State
+from symgen.verify.reference.reference import REFERENCE_DIGITS, Reference, ReferenceValueError, State
 from symgen.verify.reference.system import default_parameters
 from symgen.verify.reference.tape import precision
 
@@ -248,7 +248,7 @@ def test_results_hold_fifty_digits_and_a_singular_state_is_refused() -> None:
     state = state_of(reference)
     for name, entries in reference.evaluate(state, reference.quantities()).items():
         size = max(abs(float(entry)) for entry in entries)
-        assert all(float(entry.rad()) <= 10.0**-DIGITS * max(size, 1e-10) for entry in entries), name
+        assert all(float(entry.rad()) <= 10.0**-REFERENCE_DIGITS * max(size, 1e-10) for entry in entries), name
     folded = build("folded", "x y", "x_dot**2/2 + y_dot**2/2", geometric=("(x**2 + y**2 - 1)*x",))
     state = State((0, 1), (0, 0), (0, 0), (), ())
     with pytest.raises(ReferenceValueError, match="rank drops"):

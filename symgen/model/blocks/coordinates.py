@@ -14,6 +14,7 @@ from symgen.model.file.source import MappingNode
 from symgen.model.model import Coordinate, Definition, Range
 
 ANGLE_RANGE: Range = (Fraction(-math.pi), Fraction(math.pi))
+# The range of what is no angle, in the units of the file, and of rates and accelerations, where the file says none.
 UNIT_RANGE: Range = (Fraction(-1), Fraction(1))
 
 

@@ -33,7 +33,8 @@ JOINED: dict[str, tuple[bool, bool, bool, bool]] = {
 OF_POINTS = ("point", "distance")
 LOOPS = (*OF_POINTS, "spherical", *JOINED)
 ONE = Number(Fraction(1))
-TWO = Fraction(2)
+# The exponent of a square.
+POWER_TWO = Fraction(2)
 
 
 class LoopRows:
@@ -109,7 +110,7 @@ class LoopRows:
             remedy = "write its size; points that meet are joined with `type: point`"
             check_length(self._scope, member(node, "length"), length, self._defaults, f"the length of {what}", remedy)
             if length is not None:
-                yield "length", minus(squared_distance(one, other, self._meeting(one, other)), Power(length, TWO))
+                yield "length", minus(squared_distance(one, other, self._meeting(one, other)), Power(length, POWER_TWO))
             return
         axis = _main_axis(text_of(member(node, "axis")), 2)
         across = [index for index in range(3) if index != axis]
@@ -165,7 +166,7 @@ class LoopRows:
         carrier = parent if still else frame
         one, other = (axle + 1) % 3, (axle + 2) % 3
         up_one, up_other = (self._entry(carrier, 2, index) for index in (one, other))
-        side = Call("sqrt", (plus(Power(up_one, TWO), Power(up_other, TWO)),))
+        side = Call("sqrt", (plus(Power(up_one, POWER_TWO), Power(up_other, POWER_TWO)),))
         arm_one, arm_other = (negated(_scaled(radius, divided(up, side))) for up in (up_one, up_other))
         spin, turn_one, turn_other = (Name(Component(frame, f"w{AXES[k]}", carrier).name) for k in (axle, one, other))
         # what turning adds to the velocity of the centre: the cross product with the arm

@@ -12,7 +12,9 @@ from symgen.model.file.scope import PATH_CONDITION, PATH_DEFINITION, Scope
 from symgen.model.file.source import MappingNode, Node, ScalarNode
 from symgen.model.model import Definition, Path
 
+# Times at which a path is solved, unless the file says how many.
 DEFAULT_SAMPLES = 201
+# Times at which a path may be solved at most.
 MAXIMUM_SAMPLES = 100_000
 
 

@@ -12,7 +12,7 @@ from symgen.model.expressions.walk import evaluate, exact_value
 from symgen.model.mechanism import Body, Frame, Mechanism, Quaternion, Vector3
 
 # a pair of equal moments comes out with errors of the square root of the rounding unit
-RELATIVE = 1e-7
+EQUAL_MOMENTS = 1e-7
 NO_TURNING: Mapping[str, tuple[bool, bool, bool]] = MappingProxyType({})
 
 
@@ -74,7 +74,7 @@ def _moments(body: Body, defaults: Mapping[str, float]) -> tuple[float, float, f
 def _negative(body: Body, defaults: Mapping[str, float]) -> float | None:
     """The smallest principal moment where it is negative."""
     low, _, high = _moments(body, defaults) or (0.0, 0.0, 0.0)
-    return low if low < -RELATIVE * max(high, -low) else None
+    return low if low < -EQUAL_MOMENTS * max(high, -low) else None
 
 
 def _check_inertia(
@@ -95,8 +95,8 @@ def _check_inertia(
         return
     # one or two moments alone are how planar mechanisms are written: nothing turns about the other axes
     missing = [able for entry, able in zip(_entries(body)[:3], turning, strict=True) if exact_value(entry) == 0]
-    if (not missing or any(missing)) and low + middle < high * (1 - RELATIVE):
-        low, middle = (0.0 if abs(moment) <= RELATIVE * high else moment for moment in (low, middle))
+    if (not missing or any(missing)) and low + middle < high * (1 - EQUAL_MOMENTS):
+        low, middle = (0.0 if abs(moment) <= EQUAL_MOMENTS * high else moment for moment in (low, middle))
         hint = (
             "if they were not identified together with others, check units, signs of xy, xz, yz, and that the tensor "
             "is the one about the centre of mass"

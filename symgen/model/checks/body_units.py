@@ -12,6 +12,7 @@ from symgen.model.expressions.walk import names_in
 from symgen.model.mechanism import Mechanism, Quaternion, component, is_component
 from symgen.model.model import Model
 
+# The exponent of a square.
 TWO = Fraction(2)
 
 

@@ -18,9 +18,13 @@ from symgen.model.expressions.walk import names_in
 from symgen.model.mechanism import is_component
 from symgen.model.model import ConstraintRow, Input
 
-POINTS, OTHERS, ATTEMPTS = 2, 2, 20
-CONSTANT = 1e-6  # of a gap, that it may differ by
-VALUE = -1  # the number under which the value of a row stands beside its entries
+# Configurations at which rows are looked at, other values of the parameters for which that is repeated, and draws to
+# find as many.
+ROW_POINTS, OTHERS, ROW_DRAWS = 2, 2, 20
+# Of the length of a gap, that it may differ by between configurations.
+CONSTANT = 1e-6
+# The number under which the value of a row stands beside its entries.
+VALUE = -1
 ZERO = Number(Fraction(0))
 
 
@@ -29,8 +33,8 @@ class _ShakenRows:
 
     def __init__(self, mechanics: NumericSystem) -> None:
         self._shaken = Shaken(mechanics, (), self._evaluated)
-        places = (q for q, _ in mechanics.anywhere(ATTEMPTS))
-        self.known = sum(islice(filter(None, map(self._shaken.look, places)), POINTS)) == POINTS
+        places = (q for q, _ in mechanics.anywhere(ROW_DRAWS))
+        self.known = sum(islice(filter(None, map(self._shaken.look, places)), ROW_POINTS)) == ROW_POINTS
 
     @staticmethod
     def _evaluated(mechanics: NumericSystem, _: Sequence[Input], q: Sequence[float]) -> list[Row]:
@@ -91,7 +95,7 @@ def _other_parameters(mechanics: NumericSystem, counting: Sequence[int], but: se
 
 def _draws(mechanics: NumericSystem, but: set[str], count: int) -> Iterator[dict[str, float]]:
     """Random parameters for which the rows are known, with some at their defaults."""
-    for _, parameters in mechanics.anywhere(ATTEMPTS):
+    for _, parameters in mechanics.anywhere(ROW_DRAWS):
         values = {**parameters, **{name: mechanics.defaults[name] for name in but}}
         if _ShakenRows(mechanics.having(values)).known:
             yield values
@@ -151,7 +155,7 @@ def _stays_open(mechanics: NumericSystem, together: Sequence[int]) -> bool:
     for _, parameters in mechanics.anywhere(OTHERS):
         other = mechanics.having(parameters)
         found = []
-        for q, _ in mechanics.anywhere(ATTEMPTS):
+        for q, _ in mechanics.anywhere(ROW_DRAWS):
             try:
                 found.append(math.hypot(*other.residuals(q, together)[0]))
             except (ArithmeticError, ValueError):

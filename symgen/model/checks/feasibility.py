@@ -19,11 +19,14 @@ from symgen.model.model import Coordinate
 
 # Configurations at which masses are looked at.
 SAMPLES = 5
-FURTHER = 40
+# Configurations beside them, for bodies of which only the sum may have a positive energy.
+MORE_SAMPLES = 40
 
+# Coordinates of a configuration that a message lists.
 MOST_SHOWN = 6
 
-FAR = 0.5  # rad, or of half a range, that a declared start is moved by
+# In rad, or of half a range: a declared start that is moved by more is told.
+MOVED_FAR = 0.5
 
 
 def check_motion(
@@ -71,7 +74,7 @@ def _further(mechanics: NumericSystem, assembly: Assembly) -> list[list[float]]:
     """More configurations for bodies of which only the sum may have a positive energy."""
     if not mechanics.unsound:
         return []
-    anywhere = [] if mechanics.geometric else [q for q, _ in mechanics.anywhere(FURTHER)]
+    anywhere = [] if mechanics.geometric else [q for q, _ in mechanics.anywhere(MORE_SAMPLES)]
     return [*(list(place.q) for place in assembly.places[SAMPLES:]), *anywhere]
 
 
@@ -124,7 +127,7 @@ def _moved(
     return [
         (c.name, declared[c.name], value)
         for c, value in zip(mechanics.coordinates, place.q, strict=True)
-        if c.name in declared and abs(value - declared[c.name]) > FAR * (1.0 if c.is_angle else _width(c))
+        if c.name in declared and abs(value - declared[c.name]) > MOVED_FAR * (1.0 if c.is_angle else _width(c))
     ]
 
 

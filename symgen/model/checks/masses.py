@@ -16,12 +16,14 @@ from symgen.model.configurations.mechanics import NumericSystem
 from symgen.model.configurations.numbers import precise
 from symgen.records import dataclass
 
-USUAL = 3
+# Configurations that tell how large entries of G usually are.
+USUAL_PLACES = 3
 
 # Components of a motion this small are none.
-HELD = 1e-7
+NO_COMPONENT = 1e-7
 
-CLOSING = 4  # Newton steps: each doubles the digits that floats have left
+# Newton steps: each doubles the digits that floats have left.
+CLOSING = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +117,7 @@ class _Masses:
         """The largest size of each entry of G at a few configurations, admissible or not."""
         n = len(self._mechanics.coordinates)
         largest = [[0.0] * n for _ in range(n)]
-        for q, _ in self._mechanics.anywhere(USUAL):
+        for q, _ in self._mechanics.anywhere(USUAL_PLACES):
             try:
                 found = self._mechanics.mass_matrix(q)
             except (ArithmeticError, ValueError):
@@ -146,7 +148,7 @@ class _Masses:
             motions = null_space([*jacobian, *massive], len(mass), relative)
             if motions:
                 found = self._mechanics.coordinates
-                return {c.name for i, c in enumerate(found) if any(abs(motion[i]) > HELD for motion in motions)}
+                return {c.name for i, c in enumerate(found) if any(abs(motion[i]) > NO_COMPONENT for motion in motions)}
         return set()
 
     def _alone(self, name: str) -> bool:

@@ -23,14 +23,22 @@ from symgen.model.expressions.expression import Binary, Name, Number, Pi
 from symgen.model.expressions.walk import exact_value
 from symgen.model.model import Input
 
-SEED = 20260607
-LITTLE, MUCH = 1e-13, 1e-10  # what is shaken by: more than rounding to 16 digits is, less than any dimension
+# The seed of what numbers are shaken by: the same for the same model.
+SHAKING_SEED = 20260607
+# Relative changes of numbers that are shaken: more than rounding to 16 digits makes, less than any dimension.
+LITTLE, MUCH = 1e-13, 1e-10
+# Times that all numbers are shaken by each of these.
 SHAKES = 3
-CHANGED = 4.0  # times itself, that a rest changes at least
-PROPORTIONAL = 250.0  # times as much as by a little, that it changes by much
-NOTHING, MOSTLY = 1e-13, 16.0
-ALTOGETHER = 0.01  # of itself, that a rest changes by a little at least
-PI = Fraction("3.14159265358979323846264338327950288419716939937510")
+# Times itself, that a rest changes at least.
+CHANGED = 4.0
+# Times as much as by a little, that a rest changes by much at least.
+PROPORTIONAL = 250.0
+# Of what is beside it, up to which an entry may be a rest of zeros, and times its change, up to which it is one.
+ZERO_SIZE, MOSTLY = 1e-13, 16.0
+# Of itself, that a rest changes by a little at least.
+ALTOGETHER = 0.01
+# Pi, to more digits than it is shaken by.
+PI_TO_50_DIGITS = Fraction("3.14159265358979323846264338327950288419716939937510")
 
 Evaluation: TypeAlias = Callable[[NumericSystem, Sequence[Input], Sequence[float]], list[Row]]
 """Rows of some mechanics and inputs at a configuration; ArithmeticError or ValueError outside of a domain."""
@@ -41,7 +49,7 @@ class Shaken:
 
     def __init__(self, mechanics: NumericSystem, inputs: Sequence[Input], evaluate: Evaluation) -> None:
         self._given, self._evaluate = (mechanics, inputs), evaluate
-        generator = random.Random(SEED)
+        generator = random.Random(SHAKING_SEED)
         self._others = [
             [_Shaker(generator, share).of(mechanics, inputs) for _ in range(SHAKES)] for share in (LITTLE, MUCH)
         ]
@@ -76,11 +84,11 @@ class Shaken:
             return True
         # zero whatever the numbers are, such as a force along the arm it turns: only rounding changes, and altogether
         largest = max((x for row in self.sizes for x in row.values()), default=0.0)
-        if size <= NOTHING * max(1.0, largest) and ALTOGETHER * size <= little:
+        if size <= ZERO_SIZE * max(1.0, largest) and ALTOGETHER * size <= little:
             return True
         # what matrices leave that undo each other is in no proportion; it is nothing beside the terms of its row
         terms = max(self._changes[1][i].values()) / MUCH
-        return size <= NOTHING * terms and size <= MOSTLY * min(little, much)
+        return size <= ZERO_SIZE * terms and size <= MOSTLY * min(little, much)
 
     def within(self, i: int, j: int) -> bool:
         """Whether an entry is no larger than what it changes by."""
@@ -104,7 +112,7 @@ class _Shaker:
             case Number(value=value):
                 return Number(value * self._factor()) if value else part
             case Pi():
-                return Number(PI * self._factor())
+                return Number(PI_TO_50_DIGITS * self._factor())
             case Name():
                 return Binary("*", Number(self._factor()), part)
             case tuple():

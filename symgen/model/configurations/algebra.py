@@ -18,8 +18,10 @@ from symgen.model.mechanism import is_component
 Monomial: TypeAlias = tuple[str, ...]
 Polynomial: TypeAlias = dict[Monomial, tuple[float, float]]
 
+# The degree in the rates up to which monomials are told apart; those beyond it are only counted.
 HIGHEST_DEGREE = 3
 BEYOND: Monomial = ("...",) * (HIGHEST_DEGREE + 1)
+# Of the terms of a coefficient, up to which their sum is rounding.
 RELATIVE_ZERO = 1e-9
 
 

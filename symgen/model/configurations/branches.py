@@ -28,22 +28,32 @@ from symgen.model.configurations.sparse import NEGLIGIBLE, PLAIN, Row, Scales, c
 from symgen.model.model import Input
 from symgen.records import dataclass
 
-SEED = 20120731
-FREE_POINTS = 6  # configurations where no constraint holds any
+# The seed of starts: the same model has the same configurations.
+BRANCH_SEED = 20120731
+# Configurations where no constraint holds any.
+FREE_POINTS = 6
+# Configurations, on the constraints or not, that tell how large entries of the rows usually are.
 TYPICAL_POINTS = 4
 # Starts at least and at most, and configurations that are enough where no rank can be greater than found.
 FEWEST_STARTS, MOST_STARTS, ENOUGH = 8, 40, 4
-RETRIES = 3  # for loops that stay open where others close
+# Further starts, for loops that stay open where others close.
+RETRIES = 3
 # Rows evaluated on the way, and how many times as many as long as nothing regular is found.
 EFFORT, LONGEST = 30_000, 5
-SHAKEN_POINTS = 2  # where entries are told from rounding
+# Configurations where entries are told from rounding.
+SHAKEN_POINTS = 2
 # In coordinate widths, along a branch; where motion is confined to less, a smaller one is told from none.
-STEPS = (1e-3, 1e-4, 1e-5, 1e-6)
-WALK, STRIDE = 5, 0.2  # configurations along a branch, and how far they are apart at most
-ENOUGH_HELD, HELD = 3, 1e-7  # configurations that say that a coordinate is held, and motions in its width that are none
-STRAIGHT = 0.1  # of a step, by which a regular branch leaves its tangent at most
-SINGULAR, SHARE = 1e-3, 0.05  # of rows of length 1, at a singular configuration, and of what they lack of a rank
-TRIED = 3  # configurations of the same ranks that are looked at for a regular one
+STRIDES = (1e-3, 1e-4, 1e-5, 1e-6)
+# Configurations along a branch, and how far they are apart at most.
+WALK, STRIDE = 5, 0.2
+# Configurations that say that a coordinate is held, and motions in its width that are none.
+ENOUGH_HELD, HELD = 3, 1e-7
+# Of a step, by which a regular branch leaves its tangent at most.
+STRAIGHT = 0.1
+# Of rows of length 1, at a singular configuration, and of what they lack of a rank.
+SINGULAR, SHARE = 1e-3, 0.05
+# Configurations of the same ranks that are looked at for a regular one.
+TRIED = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +73,7 @@ class _Search:
     def __init__(self, mechanics: NumericSystem, inputs: Sequence[Input], start: dict[str, float]) -> None:
         self._mechanics, self._inputs, self._start = mechanics, inputs, start
         self._n, self._r_geometric = len(mechanics.coordinates), len(mechanics.geometric)
-        self._random = random.Random(SEED)
+        self._random = random.Random(BRANCH_SEED)
         self._widths = [
             1.0 if c.is_angle else max(float(c.range[1] - c.range[0]) / 2, 1e-300) for c in mechanics.coordinates
         ]
@@ -322,7 +332,7 @@ class _Search:
         if direction is None:
             return False
         longest = max(map(abs, direction))
-        return longest >= STEPS[0] and any(self._stays(place, direction, step / longest, step) for step in STEPS)
+        return longest >= STRIDES[0] and any(self._stays(place, direction, step / longest, step) for step in STRIDES)
 
     def _stays(self, place: RankedConfiguration, direction: Sequence[float], share: float, step: float) -> bool:
         """Whether a step along an admissible direction leads to a configuration of the same ranks close by.
@@ -360,7 +370,7 @@ class _Search:
         for _ in range(3 * WALK):
             direction = self._closer.along(found[-1].q, [self._random.gauss(0, 1) for _ in self._widths])
             longest = max(map(abs, direction or ()), default=0.0)
-            if direction is None or longest < STEPS[0] or len(found) == WALK:
+            if direction is None or longest < STRIDES[0] or len(found) == WALK:
                 break
             pairs = zip(found[-1].q, direction, self._widths, strict=True)
             closed = self._closer.close([x + stride * a / longest * w for x, a, w in pairs])
@@ -381,7 +391,7 @@ class _Search:
 
     def _open(self) -> OpenLoop | None:
         """The widest gap at the nearest configuration, of a loop that never closes."""
-        self._random = random.Random(SEED)
+        self._random = random.Random(BRANCH_SEED)
         nearest: dict[KinematicLoop, tuple[float, list[float]]] = {}
         for guess, _ in islice(self._guesses(()), FEWEST_STARTS):
             closed = self._closer.close(guess)

@@ -17,11 +17,14 @@ from symgen.records import dataclass
 
 # What is left of a row that is closed, in units of its gradient over one coordinate width.
 CLOSED = 1e-10
-FINISHED = 1e-15
-STEPS = 80
+# The same where a further step gains nothing.
+CLOSED_TO_ROUNDING = 1e-15
+# Steps towards a closed loop, at most.
+CLOSING_STEPS = 80
 # An iteration gives up where so many steps in a row gain less than this share.
 SLOW_STEPS, SLOW = 6, 1e-3
-MOST_REFUSED = 2  # steps in a row, once a loop is closed
+# Steps in a row that come no closer, once a loop is closed.
+MOST_REFUSED = 2
 
 Residuals: TypeAlias = Callable[[Sequence[float], Sequence[int]], tuple[list[float], list[Row]]]
 """Values and gradients of the rows with the given numbers at q; ArithmeticError or ValueError outside a domain."""
@@ -131,8 +134,8 @@ class Closer:
         damping, slow, refused = 1e-3, 0, 0
         values, rows = state
         size = _length(values)
-        for _ in range(STEPS):
-            if size <= FINISHED or slow == SLOW_STEPS:
+        for _ in range(CLOSING_STEPS):
+            if size <= CLOSED_TO_ROUNDING or slow == SLOW_STEPS:
                 break
             weights = solve_gram(rows, values, damping * _mean_square(rows))
             trial = list(q)

@@ -8,7 +8,8 @@ from typing import TypeAlias
 
 Rows: TypeAlias = list[list[float]]
 
-RELATIVE = 1e-9  # what is nothing beside 1
+# What is nothing beside 1.
+RELATIVE = 1e-9
 
 def rank(rows: Rows, relative: float = RELATIVE) -> int:
     """The rank by elimination with complete pivoting, of the rows scaled to norm one."""

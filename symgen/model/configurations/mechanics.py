@@ -19,10 +19,14 @@ from symgen.model.kinematics.float_kinematics import FloatKinematics
 from symgen.model.mechanism import NO_MECHANISM, Body, Mechanism, component
 from symgen.model.model import ConstraintRow, Coordinate, Definition, Input, Parameter
 
-SEED = 20140211
-POINTS = 2
-ATTEMPTS = 30
-RESIDUAL = 1e-11
+# The seed of random configurations and parameters: the same model is looked at at the same ones.
+ANYWHERE_SEED = 20140211
+# Configurations at which an expression is expanded in the rates, and at which bodies are seen to turn.
+EXPANSION_POINTS = 2
+# Draws to find as many, where expressions have no value at some.
+EXPANSION_DRAWS = 30
+# Turning rates of a frame, up to which rounding makes them.
+LEAST_TURN = 1e-11
 
 
 class NumericSystem:
@@ -104,24 +108,24 @@ class NumericSystem:
 
     def _expansions(self, expression: Expression) -> Iterator[Polynomial]:
         found = 0
-        for q, parameters in self.anywhere(ATTEMPTS):
+        for q, parameters in self.anywhere(EXPANSION_DRAWS):
             try:
                 yield self.expansion(q, parameters).of(expression)
             except (ArithmeticError, ValueError):
                 continue
             found += 1
-            if found == POINTS:
+            if found == EXPANSION_POINTS:
                 return
 
     def turning(self) -> dict[str, tuple[bool, bool, bool]]:
         """For the frame of each body, about which of its own axes it can turn: at a few random configurations."""
         able: dict[str, tuple[bool, bool, bool]] = {}
-        points = self.anywhere(POINTS) if self.mechanism.bodies else ()
+        points = self.anywhere(EXPANSION_POINTS) if self.mechanism.bodies else ()
         for q, parameters in points:
             kinematics = self._kinematics({**parameters, **self._named(q)})
             for frame in dict.fromkeys(body.frame for body in self.mechanism.bodies):
                 try:
-                    found = [any(abs(x) > RESIDUAL for x in form.values()) for form in kinematics.turning(frame)]
+                    found = [any(abs(x) > LEAST_TURN for x in form.values()) for form in kinematics.turning(frame)]
                 except (ArithmeticError, ValueError, KeyError):
                     continue
                 before = able.get(frame, (False, False, False))
@@ -192,7 +196,7 @@ class NumericSystem:
 
     def anywhere(self, count: int) -> Iterator[tuple[list[float], dict[str, float]]]:
         """Random configurations with random parameters, for what must hold whatever their values."""
-        generator = random.Random(SEED + 1)
+        generator = random.Random(ANYWHERE_SEED + 1)
         for _ in range(count):
             q = [generator.uniform(float(c.range[0]), float(c.range[1])) for c in self.coordinates]
             yield q, {p.name: _drawn(p, self.defaults[p.name], generator) for p in self.parameters}

@@ -12,7 +12,8 @@ from symgen.model.expressions.expression import Binary, Call, Expression, Name, 
 from symgen.model.expressions.walk import FUNCTIONS, power
 from symgen.records import dataclass
 
-BITS = 400
+# Binary digits where floats do not decide.
+PRECISE_BITS = 400
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +58,7 @@ def precise() -> Numbers:
     import mpmath
 
     context = mpmath.MPContext()
-    context.prec = BITS
+    context.prec = PRECISE_BITS
 
     def function(name: str) -> Callable[..., float]:
         known = getattr(context, name)

@@ -13,7 +13,9 @@ Row: TypeAlias = dict[int, float]
 
 # Between what counts as zero and what counts as a pivot a matrix is too close to losing rank to tell.
 NEGLIGIBLE = 1e-9
+# What counts as a pivot, in rows that are scaled.
 PLAIN = 1e-5
+# Times that rows and columns are scaled in turn.
 SWEEPS = 3
 
 

@@ -14,9 +14,12 @@ from symgen.registered import keywords
 if TYPE_CHECKING:  # the command line corrects misspelt options too, and needs no YAML for that
     from symgen.model.file.source import ScalarNode
 
+# Characters of a name.
 MAXIMUM_NAME = 40
-MOST_LISTED = 10  # names in a remedy
-SHORTEST_RUN = 4  # of names that count on, shown by their first and last
+# Names in a remedy.
+MOST_LISTED = 10
+# Names that count on, from which they are shown by their first and last.
+SHORTEST_RUN = 4
 NAME_PATTERN = "[A-Za-z][A-Za-z0-9_]*"
 QUOTING = "inside { } and [ ] quote an expression or text that has a comma, colon, bracket or #, or use block style"
 _NAME = re.compile(NAME_PATTERN, re.ASCII)

@@ -27,13 +27,21 @@ from symgen.model.expressions.names import QUOTING, nearest
 from symgen.model.expressions.tokens import ExpressionError, Token, tokenize
 from symgen.model.file.source import ScalarNode
 
+# Characters of an expression: files are untrusted input.
 MAXIMUM_LENGTH = 20_000
+# Words of an expression, numbers, operators and parentheses among them.
 MAXIMUM_TOKENS = 8_000
+# Parentheses, signs and powers inside each other: reading them recurses.
 MAXIMUM_NESTING = 60
+# Operations on the longest way down a tree: whatever walks an expression recurses.
 MAXIMUM_HEIGHT = 200
+# Characters of a number without its exponent, and digits of what is computed from numbers.
 MAXIMUM_DIGITS = 40
+# Powers of ten of a number.
 MAXIMUM_DECIMAL_EXPONENT = 300
+# Exponents of a power, at most.
 MAXIMUM_POWER = 64
+# Denominators of an exponent, at most.
 MAXIMUM_ROOT = 12
 SPLIT_REMEDY = "name parts of it under `definitions`"
 QUOTE_REMEDY = f"balance the parentheses; {QUOTING}"

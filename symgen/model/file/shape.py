@@ -11,6 +11,7 @@ from symgen.model.expressions.names import MOST_LISTED, NAME_PATTERN, QUOTING, d
 from symgen.model.file.source import MappingNode, Node, ScalarNode, SequenceNode
 from symgen.records import dataclass
 
+# Characters of a text, such as a description.
 MAXIMUM_TEXT = 2000
 JsonSchema: TypeAlias = dict[str, object]
 

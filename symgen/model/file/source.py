@@ -15,8 +15,11 @@ import yaml
 
 from symgen.diagnostics import Mistake, Span
 
+# Characters of a file that are read: a file is untrusted input.
 MAXIMUM_CHARACTERS = 1_000_000
+# Levels of collections in collections.
 MAXIMUM_DEPTH = 24
+# Values and collections of a file.
 MAXIMUM_NODES = 100_000
 PLAIN_REMEDY = "write the value out, or name it under `parameters` or `definitions`"
 

@@ -18,6 +18,7 @@ from symgen.model.mechanism import INERTIA_ELEMENTS, NO_VECTOR, Body, Inertia, M
 from symgen.model.urdf.numbers import IDENTITY, Matrix, Vector, applied, product, written
 from symgen.model.urdf.robot import Inertial, Robot, UrdfJoint
 
+# Exactly 0, where sums of exact numbers begin.
 ZERO = Fraction(0)
 NOWHERE: Vector = (ZERO, ZERO, ZERO)
 # where the elements xx, yy, zz, xy, xz, yz stand in the matrix

@@ -6,11 +6,13 @@ from collections.abc import Iterable
 
 from symgen.diagnostics import Mistake, Span
 from symgen.model.expressions.names import did_you_mean
-from symgen.model.urdf.numbers import MAXIMUM_DIGITS, MAXIMUM_EXPONENT, WrittenNumber, read_number
+from symgen.model.expressions.parser import MAXIMUM_DECIMAL_EXPONENT, MAXIMUM_DIGITS
+from symgen.model.urdf.numbers import WrittenNumber, read_number
 from symgen.model.urdf.robot import KINDS, Inertial, Link, Mimic, Origin, Robot, UrdfJoint
 from symgen.model.urdf.xml import Element
 
 TENSOR = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+# Links that are read, and joints.
 MAXIMUM_LINKS = 500
 LIMITS = ("lower", "upper", "velocity", "effort", "acceleration")
 # what says nothing about the mechanics; each is told to the user
@@ -218,7 +220,8 @@ class _RobotReader:
             return None
         value = read_number(text.strip(), element.place(key))
         if value is None:
-            remedy = f"write a decimal number, of at most {MAXIMUM_DIGITS} digits and within 1e{MAXIMUM_EXPONENT}"
+            within = f"of at most {MAXIMUM_DIGITS} digits and within 1e{MAXIMUM_DECIMAL_EXPONENT}"
+            remedy = f"write a decimal number, {within}"
             self.wrong(f"`{key}` of {what} is `{text[:40]}`", remedy, element.place(key))
         return value
 

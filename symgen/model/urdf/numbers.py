@@ -13,13 +13,13 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from symgen.diagnostics import Span
+from symgen.model.expressions.parser import MAXIMUM_DECIMAL_EXPONENT, MAXIMUM_DIGITS
 from symgen.model.file.source import ScalarNode
 from symgen.model.kinematics import triples
 from symgen.model.kinematics.fixed_angles import QUARTER_TOLERANCE
 from symgen.model.kinematics.triples import transposed
 
-MAXIMUM_DIGITS = 40
-MAXIMUM_EXPONENT = 300
+# Binary places to which entries of turns are rounded, where denominators have grown through many of them.
 FINEST = 400
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(?:[eE]([+-]?\d{1,4}))?", re.ASCII)
 
@@ -49,7 +49,9 @@ class WrittenNumber:
 def read_number(text: str, span: Span) -> WrittenNumber | None:
     """The number; None for what is none, or is beyond what expressions of the model language may hold."""
     match = _NUMBER.fullmatch(text)
-    if match is None or len(match.group(1)) > MAXIMUM_DIGITS or abs(int(match.group(2) or 0)) > MAXIMUM_EXPONENT:
+    if match is None or len(match.group(1)) > MAXIMUM_DIGITS:
+        return None
+    if abs(int(match.group(2) or 0)) > MAXIMUM_DECIMAL_EXPONENT:
         return None
     return WrittenNumber(Fraction(text), text.removeprefix("+"), span)
 

@@ -8,7 +8,7 @@ from pathlib import Path, PurePosixPath
 from symgen.diagnostics import Mistake, Notice, Span, printable
 from symgen.model.file.reading import items, key_span, member, text_of
 from symgen.model.file.scope import Scope
-from symgen.model.file.source import MappingNode, ScalarNode
+from symgen.model.file.source import MAXIMUM_CHARACTERS, MappingNode, ScalarNode
 from symgen.model.urdf.blocks import ranged_names, with_robot
 from symgen.model.urdf.bodies import judge_links
 from symgen.model.urdf.checks import check_joints, find_root
@@ -16,7 +16,7 @@ from symgen.model.urdf.elements import GEOMETRY, read_robot
 from symgen.model.urdf.names import read_names
 from symgen.model.urdf.numbers import WrittenNumber, quarters
 from symgen.model.urdf.robot import Robot
-from symgen.model.urdf.xml import MAXIMUM_CHARACTERS, parse_xml
+from symgen.model.urdf.xml import parse_xml
 
 ABOUT = {
     "transmission": "inputs stand in the model file, as forces and torques of the joints",

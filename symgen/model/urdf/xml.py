@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 from xml.parsers import expat
 
 from symgen.diagnostics import Mistake, Span
+from symgen.model.file.source import MAXIMUM_CHARACTERS, MAXIMUM_DEPTH
 
-MAXIMUM_CHARACTERS = 1_000_000
-MAXIMUM_DEPTH = 24
+# Elements of a file that are read.
 MAXIMUM_ELEMENTS = 20_000
 
 

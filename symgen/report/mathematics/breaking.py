@@ -31,7 +31,7 @@ from symgen.report.mathematics.layout import (
 Measure: TypeAlias = Callable[[Layout], float]
 GLUED = 99
 """Depth of a piece that must stay on the line of the one before it."""
-WHOLE = 0.6
+KEPT_WHOLE = 0.6
 """A piece narrower than this part of the room is not taken apart."""
 ONE = Numeral("1")
 LOOK_BACK = 0.5
@@ -82,7 +82,7 @@ def _fitting(pieces: list[Piece], measure: Measure, space: float) -> int:
 
 def _pieces(node: Layout, first: int, level: int, measure: Measure, room: float) -> list[Piece]:
     """The node taken apart as far as needed: the first piece has depth `first`, the others `level` or more."""
-    if level and measure(node) <= WHOLE * room:
+    if level and measure(node) <= KEPT_WHOLE * room:
         return [Piece(node, first)]
     match node:
         case Row(pieces=inner):
@@ -114,7 +114,7 @@ def _row(inner: tuple[Layout, ...], first: int, level: int, measure: Measure, ro
         breakable = isinstance(node, Relation) or isinstance(before, Punctuation)
         here = first if position == 0 else level if breakable else GLUED
         found.extend(_pieces(node, here, level + 1, measure, room))
-    if len(found) > 1 and isinstance(found[1].node, Relation) and measure(found[0].node) < WHOLE * room:
+    if len(found) > 1 and isinstance(found[1].node, Relation) and measure(found[0].node) < KEPT_WHOLE * room:
         found[1] = Piece(found[1].node, GLUED)
     return found
 
@@ -136,7 +136,7 @@ def _product(factors: tuple[Layout, ...], first: int, level: int, measure: Measu
     found: list[Piece] = []
     run: list[Layout] = []
     for factor in factors:
-        if run and measure(Product((*run, factor))) > WHOLE * room:
+        if run and measure(Product((*run, factor))) > KEPT_WHOLE * room:
             found += _run(run, first if not found else None, level, measure, room)
             run = []
         run.append(factor)
@@ -166,7 +166,7 @@ def _fenced(
 def _fraction(top: Layout, bottom: Layout, first: int, level: int, measure: Measure, room: float) -> list[Piece]:
     """A fraction too wide for a line: 1/denominator before the numerator, or the denominator to the power −1."""
     numerator: Layout = Fenced(top) if isinstance(top, Sum) else top
-    if measure(bottom) <= WHOLE * room:
+    if measure(bottom) <= KEPT_WHOLE * room:
         return _pieces(Product((Fraction(ONE, bottom), numerator)), first, level, measure, room)
     inverse = Scripts(Fenced(bottom), None, Sum((("-", ONE),)))
     return _pieces(inverse if top == ONE else Product((numerator, inverse)), first, level, measure, room)

@@ -31,7 +31,7 @@ from symgen.report.mathematics.names import name_layout
 from symgen.report.mathematics.setting import power
 from symgen.report.prose import paragraph
 
-LARGEST = 3000
+MOST_NODES = 3000
 """Nodes above which a matrix is described, not printed."""
 DENOMINATOR_NAMES = ("a", "d", "h", "w")
 ZERO = Numeral("0")
@@ -122,11 +122,11 @@ def matrix_blocks(
     shared = denominators.common(matrix)
     if shared is None:
         array = layout.matrix(matrix)
-        return array_blocks(symbol, array, label) if size(array) <= LARGEST else (_too_long(symbol, size(array)),)
+        return array_blocks(symbol, array, label) if size(array) <= MOST_NODES else (_too_long(symbol, size(array)),)
     factor, exponent = shared
     name, new = denominators.name(factor)
     array = layout.matrix(matrix.applyfunc(lambda entry: _times(entry, factor, sympy.Symbol(name), exponent)))
-    if size(array) > LARGEST:
+    if size(array) > MOST_NODES:
         return (_too_long(symbol, size(array)),)
     letter = name_layout(name)
     scale = letter if exponent == 1 else power(letter, Numeral(str(exponent)))

@@ -26,11 +26,17 @@ from symgen.report.mathematics.layout import (
     separator,
 )
 
+# How small a subscript or superscript is set.
 SCRIPT = 0.72
+# The width of a sign between two terms, with its space.
 OPERATOR = 1.22
+# The width of a relation, with its space.
 RELATION = 1.4
+# The width of a parenthesis or a bracket.
 FENCE = 0.42
+# The space between two columns of a matrix.
 COLUMN_GAP = 1.1
+# The space between two formulas on one line.
 GAP = 2.0
 SEPARATION = {"": 0.03, "thin": 0.2, "point": 0.7}
 WIDE = frozenset("mwMWΘΩΦΨ")

@@ -6,7 +6,9 @@ from fractions import Fraction as Rational
 
 from symgen.report.mathematics.layout import Fraction, Layout, Numeral, Product, Scripts, minus
 
+# With a larger denominator a number is set as a decimal, where that ends.
 LARGEST_FRACTION_DENOMINATOR = 12
+# Decimal places at most; what needs more is set otherwise.
 DECIMAL_PLACES = 9
 
 

@@ -15,7 +15,8 @@ OPENING = {
     "parameter": "Where the chosen velocities depend on each other {} does not exist, a singularity of the "
     "parametrization alone",
 }
-LARGEST = 1500
+# Symbols, numbers and operations of equations that are printed; of longer ones only the number is.
+LARGEST_LOCUS = 1500
 
 
 def singular(context: Context) -> Section:
@@ -37,7 +38,7 @@ def _one(context: Context, locus: SingularSet) -> list[Block]:
     if locus.decided:
         return [paragraph(OPENING[locus.kind] + "; this happens where", *_slots(locus)), displayed(equations)]
     nodes = sum(size(line) for line in equations)
-    if nodes > LARGEST:
+    if nodes > LARGEST_LOCUS:
         many = f"; these are the common zeros of {len(equations)} expressions with {nodes} symbols, not printed."
         return [paragraph(OPENING[locus.kind] + many, *_slots(locus))]
     opening = paragraph(

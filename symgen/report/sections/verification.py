@@ -7,6 +7,7 @@ from symgen.report.context import Context, sentence
 from symgen.report.document import Block, Figure, InlineCode, Section, Table
 from symgen.report.prose import paragraph, say
 
+# Units of error: less than this is shown as less.
 SMALLEST_SHOWN = 1e-3
 
 

@@ -15,6 +15,8 @@ from symgen.symbolic.identity import same_values
 from symgen.symbolic.scalar import PI, Graph, Scalar
 from symgen.symbolic.traverse import reached, topological
 
+# An odd number without a pattern, and a prime modulo which its powers are taken: sums are equal by chance hardly
+# ever.
 BASE, MODULUS = 0x9E3779B97F4A7C15, 2**61 - 1
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from math import factorial
 
+# 2/pi: how many quarter turns an angle has.
 TWO_OVER_PI = 0.6366197723675814
 # pi/2 in parts of 33 and 33 bits and a rest: products of the first two with multiples up to 2^20 are exact
 PARTS = (1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21)

@@ -23,8 +23,9 @@ Terms: TypeAlias = dict[Code, Coefficient]
 # Atoms are given by their serial numbers, which sort and hash faster than the scalars themselves.
 Monomial: TypeAlias = tuple[tuple[int, int], ...]
 
-BITS = 16
-MIDDLE = 1 << (BITS - 1)
+# Binary digits of the field that one atom has in the code of a monomial.
+FIELD_BITS = 16
+MIDDLE = 1 << (FIELD_BITS - 1)
 LARGEST_POWER = MIDDLE - 3
 
 
@@ -49,7 +50,7 @@ class Monomials:
     def _shift(self, atom: int) -> int:
         shift = self._places.get(atom)
         if shift is None:
-            shift = self._places[atom] = BITS * len(self._atoms)
+            shift = self._places[atom] = FIELD_BITS * len(self._atoms)
             self._atoms.append(atom)
             top = MIDDLE << shift
             self._positive += top
@@ -66,7 +67,7 @@ class Monomials:
     def read(self, code: Code) -> Monomial:
         """The atoms with their powers, in the order of the atoms."""
         count = len(self._atoms)
-        fields = unpack(f"<{count}H", (code + self._positive).to_bytes(BITS // 8 * count, "little"))
+        fields = unpack(f"<{count}H", (code + self._positive).to_bytes(FIELD_BITS // 8 * count, "little"))
         return tuple(
             sorted([(atom, field - MIDDLE) for atom, field in zip(self._atoms, fields, strict=True) if field != MIDDLE])
         )
@@ -102,7 +103,7 @@ class Monomials:
             if not found or key not in work:
                 continue
             value = work.pop(key)
-            square = 2 << (found.bit_length() - BITS)
+            square = 2 << (found.bit_length() - FIELD_BITS)
             rest = key - square
             turned = rest + 2 * self._partner(square)
             # the partner may be an atom of its own from now on
@@ -114,8 +115,8 @@ class Monomials:
         work: Terms = {}
         for key, value in terms.items():
             while found := (key + self._squares) & self._roots:
-                square = 2 << (found.bit_length() - BITS)
-                number = self._graph.at(self._atoms[(square.bit_length() - 2) // BITS]).args[0].constant
+                square = 2 << (found.bit_length() - FIELD_BITS)
+                number = self._graph.at(self._atoms[(square.bit_length() - 2) // FIELD_BITS]).args[0].constant
                 assert number is not None
                 key, value = key - square, value * number
             _put(work, key, value.numerator if value.denominator == 1 else value)
@@ -125,7 +126,7 @@ class Monomials:
         """The code of the cosine or sine of the same angle as an atom, given by the code of its square."""
         known = self._partners.get(square)
         if known is None:
-            node = self._graph.at(self._atoms[(square.bit_length() - 2) // BITS])
+            node = self._graph.at(self._atoms[(square.bit_length() - 2) // FIELD_BITS])
             other = self._graph.trig("cos" if node.op == "sin" else "sin", node.args[0])
             known = self._partners[square] = self.unit(other.serial)
         return known
@@ -147,14 +148,14 @@ class Monomials:
     def _first(self, marked: int) -> Code:
         """The square of the first atom, in the order of atoms, among fields whose highest bit is set."""
         if not marked & (marked - 1):
-            return 2 << (marked.bit_length() - BITS)
-        return 2 * min(self._fields(marked), key=lambda unit: self._atoms[unit.bit_length() // BITS])
+            return 2 << (marked.bit_length() - FIELD_BITS)
+        return 2 * min(self._fields(marked), key=lambda unit: self._atoms[unit.bit_length() // FIELD_BITS])
 
     def _fields(self, marked: int) -> Iterator[Code]:
         """The units of the fields whose highest bit is set."""
         while marked:
             top = marked.bit_length()
-            yield 1 << (top - BITS)
+            yield 1 << (top - FIELD_BITS)
             marked ^= 1 << (top - 1)
 
 

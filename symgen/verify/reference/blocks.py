@@ -23,6 +23,7 @@ from symgen.verify.reference.linear import (
 )
 from symgen.verify.reference.parts import Part, others, piece, placed, product
 
+# Minors that are computed one by one; more of them are coefficients of one polynomial.
 MOST_DETERMINANTS = 10
 
 

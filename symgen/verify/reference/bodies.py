@@ -16,8 +16,10 @@ from symgen.verify.reference.tape import Register
 from symgen.verify.reference.taylor import CONSTANT
 from symgen.verify.reference.translation import Translation
 
-BLOCK = 6  # rows of the Jacobian of a body
-WEIGHTS = 10  # its mass and the entries of its inertia
+# Rows of the Jacobian of a body.
+BODY_ROWS = 6
+# Weights of a body: its mass, and the entries of its inertia.
+WEIGHTS = 10
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,7 @@ class BodyJacobian:
         """What forces on the centres and torques in body axes load the coordinates with (n x 1)."""
         found = []
         for part, rows in zip(self.parts, self.pieces, strict=True):
-            own = [x for k in part.bodies for x in wrenches[BLOCK * k : BLOCK * (k + 1)]]
+            own = [x for k in part.bodies for x in wrenches[BODY_ROWS * k : BODY_ROWS * (k + 1)]]
             found.append((part.coordinates, (0,), rows.transpose() * arb_mat(len(own), 1, own)))
         return placed(self.n, 1, found)
 
@@ -117,7 +119,7 @@ class BodyRows:
         """A matrix for each part from the values of what is needed."""
         pieces, start = [], 0
         for part in parts:
-            rows, columns = BLOCK * len(part.bodies), len(part.coordinates)
+            rows, columns = BODY_ROWS * len(part.bodies), len(part.coordinates)
             pieces.append(arb_mat(rows, columns, values[start : start + rows * columns]))
             start += rows * columns
         return tuple(pieces)
@@ -143,9 +145,9 @@ def weighted(rows: Any, weights: Sequence[Any]) -> Any:
     columns = rows.ncols()
     table = rows.tolist()
     found: list[Any] = []
-    for k in range(rows.nrows() // BLOCK):
+    for k in range(rows.nrows() // BODY_ROWS):
         mass, *inertia = weights[WEIGHTS * k : WEIGHTS * (k + 1)]
-        block = table[BLOCK * k : BLOCK * (k + 1)]
+        block = table[BODY_ROWS * k : BODY_ROWS * (k + 1)]
         found += [mass * x for row in block[:3] for x in row]
         turned = arb_mat(3, 3, inertia) * arb_mat(3, columns, [x for row in block[3:] for x in row])
         found += turned.entries()
@@ -156,12 +158,12 @@ def _turned(rows: Any, velocities: Sequence[Any], weights: Sequence[Any]) -> Any
     """Half of (I [w] + [w] I - [I w]) times the turning rates of each column, w among the velocities; no force."""
     columns, table = rows.ncols(), rows.tolist()
     found: list[Any] = []
-    for k in range(rows.nrows() // BLOCK):
+    for k in range(rows.nrows() // BODY_ROWS):
         inertia = arb_mat(3, 3, list(weights[WEIGHTS * k + 1 : WEIGHTS * (k + 1)]))
-        rate = velocities[BLOCK * k + 3 : BLOCK * (k + 1)]
+        rate = velocities[BODY_ROWS * k + 3 : BODY_ROWS * (k + 1)]
         spin = _crossing(rate)
         momentum = _crossing((inertia * arb_mat(3, 1, list(rate))).entries())
-        turning = arb_mat(3, columns, [x for row in table[BLOCK * k + 3 : BLOCK * (k + 1)] for x in row])
+        turning = arb_mat(3, columns, [x for row in table[BODY_ROWS * k + 3 : BODY_ROWS * (k + 1)] for x in row])
         found += [0] * (3 * columns)
         found += ((inertia * spin + spin * inertia - momentum) * turning / 2).entries()
     return arb_mat(rows.nrows(), columns, found)

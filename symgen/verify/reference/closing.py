@@ -12,11 +12,14 @@ from symgen.verify.reference.linear import column, identity, norm
 from symgen.verify.reference.parts import Part, piece, placed
 from symgen.verify.reference.system import ReferenceSystem
 
-MOST_STEPS = 60
+# Steps onto V of all loops together, at most.
+NEWTON_STEPS = 60
+# Steps in a row that leave more than nine tenths: a loop is given up after more.
 MOST_SLOW_STEPS = 6
-MOST_DAMPING = 1e6
+# Of the mean square of the slopes: a loop whose steps need more damping is given up.
+HIGHEST_DAMPING = 1e6
 # What rounded lengths leave open of a closed loop, relative to the rows' lengths.
-ROUNDED = 1e-13
+ROUNDED_GAP = 1e-13
 
 
 def onto_manifold(
@@ -54,7 +57,7 @@ def closed(
     units = _units(system, geometry)
     own = zip(system.loops, units, geometry, strict=True)
     loops = [_PartIteration(place, part, unit, q, found) for place, (part, unit, found) in enumerate(own)]
-    for _ in range(MOST_STEPS):
+    for _ in range(NEWTON_STEPS):
         moving = [loop for loop in loops if not loop.ended and not loop.size <= tolerance]
         if not moving:
             break
@@ -69,7 +72,7 @@ def closed(
             loop.judge(trial, geometry[loop.place])
             loop.put(loop.q, q)
     length = max(1.0, norm(column(q)))
-    near = {loop: ROUNDED * norm(loop.jacobian) * length if rounded else 0.0 for loop in loops}
+    near = {loop: ROUNDED_GAP * norm(loop.jacobian) * length if rounded else 0.0 for loop in loops}
     return [entry.mid() for entry in q], [x.part for x in loops if not x.size <= max(tolerance, near[x])]
 
 
@@ -100,7 +103,7 @@ class _PartIteration:
         residual, jacobian = self._own(geometry)
         size = norm(residual)
         self._slow = self._slow + 1 if not size <= 0.9 * self.size else 0
-        if self._slow > MOST_SLOW_STEPS or self._damping > MOST_DAMPING:
+        if self._slow > MOST_SLOW_STEPS or self._damping > HIGHEST_DAMPING:
             self.ended = True
         elif size < self.size:
             self.q, self.residual, self.jacobian = trial, residual, jacobian

@@ -156,7 +156,9 @@ def pivots(matrix: Any) -> Iterator[tuple[float, int]]:
             left[j] = [arb((y - share * x).mid()) for x, y in zip(direction, other, strict=True)]
 
 
+# The power of two of a row's size below which a pivot does not count.
 RANK_NOISE = -100
+# The power of two of a row's size above which it counts.
 RANK_SIGNAL = -60
 # Of rows of ordinary size: what elimination in floats leaves in doubt is far below.
 PLAIN_PIVOT = 2.0**-16

@@ -23,8 +23,11 @@ from symgen.verify.reference.system import ReferenceSystem, default_parameters
 from symgen.verify.reference.tape import precision
 from symgen.verify.reference.translation import literal_values
 
+# Binary digits that ranks are told in.
 RANK_BITS = 256
+# Starts towards V, at most.
 RANK_STARTS = 24
+# Points on V at which ranks are looked at.
 RANK_POINTS = 6
 # Thresholds for ranks where lengths are rounded.
 ROUNDED_NOISE, ROUNDED_SIGNAL = -36, -20

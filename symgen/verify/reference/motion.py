@@ -24,7 +24,8 @@ from symgen.verify.reference.tape import Register, Tape, replay_of
 from symgen.verify.reference.taylor import CONSTANT, Monomial, Polynomial, Taylor
 from symgen.verify.reference.translation import Moving, Translation, translation
 
-TIME = 0  # the one coordinate of polynomials in t; its rate is 1
+# The number of the one coordinate of polynomials in t; its rate is 1.
+TIME = 0
 SECOND: Monomial = ((TIME, TIME), ())
 SPEED: Monomial = ((), (TIME,))
 CHANGE: Monomial = ((TIME,), (TIME,))

@@ -28,8 +28,11 @@ from symgen.verify.reference.tape import ball, precision
 from symgen.verify.reference.translation import literal_values
 
 Exact: TypeAlias = int | float | Fraction | Any
-BITS = 256
-DIGITS = 50
+# Binary digits that the reference begins with.
+REFERENCE_BITS = 256
+# Decimal digits of a result, relative to its size.
+REFERENCE_DIGITS = 50
+# Binary digits that it goes up to, doubling them, where a state needs them.
 MOST_BITS = 4096
 # Times the working precision, where a matrix cannot be told from one of lower rank.
 MORE_BITS = (1, 2, 4, 8)
@@ -90,7 +93,7 @@ class Reference:
 
     def precise(self, state: State, quantities: Sequence[str]) -> dict[str, Any]:
         """Like `evaluate`, as matrices of balls (vectors are columns)."""
-        bits = BITS
+        bits = REFERENCE_BITS
         while bits <= MOST_BITS:
             matrices = self.matrices(state, quantities, bits)
             with precision(bits):
@@ -98,11 +101,11 @@ class Reference:
                     return matrices
             bits *= 2
         raise ReferenceValueError(
-            f"{self.model.name}: {MOST_BITS} bits do not give {DIGITS} digits at this state; {NEAR_SINGULAR}"
+            f"{self.model.name}: {MOST_BITS} bits do not give {REFERENCE_DIGITS} digits at this state; {NEAR_SINGULAR}"
         )
 
     def matrices(
-        self, state: State, quantities: Sequence[str], bits: int = BITS, literals: Sequence[Any] | None = None
+        self, state: State, quantities: Sequence[str], bits: int = REFERENCE_BITS, literals: Sequence[Any] | None = None
     ) -> dict[str, Any]:
         """Each quantity as a matrix of balls (vectors are columns) at a working precision, whatever the radii become.
 
@@ -155,4 +158,4 @@ def _accurate(matrix: Any) -> bool:
     """Whether the radii leave 50 digits of the norm, or 60 digits absolutely for a result that vanishes."""
     size = square(matrix)
     error = float(size.rad())
-    return error <= 10.0**-DIGITS * float(size) or float(size) + error <= 10.0 ** -(2 * DIGITS + 20)
+    return error <= 10.0**-REFERENCE_DIGITS * float(size) or float(size) + error <= 10.0 ** -(2 * REFERENCE_DIGITS + 20)

@@ -32,6 +32,7 @@ USUAL, USUAL_PLAIN = 4.0, 0.5
 SPARING = ("--param", "ggc-min-expand=20", "--param", "ggc-min-heapsize=32768")
 # Seconds: a megabyte of source takes two on a fast machine; beyond that a compiler hangs.
 LONGEST_ANSWER = 20.0
+# Seconds after which a compilation is ended, and those for each megabyte of source beside.
 LONGEST_COMPILATION, LONGEST_FOR_A_MEGABYTE = 60.0, 120.0
 REMEDY = "name a working C compiler of this machine in CC"
 C_TYPES: dict[Scalar, Any] = {"float64": ctypes.c_double, "float32": ctypes.c_float}

@@ -18,13 +18,14 @@ from symgen.model.model import Model
 from symgen.verify.running.compile import C_TYPES, Outcome, c_array
 from symgen.verify.sampling.states import Sample
 
-BITS = 160
+# Binary digits of the sines and cosines before they are rounded once.
+TRIG_BITS = 160
 
 
 def exact_trig(model: Model, header: str, q: Sequence[Any]) -> list[float]:
     """The members of the struct that the header declares, at a configuration, rounded to double precision."""
     places = {coordinate.name: index for index, coordinate in enumerate(model.coordinates)}
-    previous, ctx.prec = ctx.prec, BITS
+    previous, ctx.prec = ctx.prec, TRIG_BITS
     try:
         members = re.findall(r"^    (?:double|float) (sin|cos)_(\w+);", header, re.MULTILINE)
         return [float(getattr(arb(float(q[places[name]])), half)()) for half, name in members]

@@ -22,7 +22,7 @@ COMBINATIONS = 3
 # An operation, places of what it works on and of what it makes, and whether nothing is rounded.
 _Step: TypeAlias = tuple[OperationName, tuple[int, ...], tuple[int, ...], bool]
 # The largest of 8 random changes of what is given, in root mean squares.
-LARGEST = 1.5
+LARGEST_OF_EIGHT = 1.5
 # Their results need no rounding.
 EXACT = frozenset({"neg", "abs", "copysign", "min", "max"})
 
@@ -67,7 +67,7 @@ class RoundingErrors:
             values, regular = self._values(given, count)
             outputs = [values[place] for place in self._outputs]
             own, inputs = self._shares(values, count)
-            unit = np.sqrt(sum(x * x for x in outputs)) + LARGEST * np.sqrt(inputs)
+            unit = np.sqrt(sum(x * x for x in outputs)) + LARGEST_OF_EIGHT * np.sqrt(inputs)
             regular &= np.isfinite(unit) & (unit > 0) & np.isfinite(own)
         return np.sqrt(np.where(regular, own, 0.0)), np.where(regular, unit, np.inf)
 

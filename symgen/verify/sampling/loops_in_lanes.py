@@ -16,12 +16,15 @@ from symgen.verify.reference.system import ReferenceSystem
 from symgen.verify.reference.tape import Replay
 from symgen.verify.sampling.lanes import Lanes
 
-NEWTON_STEPS = 12
-CLOSED = 1e-11
+# Newton steps onto V.
+LANE_STEPS = 12
+# Of rows of length 1: what is left of a loop that needs no further step.
+CLOSED_IN_LANES = 1e-11
 # Of the largest singular value: rows depend on each other.
 DEPENDENT = 1e-8
-# Steps of Levenberg and Marquardt's method, and how small its damping becomes.
+# Steps of Levenberg and Marquardt's method.
 DAMPED_STEPS = 40
+# How small its damping becomes.
 LEAST_DAMPING = 1e-14
 
 FUNCTIONS: dict[str, Callable[..., Lanes]] = {
@@ -52,7 +55,7 @@ class LoopsInLanes:
         shut = np.ones(q.shape, dtype=bool)
         if held is not None:
             q[np.arange(len(q)), held[0]] = held[1]
-        for _ in range(NEWTON_STEPS if self._system.r_geometric else 0):
+        for _ in range(LANE_STEPS if self._system.r_geometric else 0):
             steps = []
             for loop, rows, gaps, finite in self._evaluated(q, p):
                 these = list(loop.coordinates)
@@ -61,7 +64,7 @@ class LoopsInLanes:
                     rows = np.concatenate((rows, (held[0][:, None] == np.array(these))[:, None] * 1.0), axis=1)
                     gaps = np.concatenate((gaps, np.zeros((len(q), 1))), axis=1)
                 rows, gaps = _in_own_units(rows, gaps)
-                near = np.abs(gaps).max(axis=1) <= CLOSED
+                near = np.abs(gaps).max(axis=1) <= CLOSED_IN_LANES
                 shut[:, these] = (finite & near)[:, None]
                 if not near.all():
                     steps.append((these, times(np.linalg.pinv(rows, rcond=DEPENDENT), gaps)))
@@ -97,7 +100,7 @@ class LoopsInLanes:
                 one[1] = np.where(better[:, None, None], rows, one[1])
                 one[2] = np.where(better[:, None], gaps, one[2])
                 place[:, these] = np.where(better[:, None], trial[:, these], place[:, these])
-                done = done and bool((np.minimum(before, after) <= CLOSED).all())
+                done = done and bool((np.minimum(before, after) <= CLOSED_IN_LANES).all())
             if done:
                 break
         return place

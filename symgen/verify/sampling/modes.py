@@ -23,19 +23,22 @@ from symgen.verify.sampling.lanes import Lanes
 from symgen.verify.sampling.loops_in_lanes import DAMPED_STEPS, LoopsInLanes
 from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, ranked_parts
 
-BITS = 128
+# Binary digits in which parameters and literals are worked out before they are floats.
+MODE_BITS = 128
 # Starts in the ranges, and rounds of as many that are reflected.
 STARTS, ROUNDS = 64, 2
-KEPT = 64
+# Configurations that are kept, those farthest from each other.
+MODES_KEPT = 64
 # Operations of the constraints in all steps of all starts of a model; fewer steps are made of long ones.
-EFFORT = 400_000
+MODE_OPERATIONS = 400_000
+# Steps towards V from each start, at least.
 FEWEST_STEPS = 6
 # How far lengths without a range reach, in the ranges taken for granted.
-REACH = 3.2
+LENGTH_REACH = 3.2
 # Shares of the widths of ranges: how near configurations are the same, and to which digits they are told apart.
-SAME, ROUNDED = 1e-3, 6
+SAME_MODE, MODE_DIGITS = 1e-3, 6
 # Of a row of length 1: what is left of a loop that is closed.
-CLOSED = 1e-9
+CLOSED_MODE = 1e-9
 
 
 def modes(reference: Reference) -> tuple[tuple[float, ...], ...]:
@@ -46,7 +49,7 @@ def modes(reference: Reference) -> tuple[tuple[float, ...], ...]:
     system = reference.system
     if not system.r_geometric:
         return ()
-    with precision(BITS):
+    with precision(MODE_BITS):
         parameters = [float(x) for x in default_parameters(reference.model)]
         literals = [float(x) for x in reference.literals()]
     places = () if reference.model.assembly is None else reference.model.assembly.places
@@ -63,13 +66,13 @@ class _Modes:
         self._dice = random.Random("modes")
         self._parameters = np.array(parameters)
         self._angles = np.array([c.is_angle for c in coordinates])
-        reach = [1.0 if c.has_range or c.is_angle else REACH for c in coordinates]
+        reach = [1.0 if c.has_range or c.is_angle else LENGTH_REACH for c in coordinates]
         self._low = np.array([float(c.range[0]) * r for c, r in zip(coordinates, reach, strict=True)])
         self._high = np.array([float(c.range[1]) * r for c, r in zip(coordinates, reach, strict=True)])
         self._has_range = np.array([c.has_range for c in coordinates])
         self._widths = np.where(self._angles, 1.0, (self._high - self._low) / 2)
         operations = (1 + ROUNDS) * (system.geometry_replay.operations + 1)
-        self._steps = max(FEWEST_STEPS, min(DAMPED_STEPS, EFFORT // operations))
+        self._steps = max(FEWEST_STEPS, min(DAMPED_STEPS, MODE_OPERATIONS // operations))
 
     def kept(self, places: Sequence[Sequence[float]]) -> Lanes:
         """Those kept, the one first that lies first among the places."""
@@ -103,10 +106,10 @@ class _Modes:
         p = np.broadcast_to(self._parameters, (len(starts), len(self._parameters)))
         q = self._loops.damped(starts, p, self._steps)
         back = np.where(self._angles, q - 2 * pi * np.round((q - self._middle) / (2 * pi)), q)
-        q = np.where(self._loops.shut(back, p, CLOSED)[:, None], back, q)
+        q = np.where(self._loops.shut(back, p, CLOSED_MODE)[:, None], back, q)
         slack = 0.01 * (self._high - self._low)
         inside = ((q >= self._low - slack) & (q <= self._high + slack) | ~self._has_range & self._angles).all(axis=1)
-        good = inside & self._loops.shut(q, p, CLOSED)
+        good = inside & self._loops.shut(q, p, CLOSED_MODE)
         for part, blocks in zip(self._parts, matrices(self._system, self._parts, self._loops, q, p), strict=True):
             good &= is_regular(part, *blocks, other_branches=False)
         return q[good]
@@ -120,11 +123,11 @@ class _Modes:
         if not len(q):
             return q
         scaled = np.where(self._angles, 0.0, q / self._widths)
-        seen = np.concatenate((scaled, self._angles * np.cos(q), self._angles * np.sin(q)), axis=1).round(ROUNDED)
+        seen = np.concatenate((scaled, self._angles * np.cos(q), self._angles * np.sin(q)), axis=1).round(MODE_DIGITS)
         chosen, distance = [0], np.linalg.norm(seen - seen[0], axis=1)
-        while len(chosen) < min(KEPT, len(q)):
+        while len(chosen) < min(MODES_KEPT, len(q)):
             farthest = int(np.argmax(distance))
-            if distance[farthest] < SAME:
+            if distance[farthest] < SAME_MODE:
                 break
             chosen.append(farthest)
             distance = np.minimum(distance, np.linalg.norm(seen - seen[farthest], axis=1))

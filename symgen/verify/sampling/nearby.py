@@ -25,15 +25,16 @@ from symgen.verify.sampling.states import Sample
 
 # Shares of the ranges of coordinates: how far states are drawn from samples, and moved from where they are.
 REACH = 0.2
+# Shares of ranges that states move by, a step further from where they are.
 FURTHER = 0.05
 QUARTER = np.pi / 2
 # Powers of ten: how far an angle is from a multiple of a quarter turn.
 OFF = (1.0, 5.0)
 # Powers of ten by which inputs of half of the states are smaller than those of samples, where weights or springs drive
 # the machine too: inputs that hold its heaviest body hide what rounding does to light ones that nothing else moves.
-LITTLE = (1.0, 4.0)
+LITTLE_INPUT = (1.0, 4.0)
 # In how many samples that is looked at, and how large these forces are beside inputs.
-LOOKED_AT, LEAST_SHARE = 8, 0.1
+SAMPLES_LOOKED_AT, LEAST_DRIVE = 8, 0.1
 # A step of differences along the rates, in radians and metres a unit of time.
 DIFFERENCE = 1e-5
 
@@ -94,7 +95,7 @@ class Surroundings:
         self._rates = np.array([float(c.rate_range[1]) for c in coordinates])
         self._accelerations = np.array([float(c.acceleration_range[1]) for c in coordinates])
         self._inputs = np.abs(parts["u"]).max(axis=1, initial=1.0)[:, None]
-        self._driven_by_itself = any(_driven_by_itself(reference, state) for state in states[:LOOKED_AT])
+        self._driven_by_itself = any(_driven_by_itself(reference, state) for state in states[:SAMPLES_LOOKED_AT])
 
     def drawn(self, count: int) -> Nearby:
         """About so many: a step off each sample in turn, with other rates, accelerations and inputs."""
@@ -156,7 +157,7 @@ class Surroundings:
         if not afresh:
             return np.abs(start.parts["u"]).max(axis=1, initial=0.0)[:, None]
         dice = random.Random("inputs")
-        little = np.array([10.0 ** -dice.uniform(*LITTLE) for _ in range(len(start))])
+        little = np.array([10.0 ** -dice.uniform(*LITTLE_INPUT) for _ in range(len(start))])
         whole = not self._driven_by_itself or np.arange(len(start)) // len(self.samples) // 2 % 2 == 0
         return self._inputs[start.origins] * np.where(whole, 1.0, little)[:, None]
 
@@ -211,7 +212,7 @@ def _driven_by_itself(reference: Reference, state: State) -> bool:
         (force,) = values_at(reference, state, ["projected_potential_force"]).values()
     except ReferenceValueError:
         return False
-    return hypot(*force) > LEAST_SHARE * max(map(abs, state.u), default=0.0)
+    return hypot(*force) > LEAST_DRIVE * max(map(abs, state.u), default=0.0)
 
 
 def _finite(values: Lanes) -> Lanes:

@@ -13,7 +13,7 @@ from symgen.verify.reference.manifold import ManifoldRanks
 from symgen.verify.reference.system import ReferenceSystem
 from symgen.verify.sampling.lanes import Lanes
 from symgen.verify.sampling.loops_in_lanes import DEPENDENT, LoopsInLanes, block, lengths_of
-from symgen.verify.sampling.regular import REGULAR
+from symgen.verify.sampling.regular import REGULAR_SHARE
 
 # Of rows of length 1: what is more than rounding leaves of rows that depend on others.
 INDEPENDENT = 1e2 * DEPENDENT
@@ -72,14 +72,14 @@ def is_regular(part: RankedPart, rows: Lanes, control: Lanes, other_branches: bo
     if r:
         sizes, directions = np.linalg.svd(rows / lengths_of(rows), full_matrices=not apart)[1:]
         rank = part.constraints
-        good &= sizes[:, rank - 1] >= REGULAR * sizes[:, 0] if rank else True
+        good &= sizes[:, rank - 1] >= REGULAR_SHARE * sizes[:, 0] if rank else True
         if not other_branches:
             good &= (sizes[:, rank:] <= INDEPENDENT).all(axis=1)
         held, free = directions[:, :rank], directions[:, rank:]
     if part.actuation or not other_branches:
         along = np.swapaxes(columns, 1, 2)
         sizes = _along_few_rows(held @ along) if apart else np.linalg.svd(free @ along, compute_uv=False)
-        good &= sizes[:, part.actuation - 1] >= REGULAR if part.actuation else True
+        good &= sizes[:, part.actuation - 1] >= REGULAR_SHARE if part.actuation else True
         if not other_branches:
             good &= (sizes[:, part.actuation :] <= INDEPENDENT).all(axis=1)
     return good

@@ -23,14 +23,20 @@ from symgen.verify.reference.reference import Reference, ReferenceValueError, St
 from symgen.verify.reference.system import ParameterValues, default_parameters
 from symgen.verify.reference.tape import ball
 
+# Regular states that a verification needs.
 FEWEST_STATES = 8
-REGULAR = 1e-3
+# Of usual lengths of rows, and of the largest singular value: with less a state is near singular ones.
+REGULAR_SHARE = 1e-3
+# Binary digits that sampling needs; results are not judged in them.
 SAMPLING_BITS = 128
+# Of a coordinate, by which every fourth state is moved off V at most.
 DRIFT = 1e-3
-REST = 1e-25
+# Of the width of a range: less than this is what searches and projections leave of 0.
+SETTLED_REST = 1e-25
 # How far angles may lie outside of their ranges in states.
 TURNS = 2
-TYPICAL_POINTS = 8
+# Configurations that tell how large measures and rows usually are.
+MEASURED_POINTS = 8
 PROJECTED = ("admissible_velocity", "admissible_acceleration")
 # Steps along V, in widths of the ranges.
 LONGEST_STEP, SHORTEST_STEP = 0.2, 1e-5
@@ -39,7 +45,7 @@ FRESH = 4
 # Of so many starts one lies in an assembly mode, and in some the parameters are those of the file.
 CYCLE, MODE, DEFAULTS = 5, 2, (2, 3)
 # Starts of the loops of a system that lead elsewhere than to regular states, while the others stay.
-ATTEMPTS = 12
+LOOP_RESTARTS = 12
 # Where of the first starts less than a share leads to regular states in the ranges, steps along V look for the others.
 PROBES, POOR = 40, 8
 CLOSED, BRANCH, TURNED = "do not close", "lie on other branches", "lie turns outside of the ranges"
@@ -145,7 +151,7 @@ class RegularStateSearch:
                 rows = (max(column) for column in zip(*(one.rows for one in self._met), strict=True))
                 self._least = _Sizes(
                     [min(low, most / 10) for low, most in zip(self._least.measures, measures, strict=True)],
-                    [min(low, REGULAR * most) for low, most in zip(self._least.rows, rows, strict=True)],
+                    [min(low, REGULAR_SHARE * most) for low, most in zip(self._least.rows, rows, strict=True)],
                 )
             # other lengths may leave no room to move
             parameters = self._parameters(vary=index % 2 > 0)
@@ -166,7 +172,7 @@ class RegularStateSearch:
         machines lead to a regular state at once is rare.
         """
         several = len(self._system.loops or self._system.parts) > 1
-        for left in reversed(range(ATTEMPTS if several else 1)):
+        for left in reversed(range(LOOP_RESTARTS if several else 1)):
             self._wanting.clear()
             found = self._led_to(start, exact, left > 0)
             if found is not None or not self._wanting:
@@ -227,19 +233,19 @@ class RegularStateSearch:
         """
         reference, known = self._reference, self._known
         parameters = [float(x) for x in self._parameters(vary=False)]
-        points = self._points[:TYPICAL_POINTS]
-        on_it = points if known is None else [place.q for place in known.places[:TYPICAL_POINTS]]
+        points = self._points[:MEASURED_POINTS]
+        on_it = points if known is None else [place.q for place in known.places[:MEASURED_POINTS]]
         rows = self._row_lengths(points, parameters)
         if known is not None and reference.ranks.constraints < reference.model.r:
             # of rows that depend on each other some have no gradient anywhere on V, and are no drop of rank there
             here = self._row_lengths(on_it, parameters)
-            rows = [0.0 if there < REGULAR * x else x for there, x in zip(here, rows, strict=True)]
+            rows = [0.0 if there < REGULAR_SHARE * x else x for there, x in zip(here, rows, strict=True)]
         free = [reference.model.n - reference.ranks.constraints]
         if known_apart := len(reference.ranks.of_parts) == len(self._system.parts):
             pairs = zip(self._system.parts, reference.ranks.of_parts, strict=True)
             free = [len(part.coordinates) - constraints for part, (constraints, _) in pairs]
         self._owners = self._system.parts if known_apart else ()
-        usual = [REGULAR ** max(1.0, count / 2) for count in free for _ in range(2)]
+        usual = [REGULAR_SHARE ** max(1.0, count / 2) for count in free for _ in range(2)]
         found = []
         for q in on_it:
             try:
@@ -249,7 +255,7 @@ class RegularStateSearch:
                 continue
         largest = [max((x for x in column if isfinite(x)), default=1.0) for column in zip(*found, strict=True)]
         pairs_of_limits = zip(usual, largest or [1.0] * len(usual), strict=True)
-        return _Sizes([min(low, x / 10) for low, x in pairs_of_limits], [REGULAR * x for x in rows])
+        return _Sizes([min(low, x / 10) for low, x in pairs_of_limits], [REGULAR_SHARE * x for x in rows])
 
     def _row_lengths(self, points: Sequence[Sequence[float]], parameters: Sequence[float]) -> list[float]:
         """The largest length of each row of B over some points, on V or off it."""
@@ -374,7 +380,7 @@ def _values(matrices: Mapping[str, Any]) -> dict[str, tuple[float, ...]]:
 def settled(values: Sequence[Any], ranges: Sequence[tuple[Any, Any]]) -> list[float]:
     """Floats, with 0 for what searches and projections leave of it: squares of such rests underflow in float32."""
     pairs = zip(map(float, values), ranges, strict=True)
-    return [0.0 if abs(x) < REST * float(high - low) else x for x, (low, high) in pairs]
+    return [0.0 if abs(x) < SETTLED_REST * float(high - low) else x for x, (low, high) in pairs]
 
 
 def floats(matrix: Any) -> tuple[float, ...]:

@@ -28,11 +28,12 @@ from symgen.verify.tolerance import FACTOR, Expectation, expectations
 
 # States drawn; fewer of long kernels, so that no more numbers are held at a time.
 DRAWN, ALIGNED, IN_MODES = 512, 256, 256
+# Numbers that are held at a time; of long kernels fewer states are looked at together.
 NUMBERS = 4_000_000
 # Of each kind also fewer where decompositions of large parts would take longest: the cube of their coordinates counts.
 CUBES, FEWEST = 200_000_000, 8
 # Of the worst of them, how many go further, in how many directions, and how often.
-KEPT, DIRECTIONS, STEPS = 32, 8, 3
+KEPT, DIRECTIONS, STEPS_FURTHER = 32, 8, 3
 # Units; what is estimated counts every rounding with all that it may do, and d for less than it is.
 DOUBTFUL = FACTOR / 2
 # How near to singular states u, accelerations and multipliers are judged, beside samples: a thousandth, of measures
@@ -100,7 +101,7 @@ class WorstStateSearch:
             states = states.only(np.append(np.arange(samples), others))
         errors, least = RoundingErrors(kernel), self._settling(kernel.name).measures
         units = self._units(errors, states, least)
-        for step in range(STEPS if units.max() > DOUBTFUL else 0):
+        for step in range(STEPS_FURTHER if units.max() > DOUBTFUL else 0):
             worst = states.only(_worst(units, KEPT))
             starts = worst.only(np.arange(len(worst)).repeat(DIRECTIONS)[: self._affordable(KEPT * DIRECTIONS)])
             further = self._surroundings.moved(starts, f"{kernel.name} {step}")

@@ -11,7 +11,7 @@ from symgen.verify.reference.manifold import exceeds
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference.system import ParameterValues
 from symgen.verify.reference.tape import precision
-from symgen.verify.sampling.regular import PROJECTED, REGULAR, SAMPLING_BITS, floats, settled, values_at
+from symgen.verify.sampling.regular import PROJECTED, REGULAR_SHARE, SAMPLING_BITS, floats, settled, values_at
 from symgen.verify.sampling.states import Sample
 
 # Samples whose rows show how long rows are.
@@ -29,12 +29,12 @@ class Settling:
         self._reference, model = reference, reference.model
         tied = () if model.assembly is None else model.assembly.tied
         self._varied = ParameterValues(model, [p.name for p in model.parameters if p.range and p.name not in tied])
-        usual = REGULAR ** max(1.0, (model.n - reference.ranks.constraints) / 2)
+        usual = REGULAR_SHARE ** max(1.0, (model.n - reference.ranks.constraints) / 2)
         columns = zip(*(sample.measures for sample in samples), strict=True)
         self.measures = [share * min(usual, max(column) / 10, *column) for column in columns]
         with precision(SAMPLING_BITS):
             lengths = [self._lengths(sample.state) for sample in samples[:TYPICAL]]
-        self._rows = [min(REGULAR * max(column), *column) for column in zip(*lengths, strict=True)]
+        self._rows = [min(REGULAR_SHARE * max(column), *column) for column in zip(*lengths, strict=True)]
 
     def sample(self, state: State, admissible: bool, quantity: str) -> Sample | None:
         """None where that leads nowhere, near a singularity, or to where the quantity has no value."""

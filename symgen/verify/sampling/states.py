@@ -27,7 +27,9 @@ from symgen.verify.sampling.regular import (
     values_at,
 )
 
+# States of a verification, unless told otherwise.
 USUAL_STATES = 64
+# Seconds that the reference may take for all states, by a count of its operations and never by a clock.
 LONGEST_SECONDS = 20.0
 
 
