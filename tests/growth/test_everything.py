@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
@@ -12,8 +13,9 @@ from symgen.model.load import load_text
 from symgen.model.quantities import MAIN
 from symgen.pipeline import generate
 from symgen.quantities import everything
-from symgen.quantities.everything import OF_ALL
+from symgen.quantities.everything import OF_ALL, most_with_twice_the_digits
 from symgen.quantities.select import derive_quantities
+from symgen.runtime.effort import SCALAR, done
 
 TEXT = row_of_four_bars(1, ground="0.7", tail="configuration: {a0: 1, a1: 1, b1: 0}")
 MODEL = load_text(TEXT, "row.yaml")
@@ -47,6 +49,32 @@ def test_what_takes_too_long_to_derive_is_given_up_unless_it_is_named(monkeypatc
     named = derive_quantities(MODEL, ("projected_coriolis_matrix",))
     assert [derived.name for derived in named.quantities] == ["projected_coriolis_matrix"]
     assert not named.absent
+
+
+def test_all_together_take_so_many_scalars_and_no_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    def taken(scalars: int) -> tuple[float, set[str], set[str]]:
+        monkeypatch.setattr(everything, "SCALARS_OF_ALL", scalars)
+        before = done()
+        made = derive_quantities(MODEL, ("all",))
+        left_out = {name for name, why in made.absent if "long to derive" in why}
+        return done() - before, {choice.quantity for choice in made.choices}, left_out
+
+    least, main, _ = taken(0)
+    most, every, none = taken(10**9)
+    assert not none
+    assert {*MAIN} <= main < every
+    some, kept, left_out = taken(int((most - least) / SCALAR) // 4)
+    assert least < some < most
+    assert main < kept < every
+    assert left_out == every - kept
+
+
+def test_what_loses_digits_is_limited_where_nobody_asks_for_it() -> None:
+    def most(quantity: str, *outputs: str) -> float:
+        return most_with_twice_the_digits(quantity, outputs, ())
+
+    assert 0 < most("nullspace_projector", "all") < most("multipliers", "all") < math.inf
+    assert most("nullspace_projector", "all", "nullspace_projector") == most("inverse_dynamics", "all") == math.inf
 
 
 def test_what_all_leaves_out_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,6 +11,7 @@ import pytest
 import shipped
 
 from symgen.linear_algebra.block_space import BlockSpace
+from symgen.linear_algebra.exterior import small_family
 from symgen.linear_algebra.null_spaces import has_few_minors
 from symgen.mechanics.genericity import Genericity, genericity
 from symgen.mechanics.system import System
@@ -50,6 +51,11 @@ def ropes(coordinates: int, rows: int) -> System:
 def test_minors_of_b_and_the_products_on_the_way_to_them_decide(rows: int, columns: int, few: bool) -> None:
     """300 minors at most; of twelve rows of fourteen there are 91, and 150 000 products."""
     assert has_few_minors(dense(Graph(), rows, columns), rows) is few
+
+
+@pytest.mark.parametrize(("directions", "small"), [(9, True), (10, False)])
+def test_determinants_of_nine_dense_directions_are_a_small_family(directions: int, small: bool) -> None:
+    assert small_family([[0]], dense(Graph(), directions, directions), directions) is small
 
 
 def test_minors_that_vanish_are_not_counted() -> None:

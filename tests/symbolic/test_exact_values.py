@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from symgen.diagnostics import SymgenBug
 from symgen.symbolic.angles.circle import FIELD, INNER, INNERMOST, LAST, STEPS, Field
 from symgen.symbolic.angles.sharing import share_angles
-from symgen.symbolic.exact import ExactValues, half_turns
+from symgen.symbolic.exact import MOST_DEGREE, ExactValues, half_turns
 from symgen.symbolic.identity import every_identity_evaluated, same_values
 from symgen.symbolic.scalar import PI, Graph, Scalar
 
@@ -40,6 +40,13 @@ def test_what_a_constant_holds_of_pi_is_found() -> None:
     for turns, rest in ((1, 0), (Fraction(1, 12), Fraction(3, 10)), (Fraction(-2, 3), Fraction(22, 7)), (2, -5)):
         assert half_turns(turns * PI + rest) == turns
     assert half_turns(Fraction(31416, 10000)) == half_turns(Fraction(1, 3)) == 0
+
+
+@pytest.mark.parametrize("more", [0, 1])
+def test_half_turns_are_found_beside_powers_of_pi_up_to_one(more: int) -> None:
+    """A constant that holds none, such as a quotient by pi, would be looked through without end."""
+    found = half_turns(PI ** (MOST_DEGREE + more) / 7 + PI**2 + PI / 3 - 2)
+    assert found == (None if more else Fraction(1, 3))
 
 
 def test_identities_hold_and_others_do_not() -> None:

@@ -6,6 +6,10 @@ from fractions import Fraction
 
 import pytest
 
+from symgen.mechanics.genericity import genericity
+from symgen.mechanics.system import System
+from symgen.model.load import load_text
+from symgen.runtime.effort import done
 from symgen.symbolic.passes.shared_parts import MOST_SHARING_TERMS, with_shared_sums
 from symgen.symbolic.polynomials import content, polynomial
 from symgen.symbolic.polynomials.content import usual_number
@@ -13,6 +17,7 @@ from symgen.symbolic.polynomials.polynomial import MOST_EXPANDED_TERMS, Multipli
 from symgen.symbolic.products import MOST_FACTORS
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.validity.driven import MOST_LISTED_MINORS, driven_minors
+from symgen.validity.search import ZeroSearch
 
 
 def symbols(graph: Graph, letter: str, count: int) -> list[Scalar]:
@@ -80,3 +85,23 @@ def test_many_minors_are_not_listed(monkeypatch: pytest.MonkeyPatch) -> None:
     assert driven_minors(graph, rows, inputs, n) is not None
     monkeypatch.setattr("symgen.validity.driven.MOST_LISTED_MINORS", 19)
     assert driven_minors(graph, rows, inputs, n) is None
+
+
+@pytest.mark.parametrize(("count", "most"), [(12, 30_000), (24, 100_000)])
+def test_few_squares_are_driven_to_zero_one_by_one_and_many_together(count: int, most: int) -> None:
+    """One by one they take few steps, each of which takes the third power of their number."""
+    names = [f"q{k}" for k in range(8)]
+    coordinates = ", ".join(f"{name}: {{unit: rad}}" for name in names)
+    energy = " + ".join(f"{name}_dot**2" for name in names)
+    text = f"model: turning\ncoordinates: {{{coordinates}}}\nkinetic_energy: {energy}\n"
+    mechanics = System(load_text(f"{text}inputs: {{u: {{acts_on: {{q0: 1}}}}}}\n", "turning.yaml"))
+    graph = mechanics.graph
+    x = [graph.symbol(name) for name in names]
+    terms = []
+    for k in range(count):
+        one, other, third = x[k % 8], x[(k + 1 + k // 8) % 8], graph.trig("cos", x[(3 * k + 1) % 8])
+        terms.append(graph.trig("sin", one) * (2 + third) if count < 20 else graph.trig("sin", one - other) * third)
+    search = ZeroSearch(mechanics, genericity(mechanics))
+    before = done()
+    assert search.zero_of(graph.sum(term * term for term in terms)) is not None
+    assert done() - before < most
