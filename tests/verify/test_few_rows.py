@@ -156,7 +156,7 @@ def test_many_drives_under_few_rows_are_regular_where_a_decomposition_says_so(
     rows[1::3, :, 44:] *= 1e-4
     part = RankedPart(range(60), range(2), range(drives), 2, drives)
     found = is_regular(part, rows, control)
-    monkeypatch.setattr(ranks_in_lanes, "MANY", 1000)
+    monkeypatch.setattr(ranks_in_lanes, "MANY_INPUTS", 1000)
     assert (found == is_regular(part, rows, control)).all()
     assert found[2::3].all()
     assert not found[::3].any()

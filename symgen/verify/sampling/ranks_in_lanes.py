@@ -18,7 +18,7 @@ from symgen.verify.sampling.regular import REGULAR_SHARE
 # Of rows of length 1: what is more than rounding leaves of rows that depend on others.
 INDEPENDENT = 1e2 * DEPENDENT
 # Inputs from which on a decomposition of all of them takes longest.
-MANY = 40
+MANY_INPUTS = 40
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def is_regular(part: RankedPart, rows: Lanes, control: Lanes, other_branches: bo
 def _few_rows(r: int, columns: Lanes) -> bool:
     """Whether there are many more inputs than rows, and inputs stand at right angles to each other, as drives do."""
     m, n = columns.shape[1:]
-    if m < MANY or m <= r or m > n:
+    if m < MANY_INPUTS or m <= r or m > n:
         return False
     return bool(np.all(np.count_nonzero(columns, axis=1) <= 1) and np.all(np.count_nonzero(columns, axis=2) == 1))
 

@@ -17,7 +17,7 @@ from symgen.verify.reference.reference import Reference, ReferenceValueError, St
 from symgen.verify.reference.tape import precision
 from symgen.verify.sampling.regular import (
     FEWEST_STATES,
-    REGULAR,
+    REGULAR_SHARE,
     SAMPLING_BITS,
     Regular,
     RegularStateSearch,
@@ -145,4 +145,4 @@ def _is_free(reference: Reference, state: State) -> bool:
     Where they fail the system may be regular: their quantities have a status there.
     """
     (complement,) = values_at(reference, state, ("orthogonal_complement",)).values()
-    return max(map(abs, complement)) * REGULAR < 1
+    return max(map(abs, complement)) * REGULAR_SHARE < 1
