@@ -12,6 +12,7 @@ from flint import arb
 from linkages import row_of_four_bars
 from mechanisms import build, double_pendulum, skate, slider_crank, three_cranks
 
+from symgen.model.expressions.expression import Pi
 from symgen.model.load import load_text
 from symgen.verify.expected import Expected
 from symgen.verify.reference.linear import column, norm
@@ -321,3 +322,29 @@ configuration: {x: 0.6, y: 0.8, z: 0}
                ("mass_matrix", "minimal_mass_matrix")}  # fmt: skip
     assert min(heights["mass_matrix"]) == 0
     assert min(heights["minimal_mass_matrix"]) > 1e-4
+
+
+def test_quarter_turns_that_are_written_out_are_no_literals() -> None:
+    """Two slides along y and a rod that never turns: moved, pi/2 turned the light slides' rush into a weight."""
+    text = """\
+model: slides
+coordinates: {s: {unit: m}, w: {unit: m}, a: {unit: rad}}
+parameters: {l: {value: 0.8}, m: {value: 2e-6}}
+definitions:
+  x: s*cos(pi/2) + w*cos(-pi*3/2) + l*cos(a)
+  y: s*sin(pi/2) - w*sin(3*pi/2) + l*sin(a) + l*sin(pi/6)
+kinetic_energy: m/2*s_dot**2 + m/2*(s_dot + 0.4*w_dot)**2 + 3/2*(s_dot + w_dot)**2 + a_dot**2*cos(pi/7)
+potential_energy: 3*9.81*y
+constraints: {geometric: {along: x - 0.7, across: y - 1.9}}
+inputs: {u: {acts_on: {s: 1}}}
+configuration: {s: 0.4, w: 0.7, a: 0.5}
+"""
+    reference = Reference(load_text(text, "slides.yaml"))
+    assert [literal for literal in reference.system.literals if isinstance(literal, Pi)] == [Pi()]
+    samples = [sample for sample in sample_states(reference, ["multipliers"], 16) if sample.admissible]
+    assert samples
+    for sample in samples:
+        (rows,) = reference.matrices(sample.state, ["constraint_jacobian"]).values()
+        assert (rows[0, 0], rows[0, 1], rows[1, 0], rows[1, 1]) == (0, 0, 1, 1)
+        expected = expectations(reference, sample.state, ["multipliers"], "float64", "slides")["multipliers"]
+        assert expected.in_units(1e-12 * expected.size) > 100

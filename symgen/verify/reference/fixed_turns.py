@@ -1,6 +1,6 @@
-"""Turns by angles whose sines and cosines everybody knows: multiples of 30 and 45 degrees, written with pi.
+"""Angles whose sines and cosines everybody knows: multiples of 30 and 45 degrees, written with pi.
 
-Such a turn is a direction, as an axis is: a kernel rounds its sine, as the reference does at the end, but no pi.
+A turn by one is a direction, as an axis is: a kernel rounds its sine, as the reference does at the end, but no pi.
 """
 
 from __future__ import annotations
@@ -14,6 +14,14 @@ def is_known(angle: Expression) -> bool:
     """Whether the angle is k pi/6 or k pi/4."""
     turns = _multiple_of_pi(angle)
     return turns is not None and 1 in ((6 * turns).denominator, (4 * turns).denominator)
+
+
+def sine_and_cosine(angle: Expression) -> tuple[int, int] | None:
+    """Those of whole quarter turns, which are exact; None for other angles."""
+    turns = _multiple_of_pi(angle)
+    if turns is None or (2 * turns).denominator != 1:
+        return None
+    return ((0, 1), (1, 0), (0, -1), (-1, 0))[int(2 * turns) % 4]
 
 
 def _multiple_of_pi(angle: Expression) -> Fraction | None:

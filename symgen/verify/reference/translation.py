@@ -13,7 +13,7 @@ from symgen.diagnostics import SymgenBug
 from symgen.model.expressions.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
 from symgen.model.mechanism import Mechanism, Quaternion, is_component
 from symgen.model.model import Model
-from symgen.verify.reference.fixed_turns import is_known
+from symgen.verify.reference.fixed_turns import is_known, sine_and_cosine
 from symgen.verify.reference.tape import Register, ball
 from symgen.verify.reference.taylor import CONSTANT, Polynomial, Taylor
 
@@ -76,6 +76,9 @@ class Translation:
                 return algebra.power(self.polynomial(base), exponent)
             case Call("atan2", (y, x)):
                 return algebra.angle(self.polynomial(y), self.polynomial(x))
+            case Call("sin" | "cos" as function, (argument,)) if (exact := sine_and_cosine(argument)) is not None:
+                known = exact[function == "cos"]
+                return {CONSTANT: algebra.tape.constant(Fraction(known))} if known else {}
             case Call(function, (argument,)):
                 return algebra.function(function, self.polynomial(argument))
         raise SymgenBug(f"reference: no rule for {expression}")
@@ -167,6 +170,7 @@ def _of_mechanism(mechanism: Mechanism) -> Iterator[Expression]:
 
 
 def _walk(expression: Expression) -> Iterator[Expression]:
+    """All that an expression is made of, but for known angles: no kernel rounds what their sines are made of."""
     pending = [expression]
     while pending:
         node = pending.pop()
@@ -178,5 +182,7 @@ def _walk(expression: Expression) -> Iterator[Expression]:
                 pending.extend((right, left))
             case Power(base, _):
                 pending.append(base)
+            case Call("sin" | "cos", (angle,)) if is_known(angle):
+                continue
             case Call(_, arguments):
                 pending.extend(reversed(arguments))
