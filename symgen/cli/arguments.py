@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from symgen.generation.results import ALL_PARTS, AUTO, DEFAULT_STATES, FORMS, TRIG
+from symgen.methods.table import label
 from symgen.model.expressions.names import did_you_mean, nearest
 
 # States that a user may ask for at least: with fewer a verification would say too little.
@@ -84,9 +85,17 @@ def add_form(parser: argparse.ArgumentParser) -> None:
         default=[],
         dest="forms",
         help="how a quantity is computed: "
-        + "; ".join(f"{quantity}={'|'.join(forms)}" for quantity, forms in FORMS.items())
+        + "; ".join(f"{quantity}={_offered(quantity)}" for quantity in FORMS)
         + f"; {AUTO}: the cheapest valid at every regular state (default); without QUANTITY: {USUAL}; repeatable",
     )
+
+
+def _offered(quantity: str) -> str:
+    """The forms of a quantity by name; those of a use that has to be told stand together behind it."""
+    by_label: dict[str, list[str]] = {}
+    for form in FORMS[quantity]:
+        by_label.setdefault(label(quantity, form), []).append(form)
+    return ", ".join(f"{told} {'|'.join(forms)}".lstrip() for told, forms in by_label.items())
 
 
 def form_of(text: str) -> tuple[str, str]:

@@ -6,6 +6,7 @@ import shutil
 import textwrap
 
 from symgen.methods.selection import MethodChoice
+from symgen.methods.table import label
 from symgen.report.content import ReportInput
 from symgen.report.terminal import render_text_math
 
@@ -59,9 +60,17 @@ def quantity_text(report: ReportInput, quantity: str) -> str:
 
 def forms_text(quantity: str, form: MethodChoice) -> str:
     """The forms of a quantity: which is taken, what each costs by count, and why it is valid or where it is not."""
-    entries = [f"{name} ({weight}){', taken' * (name == form.way)}: {remark}" for name, weight, remark in form.others]
+    entries = [
+        f"{', '.join((f'{name} ({weight})', *_marks(quantity, name, form)))}: {remark}"
+        for name, weight, remark in form.others
+    ]
     option = "--form" if quantity == "inverse_dynamics" else f"--form {quantity}=NAME"
     return "\n".join(_section(f"forms of {quantity} (counted cost; choose one with {option})", entries))
+
+
+def _marks(quantity: str, name: str, form: MethodChoice) -> list[str]:
+    """Whether a form is taken, and what it is for where symgen does not choose it."""
+    return [mark for mark in ("taken" * (name == form.way), label(quantity, name)) if mark]
 
 
 def _singular(report: ReportInput) -> list[str]:

@@ -26,8 +26,14 @@ class Use(IntEnum):
     """Where verification rejects what was chosen."""
     LAST = 2
     """Where verification rejects all others."""
-    COMPARISON = 3
-    """Never."""
+    ASKED = 3
+    """By its name alone: without one it comes along the null space of several quantities."""
+    COMPARISON = 4
+    """By its name alone, to be compared with what is chosen."""
+
+
+# What readers of names are told of a use.
+_LABELS = {Use.LAST: "for comparison and as last resort", Use.COMPARISON: "for comparison"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,18 +67,18 @@ METHODS: tuple[MethodRow, ...] = (
     _method("nullspace", _U, "inverse_dynamics.nullspace", "NULLSPACE"),
     _method("householder", _U, "inverse_dynamics.along_spaces", "HOUSEHOLDER"),
     _method("printed", _U, "comparisons.printed", "PRINTED", Use.COMPARISON),
+    _method("printed_fixed", _U, "comparisons.printed", "PRINTED_FIXED", Use.COMPARISON),
     _method("weighted", _U, "comparisons.weighted", "WEIGHTED", Use.COMPARISON),
     _method("kkt", _U, "comparisons.weighted", "KKT", Use.COMPARISON),
     _method("minor", _MOTION, "forward_dynamics.along_spaces", "MINOR"),
     _method("schur_qr", _MOTION, "forward_dynamics.along_spaces", "SCHUR_QR"),
-    _method("schur_ldl", _MOTION, "comparisons.motions", "SCHUR_LDL", Use.LAST),
     _method("nullspace", _MOTION, "forward_dynamics.along_spaces", "NULLSPACE"),
-    _method("shifted", _MOTION, "comparisons.motions", "SHIFTED", Use.LAST),
+    _method("shifted", _MOTION, "forward_dynamics.shifted", "SHIFTED", Use.LAST),
     _method("kkt", _MOTION, "comparisons.motions", "KKT", Use.LAST),
     _method("articulated", _MOTION, "forward_dynamics.articulated", "ARTICULATED"),
     _method("articulated_refined", _MOTION, "forward_dynamics.articulated", "REFINED", Use.SPARE),
-    _method("minor", _PROJECTOR, "projector", "MINOR", Use.COMPARISON),
-    _method("householder", _PROJECTOR, "projector", "HOUSEHOLDER", Use.COMPARISON),
+    _method("minor", _PROJECTOR, "projector", "MINOR", Use.ASKED),
+    _method("householder", _PROJECTOR, "projector", "HOUSEHOLDER", Use.ASKED),
     _method("schur_qr", _WEIGHTED, "forward_dynamics.weighted_projection", "SCHUR_QR", Use.SPARE),
     _method("articulated", _WEIGHTED, "forward_dynamics.weighted_projection", "ARTICULATED", Use.SPARE),
 )
@@ -88,3 +94,9 @@ def methods(quantity: str, most: Use = Use.COMPARISON) -> tuple[MethodRow, ...]:
 def method(quantity: str, name: str) -> Method:
     """The method of a quantity by its name."""
     return next(row for row in METHODS if quantity in row.quantities and row.name == name).load()
+
+
+def label(quantity: str, name: str) -> str:
+    """What a reader of the name has to know of its use; empty where that is nothing, or there is no such row."""
+    uses = (row.use for row in METHODS if quantity in row.quantities and row.name == name)
+    return next((_LABELS.get(use, "") for use in uses), "")

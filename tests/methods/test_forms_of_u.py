@@ -18,7 +18,7 @@ from symgen.verify.tolerance import FACTOR, expectations
 
 STATES = 8
 # They form B B^T, M~^T M~ or B S^-1 B^T, whose condition is the square of B's (theory 3.3).
-SQUARING = {"printed", "weighted", "kkt"}
+SQUARING = {"printed", "printed_fixed", "weighted", "kkt"}
 SQUARED = 100
 DRIVEN = [name for name in NAMES if model(name).inputs]
 
@@ -42,8 +42,8 @@ def worst_errors(given: Model, forms: dict[str, dict[Scalar, Program]], scalar: 
             program = by_scalar[scalar]
             parameters = tuple(map(float, state.parameters))
             status, u = Interpreter(program.sincos, scalar).run(program.kernels[0], parts, parameters)
-            # a basis from chosen coordinates may fail at a regular state
-            assert status == Status.OK or form == "nullspace", f"{form}: {status.name}"
+            # a basis from chosen coordinates may fail at a regular state, and so may chosen inputs
+            assert status == Status.OK or form in ("nullspace", "printed_fixed"), f"{form}: {status.name}"
             if status == Status.OK:
                 units = expected["inverse_dynamics"].in_units(expected["inverse_dynamics"].distance(u))
                 worst[form] = max(worst[form], units)

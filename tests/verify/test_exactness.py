@@ -52,7 +52,7 @@ def kernel_of(model: Model, quantity: str, form: str) -> Kernel:
     [
         ("cranks", "schur_qr"),
         ("cranks", "nullspace"),
-        ("gears", "schur_ldl"),
+        ("gears", "schur_qr"),
         ("gears", "nullspace"),
         ("gears", "kkt"),
     ],

@@ -1,1 +1,1 @@
-"""Published methods, long or less accurate: to be compared with, and where verification rejects all others, taken."""
+"""Methods to be compared with, longer or less accurate than those that are chosen: (27) with (28), (18), KKT."""

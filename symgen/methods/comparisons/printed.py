@@ -1,7 +1,7 @@
 """The published formulas (27) and (28): N_B from (B B^T)^-1, M~^+ from delta columns of M~ chosen anew at every state.
 
 The switching of Sec. 5.4 is arithmetic: the weight of a choice is (1 + sign(d - d')) / 2, so that the columns of the
-choice with the largest det M~_1^T M~_1 are the ones that count, without a branch.  With `fixed` one choice is used
+choice with the largest det M~_1^T M~_1 are the ones that count, without a branch.  Without switching one choice is used
 everywhere: the formula as it stands in the paper, singular where its columns become dependent.
 """
 
@@ -17,9 +17,11 @@ from symgen.ir.kernel import Status
 from symgen.linear_algebra.constrained_inverse import Cholesky, diagonal_sizes
 from symgen.linear_algebra.exterior import square, unit, wedge_all
 from symgen.linear_algebra.guards import Guard
+from symgen.mechanics.genericity import configurations
 from symgen.methods.admission import OfInputs
 from symgen.methods.method import Candidate, Method, solved_for_u
 from symgen.methods.system import MethodInput
+from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.matrix import Matrix, Vector, dot, identity, matvec
 from symgen.symbolic.scalar import Graph, Scalar
 
@@ -56,6 +58,27 @@ def printed_form(system: MethodInput, fixed: Sequence[int] | None = None) -> Can
     rank = (Guard(Status.ACTUATION_RANK, largest, 2, guards, scale, delta),) if m > delta else ()
     kept = (*guards, *rank, *own)
     return solved_for_u(system, u, kept)
+
+
+def fixed_form(system: MethodInput) -> Candidate | str:
+    """The same without switching: with the choice of inputs that is best at the configuration of the file.
+
+    It fails at regular states, where the inputs that are chosen no longer span the motions.
+    """
+    reason = system.driven or system.regular
+    if reason is not None:
+        return reason
+    mechanics, generic = system.mechanics, system.generic
+    choices = list(combinations(range(generic.m), generic.delta))
+    if len(choices) == 1:
+        return "there is one choice of inputs, which `printed` takes"
+    if len(choices) > MOST_PARTITIONS:
+        return f"there are {len(choices)} choices of inputs"
+    project, _ = _projection(mechanics.graph, mechanics.constraint_jacobian)
+    columns = [project(column) for column in mechanics.inputs]
+    sizes = Evaluator([_determinant(mechanics.graph, columns, chosen) for chosen in choices])
+    (start,) = configurations(mechanics, 1)
+    return printed_form(system, max(zip(sizes(start), choices, strict=True))[1])
 
 
 def _projection(graph: Graph, b: Matrix) -> tuple[Projection, tuple[Guard, ...]]:
@@ -121,3 +144,4 @@ def _inverse(
 
 
 PRINTED: Method = OfInputs(lambda workspace: printed_form(workspace.fresh()))
+PRINTED_FIXED: Method = OfInputs(lambda workspace: fixed_form(workspace.fresh()))

@@ -104,6 +104,17 @@ def _nullspace(derivation: Derivation) -> Motion:
     return replace(made, multipliers=completed(made.multipliers))
 
 
+def along_space(solved: Callable[[Problem, NullSpace], Motion]) -> Callable[[Derivation], Motion]:
+    """What is solved along a null space, with the multipliers of rows that hold lengths."""
+
+    def made(derivation: Derivation) -> Motion:
+        completed = completed_multipliers(derivation.mechanics)
+        found = solved(Problem(derivation.mechanics, derivation.space.guards), derivation.space)
+        return replace(found, multipliers=completed(found.multipliers))
+
+    return made
+
+
 def nullspace(problem: Problem, space: NullSpace, inertia: ConstrainedInertia) -> Motion:
     """q_ddot = K (f + G B^+ a) - B^+ a, lambda = (B^+)^T (f - G q_ddot), with one step of refinement.
 

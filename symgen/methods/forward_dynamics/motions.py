@@ -37,7 +37,6 @@ MINOR_WORTH = Fraction(1, 4)
 # What errors that act like turns of joints are worth in operations.
 STRUCTURED_WORTH = Fraction(1, 20)
 BY_FRAMES = "articulated"
-SQUARED = "; it loses digits with the square of the condition of B"
 STRUCTURED = "its pivots are inertias met along the joints, positive where G is definite, and those of B"
 BY_BODIES_ALONE = "it is for bodies alone with one frame for each coordinate and definite G"
 POSITIVE = "its pivots are those of G, which is positive definite everywhere, and those of B"

@@ -19,8 +19,8 @@ CAPTIONS = {
 }
 ORDER = tuple(CAPTIONS)
 FORM_NAMES = (
-    *("minor", "nullspace", "elimination", "householder", "printed", "weighted", "kkt"),  # some not of u alone
-    *("schur_qr", "schur_ldl", "shifted", "articulated"),
+    *("minor", "nullspace", "elimination", "householder", "printed", "printed_fixed"),  # some not of u alone
+    *("weighted", "kkt", "schur_qr", "shifted", "articulated"),
 )
 FORMS = (
     *("(9) fixed partition", "(27)+(28) fixed", "(27)+(28) switching", "symgen"),
