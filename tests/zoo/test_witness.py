@@ -437,3 +437,17 @@ ranges: {x: [-0.1, 0.1], y: [-0.3, 0.3]}
     found, _ = walker.states({}, 20)
     assert 0 < len(found) < 20
     assert walker.lack == states.LOST_STEPS
+
+
+def test_the_only_input_may_move_nothing() -> None:
+    """A force along the lever that it pulls at: what rounding leaves of its moment is no direction."""
+    text = """model: lever
+gravity: [0, -9.81, 0]
+joints: {hinge: {type: revolute, axis: z, child: lever, coordinate: a}}
+bodies: {lever: {mass: 2, com: [0.7, 0, 0], inertia: {zz: 0.1}}}
+points: {end: {frame: lever, at: [1.3, 0, 0]}}
+inputs: {pull: {point: end, direction: [1, 0, 0], axes: lever}}
+"""
+    witness = Witness(text, {"a": 2.66})
+    _, ranks = witness.walker().states(witness.defaults(), 5)
+    assert ranks.actuation == 0

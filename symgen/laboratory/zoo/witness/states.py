@@ -62,7 +62,7 @@ class Walker:
         self._floats = Floats()
         self._balls = Balls()
         self._ranges = system.blocks.get("ranges") or {}
-        self._voids: frozenset[int] | None = None
+        self._voids: tuple[frozenset[int], frozenset[int]] | None = None
         self.lack = ""
 
     def states(self, parameters: Mapping[str, float], count: int) -> tuple[list[FloatState], GenericRanks]:
@@ -184,24 +184,27 @@ class Walker:
         rates = qd if qd is not None else [0.0] * len(q)
         values = {**parameters, **dict(zip(self._system.coordinates, map(float, q), strict=True))}
         values |= dict(zip(self._system.rate_names, map(float, rates), strict=True))
-        at, void = self._evaluate(values, self._floats), self._void(parameters)
+        at, (void, idle) = self._evaluate(values, self._floats), self._void(parameters)
         rows = [[0.0] * at.n if i in void else row for i, row in enumerate(at.rows)]
         residual = [0.0 if i in void else x for i, x in enumerate(at.residual)]
-        return replace(at, rows=rows, residual=residual)
+        control = [[0.0 if k in idle else x for k, x in enumerate(row)] for row in at.control]
+        return replace(at, rows=rows, residual=residual, control=control)
 
-    def _void(self, parameters: Mapping[str, float]) -> frozenset[int]:
-        """The rows that are 0 beside V, too: what rounding leaves of one in small units is longer than another row."""
+    def _void(self, parameters: Mapping[str, float]) -> tuple[frozenset[int], frozenset[int]]:
+        """The rows, and the inputs, that are 0 beside V, too: what rounding leaves of one in small units is longer than
+        another row, and of the only input it is all there is."""
         if self._voids is None:
             number, names = self._balls.number, self._system.coordinates
-            found = set(range(len(self._system.rows)))
+            rows, inputs = set(range(len(self._system.rows))), set(range(len(self._system.inputs)))
             with precision():
                 fixed = {name: number(Fraction(value)) for name, value in parameters.items()}
                 fixed |= dict.fromkeys(self._system.rate_names, number(Fraction(0)))
                 for aside in ASIDE:
                     exact = [number(Fraction(float(x)) + (1 + k) * aside) for k, x in enumerate(self._start)]
                     at = self._evaluate({**fixed, **dict(zip(names, exact, strict=True))}, self._balls)
-                    found = {i for i in found if all(x.is_finite() and x.contains(0) for x in at.rows[i])}
-            self._voids = frozenset(found)
+                    rows = {i for i in rows if all(map(_is_nothing, at.rows[i]))}
+                    inputs = {k for k in inputs if all(_is_nothing(row[k]) for row in at.control)}
+            self._voids = frozenset(rows), frozenset(inputs)
         return self._voids
 
     def closed(self, q: Any, parameters: Mapping[str, float]) -> Any:
@@ -291,6 +294,10 @@ class Walker:
             return np.linalg.pinv(np.array(rows), rcond=SAME)
         left, values, right = np.linalg.svd(np.array(rows), full_matrices=False)
         return right[:rank].T @ (left[:, :rank] / values[:rank]).T
+
+
+def _is_nothing(ball: Any) -> bool:
+    return bool(ball.is_finite() and ball.contains(0))
 
 
 def normalized(rows: Any) -> Any:
