@@ -21,7 +21,7 @@
  *   u[6] u_7 [N*m] torque at joint 7
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics     380    382      0      0      6      0
+ * inverse_dynamics     348    359      0      0      6      0
  * forward_dynamics     800    858     32      0      6      0
  * singularity            0      0      0      0      0      0
  * (changes of sign are not counted)
