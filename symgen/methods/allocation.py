@@ -21,8 +21,8 @@ from symgen.symbolic.scalar import Graph, Scalar
 
 # Below this an input takes no part in the internal force; quotients by it are finite in float32, too.
 NO_PART = Fraction(1, 10**30)
-# A share of the internal force that no limits reach, with quotients by what takes no part; finite in float32, too.
-NO_LIMIT = Fraction(10**38)
+# A share of the internal force that no limits reach; float32 takes it apart into two halves, too.
+NO_LIMIT = Fraction(10**30)
 
 
 class InputAllocation:
@@ -99,10 +99,11 @@ class InputAllocation:
         """The shares s with lower <= u + s z <= upper: all of them for an input that takes no part."""
         graph = self._graph
         size = graph.function("abs", (z,))
-        reciprocal = 1 / graph.function("copysign", (_larger(graph, size, graph.const(NO_PART)), z))
-        ends = [(graph.symbol(limit) - u) * reciprocal for limit in (lower, upper)]
         lacking = _larger(graph, graph.const(NO_PART) - size, graph.zero)
-        beyond = graph.function("ratio_or_zero", (lacking, lacking)) * NO_LIMIT
+        apart = graph.function("ratio_or_zero", (lacking, lacking))
+        reciprocal = (1 - apart) / graph.function("copysign", (_larger(graph, size, graph.const(NO_PART)), z))
+        ends = [(graph.symbol(limit) - u) * reciprocal for limit in (lower, upper)]
+        beyond = apart * NO_LIMIT
         return _smaller(graph, *ends) - beyond, _larger(graph, *ends) + beyond
 
 

@@ -13,7 +13,9 @@ from laws_harness import System
 
 from symgen.backends.c.plain import emit_c
 from symgen.backends.python.module import emit_python
-from symgen.ir.kernel import Status
+from symgen.ir.kernel import Scalar, Status
+from symgen.ir.wide import widened
+from symgen.verify.interpreted import outcomes
 from symgen.verify.reference.reference import State
 
 BARE = """\
@@ -35,6 +37,21 @@ def test_header_and_module_say_how_inputs_are_shared() -> None:
     assert "double weight_left; /* weight of left in the norm of the inputs; default 2.0 */" in header
     assert "double limit_right_lower; /* lower limit of right; default -1.0 */" in header
     assert "    preload: float = 0.5  # preload, internal force" in module
+
+
+@pytest.mark.parametrize("scalar", ["float64", "float32"])
+def test_limits_work_with_twice_the_digits(scalar: Scalar) -> None:
+    """What no limit reaches is taken apart into halves, which 1e38 has none of in float32."""
+    made = System(BARE + BLOCK, ("inverse_dynamics",))
+    program = made.program()
+    state = State((0.5,), (0.25,), (3.0,), (), (2.0, 0.5, -1.0, 3.0))
+    plain, pairs = (
+        outcomes(kernel, program.sincos, scalar, [state])[0]
+        for kernel in (program.kernels[0], widened(program.kernels[0], scalar))
+    )
+    assert plain.valid
+    assert pairs.valid
+    assert pairs.entries == pytest.approx(plain.entries, rel=1e-6)
 
 
 @pytest.mark.toolchain
