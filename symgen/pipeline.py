@@ -19,7 +19,7 @@ from symgen.backends.literals import LiteralRangeError, check_literals
 from symgen.backends.operations import count_operations
 from symgen.diagnostics import ModelError
 from symgen.generation.draft import Draft, draft_of
-from symgen.generation.facts import facts, invalid_forms
+from symgen.generation.facts import facts, invalid_methods
 from symgen.generation.files import backend_of, files_of, sources_of, verified
 from symgen.generation.notices import notices
 from symgen.generation.refusals import beyond_range
@@ -53,7 +53,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
     """All files of one model, verified unless told otherwise.
 
     Closed forms and report are worked out in a process of their own, while this one derives, prints and verifies.
-    What verification rejects takes the next valid way, or is left out where none passes.  Raises ModelError for
+    What verification rejects takes the next valid method, or is left out where none passes.  Raises ModelError for
     mistakes in the file and WrongUseError for outputs that do not exist; verification failures come back in the result.
     """
     progress("reading the model")
@@ -109,7 +109,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
                 with _literals_in_range(path):
                     files = files_of(draft, options, sources)
                 return _finished(path, draft, options, files, certificate, reporting, progress)
-        # again: with other ways for what was rejected, or in the end without these quantities
+        # again: by other methods for what was rejected, or in the end without these quantities
         draft = other
         if not draft.program.kernels:
             return _result(draft, options, {}, replace(certificate, left_out=draft.left_out))
@@ -229,7 +229,7 @@ def _result(
 
 
 def _summary(draft: Draft, certificate: Certificate | None) -> Summary:
-    generic, form = draft.derivations.generic, draft.derivations.form
+    generic, of_u = draft.derivations.generic, draft.derivations.method_of_u
     summary = Summary(
         n=generic.n,
         r=generic.r,
@@ -237,7 +237,7 @@ def _summary(draft: Draft, certificate: Certificate | None) -> Summary:
         m=generic.m,
         skipped=(
             *((decision.what, decision.why) for decision in draft.structure.decisions),
-            *invalid_forms(draft.derivations, () if form is None else form.failed),
+            *invalid_methods(draft.derivations, () if of_u is None else of_u.failed),
         ),
         operations=tuple((k.name, count_operations(k.statements).total) for k in draft.program.kernels),
     )

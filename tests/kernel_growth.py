@@ -11,7 +11,7 @@ Counts = Mapping[str, int]
 def growth(kernel: str, baseline: Counts, counted: Counts) -> list[str]:
     """What grew, one line for each kind of operation that did, if the kernel costs more in all; [] otherwise.
 
-    A sine and cosine pair weighs 30 products, a quotient or root 6, another function 60, as in the choice of forms.
+    A sine and cosine pair weighs 30 products, a quotient or root 6, another function 60, as in the choice of methods.
     """
     weights = {"add": 1, "mul": 1, "div": 6, "sqrt": 6, "sincos": 30, "other": 60}
     before, now = (sum(weights[kind] * number for kind, number in one.items()) for one in (baseline, counted))

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NoReturn
 
-from symgen.generation.results import ALL_PARTS, AUTO, DEFAULT_STATES, FORMS, TRIG
+from symgen.generation.results import ALL_PARTS, AUTO, DEFAULT_STATES, NAMED_METHODS, TRIG
 from symgen.methods.table import label
 from symgen.model.expressions.names import did_you_mean, nearest
 
@@ -65,7 +65,7 @@ def add_generation(parser: argparse.ArgumentParser) -> None:
         default=DEFAULT_STATES,
         help=f"states to verify (default: {DEFAULT_STATES})",
     )
-    add_form(parser)
+    add_method(parser)
     parser.add_argument(
         "--trig",
         choices=TRIG,
@@ -75,46 +75,46 @@ def add_generation(parser: argparse.ArgumentParser) -> None:
     add_quiet(parser)
 
 
-def add_form(parser: argparse.ArgumentParser) -> None:
+def add_method(parser: argparse.ArgumentParser) -> None:
     """--form, once for each quantity."""
     parser.add_argument(
         "--form",
-        metavar="[QUANTITY=]FORM",
-        type=form_of,
+        metavar="[QUANTITY=]METHOD",
+        type=method_of,
         action="append",
         default=[],
-        dest="forms",
+        dest="methods",
         help="how a quantity is computed: "
-        + "; ".join(f"{quantity}={_offered(quantity)}" for quantity in FORMS)
+        + "; ".join(f"{quantity}={_offered(quantity)}" for quantity in NAMED_METHODS)
         + f"; {AUTO}: the cheapest valid at every regular state (default); without QUANTITY: {USUAL}; repeatable",
     )
 
 
 def _offered(quantity: str) -> str:
-    """The forms of a quantity by name; those of a use that has to be told stand together behind it."""
+    """The methods of a quantity by name; those of a use that has to be told stand together behind it."""
     by_label: dict[str, list[str]] = {}
-    for form in FORMS[quantity]:
-        by_label.setdefault(label(quantity, form), []).append(form)
-    return ", ".join(f"{told} {'|'.join(forms)}".lstrip() for told, forms in by_label.items())
+    for method in NAMED_METHODS[quantity]:
+        by_label.setdefault(label(quantity, method), []).append(method)
+    return ", ".join(f"{told} {'|'.join(methods)}".lstrip() for told, methods in by_label.items())
 
 
-def form_of(text: str) -> tuple[str, str]:
-    """`schur_qr` of `multipliers=schur_qr` with its quantity; a form alone is one of the inverse dynamics."""
-    quantity, given, form = text.rpartition("=")
+def method_of(text: str) -> tuple[str, str]:
+    """`schur_qr` of `multipliers=schur_qr` with its quantity; a method alone is one of the inverse dynamics."""
+    quantity, given, method = text.rpartition("=")
     quantity = quantity if given else USUAL
-    if quantity not in FORMS:
-        remedy = did_you_mean(quantity, [*FORMS], f"those that have forms are {', '.join(FORMS)}")
-        raise argparse.ArgumentTypeError(f"{quantity!r} has no forms; {remedy}")
-    form = FORMER.get((quantity, form), form)
-    if form != AUTO and form not in FORMS[quantity]:
-        choices = ", ".join((AUTO, *FORMS[quantity]))
-        raise argparse.ArgumentTypeError(f"{form!r} is no form of {quantity}: choose from {choices}")
-    return quantity, form
+    if quantity not in NAMED_METHODS:
+        remedy = did_you_mean(quantity, [*NAMED_METHODS], f"those that have methods are {', '.join(NAMED_METHODS)}")
+        raise argparse.ArgumentTypeError(f"{quantity!r} has no methods; {remedy}")
+    method = FORMER.get((quantity, method), method)
+    if method != AUTO and method not in NAMED_METHODS[quantity]:
+        choices = ", ".join((AUTO, *NAMED_METHODS[quantity]))
+        raise argparse.ArgumentTypeError(f"{method!r} is no method of {quantity}: choose from {choices}")
+    return quantity, method
 
 
-def chosen_forms(given: Sequence[tuple[str, str]]) -> dict[str, str]:
+def chosen_methods(given: Sequence[tuple[str, str]]) -> dict[str, str]:
     """By quantity what was asked for last."""
-    return {quantity: form for quantity, form in dict(given).items() if form != AUTO}
+    return {quantity: method for quantity, method in dict(given).items() if method != AUTO}
 
 
 def names(text: str) -> tuple[str, ...]:

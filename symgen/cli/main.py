@@ -12,7 +12,16 @@ from io import StringIO, TextIOWrapper
 from pathlib import Path
 
 from symgen import __version__
-from symgen.cli.arguments import add_form, add_generation, add_models, add_out, chosen_forms, make_parser, names, parts
+from symgen.cli.arguments import (
+    add_generation,
+    add_method,
+    add_models,
+    add_out,
+    chosen_methods,
+    make_parser,
+    names,
+    parts,
+)
 from symgen.cli.measuring import bench, simulate, stress, target
 from symgen.cli.outcome import DONE, MODEL_WRONG, WRONG_USE, check_present, guarded
 from symgen.cli.signals import EndedError, signals_end_the_run
@@ -151,7 +160,7 @@ def _generate(arguments: list[str]) -> int:
         parts=given.only,
         verify=given.verify and not given.check and given.recorded is None,
         states=given.states,
-        forms=chosen_forms(given.forms),
+        methods=chosen_methods(given.methods),
         trig=given.trig,
         measured=given.recorded or given.out,
         as_recorded=given.check or given.recorded is not None,
@@ -173,7 +182,8 @@ def _verify(arguments: list[str]) -> int:
     if find_compiler() is None:
         raise WrongUseError("no C compiler was found: install gcc or clang, or name one in CC")
     recover_folders(given.out)
-    options = Options(parts=("c", "python"), states=given.states, forms=chosen_forms(given.forms), trig=given.trig)
+    methods = chosen_methods(given.methods)
+    options = Options(parts=("c", "python"), states=given.states, methods=methods, trig=given.trig)
     return _each_model(
         given.models, options, given.quiet, lambda result: _write_certificate(result, given.out, given.quiet)
     )
@@ -183,7 +193,7 @@ def _explain(arguments: list[str]) -> int:
     parser = make_parser("symgen explain", "Closed forms, structure, and what is skipped and why.")
     parser.add_argument("model", metavar="MODEL.yaml", type=Path, help="model file")
     parser.add_argument("quantity", metavar="QUANTITY", nargs="?", help="one quantity (default: an overview)")
-    add_form(parser)
+    add_method(parser)
     add_out(parser, "takes what verification led to from DIR/<model>/ (default: generated)")
     given = parser.parse_args(arguments)
 
@@ -193,7 +203,7 @@ def _explain(arguments: list[str]) -> int:
         from symgen.generation.explain import explain
 
         progress = Progress(given.model.stem, quiet=not sys.stderr.isatty())
-        text = explain(given.model, given.quantity, progress, chosen_forms(given.forms), given.out)
+        text = explain(given.model, given.quantity, progress, chosen_methods(given.methods), given.out)
         progress.done()
         print(text)
         return DONE
@@ -266,8 +276,9 @@ def _each_model(models: Sequence[Path], options: Options, quiet: bool, finish: C
 def _print_left_out(path: Path, result: Result) -> None:
     for one in result.left_out:
         types = " and ".join(one.scalars)
-        print(f"{path}: {one.quantity} is left out in {types}: verification rejects every way of it", file=sys.stderr)
-        print(*(f"  {way}: {why}" for way, why in one.tried), f"  remedy: {one.remedy}", sep="\n", file=sys.stderr)
+        print(f"{path}: {one.quantity} is left out in {types}: verification rejects every method", file=sys.stderr)
+        tried = (f"  {method}: {why}" for method, why in one.tried)
+        print(*tried, f"  remedy: {one.remedy}", sep="\n", file=sys.stderr)
 
 
 def _write_files(result: Result, out: Path, quiet: bool) -> int:

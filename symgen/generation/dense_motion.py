@@ -17,7 +17,7 @@ LONG_MOTION = 3000
 
 def dense_motions(draft: Draft, options: Options) -> tuple[Notice, ...]:
     """A notice for long kernels that factor the whole mass matrix: what they cost, why, and what would change it."""
-    # of what works with pairs of numbers the steps: it is the form that is long
+    # of what works with pairs of numbers the steps: it is the method that is long
     counts = {
         kernel.name: len(kernel.statements)
         if works_with_pairs(kernel)
@@ -25,9 +25,9 @@ def dense_motions(draft: Draft, options: Options) -> tuple[Notice, ...]:
         for kernel in draft.program.kernels
     }
     choices = [choice for choice in draft.derivations.choices if choice.quantity in MOTIONS]
-    # articulated inertias that were counted and lost are no loss, and a form that was asked for is what was wanted
-    dense = [c for c in choices if c.form != BY_FRAMES and ARTICULATED not in dict(c.costs)]
-    names = [c.quantity for c in dense if c.quantity not in options.forms]
+    # articulated inertias that were counted and lost are no loss, and a method that was asked for is what was wanted
+    dense = [c for c in choices if c.method != BY_FRAMES and ARTICULATED not in dict(c.costs)]
+    names = [c.quantity for c in dense if c.quantity not in options.methods]
     long = [name for name in names if counts.get(name, 0) > LONG_MOTION]
     if not long or not draft.model.mechanism.has_mass:
         return ()

@@ -17,21 +17,22 @@ from symgen.ir.given_trig import given_trig
 from symgen.ir.kernel import Kernel
 from symgen.ir.prepare import prepare
 from symgen.methods.selection import MethodChoice
+from symgen.quantities.select import Rejection
 
 
 def derivation_json(draft: Draft) -> str:
     """The file's text; keys in a fixed order.  What is counted is that of float64, with the checks of bounds."""
     model, derivations, structure, program = draft.model, draft.derivations, draft.structure, draft.written["float64"]
     generic = derivations.generic
-    ways = {choice.quantity: choice for choice in derivations.choices}
+    choices = {choice.quantity: choice for choice in derivations.choices}
     rejected, left_out = derivations.rejected, derivations.left_out
     kernels: dict[str, Any] = {}
     for kernel in program.kernels:
-        choice = ways[kernel.name]
+        choice = choices[kernel.name]
         kernels[kernel.name] = {
             "shape": list(kernel.shape),
-            "way": choice.way,
-            **({"form": choice.form} if choice.form else {}),
+            "way": choice.title,
+            **({"form": choice.method} if choice.method else {}),
             **({"twice_the_digits": list(choice.wide)} if choice.wide else {}),
             **_bounds(draft, kernel.name),
             "counted_cost": dict(choice.costs),
@@ -73,11 +74,11 @@ def derivation_json(draft: Draft) -> str:
         "dependent_rows": list(structure.dependent_rows),
         "skipped": [{"what": d.what, "why": d.why} for d in structure.decisions],
         "absent": [{"quantity": name, "why": why} for name, why in derivations.absent],
-        **({"rejected": [{"quantity": r.quantity, "way": r.way, "why": r.why} for r in rejected]} if rejected else {}),
+        **({"rejected": [_rejection(one) for one in rejected]} if rejected else {}),
         **({"left_out": [{"quantity": name, "scalars": list(types)} for name, types in left_out]} if left_out else {}),
         "sine_and_cosine": "libm" if program.sincos is None else "portable",
-        "form_of_inverse_dynamics": _form(derivations.form),
-        **{f"form_of_{quantity}": _form(form) for quantity, form in derivations.named},
+        "form_of_inverse_dynamics": _method(derivations.method_of_u),
+        **{f"form_of_{quantity}": _method(one) for quantity, one in derivations.named},
         "kernels": kernels,
     }
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
@@ -94,16 +95,20 @@ def _ends(bound: Bound) -> list[float | None]:
     return [None if end is None else float(end) for end in (bound.low, bound.high)]
 
 
-def _form(form: MethodChoice | None) -> dict[str, Any] | None:
-    """A quantity's form: whether it is valid at every regular state, why or where not, and what is known of others."""
-    if form is None:
+def _rejection(one: Rejection) -> dict[str, str]:
+    return {"quantity": one.quantity, "way": one.method, "why": one.why}
+
+
+def _method(one: MethodChoice | None) -> dict[str, Any] | None:
+    """A quantity's method: whether it is valid at every regular state, why or where not, and what others are known."""
+    if one is None:
         return None
     return {
-        "name": form.way,
-        "valid_at_every_regular_state": form.validity.admitted,
-        "because": form.validity.explanation,
-        "singular": [{"where_zero": s.where_zero, "for_example": dict(s.state)} for s in form.validity.singular],
-        "forms": [{"name": name, "counted_cost": weight, "remark": remark} for name, weight, remark in form.others],
+        "name": one.name,
+        "valid_at_every_regular_state": one.validity.admitted,
+        "because": one.validity.explanation,
+        "singular": [{"where_zero": s.where_zero, "for_example": dict(s.state)} for s in one.validity.singular],
+        "forms": [{"name": name, "counted_cost": weight, "remark": remark} for name, weight, remark in one.others],
     }
 
 

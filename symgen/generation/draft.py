@@ -15,7 +15,7 @@ from symgen.mechanics.structure import Structure, analyse
 from symgen.model.checks.signs import nonnegative_parameters, positive_parameters
 from symgen.model.model import Model
 from symgen.quantities.alternatives import Alternative
-from symgen.quantities.select import Choice, NoSuchFormError, Rejection, Selection, derive_quantities
+from symgen.quantities.select import Choice, NoSuchMethodError, Rejection, Selection, derive_quantities
 from symgen.records import dataclass
 from symgen.runtime.activity import working
 
@@ -27,7 +27,7 @@ REJECTED = "verification rejects it"
 
 @dataclass(frozen=True, slots=True)
 class Draft:
-    """The derived quantities of a model and their kernels; `left_out` is what verification rejects in every way.
+    """The derived quantities of a model and their kernels; `left_out` is what verification rejects by every method.
 
     `bounds` are those of parameters by type and quantity, which `written` programs check.  `notice` says why it does
     not hold what an earlier verification led to, where that was asked for.
@@ -58,7 +58,8 @@ class Draft:
     def notes(self) -> tuple[str, ...]:
         """What is to be told of a draft that is not verified again: its notice, and what was left out before."""
         left_out = self.derivations.left_out
-        notices = (f"{name} is left out in {' and '.join(types)}: {REJECTED} in every way" for name, types in left_out)
+        every = f"{REJECTED} by every method"
+        notices = (f"{name} is left out in {' and '.join(types)}: {every}" for name, types in left_out)
         return (*((self.notice,) if self.notice else ()), *notices)
 
     @property
@@ -67,21 +68,21 @@ class Draft:
         return self.programs["float64"]
 
     def choice(self, quantity: str) -> Choice:
-        """The way a quantity takes."""
+        """The candidate a quantity takes."""
         return next(choice for choice in self.derivations.choices if choice.quantity == quantity)
 
-    def way(self, quantity: str) -> str:
-        """The way a quantity takes, and its form where that says more."""
+    def method(self, quantity: str) -> str:
+        """The method a quantity takes, and along which null space."""
         choice = self.choice(quantity)
-        way = f"{choice.form} along {choice.way}" if choice.form not in ("", choice.way) else choice.way
-        return way + choice.digits
+        own = choice.method not in ("", choice.title)
+        return (f"{choice.method} along {choice.title}" if own else choice.title) + choice.digits
 
     def taken(self, quantity: str) -> Alternative:
-        """The way a quantity takes, as it stands."""
+        """The alternative a quantity takes, as it stands."""
         derivations = self.derivations
         derived = next(one for one in derivations.quantities if one.name == quantity)
-        form = derivations.form if quantity == "inverse_dynamics" else dict(derivations.named).get(quantity)
-        return Alternative(self.choice(quantity), derivations.mechanics, derived, form)
+        known = derivations.method_of_u if quantity == "inverse_dynamics" else dict(derivations.named).get(quantity)
+        return Alternative(self.choice(quantity), derivations.mechanics, derived, known)
 
     def kernels(self, quantity: str) -> dict[Scalar, Kernel]:
         """The kernels of a quantity by scalar type."""
@@ -89,7 +90,7 @@ class Draft:
         return {scalar: kernel for scalar, kernel in found if kernel.name == quantity}
 
     def kernels_along(self, alternative: Alternative, scalars: Sequence[Scalar]) -> dict[Scalar, Kernel]:
-        """The kernels of a quantity along another way."""
+        """The kernels of a quantity by another method."""
         wide = set(alternative.choice.wide).intersection(scalars)
         # thresholds of pairs of float32 lie between those of both types
         made = tuple(dict.fromkeys((*scalars, "float64"))) if wide else scalars
@@ -107,20 +108,20 @@ class Draft:
         return {scalar: widened(one, scalar) if scalar in wide else one for scalar, one in found.items()}
 
     def along(self, alternative: Alternative, kernels: Mapping[Scalar, Kernel]) -> Draft:
-        """The draft with a quantity along another way, by kernels of `kernels_along`."""
+        """The draft with a quantity by another method, by kernels of `kernels_along`."""
         name, derivations = alternative.choice.quantity, self.derivations
-        form, named = derivations.form, dict(derivations.named)
-        if alternative.form is not None and name == "inverse_dynamics":
-            form = alternative.form
-        elif alternative.form is not None:
-            named[name] = alternative.form
+        of_u, named = derivations.method_of_u, dict(derivations.named)
+        if alternative.known is not None and name == "inverse_dynamics":
+            of_u = alternative.known
+        elif alternative.known is not None:
+            named[name] = alternative.known
         else:
             named.pop(name, None)
         derivations = replace(
             derivations,
             quantities=tuple(alternative.derived if q.name == name else q for q in derivations.quantities),
             choices=tuple(alternative.choice if c.quantity == name else c for c in derivations.choices),
-            form=form,
+            method_of_u=of_u,
             named=tuple(named.items()),
         )
         programs = {}
@@ -147,21 +148,21 @@ class Draft:
             quantities=tuple(q for q in derivations.quantities if q.name != quantity),
             choices=tuple(c for c in derivations.choices if c.quantity != quantity),
             absent=(*derivations.absent, (quantity, why)),
-            form=None if quantity == "inverse_dynamics" else derivations.form,
+            method_of_u=None if quantity == "inverse_dynamics" else derivations.method_of_u,
             named=tuple(one for one in derivations.named if one[0] != quantity),
         )
         return replace(self, derivations=derivations, programs=programs)
 
     def rejecting(self, rejected: tuple[Rejection, ...]) -> Draft:
-        """The draft that tells of more ways which verification rejected."""
+        """The draft that tells of more methods which verification rejected."""
         return replace(self, derivations=replace(self.derivations, rejected=(*self.derivations.rejected, *rejected)))
 
 
 def draft_of(model: Model, outputs: Sequence[str], options: Options) -> Draft:
-    """What derivation chooses; raises WrongUseError for a form that the model does not have."""
+    """What derivation chooses; raises WrongUseError for a method that the model does not have."""
     try:
-        derivations = derive_quantities(model, tuple(outputs), options.forms)
-    except NoSuchFormError as reason:
+        derivations = derive_quantities(model, tuple(outputs), options.methods)
+    except NoSuchMethodError as reason:
         raise WrongUseError(f"{model.name} has {reason}") from reason
     with working("what is not needed"):
         structure = analyse(derivations.mechanics, derivations.generic)

@@ -1,4 +1,4 @@
-"""`symgen explain`: structure and closed forms of a model, with the ways that are valid, as text for the terminal."""
+"""`symgen explain`: structure and closed forms of a model, with its valid methods, as text for the terminal."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from pathlib import Path
 
 from symgen.closedform.algebra.limits import TooLargeError
 from symgen.generation.draft import Draft
-from symgen.generation.explain_text import forms_text, overview, quantity_text
+from symgen.generation.explain_text import methods_text, overview, quantity_text
 from symgen.generation.facts import facts
 from symgen.generation.notices import replaced
 from symgen.generation.recorded import as_recorded
 from symgen.generation.requested import unknown_quantity
-from symgen.generation.results import FORMS, Options
+from symgen.generation.results import NAMED_METHODS, Options
 from symgen.methods.selection import MethodChoice
 from symgen.model.load import load_model
 from symgen.quantities.catalogue import BY_NAME
@@ -24,12 +24,12 @@ def explain(
     path: Path,
     quantity: str | None,
     progress: Callable[[str], None],
-    forms: Mapping[str, str] | None = None,
+    methods: Mapping[str, str] | None = None,
     out: Path | None = None,
 ) -> str:
     """Structure and closed forms as text for the terminal; of one quantity when it is named.
 
-    `forms` are those whose validity is reported, by quantity.  Kernels are those of OUT/<model>, where a run has
+    `methods` are those whose validity is reported, by quantity.  Kernels are those of OUT/<model>, where a run has
     verified some.
     """
     if quantity is not None and quantity not in BY_NAME:
@@ -39,28 +39,28 @@ def explain(
     if quantity is not None:
         model = replace(model, outputs=(*model.outputs, quantity))
     progress("deriving")
-    draft = as_recorded(model, ("all",), Options(scalars=("float64",), forms=forms or {}, measured=out))
+    draft = as_recorded(model, ("all",), Options(scalars=("float64",), methods=methods or {}, measured=out))
     progress("closed forms")
     try:
         report = gather(model, facts(draft))
     except TooLargeError as large:
         return f"closed forms are left out: {large}"
     text = overview(report) if quantity is None else quantity_text(report, quantity)
-    names = dict.fromkeys(("inverse_dynamics", *(forms or ())) if quantity is None else (quantity,))
+    names = dict.fromkeys(("inverse_dynamics", *(methods or ())) if quantity is None else (quantity,))
     compared = ((name, _compared(draft, name)) for name in names)
-    parts = [text, *(forms_text(name, choice) for name, choice in compared if choice is not None)]
+    parts = [text, *(methods_text(name, choice) for name, choice in compared if choice is not None)]
     notices = [*draft.notes, *(notice.message for notice in replaced(draft, None if quantity is None else names))]
     return "\n".join([*parts, *(f"\n{notice}" for notice in notices)])
 
 
 def _compared(draft: Draft, quantity: str) -> MethodChoice | None:
-    """What is known of the forms of a quantity; of the one asked for alone, where one was asked for."""
+    """What is known of the methods of a quantity; of the one asked for alone, where one was asked for."""
     derivations = draft.derivations
     if quantity == "inverse_dynamics":
-        return derivations.form
-    taken = {choice.quantity: choice.form for choice in derivations.choices}
+        return derivations.method_of_u
+    taken = {choice.quantity: choice.method for choice in derivations.choices}
     named = dict(derivations.named)
-    if quantity in named or quantity not in FORMS or quantity not in taken:
+    if quantity in named or quantity not in NAMED_METHODS or quantity not in taken:
         return named.get(quantity)
-    methods = derivations.methods
-    return None if methods is None else methods.compared(quantity, taken[quantity])
+    known = derivations.methods
+    return None if known is None else known.compared(quantity, taken[quantity])

@@ -58,19 +58,19 @@ def quantity_text(report: ReportInput, quantity: str) -> str:
     return "\n".join(lines)
 
 
-def forms_text(quantity: str, form: MethodChoice) -> str:
-    """The forms of a quantity: which is taken, what each costs by count, and why it is valid or where it is not."""
+def methods_text(quantity: str, choice: MethodChoice) -> str:
+    """The methods of a quantity: which is taken, what each costs by count, and why it is valid or where it is not."""
     entries = [
-        f"{', '.join((f'{name} ({weight})', *_marks(quantity, name, form)))}: {remark}"
-        for name, weight, remark in form.others
+        f"{', '.join((f'{name} ({weight})', *_marks(quantity, name, choice)))}: {remark}"
+        for name, weight, remark in choice.others
     ]
     option = "--form" if quantity == "inverse_dynamics" else f"--form {quantity}=NAME"
-    return "\n".join(_section(f"forms of {quantity} (counted cost; choose one with {option})", entries))
+    return "\n".join(_section(f"methods of {quantity} (counted cost; choose one with {option})", entries))
 
 
-def _marks(quantity: str, name: str, form: MethodChoice) -> list[str]:
-    """Whether a form is taken, and what it is for where symgen does not choose it."""
-    return [mark for mark in ("taken" * (name == form.way), label(quantity, name)) if mark]
+def _marks(quantity: str, name: str, choice: MethodChoice) -> list[str]:
+    """Whether a method is taken, and what it is for where symgen does not choose it."""
+    return [mark for mark in ("taken" * (name == choice.name), label(quantity, name)) if mark]
 
 
 def _singular(report: ReportInput) -> list[str]:

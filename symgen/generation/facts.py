@@ -1,4 +1,4 @@
-"""What a draft states beside its kernels: operations, what is skipped and why, where forms are not valid."""
+"""What a draft states beside its kernels: operations, what is skipped and why, where methods are not valid."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ def facts(draft: Draft) -> Facts:
     operations = {kernel.name: count_operations(kernel.statements) for kernel in draft.program.kernels}
     decisions = tuple((decision.what, decision.why) for decision in draft.structure.decisions)
     derivations = draft.derivations
-    rejected = ((f"form {r.way} of {r.quantity}", f"verification rejects it: {r.why}") for r in derivations.rejected)
-    return Facts(operations, (*decisions, *derivations.absent, *rejected, *_failing_forms(draft)))
+    rejected = ((f"form {r.method} of {r.quantity}", f"verification rejects it: {r.why}") for r in derivations.rejected)
+    return Facts(operations, (*decisions, *derivations.absent, *rejected, *_failing_methods(draft)))
 
 
-def _failing_forms(draft: Draft) -> tuple[tuple[str, str], ...]:
-    """Where what is generated is not valid if a form was asked for, and which forms are left to be asked for and where
+def _failing_methods(draft: Draft) -> tuple[tuple[str, str], ...]:
+    """Where what is generated is not valid if a method was asked for, and which are left to be asked for and where
     they fail."""
     derivations = draft.derivations
-    form, methods = derivations.form, derivations.methods
-    remarks = list(invalid_forms(derivations, ()))
-    if form is not None and methods is not None and form.validity.admitted:
-        others = methods.failing() or form.failed
+    of_u, methods = derivations.method_of_u, derivations.methods
+    remarks = list(invalid_methods(derivations, ()))
+    if of_u is not None and methods is not None and of_u.validity.admitted:
+        others = methods.failing() or of_u.failed
         remarks += ((f"form {name} of u", f"{why}; it is made if asked for (--form {name})") for name, why in others)
-    # articulated inertias are taken only where G is definite, and then no form fails
-    moving = [choice.quantity for choice in derivations.choices if choice.form not in ("", BY_FRAMES)]
+    # articulated inertias are taken only where G is definite, and then no method fails
+    moving = [choice.quantity for choice in derivations.choices if choice.method not in ("", BY_FRAMES)]
     if moving:
         from symgen.methods.forward_dynamics.motions import failing_motions
 
@@ -44,15 +44,15 @@ def _failing_forms(draft: Draft) -> tuple[tuple[str, str], ...]:
     return tuple(remarks)
 
 
-def invalid_forms(derivations: Selection, failed: tuple[tuple[str, str], ...]) -> tuple[tuple[str, str], ...]:
-    """Whether forms that were asked for are not valid at every regular state; if not, those of u that `failed`."""
-    form = derivations.form
-    asked = ((("u", form),) if form is not None else ()) + derivations.named
+def invalid_methods(derivations: Selection, failed: tuple[tuple[str, str], ...]) -> tuple[tuple[str, str], ...]:
+    """Whether methods that were asked for are not valid at every regular state; if not, those of u that `failed`."""
+    of_u = derivations.method_of_u
+    asked = ((("u", of_u),) if of_u is not None else ()) + derivations.named
     return (
         *(
-            (f"validity of {quantity} at every regular state", f"form {one.way}: {one.validity.explanation}")
+            (f"validity of {quantity} at every regular state", f"form {one.name}: {one.validity.explanation}")
             for quantity, one in asked
             if not one.validity.admitted
         ),
-        *((f"form {name} of u", why) for name, why in failed if form is not None and form.validity.admitted),
+        *((f"form {name} of u", why) for name, why in failed if of_u is not None and of_u.validity.admitted),
     )

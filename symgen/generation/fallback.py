@@ -1,9 +1,9 @@
-"""What verification rejects takes the next valid way by counted cost, or is left out alone.
+"""What verification rejects takes the next valid method by counted cost, or is left out alone.
 
-Another way is held against the same states by interpretation before anything is printed or compiled; the files that
-come of it are then verified like any others.  A way that needs most of what is allowed at these states will need more
-at others: it is taken only where no other way keeps a margin.  Where none does, one that loses digits works with twice
-as many, and so does one that needs nearly all.  Where no way passes in float32, float64 stays.
+Another method is held against the same states by interpretation before anything is printed or compiled; the files that
+come of it are then verified like any others.  A method that needs most of what is allowed at these states will need
+more at others: it is taken only where no other keeps a margin.  Where none does, one that loses digits works with
+twice as many, and so does one that needs nearly all.  Where no method passes in float32, float64 stays.
 """
 
 from __future__ import annotations
@@ -35,13 +35,13 @@ from symgen.verify.sampling.searched import WorstStateSearch
 from symgen.verify.tolerance import FACTOR
 
 TOO_LONG = "not tried: it takes many times as long to derive"
-# Of the error that is allowed; what way a quantity takes is decided at a few dozen states.
+# Of the error that is allowed; which method a quantity takes is decided at a few dozen states.
 MARGIN = FACTOR / 2
 # Beyond this twice the digits are taken where nothing else keeps a margin: of a state in thousands more is lost.
 NARROW = FACTOR * 3 / 4
 # Share of operations more that keeping a margin may cost.
 MARGIN_WORTH = Fraction(1, 2)
-# Ways that are tried once more with twice the digits.
+# Methods that are tried once more with twice the digits.
 WIDENED = 3
 # Counted cost of the longest of them.
 LONGEST_WIDENED = 40_000
@@ -49,12 +49,12 @@ Kernels: TypeAlias = Mapping[Scalar, Kernel]
 
 
 @dataclass(frozen=True, slots=True)
-class _PassingWay:
-    """A way with its kernels and its largest error in `scalars`, where it passes."""
+class _Passing:
+    """An alternative with its kernels and its largest error in `scalars`, where it passes."""
 
     largest: float
     scalars: tuple[Scalar, ...]
-    way: Alternative
+    alternative: Alternative
     kernels: Kernels
 
 
@@ -67,7 +67,7 @@ class _Searched:
 
 
 class Fallback:
-    """The ways of one model that are left, through all rounds of its verification."""
+    """The methods of one model that are left, through all rounds of its verification."""
 
     def __init__(self, options: Options, progress: Callable[[str], None]) -> None:
         self._options = options
@@ -78,18 +78,18 @@ class Fallback:
         self.measurements = Measurements()
         self._searched: dict[str, _Searched] = {}
         self._left: dict[tuple[str, int], deque[Alternative]] = {}
-        self._passing: defaultdict[str, list[_PassingWay]] = defaultdict(list)
+        self._passing: defaultdict[str, list[_Passing]] = defaultdict(list)
         self._tried: defaultdict[str, list[tuple[str, str]]] = defaultdict(list)
         # by their hashes: kernels that were rejected need not stay
         self._seen: defaultdict[str, set[int]] = defaultdict(set)
         self._weighed: set[str] = set()
         self._inaccurate: defaultdict[str, list[Alternative]] = defaultdict(list)
         self._widened: set[str] = set()
-        # by quantities that are made because all are: what they count at least along ways that lose digits
+        # by quantities that are made because all are: what they count at least by methods that lose digits
         self._too_wide: dict[str, int] = {}
 
     def other(self, draft: Draft, certificate: Certificate, expected: Expected) -> Draft | None:
-        """The draft with other ways for what is rejected, or for what keeps no margin; None where nothing is better."""
+        """The draft with other methods for what is rejected or keeps no margin; None where nothing is better."""
         if self._alternatives is None:
             let_go_and_keep()
             derivations = draft.derivations
@@ -108,7 +108,7 @@ class Fallback:
                         made = self._with_digits(made, quantity, largest, expected)
                     let_go()
         if made is draft:
-            # ways that were looked at for a margin may have led to states at which what stays is worse
+            # methods that were looked at for a margin may have led to states at which what stays is worse
             made = self._all_replaced(draft, self._worst(draft, certificate, expected), expected)
         return None if made is draft else made
 
@@ -145,19 +145,19 @@ class Fallback:
         }
 
     def _all_replaced(self, draft: Draft, rejected: Mapping[str, Sequence[Fault]], expected: Expected) -> Draft:
-        """The draft without the ways that are rejected."""
+        """The draft without the methods that are rejected."""
         for quantity, faults in rejected.items():
             draft = self._replaced(draft, quantity, faults, expected)
             let_go()
         return draft
 
     def _replaced(self, draft: Draft, quantity: str, faults: Sequence[Fault], expected: Expected) -> Draft:
-        """The draft with a rejected quantity along its next way that passes, or without it."""
+        """The draft with a rejected quantity by its next method that passes, or without it."""
         tried, passing = self._tried[quantity], self._passing[quantity]
         known, kernels = len(tried), draft.kernels(quantity)
         self._weighed.add(quantity)
-        self._check_algebra(kernels["float64"], draft.way(quantity), faults[0].state)
-        tried.append((draft.way(quantity), f"{faults[0].what} ({faults[0].target})"))
+        self._check_algebra(kernels["float64"], draft.method(quantity), faults[0].state)
+        tried.append((draft.method(quantity), f"{faults[0].what} ({faults[0].target})"))
         self._seen[quantity].add(_digest(kernels))
         # laws that a number with few digits violates beside are no reason of their own: its algebra is right; nor is a
         # status of float32, whose thresholds twice the digits bring down
@@ -165,16 +165,16 @@ class Fallback:
         if known == 0 and all(fault.what.startswith((INACCURATE, VIOLATES)) for fault in judged):
             self._inaccurate[quantity].append(draft.taken(quantity))
         if all(fault.scalar == "float32" for fault in faults):
-            passing.append(_PassingWay(0.0, ("float64",), draft.taken(quantity), kernels))
+            passing.append(_Passing(0.0, ("float64",), draft.taken(quantity), kernels))
         found = self._next(draft, quantity, expected)
         # one type may have been left out before
         others = tuple(one for one in draft.left_out if one.quantity != quantity)
         if found is None and quantity in self._too_wide:
             why = too_wide(self._too_wide[quantity])
             return replace(draft.without(quantity, tuple(kernels), why), left_out=others)
-        draft = draft.rejecting(tuple(Rejection(quantity, way, why) for way, why in tried[known:]))
+        draft = draft.rejecting(tuple(Rejection(quantity, method, why) for method, why in tried[known:]))
         if found is not None:
-            draft = draft.along(found.way, found.kernels)
+            draft = draft.along(found.alternative, found.kernels)
         passed = () if found is None else found.scalars
         without = tuple(scalar for scalar in kernels if scalar not in passed)
         if not without:
@@ -184,8 +184,8 @@ class Fallback:
         left_out = LeftOut(quantity, without, every, self._remedy(quantity, without))
         return replace(draft.without(quantity, without, REJECTED), left_out=(*others, left_out))
 
-    def _next(self, draft: Draft, quantity: str, expected: Expected) -> _PassingWay | None:
-        """The next way that passes with a margin, or else the best of those that pass; others are noted."""
+    def _next(self, draft: Draft, quantity: str, expected: Expected) -> _Passing | None:
+        """The next method that passes with a margin, or else the best of those that pass; others are noted."""
         passing, needed = self._passing[quantity], tuple(draft.kernels(quantity))
         for tier in range(TIERS):
             for one in self._candidates(draft, quantity, tier, expected, MARGIN):
@@ -209,14 +209,14 @@ class Fallback:
         return None
 
     def _with_margin(self, draft: Draft, quantity: str, largest: float, expected: Expected) -> Draft:
-        """The draft with a quantity that passes narrowly along a way with half of its error, where that is not long."""
+        """The draft with a quantity that passes narrowly by a method with half of its error, where that is not long."""
         self._weighed.add(quantity)
         taken, kernels = draft.taken(quantity), draft.kernels(quantity)
-        here = _PassingWay(largest, tuple(kernels), taken, kernels)
+        here = _Passing(largest, tuple(kernels), taken, kernels)
         self._seen[quantity].add(_digest(kernels))
         most = cost(scalars(taken.derived)).weight * (1 + MARGIN_WORTH)
         for one in self._candidates(draft, quantity, 0, expected, largest / 2):
-            if one.scalars == here.scalars and 2 * one.largest <= here.largest and one.way.cost <= most:
+            if one.scalars == here.scalars and 2 * one.largest <= here.largest and one.alternative.cost <= most:
                 return self._in_place_of(draft, here, one)
             if "float64" in one.scalars:
                 self._passing[quantity].append(one)
@@ -227,7 +227,7 @@ class Fallback:
         taken, kernels = draft.taken(quantity), draft.kernels(quantity)
         if taken.choice.wide:
             return draft
-        here = _PassingWay(largest, tuple(kernels), taken, kernels)
+        here = _Passing(largest, tuple(kernels), taken, kernels)
         self._inaccurate[quantity].append(taken)
         for one in self._with_more_digits(draft, quantity, expected):
             if one.scalars == here.scalars and one.largest <= MARGIN:
@@ -236,74 +236,74 @@ class Fallback:
                 self._passing[quantity].append(one)
         return draft
 
-    def _in_place_of(self, draft: Draft, here: _PassingWay, one: _PassingWay) -> Draft:
-        """The draft with a way that keeps a margin in place of one that does not, which stays at hand."""
-        quantity = here.way.choice.quantity
+    def _in_place_of(self, draft: Draft, here: _Passing, one: _Passing) -> Draft:
+        """The draft with a method that keeps a margin in place of one that does not, which stays at hand."""
+        quantity = here.alternative.choice.quantity
         self._passing[quantity].append(here)
         why = f"error {here.largest:.3g} times d + eps |y*| of {FACTOR:g} leaves no margin"
-        self._tried[quantity].append((draft.way(quantity), why))
-        return draft.along(one.way, one.kernels).rejecting((Rejection(quantity, draft.way(quantity), why),))
+        self._tried[quantity].append((draft.method(quantity), why))
+        return draft.along(one.alternative, one.kernels).rejecting((Rejection(quantity, draft.method(quantity), why),))
 
     def _candidates(
         self, draft: Draft, quantity: str, tier: int, expected: Expected, most: float
-    ) -> Iterator[_PassingWay]:
-        """The ways of a tier that are left, measured; what fails is noted.  Up to an error of `most` they are taken."""
-        if self._options.forms.get(quantity, AUTO) != AUTO or self._alternatives is None:
+    ) -> Iterator[_Passing]:
+        """Those of a tier that are left, measured; what fails is noted.  Up to an error of `most` they are taken."""
+        if self._options.methods.get(quantity, AUTO) != AUTO or self._alternatives is None:
             return
         if (quantity, tier) not in self._left:
-            self._progress(f"other ways to {quantity}")
+            self._progress(f"other methods of {quantity}")
             self._left[quantity, tier] = deque(self._alternatives.of(quantity, draft.choice(quantity), tier))
         left = self._left[quantity, tier]
         while left:
-            way = left.popleft()
-            self._progress(f"another way to {quantity}, {way.choice.way}")
-            kernels = draft.kernels_along(way, tuple(draft.kernels(quantity)))
+            other = left.popleft()
+            self._progress(f"another method of {quantity}, {other.choice.title}")
+            kernels = draft.kernels_along(other, tuple(draft.kernels(quantity)))
             if (digest := _digest(kernels)) not in self._seen[quantity]:
                 self._seen[quantity].add(digest)
-                one = self._measured(draft, way, kernels, expected)
-                # long ways are grouped where that may be what is taken: it takes longer than measuring
+                one = self._measured(draft, other, kernels, expected)
+                # long ones are grouped where that may be what is taken: it takes longer than measuring
                 yield self._grouped(draft, one, expected) if one.largest <= most else one
 
-    def _grouped(self, draft: Draft, one: _PassingWay, expected: Expected) -> _PassingWay:
-        """A way that passes, with its numbers grouped and measured anew."""
-        if one.way.grouped or "float64" not in one.scalars:
+    def _grouped(self, draft: Draft, one: _Passing, expected: Expected) -> _Passing:
+        """What passes, with its numbers grouped and measured anew."""
+        if one.alternative.grouped or "float64" not in one.scalars:
             return one
-        way = grouped(one.way)
-        return self._measured(draft, way, draft.kernels_along(way, tuple(one.kernels)), expected)
+        whole = grouped(one.alternative)
+        return self._measured(draft, whole, draft.kernels_along(whole, tuple(one.kernels)), expected)
 
-    def _with_more_digits(self, draft: Draft, quantity: str, expected: Expected) -> Iterator[_PassingWay]:
+    def _with_more_digits(self, draft: Draft, quantity: str, expected: Expected) -> Iterator[_Passing]:
         """What loses digits in float32 alone with twice as many there, then the shortest ways with more in both."""
-        if quantity in self._widened or self._options.forms.get(quantity, AUTO) != AUTO:
+        if quantity in self._widened or self._options.methods.get(quantity, AUTO) != AUTO:
             return
         self._widened.add(quantity)
         scalars = tuple(draft.kernels(quantity))
         passing = [one for one in self._passing[quantity] if "float32" in scalars and one.scalars == ("float64",)]
-        passing.sort(key=lambda one: (one.largest > MARGIN, one.way.cost))
-        for one in islice((one for one in passing if one.way.cost <= LONGEST_WIDENED), WIDENED):
-            yield self._widened_way(draft, one.way, scalars, ("float32",), expected)
+        passing.sort(key=lambda one: (one.largest > MARGIN, one.alternative.cost))
+        for one in islice((one for one in passing if one.alternative.cost <= LONGEST_WIDENED), WIDENED):
+            yield self._with_pairs(draft, one.alternative, scalars, ("float32",), expected)
         # those among them that are beyond what is allowed in float64 where they are worst
-        inaccurate = sorted(self._inaccurate.pop(quantity, ()), key=lambda way: way.cost)
+        inaccurate = sorted(self._inaccurate.pop(quantity, ()), key=lambda one: one.cost)
         asked = self._options.outputs or draft.model.outputs
-        if inaccurate and inaccurate[0].cost > most_with_twice_the_digits(quantity, asked, self._options.forms):
+        if inaccurate and inaccurate[0].cost > most_with_twice_the_digits(quantity, asked, self._options.methods):
             self._too_wide[quantity] = inaccurate[0].cost
             return
         shortest: dict[str, Alternative] = {}
-        for way in inaccurate:
-            if way.cost <= LONGEST_WIDENED:
-                shortest.setdefault(way.choice.way, way)
-        for way in islice(shortest.values(), WIDENED):
-            yield self._widened_way(draft, way, scalars, scalars, expected)
+        for other in inaccurate:
+            if other.cost <= LONGEST_WIDENED:
+                shortest.setdefault(other.choice.title, other)
+        for other in islice(shortest.values(), WIDENED):
+            yield self._with_pairs(draft, other, scalars, scalars, expected)
 
-    def _widened_way(
-        self, draft: Draft, way: Alternative, scalars: tuple[Scalar, ...], wide: tuple[Scalar, ...], expected: Expected
-    ) -> _PassingWay:
-        """A way with twice the digits in some types, measured."""
-        self._progress(f"twice the digits for {way.choice.quantity}, {way.choice.way}")
-        way = grouped(way)
-        way = replace(way, choice=replace(way.choice, wide=wide))
-        return self._measured(draft, way, draft.kernels_along(way, scalars), expected)
+    def _with_pairs(
+        self, draft: Draft, one: Alternative, scalars: tuple[Scalar, ...], wide: tuple[Scalar, ...], expected: Expected
+    ) -> _Passing:
+        """An alternative with twice the digits in some types, measured."""
+        self._progress(f"twice the digits for {one.choice.quantity}, {one.choice.title}")
+        one = grouped(one)
+        one = replace(one, choice=replace(one.choice, wide=wide))
+        return self._measured(draft, one, draft.kernels_along(one, scalars), expected)
 
-    def _measured(self, draft: Draft, way: Alternative, kernels: Kernels, expected: Expected) -> _PassingWay:
+    def _measured(self, draft: Draft, one: Alternative, kernels: Kernels, expected: Expected) -> _Passing:
         """The scalar types in which kernels pass by interpretation, and the largest error there; the rest is noted."""
         passed: dict[Scalar, Kernel] = {}
         worst = 0.0
@@ -311,42 +311,42 @@ class Fallback:
             if scalar in expected.scalars:
                 record, fault = self.measurements.of(kernel, draft.programs[scalar].sincos, scalar, expected)
                 if fault is not None:
-                    name = way.choice.way + way.choice.digits
+                    name = one.choice.title + one.choice.digits
                     self._check_algebra(kernels["float64"], name, record.worst_state)
-                    self._note(way, fault, inaccurate=not record.refused)
+                    self._note(one, fault, inaccurate=not record.refused)
                     if scalar == "float64":
                         break  # float32 alone is of no use: the other type is what Python and the report are made of
                     continue
                 worst = max(worst, record.largest)
             passed[scalar] = kernel
         judged = {scalar: kernel for scalar, kernel in passed.items() if scalar in expected.scalars}
-        errors = self._at_worst(draft, judged, _plain(way, kernels)) if judged else {}
-        for fault in _faults(way.choice.quantity, errors):
-            self._note(way, fault, inaccurate=True)
+        errors = self._at_worst(draft, judged, _plain(one, kernels)) if judged else {}
+        for fault in _faults(one.choice.quantity, errors):
+            self._note(one, fault, inaccurate=True)
             passed.pop(fault.scalar)
         scalars = tuple(passed) if "float64" in passed else ()
         worst = max((worst, *(error for scalar, error in errors.items() if scalar in scalars)))
-        if scalars and way.grouped:
-            self._searched[way.choice.quantity] = _Searched(kernels, worst)
-        return _PassingWay(worst, scalars, way, kernels)
+        if scalars and one.grouped:
+            self._searched[one.choice.quantity] = _Searched(kernels, worst)
+        return _Passing(worst, scalars, one, kernels)
 
-    def _note(self, way: Alternative, fault: Fault, inaccurate: bool) -> None:
-        """What speaks against a way; one that is inaccurate may work with more digits."""
-        name = way.choice.way + way.choice.digits
+    def _note(self, one: Alternative, fault: Fault, inaccurate: bool) -> None:
+        """What speaks against an alternative; one that is inaccurate may work with more digits."""
+        name = one.choice.title + one.choice.digits
         self._tried[fault.quantity].append((name, f"{fault.what} ({fault.target})"))
-        if inaccurate and way not in self._inaccurate[fault.quantity]:
-            self._inaccurate[fault.quantity].append(way)
+        if inaccurate and one not in self._inaccurate[fault.quantity]:
+            self._inaccurate[fault.quantity].append(one)
 
-    def _check_algebra(self, kernel: Kernel, way: str, worst: int) -> None:
+    def _check_algebra(self, kernel: Kernel, method: str, worst: int) -> None:
         """Raises SymgenBug where a rejected kernel computes something else: falling back would hide wrong algebra."""
         assert self._exactly is not None
         if wrong := self._exactly.difference(kernel, worst):
-            raise SymgenBug(f"{kernel.name} by {way}: {wrong}, in exact arithmetic")
+            raise SymgenBug(f"{kernel.name} by {method}: {wrong}, in exact arithmetic")
 
     def _remedy(self, quantity: str, without: Sequence[Scalar]) -> str:
-        asked = self._options.forms.get(quantity, AUTO)
+        asked = self._options.methods.get(quantity, AUTO)
         if asked != AUTO:
-            return f"leave `--form {quantity}={asked}` away: another form may pass"
+            return f"leave `--form {quantity}={asked}` away: another method may pass"
         if "float64" not in without:
             return f"float64 has {quantity}; `--scalar float64` asks for that type alone"
         return "give narrower `ranges` if states near a singularity are never met; `--no-verify` writes it as it is"
@@ -362,6 +362,6 @@ def _faults(quantity: str, errors: Mapping[Scalar, float]) -> tuple[Fault, ...]:
     return tuple(Fault(what.format(error), quantity, scalar) for scalar, error in errors.items() if error > FACTOR)
 
 
-def _plain(way: Alternative, kernels: Kernels) -> Kernel | None:
-    """The kernel of plain numbers among those of a way that may be taken: where it is worst is looked for."""
-    return kernels["float64"] if way.grouped and "float64" not in way.choice.wide else None
+def _plain(one: Alternative, kernels: Kernels) -> Kernel | None:
+    """The kernel of plain numbers among those of an alternative that may be taken: where it is worst is looked for."""
+    return kernels["float64"] if one.grouped and "float64" not in one.choice.wide else None

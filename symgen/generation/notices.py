@@ -32,7 +32,7 @@ LARGEST_CODE = 64_000
 
 
 def notices(draft: Draft, options: Options, certificate: Certificate | None) -> tuple[Notice, ...]:
-    """What is missing of what was asked for, takes another way or is long, and what could not be verified."""
+    """What is missing of what was asked for, takes another method or is long, and what could not be verified."""
     asked = options.outputs or draft.model.outputs
     left_out = {one.quantity for one in draft.left_out}
     known = [(n, why) for n, why in draft.derivations.absent if n in asked and n not in left_out]
@@ -40,11 +40,12 @@ def notices(draft: Draft, options: Options, certificate: Certificate | None) -> 
     of_all = ((n, why) for n, why in draft.derivations.absent if why.startswith(OF_ALL))
     absent += [Notice(f"{n}: {why}") for n, why in of_all]
     kernels = {kernel.name for kernel in draft.program.kernels}
-    idle = [Notice(f"--form {n}={form}: {n} is not generated") for n, form in options.forms.items() if n not in kernels]
+    unmade = ((n, name) for n, name in options.methods.items() if n not in kernels)
+    idle = [Notice(f"--form {n}={name}: {n} is not generated") for n, name in unmade]
     unverified = () if certificate is None else certificate.notes
-    ways = (*replaced(draft), *_short(draft), *_near_bounds(draft), *dense_motions(draft, options))
+    others = (*replaced(draft), *_short(draft), *_near_bounds(draft), *dense_motions(draft, options))
     recorded = draft.notes if options.as_recorded else ()
-    of_kernels = (*absent, *ways, *_size(draft, options), *idle, *map(Notice, (*unverified, *recorded)))
+    of_kernels = (*absent, *others, *_size(draft, options), *idle, *map(Notice, (*unverified, *recorded)))
     return (*_renamed(draft.model), *of_kernels)
 
 
@@ -57,17 +58,17 @@ def _renamed(model: Model) -> tuple[Notice, ...]:
 
 
 def replaced(draft: Draft, quantities: Container[str] | None = None) -> tuple[Notice, ...]:
-    """The quantities (None: all) that take another way than the cheapest, because verification rejected that."""
+    """The quantities (None: all) that take another method than the cheapest, because verification rejected that."""
     found = []
     left_out = {one.quantity for one in draft.left_out}
     for choice in draft.derivations.choices:
         if choice.quantity in left_out or (quantities is not None and choice.quantity not in quantities):
             continue
-        tried = [f"{r.way} ({r.why})" for r in draft.derivations.rejected if r.quantity == choice.quantity]
+        tried = [f"{r.method} ({r.why})" for r in draft.derivations.rejected if r.quantity == choice.quantity]
         if tried:
             others = ", ".join(tried)
-            way = choice.way + choice.digits
-            found.append(Notice(f"{choice.quantity} takes {way}: verification speaks against {others}"))
+            taken = choice.title + choice.digits
+            found.append(Notice(f"{choice.quantity} takes {taken}: verification speaks against {others}"))
     return tuple(found)
 
 

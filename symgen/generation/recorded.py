@@ -1,7 +1,7 @@
 """What verification led to, for commands that derive kernels anew: the record of the run that verified them.
 
-`symgen MODEL.yaml` leaves DIR/<model>/derivation.json.  It names the ways that verification rejected, the way that each
-quantity takes in their place, the scalar types in which it works with twice the digits, and what is left out.
+`symgen MODEL.yaml` leaves DIR/<model>/derivation.json.  It names the methods that verification rejected, the one that
+each quantity takes in their place, the scalar types in which it works with twice the digits, and what is left out.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ RECORD = "derivation.json"
 
 @dataclass(frozen=True, slots=True)
 class _Taken:
-    """The way of a quantity that is made, and the types in which it works with twice the digits."""
+    """The candidate of a quantity that is made, and the types in which it works with twice the digits."""
 
-    way: str
+    title: str
     wide: tuple[Scalar, ...]
 
 
@@ -55,7 +55,7 @@ def as_recorded(model: Model, outputs: Sequence[str], options: Options) -> Draft
     """The kernels of a model with what an earlier verification led to, as `options.measured` holds it.
 
     Without a record they are what derivation chooses, and the draft's `notice` says so.  Raises WrongUseError for a
-    form that the model does not have.
+    method that the model does not have.
     """
     draft = draft_of(model, outputs, options)
     if options.measured is None:
@@ -66,7 +66,7 @@ def as_recorded(model: Model, outputs: Sequence[str], options: Options) -> Draft
     except _UnusableError as why:
         notice = f"{file} {why}: kernels are those that derivation chooses (`symgen` verifies them and writes it)"
         return replace(draft, notice=notice)
-    return _with_record(draft, record, options.forms)
+    return _with_record(draft, record, options.methods)
 
 
 def _read(file: Path, model: Model) -> _VerificationRecord:
@@ -106,7 +106,7 @@ def _bounds(bounds: Mapping[str, Sequence[float | None]]) -> Iterator[Bound]:
 
 
 def _with_record(draft: Draft, record: _VerificationRecord, asked: Container[str]) -> Draft:
-    """The draft with the ways that stand in the record in place of rejected ones, but where a form was `asked` for."""
+    """The draft with the methods of the record in place of rejected ones, but where one was `asked` for."""
     present = {choice.quantity for choice in draft.derivations.choices}
     bounds = {
         scalar: {name: found for name, found in every.items() if name in present and name not in asked}
@@ -120,11 +120,11 @@ def _with_record(draft: Draft, record: _VerificationRecord, asked: Container[str
     for quantity in replaced:
         taken = record.taken.get(quantity)
         if taken is not None and quantity not in asked:
-            way = others.named(quantity, taken.way)
-            if way is None or draft.choice(quantity).way == taken.way:
-                way = draft.taken(quantity)
-            way = replace(way, choice=replace(way.choice, wide=taken.wide))
-            draft = draft.along(way, draft.kernels_along(way, tuple(draft.programs)))
+            one = others.named(quantity, taken.title)
+            if one is None or draft.choice(quantity).title == taken.title:
+                one = draft.taken(quantity)
+            one = replace(one, choice=replace(one.choice, wide=taken.wide))
+            draft = draft.along(one, draft.kernels_along(one, tuple(draft.programs)))
         if quantity in record.left_out:
             draft = draft.without(quantity, record.left_out[quantity], REJECTED)
     return draft.rejecting(record.rejected)

@@ -26,7 +26,7 @@ PARTS = (*USUAL, *_BESIDE)
 DEFAULT_STATES = 64
 AUTO = "auto"
 # By quantity, the methods that may be asked for.
-FORMS: Mapping[str, tuple[str, ...]] = {
+NAMED_METHODS: Mapping[str, tuple[str, ...]] = {
     quantity: tuple(row.name for row in methods(quantity)) for quantity in NAMED
 }
 Trig: TypeAlias = Literal["portable", "libm"]
@@ -54,7 +54,8 @@ class Options:
     states: int = DEFAULT_STATES
     measured: Path | None = None
     as_recorded: bool = False
-    forms: Mapping[str, str] = field(default_factory=dict)  # by quantity, of FORMS; without one the cheapest valid
+    # by quantity, of NAMED_METHODS; without one the cheapest valid
+    methods: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +89,7 @@ class Result:
     """All files of one model in memory (paths relative to its folder), and what to tell the user.
 
     `failures` are verification failures: with any, nothing is written and the exit code is 1.  `left_out` are
-    quantities that verification rejects in every way: the rest is written, the exit code is 1.  `programs` are what
+    quantities that verification rejects by every method: the rest is written, the exit code is 1.  `programs` are what
     the files hold.
     """
 

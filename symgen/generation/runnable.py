@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -34,14 +33,6 @@ PIECES = (
 )
 STRESSED = (*MAIN, "nullspace_projector")
 DRIVEN = ("constraint_residual", "energy", "admissible_velocity", "projected_configuration")
-
-
-@dataclass(frozen=True, slots=True)
-class _NullSpaceWay:
-    """The way to the null space by which a quantity is computed."""
-
-    quantity: str
-    name: str
 
 
 class Runner:
@@ -105,7 +96,7 @@ class RunnableKernels:
         draft = as_recorded(model, wanted, Options(scalars=SCALARS, measured=out))
         self.notes = draft.notes
         self.programs: Mapping[Scalar, Program] = draft.written
-        self._ways = tuple(_NullSpaceWay(choice.quantity, choice.way) for choice in draft.derivations.choices)
+        self._methods = {choice.quantity: choice.title for choice in draft.derivations.choices}
         self.runner = Runner(model, self.programs, folder)
         self.files, self.names, self.compiler = self.runner.files, self.runner.names, self.runner.compiler
 
@@ -114,9 +105,9 @@ class RunnableKernels:
         """What runs the kernels."""
         return "interpreter" if self.compiler is None else "C"
 
-    def way(self, quantity: str) -> str:
-        """The way to the null space by which a quantity is computed; empty for one the model does not have."""
-        return next((way.name for way in self._ways if way.quantity == quantity), "")
+    def method(self, quantity: str) -> str:
+        """The method or null space by which a quantity is computed; empty for one the model does not have."""
+        return self._methods.get(quantity, "")
 
     def kernel(self, name: str, scalar: Scalar) -> Kernel:
         """The straight-line kernel of a quantity."""

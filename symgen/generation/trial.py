@@ -2,7 +2,7 @@
 
 Writing and compiling tens of thousands of operations takes as long as deriving them. Interpreted at the states of the
 verification, where they have the bits of C and Python, they take a fraction of that: what is rejected takes another
-way first, and what is written and compiled is what stays.
+method first, and what is written and compiled is what stays.
 """
 
 from __future__ import annotations

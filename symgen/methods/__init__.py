@@ -1,1 +1,1 @@
-"""The ways to compute u, accelerations and multipliers, each with where it is valid."""
+"""The methods that compute u, accelerations and multipliers, each with where it is valid."""

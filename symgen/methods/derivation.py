@@ -94,7 +94,7 @@ class Derivation:
 
     @cached_property
     def inertia(self) -> ConstrainedInertia:
-        """K = W (W^T G W)^-1 W^T, in the way that is valid wherever G is positive definite on ker B."""
+        """K = W (W^T G W)^-1 W^T, by the method that is valid wherever G is positive definite on ker B."""
         mass_matrix, space = self.mechanics.mass_matrix, self.space
         if self.generic.rank < self.r and self.generic.delta <= LARGEST_DELTA and isinstance(space, MinorSpace):
             return MinorInertia(space, mass_matrix)

@@ -33,13 +33,13 @@ class Candidate:
     system: MethodInput
     derived: Quantity
     divisors: tuple[Scalar, ...] = ()
-    name: str = ""
+    method: str = ""
     along: str = ""
 
     @property
-    def way(self) -> str:
+    def title(self) -> str:
         """What it is told apart by from the others."""
-        return self.along or self.name
+        return self.along or self.method
 
     @property
     def weight(self) -> int:

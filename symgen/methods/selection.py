@@ -28,7 +28,7 @@ from symgen.symbolic.scalar import Scalar
 
 # Operations of outputs up to which they are multiplied out.
 FACTORING_LIMIT = 450
-# Share of operations more than the best way up to which the minor form is multiplied out to compete with it.
+# Share of operations more than the best method up to which u of the minor method is multiplied out to compete.
 FACTORING_GAIN = Fraction(1, 3)
 # Operations beyond which a method that is not taken is not derived only to say where it fails.
 LONGEST_EXAMINED = 600
@@ -41,7 +41,7 @@ FACTORED = "minor factored"
 class MethodChoice:
     """The method taken, why it is valid or where it is not, and what is known of the others (name, cost, remark)."""
 
-    way: str
+    name: str
     validity: Validity
     others: tuple[tuple[str, int, str], ...]
 
@@ -69,12 +69,12 @@ class Methods:
         key = quantity, name
         if key not in self._candidates:
             made = method(quantity, name).build(self.workspace, quantity)
-            self._candidates[key] = made if isinstance(made, str) else replace(made, name=name)
+            self._candidates[key] = made if isinstance(made, str) else replace(made, method=name)
         return self._candidates[key]
 
     def validity(self, candidate: Candidate, first_only: bool = False) -> Validity:
         """Whether a candidate may be chosen by itself."""
-        return method(candidate.derived.name, candidate.name).validity(self.workspace, candidate, first_only)
+        return method(candidate.derived.name, candidate.method).validity(self.workspace, candidate, first_only)
 
     def choose(self, quantity: str, name: str = AUTO) -> tuple[Candidate, MethodChoice] | str:
         """The method asked for, or the cheapest valid one; why there is none by that name."""
@@ -96,12 +96,12 @@ class Methods:
         if min(bounds, default=0) > LONGEST_EXAMINED:
             return ()
         made = [one for row in rows if isinstance(one := self.candidate(INPUTS, row.name), Candidate)]
-        validities = [(one.name, self.validity(one)) for one in made if not self._is_admitted(one)]
+        validities = [(one.method, self.validity(one)) for one in made if not self._is_admitted(one)]
         return tuple((name, found.explanation) for name, found in validities if not found.admitted)
 
     def _is_admitted(self, candidate: Candidate) -> bool:
         """Whether it was found valid already."""
-        key = candidate.derived.name, candidate.name
+        key = candidate.derived.name, candidate.method
         return key in self._validities and self._validities[key].admitted
 
     def compared(self, quantity: str, taken: str) -> MethodChoice | None:
@@ -109,7 +109,7 @@ class Methods:
         made = [one for row in methods(quantity) if isinstance(one := self.candidate(quantity, row.name), Candidate)]
         if not made:
             return None
-        known = sorted((one.weight, one.name, self.validity(one)) for one in made)
+        known = sorted((one.weight, one.method, self.validity(one)) for one in made)
         chosen = next((validity for _, name, validity in known if name == taken), known[0][2])
         return MethodChoice(taken, chosen, tuple((name, weight, one.explanation) for weight, name, one in known))
 
@@ -121,9 +121,9 @@ class Methods:
     def _cheapest(self, quantity: str) -> tuple[Candidate, MethodChoice] | str:
         made = self._built(quantity)
         if not made:
-            return "this system has none of the forms that are chosen by themselves"
+            return "this system has none of the methods that are chosen by themselves"
         weights = {name: one.weight for name, one in made.items()}
-        best, validities = cheapest(made.values(), self._first_validity, lambda one: weights[one.name])
+        best, validities = cheapest(made.values(), self._first_validity, lambda one: weights[one.method])
         remarks = dict.fromkeys(made, "not examined, because it is not cheaper")
         remarks |= {name: found.explanation for name, found in validities.items()}
         shorter = self._factored(best) if "minor" in made else None
@@ -131,11 +131,11 @@ class Methods:
             weights[FACTORED] = weight = shorter.weight
             found = validities[FACTORED] = self.validity(shorter, first_only=True)
             remarks[FACTORED] = found.explanation
-            worth = CANCELLATION_WORTH if best.name == "minor" else 0
-            if found.admitted and weight < weights[best.way] * (1 + worth):
+            worth = CANCELLATION_WORTH if best.method == "minor" else 0
+            if found.admitted and weight < weights[best.title] * (1 + worth):
                 best = shorter
         others = tuple((name, weights[name], remarks[name]) for name in sorted(weights, key=lambda n: (weights[n], n)))
-        return best, MethodChoice(best.way, validities[best.way], others)
+        return best, MethodChoice(best.title, validities[best.title], others)
 
     def _built(self, quantity: str) -> dict[str, Candidate]:
         """The methods that may be the cheapest: those that cannot fall below a valid first one are not derived.
@@ -162,13 +162,13 @@ class Methods:
 
     def _first_validity(self, candidate: Candidate) -> Validity:
         """That of a method by name, decided once."""
-        key = candidate.derived.name, candidate.name
+        key = candidate.derived.name, candidate.method
         if key not in self._validities:
             self._validities[key] = self.validity(candidate, first_only=True)
         return self._validities[key]
 
     def _factored(self, best: Candidate) -> Candidate | None:
-        """The minor form multiplied out and factored, where it is short enough to compete.
+        """u of the minor method multiplied out and factored, where it is short enough to compete.
 
         Minors of rows that depend on each other become small together: multiplied out, their squares would cancel.
         The other methods have nothing to cancel that their steps have left.
@@ -179,7 +179,7 @@ class Methods:
         along = self.workspace.minor
         kept = frozenset[Scalar]() if isinstance(along, str) else along.whole_for_inputs
         outputs = minor.system.mechanics.factoring.shorten(minor.derived.outputs, kept)
-        return replace(solved_for_u(minor.system, outputs, minor.derived.guards), name="minor", along=FACTORED)
+        return replace(solved_for_u(minor.system, outputs, minor.derived.guards), method="minor", along=FACTORED)
 
     @cached_property
     def _counted(self) -> MethodInput:
@@ -199,14 +199,14 @@ def cheapest(
     order = sorted(candidates, key=weight)
     validities: dict[str, Validity] = {}
     for one in order:
-        validities[one.way] = validity(one)
-        if validities[one.way].admitted:
+        validities[one.title] = validity(one)
+        if validities[one.title].admitted:
             return one, validities
-    return next((one for one in order if validities[one.way].lost), order[0]), validities
+    return next((one for one in order if validities[one.title].lost), order[0]), validities
 
 
 def _factoring_limit(best: Candidate) -> int:
-    """The cost up to which the minor form is multiplied out to compete with the best."""
+    """The cost up to which u of the minor method is multiplied out to compete with the best."""
     return min(FACTORING_LIMIT, int(best.weight * (1 + FACTORING_GAIN)))
 
 

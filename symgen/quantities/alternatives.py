@@ -1,4 +1,4 @@
-"""The other ways to a quantity, for when verification rejects the one that was taken: valid ones, by counted cost.
+"""The other methods of a quantity, for when verification rejects the one that was taken: valid ones, by counted cost.
 
 Each is derived on a graph of its own, so that it depends neither on what was derived before nor on what was rejected.
 """
@@ -25,15 +25,15 @@ from symgen.records import dataclass
 from symgen.runtime.effort import TooLongError, at_most, worth_trying
 from symgen.symbolic.traverse import cost, reached
 
-# Scalars of a way beyond which numbers are grouped only in what is taken: that is most of the work there.
-LONG_WAY = 6_000
-# How many times other ways are offered: valid ones, then those of last resort.
+# Scalars of an alternative beyond which numbers are grouped only in what is taken: that is most of the work there.
+LONG_ALTERNATIVE = 6_000
+# How many times other methods are offered: valid ones, then those of last resort.
 TIERS = 2
 
 
 @dataclass(frozen=True, slots=True)
 class Alternative:
-    """A quantity along another way, on the graph of `mechanics`; `form` is what is known of its method.
+    """A quantity by another method, on the graph of `mechanics`; `known` is what is known of its validity.
 
     A long one has its numbers `grouped` only once it is known to be of use.
     """
@@ -41,17 +41,17 @@ class Alternative:
     choice: Choice
     mechanics: System
     derived: Quantity
-    form: MethodChoice | None = None
+    known: MethodChoice | None = None
     grouped: bool = True
 
     @property
     def cost(self) -> int:
         """Counted cost of a regular state, outputs and tested denominators."""
-        return dict(self.choice.costs)[self.choice.way]
+        return dict(self.choice.costs)[self.choice.title]
 
 
 class Alternatives:
-    """The ways to the quantities of one model; those of u that were `looked_at` already are not built again."""
+    """The methods of the quantities of one model; those of u that were `looked_at` already are not built again."""
 
     def __init__(self, model: Model, generic: Genericity, looked_at: Methods | None) -> None:
         self._model = in_ordinary_units(model)
@@ -64,16 +64,16 @@ class Alternatives:
         self._methods.settle()
 
     def of(self, quantity: str, taken: Choice, tier: int) -> tuple[Alternative, ...]:
-        """The ways of a tier to a quantity, but the one taken, that are valid at all regular states.
+        """A quantity by the methods of a tier, but the one taken, that are valid at all regular states.
 
-        The one that counts least comes first.  Ways that take much longer to derive than the one taken is are given
+        The one that counts least comes first.  Methods that take much longer to derive than the one taken is are given
         up, and named in `too_long`.
         """
-        same = taken.form if taken.way in ("minors", "householder", taken.form) else ""
-        most = worth_trying(dict(taken.costs)[taken.way])
+        same = taken.method if taken.title in ("minors", "householder", taken.method) else ""
+        most = worth_trying(dict(taken.costs)[taken.title])
         found = []
         for name in _names(quantity, tier):
-            if name in (taken.way, same):
+            if name in (taken.title, same):
                 continue
             try:
                 with at_most(most):
@@ -86,7 +86,7 @@ class Alternatives:
         return tuple(sorted(found, key=lambda one: one.cost))
 
     def named(self, quantity: str, name: str) -> Alternative | None:
-        """One way to a quantity by its name; None where the system does not have it."""
+        """A quantity by the method of a name; None where the system does not have it."""
         found = self._named(quantity, name) if any(name in _names(quantity, tier) for tier in range(TIERS)) else None
         return None if found is None else grouped(found)
 
@@ -123,23 +123,23 @@ class Alternatives:
         """A quantity as it is scheduled, on a graph that holds nothing else any more."""
         made = complete(mechanics, self._generic, derived)
         found = Alternative(choice, mechanics, made, known, grouped=False)
-        if len(reached(scalars(made))) > LONG_WAY:
+        if len(reached(scalars(made))) > LONG_ALTERNATIVE:
             forget_others(mechanics, (made,))
             return found
         return grouped(found)
 
 
-def grouped(way: Alternative) -> Alternative:
-    """A way with its numbers grouped."""
-    if way.grouped:
-        return way
-    made = with_groups(way.mechanics, way.derived)
-    forget_others(way.mechanics, (made,))
-    return replace(way, derived=made, grouped=True)
+def grouped(one: Alternative) -> Alternative:
+    """The same with its numbers grouped."""
+    if one.grouped:
+        return one
+    made = with_groups(one.mechanics, one.derived)
+    forget_others(one.mechanics, (made,))
+    return replace(one, derived=made, grouped=True)
 
 
 def _names(quantity: str, tier: int) -> tuple[str, ...]:
-    """The ways of a tier by name: null spaces, and methods that the table has for it."""
+    """The methods of a tier by name: null spaces, and those that the table has."""
     spaces = tuple(SPACES) if tier == 0 and _is_along_spaces(quantity) else ()
     uses = (Use.CHOSEN, Use.SPARE) if tier == 0 else (Use.LAST,)
     return (*spaces, *(row.name for row in methods(quantity) if row.use in uses))

@@ -30,9 +30,9 @@ from symgen.runtime.activity import working
 from symgen.symbolic.traverse import cost
 
 ABSOLUTE = "householder in absolute angles"
-# What derivation.json calls ways that are no null space, by method.
+# What derivation.json calls methods that need no null space.
 ARTICULATED = "articulated inertias"
-WAYS = {BY_FRAMES: ARTICULATED}
+TITLES = {BY_FRAMES: ARTICULATED}
 MOST_WORTH = 1 + CANCELLATION_WORTH
 VALID = Validity(0, 0, (), "along null spaces only ranks are divided by")
 
@@ -54,21 +54,21 @@ class Candidates:
         self._motions: dict[str, dict[str, Motion]] = {}
 
     def cheapest(self, entry: CatalogueEntry) -> tuple[Candidate, dict[str, int]] | None:
-        """The one that is taken, and the counted cost of all by way; None where each takes too long."""
+        """The one that is taken, and the counted cost of all by title; None where each takes too long."""
         made = self._of(entry)
         if not made:
             return None
-        costs = {way: cost(scalars(one.derived)).weight for way, one in made.items()}
+        costs = {title: cost(scalars(one.derived)).weight for title, one in made.items()}
         best, _ = cheapest(made.values(), self._validity, lambda one: self._weight(one))
         # F is unbounded near its singularities: there it is the one determinant of the minors that keeps its digits
-        if entry.needs == PARTITION and "minors" in costs and costs["minors"] <= costs[best.way] * MOST_WORTH:
+        if entry.needs == PARTITION and "minors" in costs and costs["minors"] <= costs[best.title] * MOST_WORTH:
             best = made["minors"]
         # minors of rows that depend on each other become small together: multiplied out, their squares would cancel
         if self._generic.rank == self._generic.r and 0 < costs.get("minors", 0) <= FACTORING_LIMIT:
             shorter = self._factored(made["minors"])
-            costs[shorter.way] = cost(scalars(shorter.derived)).weight
+            costs[shorter.title] = cost(scalars(shorter.derived)).weight
             # multiplied out, terms that vanish have cancelled exactly: worth a few operations more
-            if costs[shorter.way] <= costs[best.way] * (1 if entry.name in MOTIONS else MOST_WORTH):
+            if costs[shorter.title] <= costs[best.title] * (1 if entry.name in MOTIONS else MOST_WORTH):
                 best = shorter
         return best, costs
 
@@ -81,30 +81,30 @@ class Candidates:
             one = self._along(entry, ABSOLUTE, self._absolute)
             back = brought_back(self._mechanics.graph, self._absolute.mechanics, one.derived)
             return {ABSOLUTE: replace(one, derived=back)}
-        ways = {
-            way: partial(self._along, entry, way, derivation)
-            for way, derivation in self._derivations.items()
-            if way != "blocks" or by_blocks(entry)
+        along = {
+            space: partial(self._along, entry, space, derivation)
+            for space, derivation in self._derivations.items()
+            if space != "blocks" or by_blocks(entry)
         }
         # a tree has articulated inertias; what goes without them may take as long as they are worth, and no longer
         least = min((cost(scalars(one.derived)).weight for one in alone.values()), default=None)
-        return {**self._everything.derived(entry.name, ways, least), **self._brought(alone)}
+        return {**self._everything.derived(entry.name, along, least), **self._brought(alone)}
 
-    def _along(self, entry: CatalogueEntry, way: str, derivation: Derivation) -> Candidate:
+    def _along(self, entry: CatalogueEntry, space: str, derivation: Derivation) -> Candidate:
         """A quantity along a null space, q_ddot and lambda by the method that counts least there."""
         if entry.name not in MOTIONS:
-            return Candidate(self._system, derive(entry, derivation), along=way)
-        if way not in self._motions:
-            self._motions[way] = motions_along(derivation)
-        made = [self._moving(entry, name, derivation, one) for name, one in self._motions[way].items()]
+            return Candidate(self._system, derive(entry, derivation), along=space)
+        if space not in self._motions:
+            self._motions[space] = motions_along(derivation)
+        made = [self._moving(entry, name, derivation, one) for name, one in self._motions[space].items()]
         # a basis is normwise accurate in the units that B is given in, and loses what masses and lengths are apart by:
         # it is left for systems in which G is definite along the constraints only
-        best, _ = cheapest(made, self._validity, lambda one: (one.name == "nullspace", self._weight(one)))
-        return replace(best, along=way)
+        best, _ = cheapest(made, self._validity, lambda one: (one.method == "nullspace", self._weight(one)))
+        return replace(best, along=space)
 
     def _moving(self, entry: CatalogueEntry, name: str, derivation: Derivation, motion: Motion) -> Candidate:
         found = derived_from(entry, derivation, motion.part(entry.name), lambda _: motion.guards)
-        return Candidate(self._system, found, name=name)
+        return Candidate(self._system, found, method=name)
 
     def _without_null_space(self, quantity: str) -> dict[str, Candidate]:
         """By methods that need none.
@@ -115,13 +115,13 @@ class Candidates:
         if self._generic.rank < self._generic.r:
             return {}
         found = {name: self._methods.candidate(quantity, name) for name in motions_alone()}
-        ways = {WAYS.get(name, name): one for name, one in found.items() if isinstance(one, Candidate)}
-        return {way: replace(one, along=way) for way, one in ways.items()}
+        made = {TITLES.get(name, name): one for name, one in found.items() if isinstance(one, Candidate)}
+        return {title: replace(one, along=title) for title, one in made.items()}
 
     def _brought(self, made: dict[str, Candidate]) -> dict[str, Candidate]:
         """The same on the graph of the other quantities."""
         graph = self._mechanics.graph
-        return {way: replace(one, derived=moved(graph, one.derived)) for way, one in made.items()}
+        return {title: replace(one, derived=moved(graph, one.derived)) for title, one in made.items()}
 
     def _factored(self, minors: Candidate) -> Candidate:
         """What was derived along minors multiplied out and factored."""
@@ -131,10 +131,10 @@ class Candidates:
 
     def _validity(self, one: Candidate) -> Validity:
         """Of a method; along a null space only ranks are divided by."""
-        return self._methods.validity(one, first_only=True) if one.name else VALID
+        return self._methods.validity(one, first_only=True) if one.method else VALID
 
     def _weight(self, one: Candidate) -> Fraction:
-        return cost(scalars(one.derived)).weight * cost_factor(one.name, self._mechanics)
+        return cost(scalars(one.derived)).weight * cost_factor(one.method, self._mechanics)
 
 
 def _in_absolute_angles(model: Model, generic: Genericity) -> Derivation | None:

@@ -16,15 +16,15 @@ from symgen.runtime.effort import SCALAR, TooLongError, at_most, done, worth_try
 
 # Counted cost of all quantities together: what takes under a minute to derive, to verify and to compile.
 OPERATIONS_OF_ALL = 70_000
-# Counted cost of one quantity along a way that loses digits: with twice as many it takes some twenty times as long.
+# Counted cost of one quantity by a method that loses digits: with twice as many it takes some twenty times as long.
 WIDE_OPERATIONS = 4_000
 # The same for accelerations and multipliers, which may take more of that than the others.
 WIDE_MAIN_OPERATIONS = 10_000
-# Scalars that are made along one way to one quantity before the others are tried.
-SCALARS_OF_A_WAY = 150_000
-# Scalars that are made along all ways for all quantities together.
+# Scalars that are made by one method for one quantity before the others are tried.
+SCALARS_OF_A_METHOD = 150_000
+# Scalars that are made by all methods for all quantities together.
 SCALARS_OF_ALL = 800_000
-# Times the scalars with which what is asked for, and takes longer along all ways, is tried once more.
+# Times the scalars with which what is asked for, and takes longer by all methods, is tried once more.
 GROWTH = 8
 Made = TypeVar("Made")
 OF_ALL = "`all` leaves it out"
@@ -34,36 +34,36 @@ REMEDY = "name it in `outputs` to have it all the same"
 class WorkBudget:
     """What is left of the work that `all` may take; `asked` are the quantities that are made whatever they take."""
 
-    def __init__(self, outputs: Sequence[str], forms: Mapping[str, str]) -> None:
-        self._asked = asked_for(outputs, forms)
+    def __init__(self, outputs: Sequence[str], named: Mapping[str, str]) -> None:
+        self._asked = asked_for(outputs, named)
         self._left = SCALAR * SCALARS_OF_ALL
 
     def derived(
-        self, quantity: str, ways: Mapping[str, Callable[[], Made]], at_hand: int | None = None
+        self, quantity: str, methods: Mapping[str, Callable[[], Made]], at_hand: int | None = None
     ) -> dict[str, Made]:
-        """The quantity along each way that does not take many times what another takes.
+        """The quantity by each method that does not take many times what another takes.
 
-        None where it is not asked for and takes too long, or where a way of so many operations is `at_hand`.
+        None where it is not asked for and takes too long, or where a method of so many operations is `at_hand`.
         """
         if at_hand is not None:
-            return self._within(ways, worth_trying(at_hand))
-        first = SCALAR * SCALARS_OF_A_WAY
+            return self._within(methods, worth_trying(at_hand))
+        first = SCALAR * SCALARS_OF_A_METHOD
         if quantity not in self._asked:
             before = done()
-            found = self._within(ways, min(first, self._left))
+            found = self._within(methods, min(first, self._left))
             self._left -= done() - before
             return found
-        for most in (first, GROWTH * first) if len(ways) > 1 else ():
-            if found := self._within(ways, most):
+        for most in (first, GROWTH * first) if len(methods) > 1 else ():
+            if found := self._within(methods, most):
                 return found
-        return {name: way() for name, way in ways.items()}
+        return {name: method() for name, method in methods.items()}
 
     @staticmethod
-    def _within(ways: Mapping[str, Callable[[], Made]], most: float) -> dict[str, Made]:
+    def _within(methods: Mapping[str, Callable[[], Made]], most: float) -> dict[str, Made]:
         found: dict[str, Made] = {}
-        for name, way in ways.items():
+        for name, method in methods.items():
             with suppress(TooLongError), at_most(most):
-                found[name] = way()
+                found[name] = method()
         return found
 
     def surplus(self, costs: Mapping[str, int]) -> list[str]:
@@ -76,20 +76,20 @@ class WorkBudget:
         return without
 
 
-def asked_for(outputs: Sequence[str], forms: Iterable[str]) -> frozenset[str]:
+def asked_for(outputs: Sequence[str], named: Iterable[str]) -> frozenset[str]:
     """The quantities that are made whatever they take."""
-    return frozenset((*outputs, *forms, *MAIN))
+    return frozenset((*outputs, *named, *MAIN))
 
 
-def most_with_twice_the_digits(quantity: str, outputs: Iterable[str], forms: Iterable[str]) -> float:
-    """The counted cost up to which a way takes twice the digits; what is asked for by name has no limit, nor has u."""
-    if quantity in (*outputs, *forms, "inverse_dynamics"):
+def most_with_twice_the_digits(quantity: str, outputs: Iterable[str], named: Iterable[str]) -> float:
+    """The counted cost up to which a method takes twice the digits; what is asked for has no limit, nor has u."""
+    if quantity in (*outputs, *named, "inverse_dynamics"):
         return math.inf
     return WIDE_MAIN_OPERATIONS if quantity in MAIN else WIDE_OPERATIONS
 
 
 def too_wide(operations: int) -> str:
-    """Why `all` leaves a quantity out of which every short way loses digits."""
+    """Why `all` leaves out a quantity whose digits every short method loses."""
     takes = f"{operations} operations at least, which twice the digits make some twenty times as many"
     return f"{OF_ALL}, as it loses digits and takes {takes}; {REMEDY}"
 

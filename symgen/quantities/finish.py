@@ -1,4 +1,4 @@
-"""What is done to a quantity once its way is chosen, before it is scheduled."""
+"""What is done to a quantity once its method is chosen, before it is scheduled."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The quantities of a model, each along the cheapest valid way by counted cost."""
+"""The quantities of a model, each by the cheapest valid method by counted cost."""
 
 from __future__ import annotations
 
@@ -26,30 +26,30 @@ from symgen.symbolic.traverse import reached
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """Which way a quantity took, and the counted cost of each way tried.
+    """Which candidate a quantity took, and the counted cost of each: by their titles.
 
-    `form` is the method that q_ddot and lambda take along it, `wide` the scalar types in which its kernel works
-    with twice the digits.
+    `method` is the one that q_ddot and lambda take along a null space, `wide` the scalar types in which its kernel
+    works with twice the digits.
     """
 
     quantity: str
-    way: str
+    title: str
     costs: tuple[tuple[str, int], ...]
-    form: str = ""
+    method: str = ""
     wide: tuple[Scalar, ...] = ()
 
     @property
     def digits(self) -> str:
-        """What is told of it beside the way: empty where it works with plain numbers."""
+        """What is told of it beside the title: empty where it works with plain numbers."""
         return f", with twice the digits in {' and '.join(self.wide)}" if self.wide else ""
 
 
 @dataclass(frozen=True, slots=True)
 class Rejection:
-    """A way that verification rejected, and why."""
+    """A method that verification rejected, and why."""
 
     quantity: str
-    way: str
+    method: str
     why: str
 
 
@@ -62,18 +62,18 @@ class Selection:
     quantities: tuple[Quantity, ...]
     choices: tuple[Choice, ...]
     absent: tuple[tuple[str, str], ...]
-    form: MethodChoice | None = None  # of the inverse dynamics, where they are among the quantities
-    named: tuple[tuple[str, MethodChoice], ...] = ()  # of other quantities, where a form was asked for by name
+    method_of_u: MethodChoice | None = None  # where it is among the quantities
+    named: tuple[tuple[str, MethodChoice], ...] = ()  # of other quantities, where a method was asked for by name
     methods: Methods | None = None  # those of u that were looked at
     rejected: tuple[Rejection, ...] = ()  # by verification
-    left_out: tuple[tuple[str, tuple[str, ...]], ...] = ()  # quantities with the scalar types in which no way passes
+    left_out: tuple[tuple[str, tuple[str, ...]], ...] = ()  # quantities with the scalar types in which no method passes
 
 
-class NoSuchFormError(Exception):
-    """A form of a quantity that this system does not have, with the reason."""
+class NoSuchMethodError(Exception):
+    """A method of a quantity that this system does not have, with the reason."""
 
-    def __init__(self, quantity: str, form: str, reason: str) -> None:
-        super().__init__(f"no form {form!r} of {quantity}: {reason}")
+    def __init__(self, quantity: str, method: str, reason: str) -> None:
+        super().__init__(f"no method {method!r} of {quantity}: {reason}")
 
 
 def requested(model: Model, generic: Genericity, outputs: Sequence[str]) -> tuple[list[str], list[tuple[str, str]]]:
@@ -93,45 +93,45 @@ def requested(model: Model, generic: Genericity, outputs: Sequence[str]) -> tupl
 
 
 def derive_quantities(
-    model: Model, outputs: Sequence[str], forms: Mapping[str, str] = MappingProxyType({})
+    model: Model, outputs: Sequence[str], asked: Mapping[str, str] = MappingProxyType({})
 ) -> Selection:
-    """Derive what is asked for and nothing else; `forms` by quantity are taken whatever they cost.
+    """Derive what is asked for and nothing else; methods `asked` for, by quantity, are taken whatever they cost.
 
-    Raises NoSuchFormError where the system does not have one of them.
+    Raises NoSuchMethodError where the system does not have one of them.
     """
     model = in_ordinary_units(model)
     with working("motion equations"):
         mechanics = System(model)
         generic = genericity(mechanics)
     present, absent = requested(model, generic, outputs)
-    methods, everything = Methods(model, generic), WorkBudget(outputs, forms)
-    candidates = Candidates(mechanics, methods, everything, [name for name in present if name not in forms])
+    methods, everything = Methods(model, generic), WorkBudget(outputs, asked)
+    candidates = Candidates(mechanics, methods, everything, [name for name in present if name not in asked])
     made: dict[str, Quantity] = {}
     choices: dict[str, Choice] = {}
     compared: dict[str, MethodChoice] = {}
-    for name in each("ways to", present, str):
-        if name == INPUTS or name in forms:
-            method = forms.get(name, AUTO)
+    for name in each("methods of", present, str):
+        if name == INPUTS or name in asked:
+            method = asked.get(name, AUTO)
             found = methods.choose(name, method)
             if isinstance(found, str):
-                raise NoSuchFormError(name, method, found)
+                raise NoSuchMethodError(name, method, found)
             one, compared[name] = found
             made[name] = derived_on(mechanics.graph, one)
-            choices[name] = Choice(name, one.way, compared[name].costs)
+            choices[name] = Choice(name, one.title, compared[name].costs)
             continue
         chosen = candidates.cheapest(BY_NAME[name])
         if chosen is None:
             absent.append((name, too_long()))
             continue
         one, costs = chosen
-        made[name], choices[name] = one.derived, Choice(name, one.way, tuple(costs.items()), one.name)
-    costs = {name: dict(choice.costs)[choice.way] for name, choice in choices.items()}
+        made[name], choices[name] = one.derived, Choice(name, one.title, tuple(costs.items()), one.method)
+    costs = {name: dict(choice.costs)[choice.title] for name, choice in choices.items()}
     for name in everything.surplus(costs):
         absent.append((name, too_long(costs[name])))
         del made[name], choices[name]
     lengths = [len(reached(scalars(derived))) for derived in made.values()]
     named_so = each("shortening", tuple(made.values()), lambda derived: derived.name, lengths)
     quantities = tuple(finished(mechanics, generic, derived) for derived in named_so)
-    form = compared.pop(INPUTS, None)
+    of_u = compared.pop(INPUTS, None)
     named = tuple(compared.items())
-    return Selection(mechanics, generic, quantities, tuple(choices.values()), tuple(absent), form, named, methods)
+    return Selection(mechanics, generic, quantities, tuple(choices.values()), tuple(absent), of_u, named, methods)

@@ -1,4 +1,4 @@
-"""Counted work, and limits of it: what is offered as another way must not take longer than it may be worth.
+"""Counted work, and limits of it: what is offered as another method must not take longer than it may be worth.
 
 Work is counted where it is done, in steps of one operation on floats, and what is counted is the same on every machine:
 whether a limit is reached never depends on a clock.
@@ -12,7 +12,7 @@ from contextlib import contextmanager
 
 # Steps that others take, by what they take beside an operation on floats (CPython 3.11).
 SCALAR, SLOPE, PRECISE = 200, 5, 10
-# What deriving another way may take, in scalars: of shipped models none takes more than 12 for each operation.
+# What deriving another method may take, in scalars: of shipped models none takes more than 12 for each operation.
 FREE_SCALARS, SCALARS_AN_OPERATION = 50_000, 20
 
 
@@ -49,7 +49,7 @@ def at_most(steps: float) -> Iterator[None]:
 
 
 def worth_trying(operations: int) -> int:
-    """What deriving another way may take where one of so many operations is at hand."""
+    """What deriving another method may take where one of so many operations is at hand."""
     return SCALAR * (FREE_SCALARS + SCALARS_AN_OPERATION * operations)
 
 

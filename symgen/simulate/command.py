@@ -104,7 +104,7 @@ def _verified(path: Path, progress: Progress) -> Result | None:
         found.append("verification rejects what would be integrated")
         found += [f"  {failure}" for failure in result.failures]
         for one in result.left_out:
-            found += [f"  {one.quantity}, {way}: {why}" for way, why in one.tried]
+            found += [f"  {one.quantity}, {method}: {why}" for method, why in one.tried]
             found.append(f"  {one.quantity}: remedy: {one.remedy}")
     elif ACCELERATIONS not in kernels:
         # other quantities may be missing: a system without constraints has no violations of them

@@ -1,7 +1,7 @@
 """Scalars brought to another graph, operation by operation.
 
 The constructors' rules have been applied where the scalars were made; applying them again beside other nodes would
-replace a form by an equal function that was derived before.
+replace what one method makes by an equal function that was derived before.
 """
 
 from __future__ import annotations

@@ -63,7 +63,7 @@ def indefinite(mechanics: System) -> Indefinite | None:
     return indefinite_model(mechanics.model)
 
 
-@lru_cache(maxsize=2)  # asked for each quantity, along each way to it
+@lru_cache(maxsize=2)  # asked for each quantity, by each method
 def indefinite_model(model: Model) -> Indefinite | None:
     """The same of a model."""
     return _decided_apart(model, _indefinite)
@@ -119,7 +119,7 @@ def _indefinite(mechanics: System) -> Indefinite | None:
             return Indefinite(i, pivot, ())
         pivots.append(pivot / mechanics.mass_matrix[i][i])
     if mechanics.r:
-        # without constraints the motion is not determined where a diagonal entry vanishes, and no form is to blame
+        # without constraints the motion is not determined where a diagonal entry vanishes, and no method is to blame
         pivots += _beside_the_largest(mechanics, factor.scales)
     if all(pivot.constant is not None for pivot in pivots):
         negative = (i % factor.size for i, pivot in enumerate(pivots) if not (pivot.constant or 0) > 0)

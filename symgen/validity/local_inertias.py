@@ -1,7 +1,7 @@
 """Whether G is positive definite, frame by frame: what a frame's own bodies show needs no others.
 
 Articulated inertias are at least those of a frame's own bodies, because what is passed on inwards is never negative:
-bodies with a negative moment, as identified values may have it, are left to other forms.
+bodies with a negative moment, as identified values may have it, are left to other methods.
 So a joint is sure where its own bodies resist it, and only frames without such bodies (the middle of a universal joint)
 take in what the next frames outwards pass on.  Their pivots hold a few coordinates each and are proved or minimised one
 by one: the pivots of a long chain itself would be small numbers beside its diagonal entries, and a search in all its
@@ -36,7 +36,7 @@ def definite_by_frames(mechanics: System, factor: ArticulatedFactor) -> bool:
     return _definite_apart(mechanics.model)
 
 
-@lru_cache(maxsize=2)  # asked for each quantity, along each way to it
+@lru_cache(maxsize=2)  # asked for each quantity, by each method
 def _definite_apart(model: Model) -> bool:
     """The same on a graph of its own, so that no kernel shares what is looked at here."""
     apart = System(model)

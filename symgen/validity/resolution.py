@@ -1,4 +1,4 @@
-"""Whether a form's denominators are distinguishable from the rounding of their own terms at ordinary states.
+"""Whether a method's denominators are distinguishable from the rounding of their own terms at ordinary states.
 
 A kernel compares a denominator with the sum of its absolute terms (guards.py).  Where many turns in space follow each
 other the terms cancel so far that the sum says nothing: single precision would refuse every state.

@@ -74,7 +74,7 @@ class Fault:
 
 @dataclass(frozen=True, slots=True)
 class LeftOut:
-    """A quantity that is not written in some scalar types, because verification rejects every way of it there.
+    """A quantity that is not written in some scalar types, because verification rejects every method of it there.
 
     `tried` tells each with the reason.
     """
@@ -140,7 +140,7 @@ class Certificate:
                 {
                     "quantity": one.quantity,
                     "scalars": list(one.scalars),
-                    "tried": [{"way": way, "why": why} for way, why in one.tried],
+                    "tried": [{"way": method, "why": why} for method, why in one.tried],
                     "remedy": one.remedy,
                 }
                 for one in self.left_out

@@ -37,11 +37,11 @@ def test_a_log_is_told_what_a_step_is_at_until_it_is_done() -> None:
     log = io.StringIO()
     progress = Progress("arm", quiet=False, stream=log)
     progress("deriving")
-    with working("ways to", 8) as work:
+    with working("methods of", 8) as work:
         work.part = "multipliers"
         lines = wait_for(log, 4)
     assert lines[0] == "arm: deriving ..."
-    assert all(line.startswith("arm: deriving, ways to multipliers, ") for line in lines[1:])
+    assert all(line.startswith("arm: deriving, methods of multipliers, ") for line in lines[1:])
     progress.done()
     said = log.getvalue()
     time.sleep(0.1)

@@ -1,4 +1,4 @@
-"""What is offered as another way may take so much counted work and no more; what takes more is given up, and named."""
+"""Another method may take so much counted work and no more; what takes more is given up, and named."""
 
 from __future__ import annotations
 
@@ -55,24 +55,24 @@ def test_a_tree_is_not_derived_densely_for_longer_than_that_may_be_worth(monkeyp
     monkeypatch.setattr(effort, "SCALARS_AN_OPERATION", 3)
     alone = derive_quantities(model, model.outputs)
     (before,), (after,) = compared.choices, alone.choices
-    assert before.way == after.way == ARTICULATED
+    assert before.title == after.title == ARTICULATED
     assert len(before.costs) == 2
-    assert [way for way, _ in after.costs] == [ARTICULATED]
+    assert [title for title, _ in after.costs] == [ARTICULATED]
     # the same function, by its values in a field
     assert [x.value for x in alone.quantities[0].outputs] == [x.value for x in compared.quantities[0].outputs]
 
 
-def test_ways_that_take_too_long_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_methods_that_take_too_long_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     tail = "configuration: {a0: 1, a1: 1, a2: 1, b1: 0, b2: 0}"
     model = load_text(row_of_four_bars(2, ground="0.5", tail=tail), "row.yaml")
     choice = derive_quantities(model, ("inverse_dynamics",)).choices[0]
     free = Alternatives(model, genericity(System(model)), None)
-    ways = [one.choice.way for one in free.of("inverse_dynamics", choice, 0)]
-    assert ways
+    titles = [one.choice.title for one in free.of("inverse_dynamics", choice, 0)]
+    assert titles
     assert not free.too_long
     monkeypatch.setattr(effort, "FREE_SCALARS", 1000)
     monkeypatch.setattr(effort, "SCALARS_AN_OPERATION", 1)
     short = Alternatives(model, genericity(System(model)), None)
-    left = [one.choice.way for one in short.of("inverse_dynamics", choice, 0)]
+    left = [one.choice.title for one in short.of("inverse_dynamics", choice, 0)]
     assert short.too_long["inverse_dynamics"]
-    assert {*left, *short.too_long["inverse_dynamics"]} >= {*ways}
+    assert {*left, *short.too_long["inverse_dynamics"]} >= {*titles}

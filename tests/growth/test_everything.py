@@ -23,7 +23,7 @@ MODEL = load_text(TEXT, "row.yaml")
 
 def test_the_longest_are_left_out_where_all_together_are_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = derive_quantities(MODEL, ("all",))
-    costs = {choice.quantity: dict(choice.costs)[choice.way] for choice in whole.choices}
+    costs = {choice.quantity: dict(choice.costs)[choice.title] for choice in whole.choices}
     most = sum(costs.values()) // 2
     monkeypatch.setattr(everything, "OPERATIONS_OF_ALL", most)
     short = derive_quantities(MODEL, ("all",))
@@ -40,7 +40,7 @@ def test_the_longest_are_left_out_where_all_together_are_too_long(monkeypatch: p
 
 
 def test_what_takes_too_long_to_derive_is_given_up_unless_it_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(everything, "SCALARS_OF_A_WAY", 20)
+    monkeypatch.setattr(everything, "SCALARS_OF_A_METHOD", 20)
     monkeypatch.setattr(everything, "GROWTH", 2)
     short = derive_quantities(MODEL, ("all",))
     left_out = {name for name, why in short.absent if why.startswith(OF_ALL)}

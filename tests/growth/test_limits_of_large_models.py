@@ -92,7 +92,7 @@ def test_twice_the_multiples_of_one_row_are_about_twice_the_operations() -> None
 
     def operations(*scales: str) -> int:
         choice = derive_quantities(load_text(dependent_rows(scales), "ellipse.yaml"), ("inverse_dynamics",)).choices[0]
-        return dict(choice.costs)[choice.way]
+        return dict(choice.costs)[choice.title]
 
     five = ("1", "2", "-3", "1/7", "1e4")
     assert operations(*five, "5", "-1/3", "1e-3", "11", "1/9") <= 2.5 * operations(*five)
@@ -110,7 +110,7 @@ def test_u_of_a_long_chain_takes_a_few_operations_a_link() -> None:
         derive_quantities(load_text(chain(links), "chain.yaml"), ("inverse_dynamics",)).choices[0]
         for links in (LINKS // 4, LINKS // 2)
     )
-    assert dict(many.costs)[many.way] <= 2.1 * dict(few.costs)[few.way]
+    assert dict(many.costs)[many.title] <= 2.1 * dict(few.costs)[few.title]
 
 
 @pytest.mark.campaign

@@ -95,7 +95,7 @@ def test_many_rows_take_the_way_of_reflections(bars: int, ways: set[str]) -> Non
     outputs = ("inverse_dynamics", "forward_dynamics", "multipliers", "singularity", "nullspace_projector")
     given = system(texts.chain(bars), outputs)
     others = [choice for choice in given.derivations.choices if choice.quantity != "inverse_dynamics"]
-    tried = {way for choice in others for way, _ in choice.costs}
+    tried = {title for choice in others for title, _ in choice.costs}
     assert tried - {"factored"} == ways
     assert given.derivations.generic.delta == bars
     q = [0.45 * (i + 1) - 0.02 * i * i for i in range(bars)] + [-0.2 * (i + 1) + 0.03 * i * i for i in range(bars)]

@@ -60,7 +60,7 @@ def test_blocks_are_chosen_and_cost_less(skates: System) -> None:
     chosen = {choice.quantity: choice for choice in skates.derivations.choices}
     for name in ("constraint_pseudoinverse", "nullspace_projector_dot", "admissible_acceleration"):
         costs = dict(chosen[name].costs)
-        assert costs["blocks"] < min(cost for way, cost in costs.items() if way not in ("blocks", "factored"))
+        assert costs["blocks"] < min(cost for title, cost in costs.items() if title not in ("blocks", "factored"))
 
 
 def test_along_blocks_alone() -> None:

@@ -16,7 +16,7 @@ from symgen.mechanics.body_axes import BodyAxes
 from symgen.mechanics.free_bodies import free_bodies
 from symgen.mechanics.genericity import genericity
 from symgen.mechanics.system import System
-from symgen.methods.inverse_dynamics.forces_eliminated import elimination_form
+from symgen.methods.inverse_dynamics.forces_eliminated import elimination_candidate
 from symgen.methods.method import INPUTS, Candidate
 from symgen.methods.quantity import Quantity
 from symgen.methods.selection import Methods
@@ -94,7 +94,7 @@ def both(name: str) -> tuple[Quantity, Quantity]:
     """u by rates of coordinates and by twists."""
     model = described(*SAME[name])
     generic = genericity(System(model))
-    first, second = (elimination_form(mechanics, generic) for mechanics in (System(model), BodyAxes(model)))
+    first, second = (elimination_candidate(mechanics, generic) for mechanics in (System(model), BodyAxes(model)))
     assert first is not None
     assert second is not None
     return first.derived, second.derived
@@ -120,7 +120,7 @@ def test_u_is_the_same_and_shorter(name: str) -> None:
     assert cost(twists.outputs).weight < 0.85 * cost(apart.outputs).weight
 
 
-def test_the_cheapest_form_is_that_in_body_axes() -> None:
+def test_the_cheapest_elimination_is_that_in_body_axes() -> None:
     model = described()
     methods = Methods(model, genericity(System(model)))
     made = methods.candidate(INPUTS, "elimination")

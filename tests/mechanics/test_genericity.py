@@ -44,7 +44,7 @@ def test_a_point_beside_a_singular_configuration_does_not_raise_the_rank() -> No
 
 def test_minors_of_dependent_rows_are_not_multiplied_out() -> None:
     derivations = derive_quantities(load_text(PARALLELOGRAM, "parallelogram.yaml"), ["minimal_potential_force"])
-    assert [choice.way for choice in derivations.choices] == ["minors"]
+    assert [choice.title for choice in derivations.choices] == ["minors"]
 
 
 @pytest.mark.parametrize("length", ["1", "1e-3", "1e-6"])

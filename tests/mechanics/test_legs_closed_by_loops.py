@@ -14,7 +14,7 @@ from symgen.mechanics.genericity import genericity, parameter_values
 from symgen.mechanics.system import System
 from symgen.methods.forward_dynamics.articulated import articulated
 from symgen.methods.inverse_dynamics.elimination import Elimination
-from symgen.methods.inverse_dynamics.forces_eliminated import elimination_form
+from symgen.methods.inverse_dynamics.forces_eliminated import elimination_candidate
 from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.symbolic.evaluate import Evaluator
@@ -42,10 +42,10 @@ def test_rows_of_the_legs_are_solved(platform: Model, kind: type[System], rows: 
 
 def test_the_lengths_are_tested(platform: Model) -> None:
     mechanics = System(platform)
-    form = elimination_form(mechanics, genericity(mechanics))
-    assert form is not None
-    assert cost(form.derived.outputs).weight < 2600  # by reflections 8976
-    (guard,) = form.derived.guards
+    candidate = elimination_candidate(mechanics, genericity(mechanics))
+    assert candidate is not None
+    assert cost(candidate.derived.outputs).weight < 2600  # by reflections 8976
+    (guard,) = candidate.derived.guards
     assert guard.status == Status.ACTUATION_RANK
     evaluate = Evaluator([guard.denominator, guard.scale or guard.denominator])
     point = parameter_values(mechanics) | {c.name: 0.1 for c in platform.coordinates}
@@ -63,9 +63,9 @@ def test_the_lengths_are_tested(platform: Model) -> None:
 def test_the_rank_of_b_is_told_apart(platform: Model, kind: type[System]) -> None:
     """One leg of no length leaves B its rank; four leave eight forces on a body with six motions."""
     mechanics, plain = kind(platform), System(platform)
-    form = elimination_form(mechanics, genericity(plain))
-    assert form is not None
-    (guard,) = form.derived.guards
+    candidate = elimination_candidate(mechanics, genericity(plain))
+    assert candidate is not None
+    (guard,) = candidate.derived.guards
     (cause,) = guard.first
     assert cause.status == Status.CONSTRAINT_RANK
     whole = HouseholderSpace(plain.graph, plain.constraint_jacobian, plain.n).volume
@@ -87,9 +87,9 @@ def test_the_rank_of_b_is_told_apart(platform: Model, kind: type[System]) -> Non
 @pytest.mark.parametrize("kind", [System, BodyAxes])
 def test_each_leg_is_a_direction_of_its_own(platform: Model, kind: type[System]) -> None:
     """Six legs that have lost nine tenths each are no lost direction (draw 1116:557)."""
-    form = elimination_form(kind(platform), genericity(System(platform)))
-    assert form is not None
-    (guard,) = form.derived.guards
+    candidate = elimination_candidate(kind(platform), genericity(System(platform)))
+    assert candidate is not None
+    (guard,) = candidate.derived.guards
     assert guard.directions > 12
 
 

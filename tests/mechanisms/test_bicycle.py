@@ -99,7 +99,7 @@ def test_damping() -> None:
     assert -M @ slopes(5, "qd") == pytest.approx(5 * C1, rel=1e-12, abs=1e-12)
 
 
-def test_forms_that_float32_would_refuse_everywhere_are_told_apart() -> None:
+def test_methods_that_float32_would_refuse_everywhere_are_told_apart() -> None:
     """Eight turns follow each other up to the front contact: sums of absolute terms exceed a determinant by 1e10.
 
     Minors stand beside the lengths of rows, which exceed them by little.

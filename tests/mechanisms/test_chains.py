@@ -1,4 +1,4 @@
-"""Long chains: forms that cannot be the cheapest are not built, u and accelerations grow linearly, digits stay."""
+"""Long chains: methods that cannot be the cheapest are not built, u and accelerations grow linearly, digits stay."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def derived(links: int, folder: Path, *outputs: str) -> Selection:
 def test_u_grows_linearly(tmp_path: Path) -> None:
     weights = []
     for links in (8, 16, 32):
-        found = derived(links, tmp_path, "inverse_dynamics").form
+        found = derived(links, tmp_path, "inverse_dynamics").method_of_u
         assert found is not None
         assert [name for name, _ in found.costs] == ["elimination"]
         weights += [weight for _, weight in found.costs]
@@ -39,7 +39,7 @@ def test_accelerations_grow_linearly(tmp_path: Path) -> None:
     weights = []
     for links in (8, 12, 16):
         found = derived(links, tmp_path, "forward_dynamics", "multipliers")
-        assert [choice.way for choice in found.choices] == [ARTICULATED, ARTICULATED]
+        assert [choice.title for choice in found.choices] == [ARTICULATED, ARTICULATED]
         weights.append([weight for choice in found.choices for _, weight in choice.costs])
     for few, more, many in zip(*weights, strict=True):
         assert many - more == pytest.approx(more - few, rel=0.05)
@@ -49,7 +49,7 @@ def test_energies_written_out_are_derived_in_absolute_angles(tmp_path: Path) -> 
     path = tmp_path / "chain6.yaml"
     path.write_text(chain(6).replace("gravity:", "kinetic_energy: J*a_1_dot**2/2\ngravity:"), encoding="utf-8")
     found = derive_quantities(load_model(path), ("forward_dynamics", "multipliers"))
-    assert [choice.way for choice in found.choices] == [ABSOLUTE, ABSOLUTE]
+    assert [choice.title for choice in found.choices] == [ABSOLUTE, ABSOLUTE]
     known = {c.name for c in found.mechanics.model.coordinates}
     for quantity in found.quantities:
         guards = [guard.denominator for guard in quantity.guards]
@@ -80,7 +80,7 @@ def test_links_that_turn_quickly_beside_a_tip_that_hardly_pulls(tmp_path: Path) 
     path = tmp_path / "chain24.yaml"
     path.write_text(chain(24), encoding="utf-8")
     draft = draft_of(load_model(path), ["multipliers"], Options())
-    assert draft.choice("multipliers").way == ARTICULATED
+    assert draft.choice("multipliers").title == ARTICULATED
     search = WorstStateSearch(Expected(draft.model, ["multipliers"], 8, lambda _: None))
     kernel = draft.kernels("multipliers")["float64"]
     search.look(kernel)

@@ -51,8 +51,8 @@ def test_what_is_short_says_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert notices(tmp_path, "kinetic_energy: 0.05*a_2_dot**2\n") == []
 
 
-def test_a_form_that_was_asked_for_says_nothing(tmp_path: Path) -> None:
-    asked = Options(scalars=("float64",), parts=("c",), verify=False, forms={"forward_dynamics": "schur_qr"})
+def test_a_method_that_was_asked_for_says_nothing(tmp_path: Path) -> None:
+    asked = Options(scalars=("float64",), parts=("c",), verify=False, methods={"forward_dynamics": "schur_qr"})
     assert notices(tmp_path, "kinetic_energy: 0.05*a_2_dot**2\n", asked) == []
 
 

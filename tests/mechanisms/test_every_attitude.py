@@ -42,7 +42,7 @@ def model() -> Model:
 
 @pytest.fixture(scope="module")
 def tumbling(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
-    # the form that is chosen by itself, without the search for a shorter one
+    # the method that is chosen by itself, without the search for a shorter one
     derived = derive_quantities(model(), model().outputs, {"inverse_dynamics": "minor"})
     files = emit_python(model(), schedule(derived.mechanics, derived.quantities, ("float64",))["float64"])
     (text,) = (text for name, text in files.items() if name.endswith("tumbling.py"))

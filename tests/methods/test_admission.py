@@ -1,4 +1,4 @@
-"""Only forms that divide by nothing that vanishes at a regular state are chosen, the same ones everywhere."""
+"""Only methods that divide by nothing that vanishes at a regular state are chosen, the same ones everywhere."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from symgen.mechanics.genericity import Genericity, genericity
 from symgen.mechanics.never_zero import Definite
 from symgen.mechanics.system import System
 from symgen.methods.admission import validity_of
-from symgen.methods.comparisons.printed import printed_form
+from symgen.methods.comparisons.printed import printed_candidate
 from symgen.methods.method import INPUTS, Candidate
 from symgen.methods.selection import Methods
 from symgen.methods.system import MethodInput
@@ -50,7 +50,7 @@ def measures(name: str) -> list[Scalar]:
 def test_a_fixed_partition_of_the_rapkm_is_rejected(drives: tuple[int, int]) -> None:
     """Sampled states would not tell: it looks perfect on half of all batches of 64."""
     system = fresh("rapkm_2rrr_rr")
-    made = printed_form(system, drives)
+    made = printed_candidate(system, drives)
     assert isinstance(made, Candidate)
     # N_B is divided by B B^T only, the first pivots
     of_inputs = tuple(divisor for divisor in made.divisors if divisor.size > 10_000)
@@ -67,7 +67,7 @@ def test_a_fixed_partition_of_the_rapkm_is_rejected(drives: tuple[int, int]) -> 
 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if model(name).inputs])
-def test_the_form_chosen_is_admitted_and_the_cheapest_of_those(name: str) -> None:
+def test_the_method_chosen_is_admitted_and_the_cheapest_of_those(name: str) -> None:
     found = Methods(model(name), generic(name)).choose(INPUTS)
     assert not isinstance(found, str)
     chosen, choice = found
@@ -90,13 +90,13 @@ def test_a_null_space_basis_of_the_rapkm_is_offered_with_its_singular_set() -> N
     assert any("sin(" in entry.where_zero for entry in choice.validity.singular)
 
 
-def test_a_form_that_does_not_apply_says_why() -> None:
+def test_a_method_that_does_not_apply_says_why() -> None:
     reason = Methods(model("double_pendulum"), generic("double_pendulum")).choose(INPUTS, "householder")
     assert reason == "there are no constraints"
 
 
-def test_a_cheaper_form_with_a_pole_is_not_chosen() -> None:
-    """A form that divides by cos(theta) besides is what sampling lets through; its cost would make it win."""
+def test_a_cheaper_method_with_a_pole_is_not_chosen() -> None:
+    """A method that divides by cos(theta) besides is what sampling lets through; its cost would make it win."""
     methods = Methods(model("front_car"), generic("front_car"))
     made = methods.candidate(INPUTS, "nullspace")
     assert isinstance(made, Candidate)

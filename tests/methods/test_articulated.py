@@ -150,7 +150,7 @@ inputs:
 
 
 def compared(model: Model) -> float:
-    """The largest relative difference of the two forms over a few states off and on the constraints."""
+    """The largest relative difference of the two methods over a few states off and on the constraints."""
     generic = genericity(System(model))
     found = articulated(model, generic)
     assert found is not None
@@ -250,7 +250,7 @@ def test_loops_in_space_by_accelerations_of_points(tmp_path: Path, text: str) ->
 
 
 @pytest.mark.parametrize("name", ["gough_stewart", "skate"])
-def test_systems_without_that_form(name: str) -> None:
+def test_systems_without_that_method(name: str) -> None:
     """Coordinates that move no frame, an energy without frames."""
     model = shipped.model(name)
     assert articulated(model, genericity(System(model))) is None

@@ -43,9 +43,9 @@ def puck(a: float, b: float) -> Model:
     return load_text(f"{PUCK}configuration: {{a: {a}, b: {b}}}\n", "thrusters.yaml")
 
 
-def run(model: Model, form: str, a: float, b: float) -> tuple[int, tuple[float, ...]]:
+def run(model: Model, method: str, a: float, b: float) -> tuple[int, tuple[float, ...]]:
     """Status and u where the motors stand at `a` and `b`."""
-    derived = derive_quantities(model, (INPUTS,), {INPUTS: form})
+    derived = derive_quantities(model, (INPUTS,), {INPUTS: method})
     program = schedule(derived.mechanics, derived.quantities, ("float64",))["float64"]
     parts = {"q": (a, b, 0.4, 0.2), "qd": (0.3, -0.2, 0.1, 0.5), "qdd": QDD, "u": ()}
     status, u = Interpreter(program.sincos, "float64").run(program.kernels[0], parts, (0.3, 2.0))
@@ -63,8 +63,8 @@ def test_without_switching_the_inputs_that_the_start_chooses_fail_where_they_are
     start: tuple[float, float], lost: tuple[float, float]
 ) -> None:
     model = puck(*start)
-    for form in ("printed", "printed_fixed"):
-        status, u = run(model, form, 0.9, 2.1)
+    for method in ("printed", "printed_fixed"):
+        status, u = run(model, method, 0.9, 2.1)
         assert status == Status.OK
         assert u == pytest.approx(least(0.9, 2.1), rel=1e-13)
     status, u = run(model, "printed", *lost)

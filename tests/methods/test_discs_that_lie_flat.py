@@ -76,8 +76,8 @@ def test_articulated_inertias_are_taken_where_nothing_holds_what_has_no_mass() -
     model = load_text(COIN, "coin.yaml")
     assert indefinite_model(model) is not None
     assert definite_beside_rows(model)
-    ways = {choice.quantity: choice.form for choice in coin()[0].derivations.choices}
-    assert ways["forward_dynamics"] == ways["multipliers"] == "articulated"
+    methods = {choice.quantity: choice.method for choice in coin()[0].derivations.choices}
+    assert methods["forward_dynamics"] == methods["multipliers"] == "articulated"
 
 
 # A ring about a rod that turns: where it stands on the axis its own turn has no inertia, and a gear may hold it.

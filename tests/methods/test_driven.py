@@ -45,7 +45,7 @@ def same(model: Model) -> None:
 
 
 @pytest.mark.parametrize("name", ["delta", "five_bar", "three_rrr", "rapkm_2rrr_rr", "rear_car"])
-def test_both_ways_agree(name: str) -> None:
+def test_both_methods_agree(name: str) -> None:
     same(shipped.model(name))
 
 
@@ -57,7 +57,7 @@ def test_two_inputs_on_one_coordinate(tmp_path: Path) -> None:
     same(load_model(path))
 
 
-def test_inputs_on_several_coordinates_have_no_such_form() -> None:
+def test_inputs_on_several_coordinates_have_no_such_method() -> None:
     mechanics = System(shipped.model("front_car"))
     graph, rows = mechanics.graph, mechanics.constraint_jacobian
     assert driven_minors(graph, rows, mechanics.inputs, mechanics.n) is None

@@ -193,7 +193,7 @@ def test_a_joint_that_a_rotor_resists_hands_on_what_it_carries() -> None:
     assert articulated(model, genericity(System(model))) is not None
 
 
-def test_what_moves_freely_has_that_form_wherever_its_motion_is_determined() -> None:
+def test_what_moves_freely_has_that_method_wherever_its_motion_is_determined() -> None:
     """Beside straight levers the pivots are small, and zero where the motion is not determined without the rotor."""
     model = levers(rotor=1e-6)
     assert articulated(model, genericity(System(model))) is not None

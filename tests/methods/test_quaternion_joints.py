@@ -169,7 +169,7 @@ def test_lengths_are_completed_as_the_equations_have_it(model: Model) -> None:
 
 
 @pytest.mark.parametrize("name", ["nullspace", "shifted", "kkt"])
-def test_every_form_knows_that_no_force_stretches_a_quaternion(name: str) -> None:
+def test_every_method_knows_that_no_force_stretches_a_quaternion(name: str) -> None:
     def unit(model: Model) -> bool:
         made = Methods(model, genericity(System(model))).candidate("multipliers", name)
         assert isinstance(made, Candidate)
@@ -189,7 +189,7 @@ def test_a_quaternion_that_moves_more_than_an_attitude_is_no_attitude() -> None:
 
 def test_chains_of_ball_joints_go_from_body_to_body() -> None:
     choices = derive_quantities(swing(HELD), ["forward_dynamics", "multipliers"]).choices
-    assert [choice.way for choice in choices] == ["articulated inertias"] * 2
+    assert [choice.title for choice in choices] == ["articulated inertias"] * 2
 
 
 def test_a_rotor_resists_a_coordinate_and_no_turn() -> None:

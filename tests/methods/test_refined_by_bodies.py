@@ -109,13 +109,13 @@ def table(text: str) -> Model:
 
 
 @cache
-def ways(text: str) -> Alternatives:
+def others(text: str) -> Alternatives:
     return Alternatives(table(text), genericity(System(table(text))), None)
 
 
 @cache
 def motions(text: str, name: str) -> Evaluator:
-    """q_ddot and lambda by a form."""
+    """q_ddot and lambda by a method."""
     methods = Methods(table(text), genericity(System(table(text))))
     made = [methods.candidate(quantity, name) for quantity in MOTIONS]
     return Evaluator([x for found in made if isinstance(found, Candidate) for x in found.derived.outputs])
@@ -142,31 +142,31 @@ def points(model: Model) -> list[dict[str, float]]:
     return found
 
 
-@pytest.mark.parametrize("form", ["articulated", "articulated_refined"])
+@pytest.mark.parametrize("method", ["articulated", "articulated_refined"])
 @pytest.mark.parametrize("text", [PLANE, SPACE], ids=["plane", "space"])
-def test_rows_that_depend_on_each_other(text: str, form: str) -> None:
+def test_rows_that_depend_on_each_other(text: str, method: str) -> None:
     """As along an orthonormal basis: the same accelerations, the same smallest multipliers."""
     generic = genericity(System(table(text)))
     assert generic.rank == generic.r - 1
-    one, other = motions(text, form), motions(text, "nullspace")
+    one, other = motions(text, method), motions(text, "nullspace")
     for point in points(table(text)):
         assert one(point) == pytest.approx(other(point), rel=1e-9, abs=1e-8)
 
 
-@pytest.mark.parametrize("form", ["articulated", "articulated_refined"])
+@pytest.mark.parametrize("method", ["articulated", "articulated_refined"])
 @pytest.mark.parametrize("text", [HUNG, ALWAYS], ids=["hung", "always"])
-def test_rows_of_loops_beside_quaternions(text: str, form: str) -> None:
+def test_rows_of_loops_beside_quaternions(text: str, method: str) -> None:
     """As verification asks for, at its states."""
     for quantity in MOTIONS:
-        way = ways(text).named(quantity, form)
-        assert way is not None
-        program = schedule(way.mechanics, [way.derived], ("float64",))["float64"]
+        made = others(text).named(quantity, method)
+        assert made is not None
+        program = schedule(made.mechanics, [made.derived], ("float64",))["float64"]
         assert measured(program.kernels[0], program.sincos, "float64", expected(text))[1] is None
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES)
 def test_weighted_projections_with_dependent_rows(quantity: str) -> None:
-    one, other = ways(PLANE).named(quantity, BY_FRAMES), ways(PLANE).named(quantity, "householder")
+    one, other = others(PLANE).named(quantity, BY_FRAMES), others(PLANE).named(quantity, "householder")
     assert one is not None
     assert other is not None
     for point in points(table(PLANE)):
@@ -175,14 +175,14 @@ def test_weighted_projections_with_dependent_rows(quantity: str) -> None:
 
 
 def test_heavy_bodies_at_the_end_of_light_links() -> None:
-    """A step of refinement gives back what articulated inertias lose by a thousand units, and dense forms by 1e5."""
+    """A step of refinement gives back what articulated inertias lose by a thousand units, and dense methods by 1e5."""
     motion = "forward_dynamics"
     states = Expected(table(LIGHT), (motion, QUANTITIES[0]), 8, lambda _: None)
 
     def largest(quantity: str, name: str) -> float:
-        way = ways(LIGHT).named(quantity, name)
-        assert way is not None
-        program = schedule(way.mechanics, [way.derived], ("float64",))["float64"]
+        made = others(LIGHT).named(quantity, name)
+        assert made is not None
+        program = schedule(made.mechanics, [made.derived], ("float64",))["float64"]
         return measured(program.kernels[0], program.sincos, "float64", states)[0].largest
 
     assert largest(motion, "articulated_refined") < 8

@@ -85,8 +85,8 @@ def register(
     monkeypatch.setattr(table, "METHODS", (*METHODS, MethodRow(NAME, quantities, lambda: method, use)))
 
 
-def ways(selection: Selection) -> dict[str, str]:
-    return {choice.quantity: choice.form or choice.way for choice in selection.choices}
+def taken(selection: Selection) -> dict[str, str]:
+    return {choice.quantity: choice.method or choice.title for choice in selection.choices}
 
 
 def same(one: Selection, other: Selection) -> bool:
@@ -102,9 +102,9 @@ def test_a_new_method_of_u_is_chosen_where_it_counts_least(drums: Model, monkeyp
     before = derive_quantities(drums, drums.outputs)
     register(monkeypatch, (INPUTS,), OfInputs(of_one_wheel))
     after = derive_quantities(drums, drums.outputs)
-    assert ways(after) == ways(before) | {INPUTS: NAME}
-    assert after.form is not None
-    assert after.form.validity.admitted
+    assert taken(after) == taken(before) | {INPUTS: NAME}
+    assert after.method_of_u is not None
+    assert after.method_of_u.validity.admitted
     assert same(before, after)
 
 
@@ -115,9 +115,9 @@ def test_one_that_is_singular_or_longer_is_not(
     before = derive_quantities(drums, (INPUTS,))
     register(monkeypatch, (INPUTS,), OfInputs(solved))
     after = derive_quantities(drums, (INPUTS,))
-    assert ways(after) == ways(before)
-    assert after.form is not None
-    (remark,) = (remark for name, _, remark in after.form.others if name == NAME)
+    assert taken(after) == taken(before)
+    assert after.method_of_u is not None
+    (remark,) = (remark for name, _, remark in after.method_of_u.others if name == NAME)
     assert remark.startswith(told)
 
 
@@ -126,7 +126,7 @@ def test_a_new_method_of_motion_is_chosen_where_it_counts_least(drums: Model, mo
     method = AlongNullSpace(motion_of_one_wheel, "it divides by an inertia", offered=lambda _: True)
     register(monkeypatch, MOTIONS, method)
     after = derive_quantities(drums, drums.outputs)
-    assert ways(after) == ways(before) | dict.fromkeys(MOTIONS, NAME)
+    assert taken(after) == taken(before) | dict.fromkeys(MOTIONS, NAME)
     assert same(before, after)
 
 
@@ -137,14 +137,14 @@ def test_fallback_and_names_find_it_in_the_table(drums: Model, monkeypatch: pyte
     register(monkeypatch, (INPUTS,), OfInputs(of_one_wheel), Use.SPARE)
     assert derive_quantities(drums, (INPUTS,)).choices[0] == choice
     others = Alternatives(drums, generic, None).of(INPUTS, choice, 0)
-    assert others[0].choice.way == NAME
+    assert others[0].choice.title == NAME
     found = Methods(drums, generic).choose(INPUTS, NAME)
     assert not isinstance(found, str)
-    assert found[1].way == NAME
+    assert found[1].name == NAME
     # a comparison is there for those who ask, and for nobody else
     register(monkeypatch, (INPUTS,), OfInputs(of_one_wheel), Use.COMPARISON)
     tiers = [Alternatives(drums, generic, None).of(INPUTS, choice, tier) for tier in (0, 1)]
-    assert NAME not in {one.choice.way for found in tiers for one in found}
+    assert NAME not in {one.choice.title for found in tiers for one in found}
 
 
 def test_every_row_leads_to_a_method_with_a_name_of_its_own() -> None:

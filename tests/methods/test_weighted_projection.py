@@ -59,10 +59,10 @@ def given(make: Callable[[], Model]) -> tuple[Alternatives, Expected]:
 @pytest.mark.parametrize("quantity", QUANTITIES)
 @pytest.mark.parametrize("make", [hanging_chain, beam_on_three_cranks])
 def test_within_what_verification_allows(make: Callable[[], Model], quantity: str) -> None:
-    ways, expected = given(make)
-    way = ways.named(quantity, "schur_qr")
-    assert way is not None
-    for scalar, program in schedule(way.mechanics, [way.derived], ("float64", "float32")).items():
+    others, expected = given(make)
+    made = others.named(quantity, "schur_qr")
+    assert made is not None
+    for scalar, program in schedule(made.mechanics, [made.derived], ("float64", "float32")).items():
         record, fault = measured(program.kernels[0], program.sincos, scalar, expected)
         assert fault is None
         assert record.largest <= FACTOR

@@ -122,7 +122,7 @@ outputs: [coriolis_matrix, coriolis_force, forward_dynamics]
 
 
 def test_bodies_on_fixed_axes_have_no_coriolis_forces() -> None:
-    """Rounding errors in place of 0 are no digits: verification rejected every form of C."""
+    """Rounding errors in place of 0 are no digits: verification rejected every method of C."""
     model = load_text(SCREWS, "screws.yaml")
     assert all(x.is_zero for slope in System(model).mass_matrix_gradient for row in slope for x in row)
     made = draft_of(model, ["coriolis_matrix"], Options())

@@ -40,15 +40,15 @@ inputs: {M: {acts_on: {a: -1}}}
 MODELS = {"cranks": load_text(CRANKS, "follower.yaml"), "gears": load_text(GEARS, "gears.yaml")}
 
 
-def kernel_of(model: Model, quantity: str, form: str) -> Kernel:
-    """One quantity by one form."""
-    derivations = derive_quantities(model, (quantity,), {quantity: form})
+def kernel_of(model: Model, quantity: str, method: str) -> Kernel:
+    """One quantity by one method."""
+    derivations = derive_quantities(model, (quantity,), {quantity: method})
     (kernel,) = schedule(derivations.mechanics, derivations.quantities, ("float64",))["float64"].kernels
     return kernel
 
 
 @pytest.mark.parametrize(
-    ("name", "form"),
+    ("name", "method"),
     [
         ("cranks", "schur_qr"),
         ("cranks", "nullspace"),
@@ -57,10 +57,10 @@ def kernel_of(model: Model, quantity: str, form: str) -> Kernel:
         ("gears", "kkt"),
     ],
 )
-def test_the_same_function_is_known(name: str, form: str) -> None:
+def test_the_same_function_is_known(name: str, method: str) -> None:
     model = MODELS[name]
     expected = Expected(model, ("multipliers",), 8, lambda _: None)
-    assert ExactStates(expected).difference(kernel_of(model, "multipliers", form)) == ""
+    assert ExactStates(expected).difference(kernel_of(model, "multipliers", method)) == ""
 
 
 @pytest.mark.parametrize(("name", "quantity"), [("cranks", "multipliers"), ("gears", "forward_dynamics")])

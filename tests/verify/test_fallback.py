@@ -1,4 +1,4 @@
-"""What verification rejects takes another way, or is left out alone: ways that are wrong on purpose, and real ones."""
+"""What verification rejects takes another method, or is left out alone: wrong ones on purpose, and real ones."""
 
 from __future__ import annotations
 
@@ -212,7 +212,7 @@ def spoil_named(monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[Motion], Moti
         (refusing_float32, r"status 5 at 8 of 8 .*\(C float32\)"),
     ],
 )
-def test_what_is_rejected_takes_the_next_way(
+def test_what_is_rejected_takes_the_next_method(
     yoke: Path, usual: Any, monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[Motion], Motion], why: str
 ) -> None:
     assert "rejected" not in usual
@@ -235,19 +235,19 @@ def test_what_is_rejected_takes_the_next_way(
     assert max(largest) <= 16
 
 
-def test_wrong_algebra_is_an_internal_error_that_names_the_form(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_wrong_algebra_is_an_internal_error_that_names_the_method(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as spoilt:
         spoil_choice(spoilt, wrong)
         with pytest.raises(SymgenBug, match=r"multipliers by \w+.*: it differs from the reference by \S+ at state"):
             made(yoke)
-    # so is that of a form which another one gives way to
+    # so is that of a method which another one replaces
     spoil_choice(monkeypatch, cancelling)
     spoil_named(monkeypatch, wrong)
     with pytest.raises(SymgenBug, match=r"multipliers by \w+: it differs from the reference"):
         made(yoke)
 
 
-def test_what_passes_narrowly_takes_a_way_with_half_of_its_error(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_passes_narrowly_takes_one_with_half_of_its_error(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     yoke.write_text(YOKE + "ranges: {a: [0.7, 1]}\n", encoding="utf-8")
     spoil_choice(monkeypatch, narrow)
     result = made(yoke)
@@ -256,7 +256,7 @@ def test_what_passes_narrowly_takes_a_way_with_half_of_its_error(yoke: Path, mon
     assert result.certificate is not None
     assert result.certificate["passed"]
     assert max(e["largest"] for e in result.certificate["errors"] if e["quantity"] == "multipliers") <= 8
-    # no other way is better: it stays
+    # no other method is better: it stays
     spoil_named(monkeypatch, narrow)
     result = made(yoke)
     assert "rejected" not in derived(result)
@@ -274,7 +274,7 @@ def test_a_loss_that_no_state_of_the_verification_meets_is_searched_for(
     (rejected,) = derived(result)["rejected"]
     assert re.fullmatch(r"error \S+ times d \+ eps \|y\*\| at a state searched for, .*", rejected["why"])
     assert result.left_out == ()
-    # no form is better: each is tried with its errors, and none is taken that is wrong where it was looked
+    # no method is better: each is tried with its errors, and none is taken that is wrong where it was looked
     spoil_named(monkeypatch, edgy)
     result = made(yoke)
     assert all("searched for" in one["why"] for one in derived(result)["rejected"])
@@ -283,23 +283,23 @@ def test_a_loss_that_no_state_of_the_verification_meets_is_searched_for(
     assert made(yoke).files["derivation.json"] == result.files["derivation.json"]
 
 
-def test_a_long_way_has_its_numbers_grouped_once_its_worst_states_speak_for_it(
+def test_a_long_alternative_has_its_numbers_grouped_once_its_worst_states_speak_for_it(
     yoke: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(alternatives, "LONG_WAY", 0)
+    monkeypatch.setattr(alternatives, "LONG_ALTERNATIVE", 0)
     monkeypatch.setattr(fallback, "WIDENED", 0)
     regrouped: list[str] = []
 
-    def noted(way: Alternative) -> Alternative:
-        regrouped.append(way.choice.way)
-        return alternatives.grouped(way)
+    def noted(one: Alternative) -> Alternative:
+        regrouped.append(one.choice.title)
+        return alternatives.grouped(one)
 
     monkeypatch.setattr(fallback, "grouped", noted)
     spoil_choice(monkeypatch, edgy)
     result = made(yoke)
     assert result.left_out == ()
     assert regrouped == [derived(result)["kernels"]["multipliers"]["way"]]
-    # every way passes at the states of the verification, and none where it is worst
+    # every method passes at the states of the verification, and none where it is worst
     regrouped.clear()
     spoil_named(monkeypatch, edgy)
     (left_out,) = made(yoke).left_out
@@ -350,7 +350,7 @@ def test_what_passes_narrowly_at_a_state_searched_for_leaves_no_margin(
     assert max(e["largest"] for e in result.certificate["errors"] if e["quantity"] == "multipliers") <= 8
 
 
-def test_the_way_taken_is_the_one_that_counts_least_of_those_that_pass(
+def test_the_method_taken_is_the_one_that_counts_least_of_those_that_pass(
     yoke: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     spoil_choice(monkeypatch, cancelling)
@@ -358,13 +358,13 @@ def test_the_way_taken_is_the_one_that_counts_least_of_those_that_pass(
     assert [one["way"] for one in result["rejected"]] == ["minor along minors"]
     taken = result["kernels"]["multipliers"]
     others = [
-        derived(made(yoke, replace(FAST, forms={"multipliers": name})))["kernels"]["multipliers"]["counted_cost"]
+        derived(made(yoke, replace(FAST, methods={"multipliers": name})))["kernels"]["multipliers"]["counted_cost"]
         for name in ("schur_qr", "nullspace")
     ]
     assert min(cost for one in others for cost in one.values()) == min(taken["counted_cost"].values())
 
 
-def test_what_no_way_passes_is_left_out_alone(
+def test_what_no_method_passes_is_left_out_alone(
     whole: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     spoil_choice(monkeypatch, cancelling)
@@ -439,7 +439,7 @@ def test_float64_stays_where_float32_alone_is_rejected(
     assert cli.main([*common, "--scalar", "float64", "--out", str(tmp_path / "one")]) == 0
 
 
-def test_check_takes_over_the_way_that_verification_led_to(
+def test_check_takes_over_the_method_that_verification_led_to(
     yoke: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     spoil_choice(monkeypatch, cancelling)
@@ -451,7 +451,7 @@ def test_check_takes_over_the_way_that_verification_led_to(
     assert cli.main([*common, "--check"]) == 1
 
 
-def test_where_every_way_loses_digits_one_works_with_twice_as_many(
+def test_where_every_method_loses_digits_one_works_with_twice_as_many(
     yoke: Path, usual: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     spoil_choice(monkeypatch, losing_digits)
@@ -477,19 +477,19 @@ def test_where_every_way_loses_digits_one_works_with_twice_as_many(
 def test_more_digits_in_float32_alone_take_nothing_from_more_in_both(
     yoke: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Ways that pass in float64 may be beyond what is allowed at states that others were looked for at."""
+    """Methods that pass in float64 may be beyond what is allowed at states that others were looked for at."""
     spoil_choice(monkeypatch, refusing_float32)
     spoil_named(monkeypatch, losing_digits)
     monkeypatch.setattr(fallback, "WIDENED", 1)
-    widened = fallback.Fallback._widened_way
+    widened = fallback.Fallback._with_pairs
     tried = []
 
-    def failing(self: Any, draft: Any, way: Alternative, scalars: Any, wide: Any, expected: Any) -> Any:
+    def failing(self: Any, draft: Any, one: Alternative, scalars: Any, wide: Any, expected: Any) -> Any:
         tried.append(wide)
-        found = widened(self, draft, way, scalars, wide, expected)
+        found = widened(self, draft, one, scalars, wide, expected)
         return replace(found, scalars=()) if wide == ("float32",) else found
 
-    monkeypatch.setattr(fallback.Fallback, "_widened_way", failing)
+    monkeypatch.setattr(fallback.Fallback, "_with_pairs", failing)
     result = made(yoke)
     assert derived(result)["kernels"]["multipliers"]["twice_the_digits"] == ["float64", "float32"]
     assert tried == [("float32",), ("float64", "float32")]
@@ -530,12 +530,12 @@ def test_what_all_leaves_out_is_no_longer_left_out_of_one_type(yoke: Path, monke
     assert made(yoke, replace(FAST, outputs=("all",))).left_out == ()
 
 
-def test_a_form_that_was_asked_for_is_not_replaced(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_method_that_was_asked_for_is_not_replaced(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     spoil_named(monkeypatch, cancelling)
-    result = made(yoke, replace(FAST, forms={"multipliers": "kkt"}))
+    result = made(yoke, replace(FAST, methods={"multipliers": "kkt"}))
     (left_out,) = result.left_out
     assert left_out.quantity == "multipliers"
-    assert [way for way, _ in left_out.tried] == ["kkt"]
+    assert [method for method, _ in left_out.tried] == ["kkt"]
     assert "--form multipliers=kkt" in left_out.remedy
     assert "forward_dynamics" in derived(result)["kernels"]
 
@@ -628,7 +628,7 @@ def test_laws_that_a_number_with_few_digits_violates_too_do_not_keep_it_from_mor
 def test_a_status_of_float32_does_not_keep_what_loses_digits_from_more_of_them(
     yoke: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The first choice is as good as another way there, which is judged in float64 first."""
+    """The first choice is as good as another method there, which is judged in float64 first."""
     spoil_choice(monkeypatch, lambda motion: refusing_float32(losing_digits(motion)))
     monkeypatch.setattr(alternatives.Alternatives, "of", lambda *_: ())
     result = made(yoke)

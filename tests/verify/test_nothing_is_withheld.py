@@ -113,7 +113,7 @@ def test_wheels_and_cranks_that_turn_for_hours_are_verified_in_float32(text: str
 
 @pytest.mark.slow
 def test_what_loses_digits_at_great_angles_alone_has_twice_as_many(tmp_path: Path) -> None:
-    """Within a turn every form of N_B keeps its digits."""
+    """Within a turn every method of N_B keeps its digits."""
     derivation = verified(MILL, tmp_path, ("constraint_jacobian", "nullspace_projector"))
     assert derivation["kernels"]["nullspace_projector"]["twice_the_digits"] == ["float64", "float32"]
     assert {one["quantity"] for one in derivation["rejected"]} == {"nullspace_projector"}

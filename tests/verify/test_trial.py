@@ -1,4 +1,4 @@
-"""Long kernels are tried before C is made of them: the same ways are taken as after it, and C is written once."""
+"""Long kernels are tried before C is made of them: the same methods are taken as after it, and C is written once."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def written(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 
 def _spoil(monkeypatch: pytest.MonkeyPatch, factor: Fraction) -> None:
-    """λ of the form that selection takes by itself times 1 + factor (cosh^2 - sinh^2 - 1), which loses digits."""
+    """λ of the method that selection takes by itself times 1 + factor (cosh^2 - sinh^2 - 1), which loses digits."""
     derived_from = candidates.derived_from
 
     def worse(entry: Any, along: Any, outputs: Any, guards: Any) -> Quantity:

@@ -183,7 +183,7 @@ outputs: [inverse_dynamics]
 
 
 def test_u_is_judged_nearer_to_singular_states_than_samples_are() -> None:
-    """What every way loses beside straight legs is seen though no sample comes near; twice the digits hold."""
+    """What every method loses beside straight legs is seen though no sample comes near; twice the digits hold."""
     model = load_text(LIFT, "lift.yaml")
     program = draft_of(model, model.outputs, Options()).programs["float64"]
     expected = Expected(model, model.outputs, 16, lambda _: None)

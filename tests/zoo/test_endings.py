@@ -21,7 +21,7 @@ MISTAKE = """zoo.yaml:12:5: `a` of something in m
   remedy: divide by a length
 """
 LEFT_OUT = """zoo.yaml:3:1: notice: `a` cannot move
-zoo.yaml: energy is left out in float64 and float32: verification rejects every way of it
+zoo.yaml: energy is left out in float64 and float32: verification rejects every method
   factored: error 30 times
   remedy: give narrower `ranges`
 """

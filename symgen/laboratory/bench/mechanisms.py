@@ -84,7 +84,7 @@ def mechanism_benchmark(path: Path, progress: Progress, out: Path | None = None)
     draft = generated(model, task, ("float64",), out)
     if draft.derivations.left_out:
         raise WrongUseError(f"{path}: nothing to measure: {'; '.join(draft.notes)}")
-    form = draft.choice(TASK).way
+    form = draft.choice(TASK).title
     programs = {form: draft.written}
     progress("writing peers")
     found, left_out = mechanism_peers(model, load.states)

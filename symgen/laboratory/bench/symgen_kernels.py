@@ -44,8 +44,8 @@ def programs_of(
     """The task's kernel alone, by form; the first is the `draft` that symgen generates, the others it did not take."""
     draft = draft or generated(model, task, scalars, None)
     choice = draft.choice(task.quantity)
-    absolute = " in absolute angles" if choice.form and choice.way == ABSOLUTE else ""
-    name = (choice.form or choice.way) + absolute + choice.digits
+    absolute = " in absolute angles" if choice.method and choice.title == ABSOLUTE else ""
+    name = (choice.method or choice.title) + absolute + choice.digits
     found: dict[str, Mapping[Scalar, Program]] = {name: draft.written}
     for form, (mechanics, quantity) in _forms(model, task.quantity):
         if form not in found:

@@ -12,7 +12,7 @@ VERIFIED, NOTICED, REFUSED, FAILED = "verified", "verified with a notice", "refu
 PLACED = re.compile(
     r"^[^\n]*?\.(?:yaml|urdf):\d+:\d+: (?!notice: )(?P<message>[^\n]+)\n.*?^  remedy: (?P<remedy>[^\n]+)", re.M | re.S
 )
-LEFT_OUT = re.compile(r"(\w+) is left out in [\w ]+: verification rejects every way of it\n\s*([^\n]*)")
+LEFT_OUT = re.compile(r"(\w+) is left out in [\w ]+: verification rejects every method\n\s*([^\n]*)")
 NUMBERS = re.compile(r"[-+]?\d+(\.\d+)?([eE][-+]?\d+)?")
 # every draw has a configuration that satisfies its rows, so these cannot be true
 UNTRUE = (

@@ -26,11 +26,11 @@ from symgen.symbolic.matrix import Matrix, Vector, dot, identity, matvec
 from symgen.symbolic.scalar import Graph, Scalar
 
 Projection: TypeAlias = Callable[[Vector], Vector]
-# Choices of inputs up to which the printed form is made of them.
+# Choices of inputs up to which the method `printed` is made of them.
 MOST_PARTITIONS = 20
 
 
-def printed_form(system: MethodInput, fixed: Sequence[int] | None = None) -> Candidate | str:
+def printed_candidate(system: MethodInput, fixed: Sequence[int] | None = None) -> Candidate | str:
     """u by (27) and (28); `fixed` names the inputs of M~_1 and takes the switching away."""
     reason = system.driven or system.regular
     if reason is not None:
@@ -60,7 +60,7 @@ def printed_form(system: MethodInput, fixed: Sequence[int] | None = None) -> Can
     return solved_for_u(system, u, kept)
 
 
-def fixed_form(system: MethodInput) -> Candidate | str:
+def fixed_candidate(system: MethodInput) -> Candidate | str:
     """The same without switching: with the choice of inputs that is best at the configuration of the file.
 
     It fails at regular states, where the inputs that are chosen no longer span the motions.
@@ -78,7 +78,7 @@ def fixed_form(system: MethodInput) -> Candidate | str:
     columns = [project(column) for column in mechanics.inputs]
     sizes = Evaluator([_determinant(mechanics.graph, columns, chosen) for chosen in choices])
     (start,) = configurations(mechanics, 1)
-    return printed_form(system, max(zip(sizes(start), choices, strict=True))[1])
+    return printed_candidate(system, max(zip(sizes(start), choices, strict=True))[1])
 
 
 def _projection(graph: Graph, b: Matrix) -> tuple[Projection, tuple[Guard, ...]]:
@@ -143,5 +143,5 @@ def _inverse(
     return (*top, *(dot(graph, column, top) for column in r)), guards
 
 
-PRINTED: Method = OfInputs(lambda workspace: printed_form(workspace.fresh()))
-PRINTED_FIXED: Method = OfInputs(lambda workspace: fixed_form(workspace.fresh()))
+PRINTED: Method = OfInputs(lambda workspace: printed_candidate(workspace.fresh()))
+PRINTED_FIXED: Method = OfInputs(lambda workspace: fixed_candidate(workspace.fresh()))

@@ -18,7 +18,7 @@ from symgen.symbolic.matrix import Matrix, Vector, dot, matvec, subtract_vectors
 from symgen.symbolic.scalar import Graph
 
 
-def weighted_form(system: MethodInput) -> Candidate | str:
+def weighted_candidate(system: MethodInput) -> Candidate | str:
     """u = (N_{B,G}^T M)^+ N_{B,G}^T tau with N_{B,G}^T x = x - B^T (B G^-1 B^T)^-1 B G^-1 x (17)-(19).
 
     It needs G positive definite, independent rows and full actuation.
@@ -45,7 +45,7 @@ def weighted_form(system: MethodInput) -> Candidate | str:
     return solved_for_u(system, u, (*whole.guards, *schur.guards, rank))
 
 
-def kkt_form(system: MethodInput) -> Candidate | str:
+def kkt_candidate(system: MethodInput) -> Candidate | str:
     """min |u|^2 with M u - B^T lambda = tau: [S, B^T; B, 0] (mu, -lambda) = (tau, 0) and u = M^T mu.
 
     S is M M^T + B^T B in place of M M^T, which changes nothing because B mu = 0.  S is positive definite exactly where
@@ -99,5 +99,5 @@ def _as(status: Status, guards: tuple[Guard, ...]) -> tuple[Guard, ...]:
     return tuple(replace(guard, status=status) for guard in guards)
 
 
-WEIGHTED: Method = OfInputs(lambda workspace: weighted_form(workspace.fresh()))
-KKT: Method = OfInputs(lambda workspace: kkt_form(workspace.fresh()))
+WEIGHTED: Method = OfInputs(lambda workspace: weighted_candidate(workspace.fresh()))
+KKT: Method = OfInputs(lambda workspace: kkt_candidate(workspace.fresh()))

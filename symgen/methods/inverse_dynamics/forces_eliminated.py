@@ -38,7 +38,7 @@ from symgen.symbolic.traverse import cost, substitute
 LARGEST_CORE_BY_MINORS = 3
 
 
-def elimination_form(
+def elimination_candidate(
     mechanics: System, generic: Genericity, steps: Callable[[System], Elimination] = Elimination
 ) -> Candidate | None:
     """u by elimination, or None where it does not apply; `mechanics` may be in absolute angles.
@@ -283,7 +283,7 @@ def _elimination(workspace: Workspace) -> Candidate | str:
     system = _in_body_axes(workspace, workspace.fresh())
     if system.driven is not None:
         return system.driven
-    made = elimination_form(_in_absolute_angles(system.mechanics), system.generic)
+    made = elimination_candidate(_in_absolute_angles(system.mechanics), system.generic)
     if made is None:
         return "its steps leave more than a few rows, or M does not select rows"
     return replace(made, system=system)

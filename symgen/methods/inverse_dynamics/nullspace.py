@@ -49,7 +49,7 @@ class _NullVectors:
     pivots: Vector
 
 
-def nullspace_form(system: MethodInput, allowed: Callable[[Scalar], bool]) -> Candidate | str:
+def nullspace_candidate(system: MethodInput, allowed: Callable[[Scalar], bool]) -> Candidate | str:
     """u along the first choice of rates whose determinant is `allowed`, or along the first of all."""
     reason = system.driven or system.regular
     if reason is not None:
@@ -165,7 +165,7 @@ def _solved(graph: Graph, core: Matrix, chosen: tuple[int, ...]) -> _NullVectors
 
 def _nullspace(workspace: Workspace) -> Candidate | str:
     system = workspace.fresh()
-    return nullspace_form(system, proof_for(system, workspace.minor_measures).shown)
+    return nullspace_candidate(system, proof_for(system, workspace.minor_measures).shown)
 
 
 NULLSPACE: Method = OfInputs(_nullspace, least=least_of_basis)

@@ -45,7 +45,7 @@ JUDGED, SETTLED = 8, 32
 
 
 class WorstStateSearch:
-    """The worst states of the quantities of a model, those of every way that was looked at."""
+    """The worst states of the quantities of a model, those of every method that was looked at."""
 
     def __init__(self, expected: Expected) -> None:
         self._expected = expected
@@ -70,7 +70,7 @@ class WorstStateSearch:
     def largest(self, kernel: Kernel, sincos: Function | None, scalar: Scalar) -> float:
         """The largest error with status 0, in units of d + eps |y*|, at the states that were found for its quantity.
 
-        They are those of every way that was looked at.
+        They are those of every method that was looked at.
         """
         states = [rounded(sample, scalar).state for sample in self._states[kernel.name]]
         worst = 0.0

@@ -17,7 +17,7 @@ from symgen.mechanics.genericity import Genericity, genericity
 from symgen.mechanics.system import System
 from symgen.methods.derivation import Derivation
 from symgen.methods.inverse_dynamics.elimination import Elimination
-from symgen.methods.inverse_dynamics.forces_eliminated import elimination_form
+from symgen.methods.inverse_dynamics.forces_eliminated import elimination_candidate
 from symgen.model.model import Model
 from symgen.quantities.select import derive_quantities
 from symgen.symbolic.angles.sharing import share_angles
@@ -191,7 +191,7 @@ def _of_axes(model: Model, generic: Genericity) -> KeptWeight:
         mechanics = System(model)
         change = absolute_angles(mechanics.q, mechanics.constraint_jacobian)
         seen = mechanics if change.is_identity else System(model, mechanics, change)
-        form = elimination_form(seen, generic, steps)
+        form = elimination_candidate(seen, generic, steps)
         return None if form is None else counted_cost(form.derived.outputs)
 
     plain, world = weight(Elimination), weight(_WorldAxes)

@@ -31,7 +31,7 @@ from symgen.verify.tolerance import FACTOR, expectations
 
 STATES = 4
 BITS = 256
-POLYNOMIAL = ("minor", "minor factored", "elimination", "nullspace")  # forms without square roots
+POLYNOMIAL = ("minor", "minor factored", "elimination", "nullspace")  # methods without square roots
 SAME = 1e-40
 # Statuses that depend on units: bounds of parameters are in those of the model file.
 IN_UNITS = (Status.CONSTRAINT_RANK, Status.ACTUATION_RANK, Status.PARAMETER_RANGE)
@@ -110,7 +110,7 @@ def _compare(
     found = []
     for name in names:
         conversion = _conversion(reference, other, states, converted, name)
-        required = binary and name == "inverse_dynamics" and kernels.way(name) in POLYNOMIAL
+        required = binary and name == "inverse_dynamics" and kernels.method(name) in POLYNOMIAL
         required = required and _one_dimension(reference)
         for scalar in SCALARS:
             worst, refused, identical = 0.0, 0, True

@@ -1,4 +1,4 @@
-"""Every form of u is the same function: equal to the 50-digit reference within the tolerance at regular states."""
+"""Every method of u is the same function: equal to the 50-digit reference within the tolerance at regular states."""
 
 from __future__ import annotations
 
@@ -25,46 +25,46 @@ DRIVEN = [name for name in NAMES if model(name).inputs]
 
 def programs_of(given: Model) -> dict[str, dict[Scalar, Program]]:
     return {
-        form: schedule(mechanics, found, ("float64", "float32"))
-        for form, mechanics, found in every_method(given, ("inverse_dynamics",))
+        method: schedule(mechanics, found, ("float64", "float32"))
+        for method, mechanics, found in every_method(given, ("inverse_dynamics",))
     }
 
 
-def worst_errors(given: Model, forms: dict[str, dict[Scalar, Program]], scalar: Scalar) -> dict[str, float]:
-    """The largest error of each form in units of the tolerance."""
+def worst_errors(given: Model, methods: dict[str, dict[Scalar, Program]], scalar: Scalar) -> dict[str, float]:
+    """The largest error of each method in units of the tolerance."""
     reference = Reference(given)
-    worst = dict.fromkeys(forms, 0.0)
+    worst = dict.fromkeys(methods, 0.0)
     for number, sample in enumerate(sample_states(reference, ("inverse_dynamics",), STATES)):
         state = rounded(sample, scalar).state
         expected = expectations(reference, state, ("inverse_dynamics",), scalar, f"forms {number}")
         parts = {part: getattr(state, part) for part in ("q", "qd", "qdd", "u")}
-        for form, by_scalar in forms.items():
+        for method, by_scalar in methods.items():
             program = by_scalar[scalar]
             parameters = tuple(map(float, state.parameters))
             status, u = Interpreter(program.sincos, scalar).run(program.kernels[0], parts, parameters)
             # a basis from chosen coordinates may fail at a regular state, and so may chosen inputs
-            assert status == Status.OK or form in ("nullspace", "printed_fixed"), f"{form}: {status.name}"
+            assert status == Status.OK or method in ("nullspace", "printed_fixed"), f"{method}: {status.name}"
             if status == Status.OK:
                 units = expected["inverse_dynamics"].in_units(expected["inverse_dynamics"].distance(u))
-                worst[form] = max(worst[form], units)
+                worst[method] = max(worst[method], units)
     return worst
 
 
 def assert_within(worst: dict[str, float]) -> None:
-    allowed = {form: FACTOR * (SQUARED if form in SQUARING else 1) for form in worst}
-    assert {form: units for form, units in worst.items() if units > allowed[form]} == {}
+    allowed = {method: FACTOR * (SQUARED if method in SQUARING else 1) for method in worst}
+    assert {method: units for method, units in worst.items() if units > allowed[method]} == {}
 
 
 @pytest.mark.parametrize("scalar", ["float64", "float32"])
 @pytest.mark.parametrize("name", sparing(DRIVEN))
-def test_forms_of_the_shipped_models_agree_with_the_reference(name: str, scalar: Scalar) -> None:
+def test_methods_of_the_shipped_models_agree_with_the_reference(name: str, scalar: Scalar) -> None:
     worst = worst_errors(model(name), programs_of(model(name)), scalar)
     assert {"minor", "nullspace", "elimination", "printed", "weighted", "kkt"} <= worst.keys()
     assert_within(worst)
 
 
 @pytest.mark.parametrize("seed", range(len(SIZES)))
-def test_forms_of_random_systems_agree_with_the_reference(seed: int) -> None:
+def test_methods_of_random_systems_agree_with_the_reference(seed: int) -> None:
     given = load_text(random_system(seed), f"random_{seed}.yaml")
     worst = worst_errors(given, programs_of(given), "float64")
     assert len(worst) >= 5

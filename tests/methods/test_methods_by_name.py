@@ -1,4 +1,4 @@
-"""`--form`: a form by name, its singular set in derivation.json, and the answer to one that does not apply."""
+"""`--form`: a method by name, its singular set in derivation.json, and the answer to one that does not apply."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from symgen.cli.arguments import form_of
+from symgen.cli.arguments import method_of
 from symgen.cli.main import main
-from symgen.generation.results import FORMS
+from symgen.generation.results import NAMED_METHODS
 
 ROOT = Path(__file__).resolve().parents[2]
 RAPKM = str(ROOT / "models" / "rapkm_2rrr_rr.yaml")
@@ -34,68 +34,68 @@ FEW = ("--outputs", "inverse_dynamics", "--only", "c", "--no-verify", "--scalar"
 def generated(folder: Path, model: str, *options: str) -> dict[str, object]:
     assert main([model, *FEW, "--out", str(folder), *options]) == 0
     (path,) = folder.glob("*/derivation.json")
-    form = json.loads(path.read_text())["form_of_inverse_dynamics"]
-    assert isinstance(form, dict)
-    return form
+    method = json.loads(path.read_text())["form_of_inverse_dynamics"]
+    assert isinstance(method, dict)
+    return method
 
 
-def test_auto_names_its_form_and_why_it_is_valid(tmp_path: Path) -> None:
-    form = generated(tmp_path, RAPKM)
-    assert form["name"] == "elimination"
-    assert form["valid_at_every_regular_state"] is True
-    assert form["because"] == "denominators and pivots: 3 proved to vanish only where a rank drops"
+def test_auto_names_its_method_and_why_it_is_valid(tmp_path: Path) -> None:
+    method = generated(tmp_path, RAPKM)
+    assert method["name"] == "elimination"
+    assert method["valid_at_every_regular_state"] is True
+    assert method["because"] == "denominators and pivots: 3 proved to vanish only where a rank drops"
 
 
-def test_a_singular_form_is_made_and_says_where_it_fails(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    form = generated(tmp_path, RAPKM, "--form", "nullspace")
-    assert form["valid_at_every_regular_state"] is False
-    assert isinstance(form["singular"], list)
-    (singular,) = form["singular"]
+def test_a_singular_method_is_made_and_says_where_it_fails(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    method = generated(tmp_path, RAPKM, "--form", "nullspace")
+    assert method["valid_at_every_regular_state"] is False
+    assert isinstance(method["singular"], list)
+    (singular,) = method["singular"]
     assert singular["where_zero"] == "l_1*sin(b_2)*l_1*sin(b_3)"
     assert set(singular["for_example"]) >= {"a_1", "b_3"}
     assert main([RAPKM, *FEW[:-1], "--out", str(tmp_path), "--form", "nullspace"]) == 0
     assert "this form is singular where l_1*sin(b_2)*l_1*sin(b_3) = 0" in capsys.readouterr().out
 
 
-def test_a_form_the_system_does_not_have(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_method_the_system_does_not_have(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([PENDULUM, *FEW, "--out", str(tmp_path), "--form", "householder"]) == 2
     told = capsys.readouterr().err
-    assert "double_pendulum has no form 'householder' of inverse_dynamics: there are no constraints" in told
+    assert "double_pendulum has no method 'householder' of inverse_dynamics: there are no constraints" in told
     assert not [*tmp_path.iterdir()]
 
 
-@pytest.mark.parametrize("form", ["printed", "kkt"])
-def test_the_kernel_is_that_of_the_form(form: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("method", ["printed", "kkt"])
+def test_the_kernel_is_that_of_the_method(method: str, tmp_path: Path) -> None:
     auto = generated(tmp_path / "auto", CAR)
-    named = generated(tmp_path / "named", CAR, "--form", form)
-    assert named["name"] == form
+    named = generated(tmp_path / "named", CAR, "--form", method)
+    assert named["name"] == method
     sources = [(tmp_path / name / "front_car" / "c" / "front_car.c").read_text() for name in ("auto", "named")]
     assert sources[0] != sources[1]
-    assert auto["name"] != form
+    assert auto["name"] != method
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("form", ["minor", "schur_qr", "shifted", pytest.param("kkt", marks=pytest.mark.campaign)])
-def test_multipliers_by_the_form_asked_for_are_verified(form: str, tmp_path: Path) -> None:
-    assert form in FORMS["multipliers"]
-    asked = ("--form", f"multipliers={form}", "--form", f"forward_dynamics={form}")
+@pytest.mark.parametrize("method", ["minor", "schur_qr", "shifted", pytest.param("kkt", marks=pytest.mark.campaign)])
+def test_multipliers_by_the_method_asked_for_are_verified(method: str, tmp_path: Path) -> None:
+    assert method in NAMED_METHODS["multipliers"]
+    asked = ("--form", f"multipliers={method}", "--form", f"forward_dynamics={method}")
     given = ("--outputs", "forward_dynamics,multipliers", "--only", "c", "--scalar", "float64", "--states", "8")
     # shifted equations are for a G without inverse; of the slider-crank they are 40 units off at states searched for,
     # and those of the whole system 16.4
     file, name = {"shifted": (str(tmp_path / "massless.yaml"), "massless"), "kkt": (THREE_RRR, "three_rrr")}.get(
-        form, (CRANK, "slider_crank")
+        method, (CRANK, "slider_crank")
     )
     (tmp_path / "massless.yaml").write_text(MASSLESS)
     assert main([file, *given, *asked, "--quiet", "--out", str(tmp_path)]) == 0
     derivation = json.loads((tmp_path / name / "derivation.json").read_text())
     for quantity in ("forward_dynamics", "multipliers"):
-        assert derivation["kernels"][quantity]["way"] == form
+        assert derivation["kernels"][quantity]["way"] == method
         assert derivation[f"form_of_{quantity}"]["valid_at_every_regular_state"] is True
-    counted = derivation["kernels"]["multipliers"]["counted_cost"][form]
-    assert {"minor": 226, "schur_qr": 310}.get(form, counted) == counted
+    counted = derivation["kernels"]["multipliers"]["counted_cost"][method]
+    assert {"minor": 226, "schur_qr": 310}.get(method, counted) == counted
 
 
-def test_a_form_of_the_accelerations_that_fails_says_where(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_method_of_accelerations_that_fails_says_where(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "massless.yaml"
     file.write_text(MASSLESS)
     given = (str(file), "--only", "c", "--no-verify", "--out", str(tmp_path))
@@ -104,9 +104,9 @@ def test_a_form_of_the_accelerations_that_fails_says_where(tmp_path: Path, capsy
     where = "this form is singular where the pivot of y in G, m*cos(turn)**2 = 0"
     assert f"validity of forward_dynamics at every regular state form schur_qr: {where}" in told
     derivation = json.loads((tmp_path / "massless" / "derivation.json").read_text())
-    form = derivation["form_of_forward_dynamics"]
-    assert form["valid_at_every_regular_state"] is False
-    assert math.cos(form["singular"][0]["for_example"]["turn"]) == pytest.approx(0, abs=0.02)
+    method = derivation["form_of_forward_dynamics"]
+    assert method["valid_at_every_regular_state"] is False
+    assert math.cos(method["singular"][0]["for_example"]["turn"]) == pytest.approx(0, abs=0.02)
     # lambda was left to symgen, and takes none that fails
     assert derivation["kernels"]["multipliers"]["form"] != "schur_qr"
     assert main(["explain", str(file), "multipliers"]) == 0
@@ -114,7 +114,7 @@ def test_a_form_of_the_accelerations_that_fails_says_where(tmp_path: Path, capsy
     assert re.search(r"schur_qr \(\d+\): " + re.escape(where), told)
 
 
-def test_the_report_names_forms_of_the_multipliers_that_fail(tmp_path: Path) -> None:
+def test_the_report_names_methods_of_the_multipliers_that_fail(tmp_path: Path) -> None:
     file = tmp_path / "massless.yaml"
     file.write_text(MASSLESS)
     assert main([str(file), "--only", "report", "--no-verify", "--quiet", "--out", str(tmp_path)]) == 0
@@ -126,27 +126,27 @@ def test_the_report_names_forms_of_the_multipliers_that_fail(tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("multiplier=kkt", "'multiplier' has no forms; did you mean `multipliers`?"),
-        ("multipliers=range", "'range' is no form of multipliers: choose from auto, minor, schur_qr"),
-        ("energy=kkt", "'energy' has no forms; those that have forms are inverse_dynamics, forward_dynamics"),
+        ("multiplier=kkt", "'multiplier' has no methods; did you mean `multipliers`?"),
+        ("multipliers=range", "'range' is no method of multipliers: choose from auto, minor, schur_qr"),
+        ("energy=kkt", "'energy' has no methods; those that have methods are inverse_dynamics, forward_dynamics"),
     ],
 )
-def test_forms_that_do_not_exist(text: str, told: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_methods_that_do_not_exist(text: str, told: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as left:
         main([CAR, "--form", text])
     assert left.value.code == 2
     assert told in capsys.readouterr().err
 
 
-def test_forms_a_system_lacks_and_forms_of_what_is_not_generated(
+def test_methods_a_system_lacks_and_methods_of_what_is_not_generated(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     given = (*FEW[2:-1], "--out", str(tmp_path))
     assert main([PENDULUM, *given, "--form", "forward_dynamics=nullspace"]) == 2
-    expected = "double_pendulum has no form 'nullspace' of forward_dynamics: there are no constraints"
+    expected = "double_pendulum has no method 'nullspace' of forward_dynamics: there are no constraints"
     assert expected in capsys.readouterr().err
     assert main([PENDULUM, *given, "--form", "forward_dynamics=articulated"]) == 2
-    assert "no form 'articulated' of forward_dynamics: it is for bodies alone" in capsys.readouterr().err
+    assert "no method 'articulated' of forward_dynamics: it is for bodies alone" in capsys.readouterr().err
     scara = str(ROOT / "models" / "scara.yaml")
     assert main([scara, *given, "--form", "forward_dynamics=articulated"]) == 0
     capsys.readouterr()
@@ -154,5 +154,5 @@ def test_forms_a_system_lacks_and_forms_of_what_is_not_generated(
     assert "--form forward_dynamics=kkt: forward_dynamics is not generated" in capsys.readouterr().err
 
 
-def test_a_name_that_a_form_once_had_is_taken_for_it() -> None:
-    assert form_of("range") == form_of("inverse_dynamics=range") == ("inverse_dynamics", "elimination")
+def test_a_name_that_a_method_once_had_is_taken_for_it() -> None:
+    assert method_of("range") == method_of("inverse_dynamics=range") == ("inverse_dynamics", "elimination")

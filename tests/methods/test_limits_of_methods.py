@@ -1,4 +1,4 @@
-"""Limits of ways that few systems meet: beyond each the way is not built, and up to it it is."""
+"""Limits of methods that few systems meet: beyond each the method is not built, and up to it it is."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from symgen.linear_algebra.exterior import small_family
 from symgen.linear_algebra.null_spaces import has_few_minors
 from symgen.mechanics.genericity import Genericity, genericity
 from symgen.mechanics.system import System
-from symgen.methods.comparisons.printed import printed_form
+from symgen.methods.comparisons.printed import printed_candidate
 from symgen.methods.derivation import Derivation
-from symgen.methods.inverse_dynamics.nullspace import MOST_BASES, nullspace_form
+from symgen.methods.inverse_dynamics.nullspace import MOST_BASES, nullspace_candidate
 from symgen.methods.method import Candidate
 from symgen.methods.selection import Methods
 from symgen.methods.spaces import along_minors
@@ -100,7 +100,7 @@ def _input(name: str) -> MethodInput:
 
 
 def test_rows_of_many_determinants_are_left_to_other_methods() -> None:
-    assert nullspace_form(_input("gough_stewart"), lambda _: True) == (
+    assert nullspace_candidate(_input("gough_stewart"), lambda _: True) == (
         "too many constraint rows are left that no safe step solves"
     )
     system = _input("gough_stewart")
@@ -117,7 +117,7 @@ def test_as_many_bases_are_tried(nth: int) -> None:
         asked.append(pivot)
         return next(numbers) == nth
 
-    made = nullspace_form(_input("delta"), allowed)
+    made = nullspace_candidate(_input("delta"), allowed)
     assert isinstance(made, Candidate)
     assert len(asked) == min(nth, MOST_BASES)
     taken = asked[-1] if nth <= MOST_BASES else asked[0]
@@ -137,7 +137,7 @@ def test_methods_of_long_systems_are_not_derived_to_say_where_they_fail(monkeypa
 @pytest.mark.parametrize(
     ("names", "inputs", "told"), [("xyz", 6, ""), ("xy", 6, ""), ("xy", 7, "there are 21 choices of inputs")]
 )
-def test_the_printed_form_is_not_made_of_more_than_twenty_choices(names: str, inputs: int, told: str) -> None:
+def test_the_printed_method_is_not_made_of_more_than_twenty_choices(names: str, inputs: int, told: str) -> None:
     drives = "\n".join(f"  u_{k}: {{acts_on: {{{', '.join(f'{n}: {1 + k**i}' for i, n in enumerate(names))}}}}}"
                        for k in range(inputs))
     energy = " + ".join(f"{name}_dot**2" for name in names)
@@ -145,5 +145,5 @@ def test_the_printed_form_is_not_made_of_more_than_twenty_choices(names: str, in
     text = f"model: pushed\ncoordinates: {{{coordinates}}}\nkinetic_energy: {energy}\ninputs:\n{drives}\n"
     model = load_text(text, "pushed.yaml")
     generic: Genericity = genericity(System(model))
-    made = printed_form(MethodInput.fresh(model, generic))
+    made = printed_candidate(MethodInput.fresh(model, generic))
     assert made == told if told else isinstance(made, Candidate)

@@ -1,4 +1,4 @@
-"""Every form of q_ddot and lambda solves the same KKT system, also where rows of B depend on each other."""
+"""Every method of q_ddot and lambda solves the same KKT system, also where rows of B depend on each other."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def test_methods(system: str, name: str) -> None:
 
 
 @pytest.mark.parametrize("system", ["front_car", "slider_crank"])
-def test_only_forms_without_squared_condition_numbers_are_chosen(system: str) -> None:
+def test_only_methods_without_squared_condition_numbers_are_chosen(system: str) -> None:
     mechanics = System(model(system))
     space = MinorSpace(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, mechanics.r)
     assert [*motions_along(Derivation(mechanics, genericity(mechanics), space))] == ["minor", "schur_qr"]
