@@ -13,7 +13,7 @@ from symgen.laboratory.stress.reporting.pages import page
 
 ROOT = Path(__file__).resolve().parent.parent
 TARGET = ROOT / "docs" / "stress"
-IN_FULL = "rapkm_2rrr_rr"  # the model whose forms are drawn quantity by quantity
+IN_FULL = "rapkm_2rrr_rr"  # the model whose methods are drawn quantity by quantity
 
 
 def main(generated: Path, names: list[str]) -> None:
@@ -27,7 +27,7 @@ def main(generated: Path, names: list[str]) -> None:
             kind = chart.name.removeprefix("stress").removesuffix("svg").strip(".")
             if not kind and name != IN_FULL:
                 continue  # the tables of the page say as much
-            target = f"{name}.{kind or 'forms'}.svg"
+            target = f"{name}.{kind or 'methods'}.svg"
             shutil.copyfile(chart, TARGET / target)
             charts.setdefault(name, []).append(target)
     text = page([(generated / name / "stress.json").read_text(encoding="utf-8") for name in names], charts)

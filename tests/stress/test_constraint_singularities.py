@@ -58,7 +58,7 @@ def test_near_redundant_rows_cost_no_more_than_the_drift(tmp_path: Path) -> None
     sweeper.family(0)
     result = sweeper.result()
     assert result.failures == ()
-    (series,) = [s for s in result.series if s.scalar == "float64" and s.form == SYMGEN]
+    (series,) = [s for s in result.series if s.scalar == "float64" and s.method == SYMGEN]
     # off the constraints by 1e-4 the error is of that size, and it goes away with the drift
     at = {round(e.distance, 14): e.relative for e in series.errors}
     assert 1e-6 < at[0.01] < 1e-1

@@ -22,7 +22,7 @@ from symgen.verify.reference.reference import State
 def swept(name: str, family: Family, folder: Path, quantities: tuple[str, ...]) -> tuple[dict[str, Series], Sweeper]:
     sweeper = Sweeper(reference(name), RunnableKernels(model(name), folder, quantities), [family])
     sweeper.family(0)
-    series = {f"{s.quantity} {s.form} {s.scalar}": s for s in sweeper.result().series}
+    series = {f"{s.quantity} {s.method} {s.scalar}": s for s in sweeper.result().series}
     return series, sweeper
 
 
@@ -37,15 +37,15 @@ def test_pairs_of_drives_lose_digits_that_the_generated_kernel_keeps(tmp_path: P
     (trouble,) = [t for t in known("rapkm_2rrr_rr").troubles if t.label == "sin(a₁ − a₂ + b₁ − b₂)"]
     family = _family(reference("rapkm_2rrr_rr"), "parameter", trouble, places(reference("rapkm_2rrr_rr"), trouble, 1))
     series, sweeper = swept("rapkm_2rrr_rr", family, tmp_path, (*PIECES, "inverse_dynamics", "nullspace_projector"))
-    u = {form: series[f"inverse_dynamics {form} float64"] for form in (PARTITION, FIXED, SWITCHING, SYMGEN)}
-    for form in (PARTITION, FIXED):
-        assert slope(u[form], 1e-7, 1e-2) > 0.7
-        assert max(e.relative for e in u[form].errors) > 1e-3
-        assert u[form].breaks is not None
-    for form in (SWITCHING, SYMGEN):
-        assert max(e.relative for e in u[form].errors) < 1e-12
+    u = {method: series[f"inverse_dynamics {method} float64"] for method in (PARTITION, FIXED, SWITCHING, SYMGEN)}
+    for method in (PARTITION, FIXED):
+        assert slope(u[method], 1e-7, 1e-2) > 0.7
+        assert max(e.relative for e in u[method].errors) > 1e-3
+        assert u[method].breaks is not None
+    for method in (SWITCHING, SYMGEN):
+        assert max(e.relative for e in u[method].errors) < 1e-12
     for one in series.values():
-        if one.form == SYMGEN:
+        if one.method == SYMGEN:
             assert one.breaks is None
     assert sweeper.result().failures == ()
 

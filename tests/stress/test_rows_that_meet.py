@@ -9,7 +9,7 @@ from rows_that_meet import beside, wheels
 
 from symgen.generation.runnable import SCALARS, STRESSED, RunnableKernels
 from symgen.ir.kernel import Status
-from symgen.laboratory.stress.form_kernels import FormKernels
+from symgen.laboratory.stress.method_kernels import MethodKernels
 from symgen.laboratory.stress.statuses.rule import of_more_draws
 from symgen.model.model import Model
 from symgen.verify.reference.reference import Reference
@@ -35,11 +35,11 @@ SYSTEMS = {
 def test_no_digit_is_lost_twice(name: str, tmp_path: Path) -> None:
     model = wheels(name, SYSTEMS[name])
     generated = RunnableKernels(model, tmp_path, STRESSED)
-    forms = FormKernels(model, tmp_path, generated.names)
-    assert _beyond(model, generated, forms) == []
+    methods = MethodKernels(model, tmp_path, generated.names)
+    assert _beyond(model, generated, methods) == []
 
 
-def _beyond(model: Model, generated: RunnableKernels, forms: FormKernels) -> list[str]:
+def _beyond(model: Model, generated: RunnableKernels, methods: MethodKernels) -> list[str]:
     """What is beyond the tolerance with status 0; each kernel has to answer at most states."""
     reference, found = Reference(model), list[str]()
     for scalar in SCALARS:
@@ -51,8 +51,8 @@ def _beyond(model: Model, generated: RunnableKernels, forms: FormKernels) -> lis
                 answered = {name: one.entries for name, one in outcomes.items() if one.status == Status.OK}
                 assert answered or (scalar == "float32" and apart < 1e-5)
                 results = [("generated", *one) for one in answered.items()]
-                for label, name, entries in forms.run(state, scalar):
-                    if entries is not None and label.removeprefix("form ") in STABLE:
+                for label, name, entries in methods.run(state, scalar):
+                    if entries is not None and label.removeprefix("method ") in STABLE:
                         results.append((label, name, tuple(entries)))
                 for label, name, entries in results:
                     one = expected[name]

@@ -79,12 +79,12 @@ def test_command_writes_numbers_and_charts(tmp_path: Path, capsys: pytest.Captur
     data = json.loads(text)
     assert data["passed"]
     assert data["no_long_run"] == "not asked for"
-    for chart in ("stress.svg", "stress.families.svg", "stress.own_forms.svg"):
+    for chart in ("stress.svg", "stress.families.svg", "stress.own_methods.svg"):
         assert (tmp_path / "cart" / chart).read_text().startswith("<?xml")
     # the page needs nothing but the numbers
-    written = page([text], {"cart": ["cart.forms.svg"]})
+    written = page([text], {"cart": ["cart.methods.svg"]})
     assert "## cart" in written
-    assert "(cart.forms.svg)" in written
+    assert "(cart.methods.svg)" in written
 
 
 def test_command_names_mistakes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -13,8 +13,8 @@ from typing import Any
 
 from symgen.generation.runnable import STRESSED, RunnableKernels
 from symgen.laboratory.stress.families import Family, SingularFamilies, near_redundant, search
-from symgen.laboratory.stress.form_kernels import FormKernels
 from symgen.laboratory.stress.long_run import LongRun, complaints, long_runs
+from symgen.laboratory.stress.method_kernels import MethodKernels
 from symgen.laboratory.stress.odd_numbers import OddNumbers, odd_numbers
 from symgen.laboratory.stress.series import Series
 from symgen.laboratory.stress.statuses.rule import Held, breaches, counted
@@ -107,8 +107,8 @@ def stress(
         kernels = RunnableKernels(model, folder, out=out)
         progress("looking for singularities")
         searched = search(reference)
-        forms = FormKernels(model, folder, kernels.names)
-        sweeper = Sweeper(reference, kernels, searched.families, forms)
+        methods = MethodKernels(model, folder, kernels.names)
+        sweeper = Sweeper(reference, kernels, searched.families, methods)
         for index, family in enumerate(searched.families):
             progress(f"{family.kind}, {family.label}")
             sweeper.family(index)
@@ -145,7 +145,7 @@ def stress(
         no_run=no_run,
         rule=rule,
         failures=(*swept.failures, *breaches(rule), *wrong_units, *wrong_numbers, *complaints(runs)),
-        limits=(*kernels.notes, *swept.limits, *forms.left_out),
+        limits=(*kernels.notes, *swept.limits, *methods.left_out),
     )
 
 
@@ -166,7 +166,7 @@ def _series(one: Series) -> dict[str, Any]:
         "family": one.family,
         "scalar": one.scalar,
         "quantity": one.quantity,
-        "form": one.form,
+        "form": one.method,
         "breaks": _plain(one.breaks),
         "errors": _plain(errors),
     }

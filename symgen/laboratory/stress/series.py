@@ -1,4 +1,4 @@
-"""Errors of the forms along the families, as data."""
+"""Errors of the methods along the families, as data."""
 
 from __future__ import annotations
 
@@ -6,22 +6,22 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from symgen.ir.kernel import Scalar
-from symgen.laboratory.stress.form_kernels import LABELS
+from symgen.laboratory.stress.method_kernels import LABELS
 from symgen.verify.tolerance import FACTOR
 
 SYMGEN = "symgen"
 PARTITION = "(9) fixed partition"
 FIXED = "(27)+(28) fixed"
 SWITCHING = "(27)+(28) switching"
-FORMS = (PARTITION, FIXED, SWITCHING, SYMGEN, *LABELS.values())
+METHODS = (PARTITION, FIXED, SWITCHING, SYMGEN, *LABELS.values())
 
 
 @dataclass(frozen=True, slots=True)
 class Error:
-    """|y − y*| of one form at one distance: relative to |y*|, and in units of d + eps |y*|; the largest of a family.
+    """|y − y*| of one method at one distance: relative to |y*|, and in units of d + eps |y*|; the largest of a family.
 
-    `relative` is infinite where the form has no finite result.  `floor` is eps κ, with κ estimated from the measures of
-    singularity and the eigenvalues of G: what a normwise stable algorithm may lose although the data determine the
+    `relative` is infinite where the method has no finite result.  `floor` is eps κ, with κ estimated from the measures
+    of singularity and the eigenvalues of G: what a normwise stable algorithm may lose although the data determine the
     result better.
     """
 
@@ -47,12 +47,12 @@ class Error:
 
 @dataclass(frozen=True, slots=True)
 class Series:
-    """Errors of one form of one quantity along a family, from d = 1 downwards."""
+    """Errors of one method of one quantity along a family, from d = 1 downwards."""
 
     family: int
     scalar: Scalar
     quantity: str
-    form: str
+    method: str
     errors: tuple[Error, ...]
 
     @property
@@ -66,16 +66,16 @@ class Series:
         return max(self.errors, key=lambda e: e.units)
 
 
-def by_form(series: Sequence[Series], quantity: str, scalar: Scalar, families: Sequence[int]) -> Mapping[str, Series]:
-    """The worst over some families for each form, distance by distance."""
+def by_method(series: Sequence[Series], quantity: str, scalar: Scalar, families: Sequence[int]) -> Mapping[str, Series]:
+    """The worst over some families for each method, distance by distance."""
     found: dict[str, dict[float, Error]] = {}
     for one in series:
         if one.quantity == quantity and one.scalar == scalar and one.family in families:
-            errors = found.setdefault(one.form, {})
+            errors = found.setdefault(one.method, {})
             for e in one.errors:
                 errors[e.distance] = e.worse(errors.get(e.distance, e))
     return {
-        form: Series(-1, scalar, quantity, form, tuple(found[form][d] for d in sorted(found[form], reverse=True)))
-        for form in FORMS
-        if form in found
+        one: Series(-1, scalar, quantity, one, tuple(found[one][d] for d in sorted(found[one], reverse=True)))
+        for one in METHODS
+        if one in found
     }

@@ -1,4 +1,4 @@
-"""Runs the families: errors of every form against 50 digits, in units of the tolerance, and the statuses."""
+"""Runs the families: errors of every method against 50 digits, in units of the tolerance, and the statuses."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from symgen.generation.runnable import PIECES, STRESSED, RunnableKernels, rounde
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar, Status
 from symgen.laboratory.stress.conditions import MASSIVE, Conditions, Measures
 from symgen.laboratory.stress.families import Family
-from symgen.laboratory.stress.form_kernels import LABELS, FormKernels
-from symgen.laboratory.stress.forms import Data, partitioned, projected, switched
+from symgen.laboratory.stress.formulas import Data, partitioned, projected, switched
+from symgen.laboratory.stress.method_kernels import LABELS, MethodKernels
 from symgen.laboratory.stress.series import FIXED, PARTITION, SWITCHING, SYMGEN, Error, Series
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.running.compile import Outcome
@@ -79,21 +79,21 @@ Found: TypeAlias = dict[tuple[int, Scalar, str, str], dict[float, Error]]
 
 
 class Sweeper:
-    """One model's families run through the generated kernels, the paper's formulas, and other `forms`."""
+    """One model's families run through the generated kernels, the paper's formulas, and other `methods`."""
 
     def __init__(
         self,
         reference: Reference,
         kernels: RunnableKernels,
         families: Sequence[Family],
-        forms: FormKernels | None = None,
+        methods: MethodKernels | None = None,
     ) -> None:
         self._reference = reference
         self._conditions = Conditions(reference)
         self._kernels = kernels
         self._families = families
         self._names = tuple(name for name in STRESSED if name in kernels.names)
-        self._forms = forms
+        self._methods = methods
         self._found: Found = {}
         self._counts: dict[tuple[str, Scalar], list[int]] = {}
         self._failures: list[str] = []
@@ -102,26 +102,26 @@ class Sweeper:
         """Runs one family."""
         for scalar, deepest in DEEPEST.items():
             for curve in range(len(self._families[index].curves)):
-                form_choice: tuple[tuple[int, ...] | None, tuple[int, ...] | None] | None = None
+                choice: tuple[tuple[int, ...] | None, tuple[int, ...] | None] | None = None
                 for d in (*(10 ** (-k / 2) for k in range(deepest + 1)), *BELOW):
                     state = self._families[index].curves[curve](d) if d or self._singular(index) else None
                     if state is None:
                         continue
                     state = rounded_state(state, scalar)
-                    if form_choice is None:
-                        form_choice = self._choices(index, curve)
+                    if choice is None:
+                        choice = self._choices(index, curve)
                     truths = self._families[index].truths
                     truth = rounded_state(truths[curve], scalar) if truths else state
-                    self._state(index, scalar, d, state, truth, form_choice)
+                    self._state(index, scalar, d, state, truth, choice)
 
     def result(self) -> Sweep:
         """What was found so far."""
         series = tuple(
-            Series(family, scalar, quantity, form, tuple(errors[d] for d in sorted(errors, reverse=True)))
-            for (family, scalar, quantity, form), errors in self._found.items()
+            Series(family, scalar, quantity, method, tuple(errors[d] for d in sorted(errors, reverse=True)))
+            for (family, scalar, quantity, method), errors in self._found.items()
         )
         statuses = tuple(StatusCount(name, scalar, *counts) for (name, scalar), counts in self._counts.items())
-        exceeded = [(self._families[one.family], one) for one in series if one.form == SYMGEN and one.breaks]
+        exceeded = [(self._families[one.family], one) for one in series if one.method == SYMGEN and one.breaks]
         reasons = [self._reason(family, one) for family, one in exceeded]
         sentences = [_sentence(family, one) for family, one in exceeded]
         others = [_within(series, one) for _, one in exceeded]
@@ -191,15 +191,15 @@ class Sweeper:
         for name, outcome in outcomes.items():
             if outcome.status == Status.OK:
                 self._record(index, scalar, name, SYMGEN, d, expected[name], outcome.entries, floors[name])
-        for form, name, entries in self._forms.run(state, scalar) if self._forms else ():
-            # where the generated kernel refuses the state, no form needs an answer
+        for method, name, entries in self._methods.run(state, scalar) if self._methods else ():
+            # where the generated kernel refuses the state, no method needs an answer
             if outcomes[name].status == Status.OK:
-                self._record(index, scalar, name, form, d, expected[name], entries, floors[name])
-        for form, values in self._paper(scalar, state, choice):
+                self._record(index, scalar, name, method, d, expected[name], entries, floors[name])
+        for method, values in self._paper(scalar, state, choice):
             for name in self._names:
                 if name in values or values == {}:
                     entries = np.asarray(values[name], dtype=np.float64).ravel().tolist() if name in values else None
-                    self._record(index, scalar, name, form, d, expected[name], entries, floors[name])
+                    self._record(index, scalar, name, method, d, expected[name], entries, floors[name])
 
     def _drifted(
         self, expected: dict[str, Expectation], state: State, truth: State
@@ -215,7 +215,7 @@ class Sweeper:
         index: int,
         scalar: Scalar,
         name: str,
-        form: str,
+        method: str,
         d: float,
         expected: Expectation,
         entries: Sequence[float] | None,
@@ -227,13 +227,13 @@ class Sweeper:
             distance = expected.distance(entries)
             relative = distance / expected.size if expected.size else distance
             error = Error(d, relative, expected.in_units(distance), floor)
-        errors = self._found.setdefault((index, scalar, name, form), {})
+        errors = self._found.setdefault((index, scalar, name, method), {})
         errors[d] = errors[d].worse(error) if d in errors else error
 
     def _paper(
         self, scalar: Scalar, state: State, choice: tuple[tuple[int, ...] | None, tuple[int, ...] | None]
     ) -> Iterator[tuple[str, dict[str, Any]]]:
-        """Results of the paper's forms; empty where a form has none at all."""
+        """Results of the paper's methods; empty where a method has none at all."""
         coordinates, inputs = choice
         if coordinates is None or self._reference.system.r == 0:
             return
@@ -242,18 +242,18 @@ class Sweeper:
             return
         delta = len(coordinates)
         choices = list(combinations(range(self._reference.system.m), delta)) if inputs is not None else [()]
-        for form in (PARTITION, FIXED, SWITCHING):
-            if inputs is None and form != PARTITION:
+        for method in (PARTITION, FIXED, SWITCHING):
+            if inputs is None and method != PARTITION:
                 continue
             try:
                 with np.errstate(all="ignore"):
-                    if form == PARTITION:
+                    if method == PARTITION:
                         values = partitioned(data, coordinates)
                     else:
-                        values = projected(data, inputs or ()) if form == FIXED else switched(data, choices)
+                        values = projected(data, inputs or ()) if method == FIXED else switched(data, choices)
             except np.linalg.LinAlgError:
                 values = {}
-            yield form, values
+            yield method, values
 
     def _data(self, scalar: Scalar, state: State) -> Data | None:
         kernels, n = self._kernels, self._reference.system.n
@@ -329,12 +329,12 @@ def _sentence(family: Family, one: Series) -> str:
 
 
 def _within(series: Sequence[Series], exceeded: Series) -> str:
-    """Which forms by name stay within the tolerance where the generated one does not."""
+    """Which methods by name stay within the tolerance where the generated one does not."""
     found = [
-        one.form.removeprefix("form ")
+        one.method.removeprefix("method ")
         for one in series
         if (one.family, one.scalar, one.quantity) == (exceeded.family, exceeded.scalar, exceeded.quantity)
-        and one.form in LABELS.values()
+        and one.method in LABELS.values()
         and one.breaks is None
     ]
     return f"; within it: --form {exceeded.quantity}={' or '.join(found)}" if found else ""

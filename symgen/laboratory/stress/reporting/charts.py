@@ -1,4 +1,4 @@
-"""Charts of a stress run as SVG text: error against d by form, symgen along every family, the long run."""
+"""Charts of a stress run as SVG text: error against d by method, symgen along every family, the long run."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from typing import Any
 from symgen.generation.runnable import SCALARS, STRESSED
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
 from symgen.laboratory.stress.reporting.axes import logarithmic
-from symgen.laboratory.stress.reporting.form_charts import form_chart
+from symgen.laboratory.stress.reporting.method_charts import method_chart
 from symgen.laboratory.stress.run import Stress
-from symgen.laboratory.stress.series import FIXED, PARTITION, SWITCHING, SYMGEN, Series, by_form
+from symgen.laboratory.stress.series import FIXED, PARTITION, SWITCHING, SYMGEN, Series, by_method
 from symgen.model.quantities import ROWS
 from symgen.paths.drawing import svg
 from symgen.paths.line_chart import COLOURS
@@ -26,7 +26,7 @@ LOOKS: Mapping[str, tuple[str, str, str]] = {
     SWITCHING: (COLOURS[2], ":", "v"),
     SYMGEN: (COLOURS[0], "-", "o"),
 }
-NOTHING = 10.0  # where a form without any result is drawn: an error of more than everything
+NOTHING = 10.0  # where a method without any result is drawn: an error of more than everything
 PANEL = 2.5
 DECIMALS = re.compile(r"(\d\d\.\d{2})\d+")  # a hundredth of a point is enough; scales of glyphs stay
 KINDS = (
@@ -44,13 +44,13 @@ KINDS = (
 
 def stress_charts(result: Stress) -> dict[str, str]:
     """SVG text by file name."""
-    charts = {"stress.svg": _forms(result)}
+    charts = {"stress.svg": _methods(result)}
     if result.families:
         charts["stress.families.svg"] = _families(result)
     if claim_families(result) and any(s.quantity == "inverse_dynamics" for s in result.series):
         charts["stress.claim.svg"] = _claim(result)
-    if (forms := form_chart(result)) is not None:
-        charts["stress.own_forms.svg"] = forms
+    if (methods := method_chart(result)) is not None:
+        charts["stress.own_methods.svg"] = methods
     if any(run.time for run in result.runs):
         charts["stress.long_run.svg"] = _long_run(result)
     return {name: DECIMALS.sub(r"\1", text) for name, text in charts.items()}
@@ -67,13 +67,13 @@ def _claim(result: Stress) -> str:
     """Error of u against d where a choice fails, in the best conditioned of these families."""
 
     def floor(index: int) -> float:
-        return max(e.relative for e in by_form(result.series, "inverse_dynamics", "float64", [index])[SYMGEN].errors)
+        return max(e.relative for e in by_method(result.series, "inverse_dynamics", "float64", [index])[SYMGEN].errors)
 
     shown = min(claim_families(result), key=floor)
 
     def draw(figure: Any) -> None:
         panel = figure.subplots()
-        _curves(panel, by_form(result.series, "inverse_dynamics", "float64", [shown]), "float64", True)
+        _curves(panel, by_method(result.series, "inverse_dynamics", "float64", [shown]), "float64", True)
         panel.set_title(f"towards {result.families[shown].label} = 0, float64", fontsize=9, loc="left")
         panel.set_ylabel("relative error of u")
         panel.set_xlabel("distance d from the singularity")
@@ -82,7 +82,7 @@ def _claim(result: Stress) -> str:
     return svg(draw, height=3.2)
 
 
-def _forms(result: Stress) -> str:
+def _methods(result: Stress) -> str:
     """Every quantity in both types along the parameter singularities (all singularities where there are none)."""
     chosen = claim_families(result) or list(range(len(result.families)))
     quantities = [name for name in SYMBOLS if any(s.quantity == name for s in result.series)]
@@ -91,7 +91,7 @@ def _forms(result: Stress) -> str:
         panels = figure.subplots(len(quantities), 2, sharex="col", squeeze=False)
         for row, quantity in zip(panels, quantities, strict=True):
             for panel, scalar in zip(row, SCALARS, strict=True):
-                _curves(panel, by_form(result.series, quantity, scalar, chosen), scalar)
+                _curves(panel, by_method(result.series, quantity, scalar, chosen), scalar)
             row[0].set_ylabel(f"relative error of {SYMBOLS[quantity]}")
         for panel, scalar in zip(panels[0], SCALARS, strict=True):
             panel.set_title(scalar, fontsize=9, loc="left")
@@ -103,23 +103,23 @@ def _forms(result: Stress) -> str:
     return svg(draw, height=PANEL * 0.8 * len(quantities) + 0.6)
 
 
-def _curves(panel: Any, forms: Mapping[str, Series], scalar: Scalar, marked: bool = False) -> None:
+def _curves(panel: Any, methods: Mapping[str, Series], scalar: Scalar, marked: bool = False) -> None:
     eps = float(UNIT_ROUNDOFF[scalar])
-    for form, (colour, line, marker) in LOOKS.items():
-        if form not in forms:
+    for method, (colour, line, marker) in LOOKS.items():
+        if method not in methods:
             continue
-        errors = forms[form].errors
+        errors = methods[method].errors
         heights = [max(min(e.relative, NOTHING), eps / 30) for e in errors]
         panel.plot(
-            [e.distance for e in errors], heights, label=form, color=colour, linestyle=line,
+            [e.distance for e in errors], heights, label=method, color=colour, linestyle=line,
             marker=marker if marked else "",
-            markersize=2.6, linewidth=1.2, zorder=3 if form == SYMGEN else 2,
+            markersize=2.6, linewidth=1.2, zorder=3 if method == SYMGEN else 2,
         )
     panel.axhline(eps, color="#888888", linewidth=0.7, linestyle=(0, (2, 2)), zorder=0)
     logarithmic(panel.xaxis)
     logarithmic(panel.yaxis)
     panel.set_ylim(eps / 50, 3 * NOTHING)
-    panel.set_xlim(2, min((e.distance for one in forms.values() for e in one.errors), default=0.1) / 2)
+    panel.set_xlim(2, min((e.distance for one in methods.values() for e in one.errors), default=0.1) / 2)
 
 
 def _families(result: Stress) -> str:
@@ -133,9 +133,9 @@ def _families(result: Stress) -> str:
             chosen = [i for i, family in enumerate(result.families) if family.kind == kind]
             for k, (quantity, symbol) in enumerate(SYMBOLS.items()):
                 for scalar, line in zip(SCALARS, ("-", ":"), strict=True):
-                    forms = by_form(result.series, quantity, scalar, chosen)
-                    if SYMGEN in forms:
-                        _units(panel, forms[SYMGEN], COLOURS[k], line, f"{symbol} {scalar}")
+                    methods = by_method(result.series, quantity, scalar, chosen)
+                    if SYMGEN in methods:
+                        _units(panel, methods[SYMGEN], COLOURS[k], line, f"{symbol} {scalar}")
             panel.axhline(FACTOR, color="#888888", linewidth=0.7, linestyle=(0, (2, 2)), zorder=0)
             logarithmic(panel.xaxis)
             logarithmic(panel.yaxis)

@@ -12,19 +12,19 @@ from symgen.model.quantities import MAIN, ROWS
 SYMBOLS = {name: ROWS[name].symbol for name in STRESSED}
 CAPTIONS = {
     "claim": "Error of u against the distance d to parameter singularities.",
-    "forms": "Errors of u, q̈, λ and N_B against d, float64 and float32.",
-    "own_forms": "symgen's forms by name, float64: error in units against d (thick: generated; dashed: allowed).",
+    "methods": "Errors of u, q̈, λ and N_B against d, float64 and float32.",
+    "own_methods": "symgen's methods by name, float64: error in units against d (thick: generated; dashed: allowed).",
     "families": "symgen's error in units of what rounding does (dashed: what is allowed), by kind of trouble.",
     "long_run": "Constraint drift, tracking error and energy balance over the long run.",
 }
 ORDER = tuple(CAPTIONS)
-FORM_NAMES = (
+METHOD_NAMES = (
     *("minor", "nullspace", "elimination", "householder", "printed", "printed_fixed"),  # some not of u alone
     *("weighted", "kkt", "schur_qr", "shifted", "articulated"),
 )
-FORMS = (
+METHODS = (
     *("(9) fixed partition", "(27)+(28) fixed", "(27)+(28) switching", "symgen"),
-    *(f"form {name}" for name in FORM_NAMES),
+    *(f"method {name}" for name in METHOD_NAMES),
 )
 KIND_TITLES = {
     "parameter": "near parameter singularities",
@@ -32,7 +32,7 @@ KIND_TITLES = {
     "constraint": "near constraint singularities",
     "mass ratios": "under extreme mass ratios",
 }
-FORM_KINDS = tuple(KIND_TITLES)
+KINDS = tuple(KIND_TITLES)
 HEAD = """# Numerical stability
 
 Written by `make stress`. Every family of trouble was found by `symgen stress` itself: the zeros of the factored
@@ -46,9 +46,9 @@ Errors are those of whole kernels against a reference of 50 digits. The unit of 
 how far the exact result moves when inputs, parameters and literals are rounded; 16 units are allowed. The paper's
 formulas run in NumPy, in the same precision, on B, M, G, C and Q as the generated kernels compute them: (9) with the
 coordinates, and (28) with the inputs, that fail where the family leads. Beside (27) and (28), N_B is (21), and λ and q̈
-are (14) and (15) as corrected. Forms by name are symgen's own, compiled as the generated one is (decisions 8, 12 and
+are (14) and (15) as corrected. Methods by name are symgen's own, compiled as the generated one is (decisions 8, 12 and
 20; `--form` takes them); they answer for the states that the generated kernel accepts. "Breaks" is the largest d at
-which a form is beyond the tolerance.
+which a method is beyond the tolerance.
 """
 CLAIM = """## The paper's claim
 
@@ -122,7 +122,7 @@ def _model(result: Mapping[str, Any], charts: Sequence[str]) -> list[str]:
         parts.append(f"Along these fail {choices}.\n")
     if result["nowhere"]:
         parts.append("\n".join(["Looked for without success:\n", *(f"- {line}" for line in result["nowhere"])]) + "\n")
-    parts += [_forms(result, kind) for kind in FORM_KINDS]
+    parts += [_methods(result, kind) for kind in KINDS]
     parts += [_statuses(result), _scaling(result), _runs(result)]
     for title, lines in (("Known limits:", result["limits"]), ("Wrong:", result["failures"])):
         if lines:
@@ -140,19 +140,19 @@ def _singular(family: Mapping[str, Any]) -> bool:
     return family["kind"] in ("constraint", "input", "parameter")
 
 
-def _forms(result: Mapping[str, Any], kind: str) -> str:
-    """Errors of every form in one kind of trouble, and where it breaks; nothing where there is no such trouble."""
+def _methods(result: Mapping[str, Any], kind: str) -> str:
+    """Errors of every method in one kind of trouble, and where it breaks; nothing where there is no such trouble."""
     chosen = {i for i, family in enumerate(result["families"]) if family["kind"] == kind}
     rows = []
     for quantity, symbol in SYMBOLS.items():
-        for form in FORMS:
-            cells = [symbol, form]
+        for method in METHODS:
+            cells = [symbol, method]
             for scalar in ("float64", "float32"):
                 mine = [
                     s
                     for s in result["series"]
                     if s["family"] in chosen
-                    and (s["quantity"], s["form"], s["scalar"]) == (quantity, form, scalar)
+                    and (s["quantity"], s["form"], s["scalar"]) == (quantity, method, scalar)
                 ]
                 errors = [relative for s in mine for _, relative, _ in s["errors"]]
                 breaks = max((s["breaks"] for s in mine if s["breaks"] is not None), default=None)
@@ -164,7 +164,7 @@ def _forms(result: Mapping[str, Any], kind: str) -> str:
                 rows.append(cells)
     if not rows:
         return ""
-    head = ["", f"form, {KIND_TITLES[kind]}", "float64", "breaks", "float32", "breaks"]
+    head = ["", f"method, {KIND_TITLES[kind]}", "float64", "breaks", "float32", "breaks"]
     return _table(head, rows)
 
 

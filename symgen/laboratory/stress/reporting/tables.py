@@ -6,7 +6,7 @@ import math
 
 from symgen.generation.runnable import STRESSED
 from symgen.laboratory.stress.run import Stress
-from symgen.laboratory.stress.series import FORMS, SYMGEN, by_form
+from symgen.laboratory.stress.series import METHODS, SYMGEN, by_method
 from symgen.model.quantities import MAIN, ROWS
 from symgen.terminal import columns
 
@@ -20,7 +20,7 @@ LONGEST_LABEL = 44
 def stress_tables(result: Stress) -> str:
     """Tables of errors, statuses, units and the long run."""
     sizes = ", ".join(f"{'δ' if key == 'delta' else key} = {value}" for key, value in result.sizes.items())
-    sections = [f"{result.model}   {sizes}   ({result.engine})", _families(result), _forms(result), _statuses(result)]
+    sections = [f"{result.model}   {sizes}   ({result.engine})", _families(result), _methods(result), _statuses(result)]
     sections += [_breaches(result), _units(result), _runs(result)]
     if result.searched.nowhere:
         sections.append("\n".join(f"  {line}" for line in ("not singular:", *result.searched.nowhere)))
@@ -36,7 +36,7 @@ def _families(result: Stress) -> str:
     for index, family in enumerate(result.families):
         cells = [family.kind, _short(family.label)]
         for scalar in ("float64", "float32"):
-            mine = [s for s in result.series if s.family == index and s.scalar == scalar and s.form == SYMGEN]
+            mine = [s for s in result.series if s.family == index and s.scalar == scalar and s.method == SYMGEN]
             worst = max(mine, key=lambda s: s.largest.units, default=None)
             cells.append("" if worst is None else f"{worst.largest.units:.2g} {SHORTEST[worst.quantity]}")
         rows.append(cells)
@@ -61,16 +61,16 @@ def _breaches(result: Stress) -> str:
     return columns(titles, rows, "<<>>>>><") if rows else ""
 
 
-def _forms(result: Stress) -> str:
-    """Along all parameter singularities: the largest relative error of each form, and where it leaves the tolerance."""
+def _methods(result: Stress) -> str:
+    """Along all parameter singularities: the largest relative error of each method, and where it is beyond tolerance."""
     chosen = [i for i, family in enumerate(result.families) if family.kind == "parameter"]
     rows = []
     for quantity, symbol in SHORTEST.items():
-        both = [by_form(result.series, quantity, scalar, chosen) for scalar in ("float64", "float32")]
-        for form in FORMS:
-            if form in both[0] and form in both[1]:
-                cells = [symbol, form]
-                for one in (both[0][form], both[1][form]):
+        both = [by_method(result.series, quantity, scalar, chosen) for scalar in ("float64", "float32")]
+        for method in METHODS:
+            if method in both[0] and method in both[1]:
+                cells = [symbol, method]
+                for one in (both[0][method], both[1][method]):
                     worst = max(e.relative for e in one.errors)
                     cells += [
                         f"{worst:.1e}" if math.isfinite(worst) else "fails",

@@ -1,4 +1,4 @@
-"""Chart of symgen's own forms as SVG text: error in units against d for u, q_ddot and lambda, by kind of trouble."""
+"""Chart of symgen's own methods as SVG text: error in units against d for u, q_ddot and lambda, by kind of trouble."""
 
 from __future__ import annotations
 
@@ -6,25 +6,25 @@ import math
 from typing import Any
 
 from symgen.laboratory.stress.families import Kind
-from symgen.laboratory.stress.form_kernels import LABELS
+from symgen.laboratory.stress.method_kernels import LABELS
 from symgen.laboratory.stress.reporting.axes import logarithmic
 from symgen.laboratory.stress.run import Stress
-from symgen.laboratory.stress.series import SYMGEN, Series, by_form
+from symgen.laboratory.stress.series import SYMGEN, Series, by_method
 from symgen.model.quantities import MAIN, ROWS
 from symgen.paths.drawing import svg
 from symgen.paths.line_chart import COLOURS
 from symgen.verify.tolerance import FACTOR
 
 KINDS: tuple[Kind, ...] = ("parameter", "input", "constraint", "mass ratios")
-LOWEST, HIGHEST = 0.05, 1e9  # units; a form without a result is drawn at the top
+LOWEST, HIGHEST = 0.05, 1e9  # units; a method without a result is drawn at the top
 STYLES = ("-", "--", ":", "-.")
 PANEL = 1.9
 
 
-def form_chart(result: Stress) -> str | None:
-    """Every form in float64, the worst over the families of a kind; None for a model without such families."""
+def method_chart(result: Stress) -> str | None:
+    """Every method in float64, the worst over the families of a kind; None for a model without such families."""
     kinds = [kind for kind in KINDS if any(family.kind == kind for family in result.families)]
-    compared = {series.quantity for series in result.series if series.form in LABELS.values()}
+    compared = {series.quantity for series in result.series if series.method in LABELS.values()}
     quantities = [name for name in MAIN if name in compared]
     if not kinds or not quantities:
         return None
@@ -37,12 +37,12 @@ def form_chart(result: Stress) -> str | None:
         for row, quantity in zip(panels, quantities, strict=True):
             for panel, kind in zip(row, kinds, strict=True):
                 chosen = [i for i, family in enumerate(result.families) if family.kind == kind]
-                forms = by_form(result.series, quantity, "float64", chosen)
+                methods = by_method(result.series, quantity, "float64", chosen)
                 for label, (colour, style) in looks.items():
-                    if label in forms:
-                        _line(panel, forms[label], label.removeprefix("form "), colour, style, 1.0, 2)
-                if SYMGEN in forms:
-                    _line(panel, forms[SYMGEN], SYMGEN, "#BBBBBB", "-", 3.5, 1)
+                    if label in methods:
+                        _line(panel, methods[label], label.removeprefix("method "), colour, style, 1.0, 2)
+                if SYMGEN in methods:
+                    _line(panel, methods[SYMGEN], SYMGEN, "#BBBBBB", "-", 3.5, 1)
                 panel.axhline(FACTOR, color="#888888", linewidth=0.7, linestyle=(0, (2, 2)), zorder=0)
             row[0].set_ylabel(f"{ROWS[quantity].symbol}: error over unit")
         for panel, kind in zip(panels[0], kinds, strict=True):

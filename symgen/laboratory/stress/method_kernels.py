@@ -1,4 +1,4 @@
-"""The forms of u, q̈, λ and N_B other than the generated ones, compiled as these are."""
+"""The methods of u, q̈, λ and N_B other than the generated ones, compiled as these are."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from symgen.verify.reference.reference import State
 
 # Sums of minors of large systems grow past what a compiler takes in minutes.
 MOST_OPERATIONS = 20_000
-LABELS: dict[str, str] = {row.name: f"form {row.name}" for row in METHODS}
+LABELS: dict[str, str] = {row.name: f"method {row.name}" for row in METHODS}
 
 
-class FormKernels:
-    """Every form of the `quantities` of a model, for both scalar types; `left_out` says which are too long."""
+class MethodKernels:
+    """Every method of the `quantities` of a model, for both scalar types; `left_out` says which are too long."""
 
     def __init__(self, model: Model, folder: Path, quantities: Sequence[str]) -> None:
         derived = every_method(model, [name for name in quantities if name in NAMED])
@@ -36,12 +36,12 @@ class FormKernels:
                 if weight > MOST_OPERATIONS
             )
             if wanted:
-                place = folder / f"form_{count}"
+                place = folder / f"method_{count}"
                 place.mkdir()
                 self._runners.append((LABELS[name], Runner(model, schedule(mechanics, wanted, SCALARS), place)))
 
     def run(self, state: State, scalar: Scalar) -> Iterator[tuple[str, str, Sequence[float] | None]]:
-        """Label, quantity and result of each form; None where the form refuses the state."""
+        """Label, quantity and result of each method; None where the method refuses the state."""
         for label, runner in self._runners:
             for name in runner.names:
                 outcome = runner.run(name, state, scalar)
