@@ -100,7 +100,7 @@ def result_of(name: str, factor: float = 1.0) -> Benchmark:
         measured("SymPy", "broken", 1e6, errors=Errors(float("inf"), float("inf"), float("inf"), float("inf"), 9)),
     )
     task = Task("inverse_dynamics", "qdd", 2)
-    return Benchmark(name, (Comparison(task, 10, rows, (("form elimination", "no selection"),)),), ("a note",))
+    return Benchmark(name, (Comparison(task, 10, rows, (("method elimination", "no selection"),)),), ("a note",))
 
 
 def test_charts_and_tables_are_functions_of_the_numbers() -> None:
@@ -111,7 +111,7 @@ def test_charts_and_tables_are_functions_of_the_numbers() -> None:
     assert chart != time_against_error(result_of("front_car", 2.0).comparisons[0])
     table = bench_tables(first)
     assert "SymPy part" in table
-    assert "not measured: form elimination (no selection)" in table
+    assert "not measured: method elimination (no selection)" in table
     assert "note: a note" in table
 
 

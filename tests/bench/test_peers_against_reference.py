@@ -1,4 +1,4 @@
-"""Every peer in every form computes the same u as the 50-digit reference: none is fast because it is wrong."""
+"""Every peer by every method computes the same u as the 50-digit reference: none is fast because it is wrong."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""u in float32 on a Cortex-M4F beside the goals and beside CasADi's forms, compiled the same way; `make firmware`."""
+"""u in float32 on a Cortex-M4F beside the goals and beside CasADi's methods, compiled the same way; `make firmware`."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from symgen.verify.sampling.states import sample_states
 
 CORE = BY_NAME["cortex-m4f"]
 STATES = 64
-# model: instructions at most at -O2, bytes at most at -Os, share of CasADi's best form at -O2
+# model: instructions at most at -O2, bytes at most at -Os, share of CasADi's best method at -O2
 GOALS = {"front_car": (165, 600, 0.35), "rapkm_2rrr_rr": (500, 1400, 0.35)}
 LEVELS = ("-O2", "-Os")
 # CasADi writes double's functions whatever its type is: it is given float's, which makes it 17 times cheaper here.
@@ -81,7 +81,7 @@ def _symgen(name: str, folder: Path) -> tuple[dict[str, int], int]:
 
 
 def _casadi(name: str, folder: Path) -> dict[str, float]:
-    """Mean instructions of u at -O2 in every form CasADi takes part in."""
+    """Mean instructions of u at -O2 by every method CasADi takes part in."""
     m = model(name)
     rows = np.array([(*s.q, *s.qd, *s.qdd, *s.parameters) for s in _states(name)])
     found = peers(m, Task("inverse_dynamics", "qdd", m.m), rows).candidates
@@ -115,7 +115,7 @@ def test_u_on_a_cortex_m4f_meets_its_goals(tool: Callable[[str], str], tmp_path:
     instructions, size, share = GOALS[name]
     counts, code = _symgen(name, tmp_path)
     casadi = _casadi(name, tmp_path)
-    told = f"{name}: {counts}, {code} bytes; CasADi {({form: round(count) for form, count in casadi.items()})}"
+    told = f"{name}: {counts}, {code} bytes; CasADi {({method: round(count) for method, count in casadi.items()})}"
     assert counts["-O2"] <= share * min(casadi.values()), told
     assert counts["-O2"] <= instructions, told
     assert code <= size, told

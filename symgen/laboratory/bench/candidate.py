@@ -34,8 +34,9 @@ class CUnit:
 class CCandidate:
     """C for one scalar type: `entry` has the signature (q, qd, third, p, result) with pointers to `REAL`.
 
-    The sources are the same for both scalar types but for `REAL`, except symgen's own.  `functions` are the symbols
-    whose code and stack count; `operations` is known for symgen's kernels only.
+    `form` is the method with what else tells kernels apart.  The sources are the same for both scalar types but for
+    `REAL`, except symgen's own.  `functions` are the symbols whose code and stack count; `operations` is known for
+    symgen's kernels only.
     """
 
     generator: str

@@ -1,4 +1,4 @@
-"""symgen's own candidates: every valid way, with portable sine and cosine and with the C library's, C and Python."""
+"""symgen's own candidates: every valid method, with portable sine and cosine and with the C library's, C and Python."""
 
 from __future__ import annotations
 
@@ -41,44 +41,44 @@ def generated(model: Model, task: Task, scalars: Sequence[Scalar], out: Path | N
 def programs_of(
     model: Model, task: Task, scalars: Sequence[Scalar], draft: Draft | None = None
 ) -> dict[str, Mapping[Scalar, Program]]:
-    """The task's kernel alone, by form; the first is the `draft` that symgen generates, the others it did not take."""
+    """The task's kernel alone, by method; first the `draft` that symgen generates, then what it did not take."""
     draft = draft or generated(model, task, scalars, None)
     choice = draft.choice(task.quantity)
     absolute = " in absolute angles" if choice.method and choice.title == ABSOLUTE else ""
     name = (choice.method or choice.title) + absolute + choice.digits
     found: dict[str, Mapping[Scalar, Program]] = {name: draft.written}
-    for form, (mechanics, quantity) in _forms(model, task.quantity):
-        if form not in found:
+    for method, (mechanics, quantity) in _methods(model, task.quantity):
+        if method not in found:
             programs = schedule(mechanics, [quantity], scalars)
             if not any(map(_never_valid, programs.values())):
-                found[form] = programs
+                found[method] = programs
     return found
 
 
 def _never_valid(program: Program) -> bool:
-    """Whether a form divides by 0 at every state: one through the inverse of G, where a coordinate has no mass."""
+    """Whether a method divides by 0 at every state: one through the inverse of G, where a coordinate has no mass."""
     statements = (statement for kernel in program.kernels for statement in kernel.statements)
     divisors = (statement.operands[1] for statement in statements if statement.operation == "div")
     return any(isinstance(divisor, Literal) and divisor.value == 0 for divisor in divisors)
 
 
-def _forms(model: Model, quantity: str) -> Iterator[tuple[str, tuple[System, Quantity]]]:
-    """Every form by name, each on a graph of its own."""
-    for form, mechanics, (derived,) in every_method(model, (quantity,)):
-        yield form, (mechanics, derived)
+def _methods(model: Model, quantity: str) -> Iterator[tuple[str, tuple[System, Quantity]]]:
+    """Every method by name, each on a graph of its own."""
+    for method, mechanics, (derived,) in every_method(model, (quantity,)):
+        yield method, (mechanics, derived)
 
 
 def symgen_candidates(
     model: Model, programs: Mapping[str, Mapping[Scalar, Program]], scalar: Scalar
 ) -> tuple[CCandidate, ...]:
-    """The C of every way for one scalar type."""
+    """The C of every method for one scalar type."""
     found = []
-    for number, (way, by_scalar) in enumerate(programs.items()):
+    for number, (method, by_scalar) in enumerate(programs.items()):
         portable = by_scalar[scalar]
         trigonometric = any(s.operation == "sincos" for kernel in portable.kernels for s in kernel.statements)
         variants = {PORTABLE: portable} | ({LIBRARY: with_library_trig(portable)} if trigonometric else {})
         found += [
-            replace(_candidate(model, program, way, trig), chosen=number == 0) for trig, program in variants.items()
+            replace(_candidate(model, program, method, trig), chosen=number == 0) for trig, program in variants.items()
         ]
     return tuple(found)
 
@@ -86,14 +86,14 @@ def symgen_candidates(
 def symgen_python(
     model: Model, programs: Mapping[str, Mapping[Scalar, Program]], task: Task
 ) -> tuple[PythonCandidate, ...]:
-    """The NumPy modules of every form, first the one that symgen generates."""
+    """The NumPy modules of every method, first the one that symgen generates."""
     return tuple(
-        _python(model, by_scalar["float64"], form, task, number == 0)
-        for number, (form, by_scalar) in enumerate(programs.items())
+        _python(model, by_scalar["float64"], method, task, number == 0)
+        for number, (method, by_scalar) in enumerate(programs.items())
     )
 
 
-def _python(model: Model, program: Program, form: str, task: Task, chosen: bool) -> PythonCandidate:
+def _python(model: Model, program: Program, method: str, task: Task, chosen: bool) -> PythonCandidate:
     (source,) = emit_python(model, program).values()
     module = PythonModule(str(source)).module
     function = getattr(module, task.quantity)
@@ -104,7 +104,7 @@ def _python(model: Model, program: Program, form: str, task: Task, chosen: bool)
     def single(q: Sequence[float], qd: Sequence[float], third: Sequence[float], p: Sequence[float]) -> Any:
         return function(*_arrays(program.kernels[0], q, qd, third), p=module.Parameters(*p))
 
-    return PythonCandidate("symgen", f"{form}, Python", batch, single, chosen)
+    return PythonCandidate("symgen", f"{method}, Python", batch, single, chosen)
 
 
 def _arrays(kernel: Kernel, q: Any, qd: Any, third: Any) -> list[Any]:
@@ -113,13 +113,13 @@ def _arrays(kernel: Kernel, q: Any, qd: Any, third: Any) -> list[Any]:
     return [given[argument.name] for argument in kernel.arguments if argument.length]
 
 
-def _candidate(model: Model, program: Program, way: str, trig: str) -> CCandidate:
+def _candidate(model: Model, program: Program, method: str, trig: str) -> CCandidate:
     kernel = program.kernels[0]
     files = emit_c(model, program)
     suffix = SUFFIX[program.scalar]
     stem = file_stem(model.c_name, program.scalar)
     function = global_name(model.c_name, program.scalar, kernel.name)
-    entry = re.sub(r"\W", "_", f"symgen_{way}_{trig}_{program.scalar}")
+    entry = re.sub(r"\W", "_", f"symgen_{method}_{trig}_{program.scalar}")
     defaults = global_name(model.c_name, program.scalar, "default_params")  # every variant brings its own
     headers = {f"{stem}.h": str(files[f"c/{stem}.h"])}
     source = str(files[f"c/{stem}.c"])
@@ -137,4 +137,4 @@ def _candidate(model: Model, program: Program, way: str, trig: str) -> CCandidat
     helpers = pair_names(model.c_name, suffix) | step_names(model.c_name, suffix) | {TABLE}
     functions = (function, *cause_names(kernel, function), *sorted(helpers))
     operations = {kind: count for kind, count in asdict(count_operations(kernel.statements)).items() if count}
-    return CCandidate("symgen", f"{way}, {trig}", program.scalar, entry, units, functions, operations)
+    return CCandidate("symgen", f"{method}, {trig}", program.scalar, entry, units, functions, operations)

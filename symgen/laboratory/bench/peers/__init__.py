@@ -1,1 +1,1 @@
-"""The other tools, each given the same model and the forms an expert would hand it."""
+"""The other tools, each given the same model and the methods an expert would hand it."""

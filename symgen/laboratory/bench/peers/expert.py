@@ -1,4 +1,4 @@
-"""The choices an expert makes by hand for the forms `part` and `elimination`: cheap, and far from singular.
+"""The choices an expert makes by hand for the methods `part` and `elimination`: cheap, and far from singular.
 
 Among all choices those count whose determinant never falls below a ten-thousandth of the best choice's at the same
 state (if none does, the one that comes closest); of these the one with the fewest operations in CasADi.
@@ -16,8 +16,8 @@ import casadi
 from symgen.laboratory.bench.peers.algebra import DeadPivotError
 from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine
 from symgen.laboratory.bench.peers.engine import Symbol
-from symgen.laboratory.bench.peers.forms import elimination_form, part, selected_rows
 from symgen.laboratory.bench.peers.mechanics import PeerSystem, mechanics
+from symgen.laboratory.bench.peers.methods import elimination, part, selected_rows
 from symgen.model.model import Model
 from symgen.witness.lagrange import Lagrange
 
@@ -29,7 +29,7 @@ Route = Callable[[CasadiEngine, Model], PeerSystem]
 
 
 def independent_coordinates(model: Model, s: Lagrange, states: Any, derive: Route = mechanics) -> Choice | None:
-    """The δ coordinates F of the form `part` is made from; None where the form does not apply."""
+    """The δ coordinates F of the method `part` is made from; None where the method does not apply."""
     n, r = model.n, model.r
     if model.m < n - r or comb(n, r) > MOST_CHOICES:
         return None
@@ -40,7 +40,7 @@ def independent_coordinates(model: Model, s: Lagrange, states: Any, derive: Rout
 
 
 def free_multipliers(model: Model, s: Lagrange, states: Any, derive: Route = mechanics) -> Choice | None:
-    """The m − δ multipliers the form `elimination` leaves for last; None where the form does not apply."""
+    """The m − δ multipliers the method `elimination` leaves for last; None where the method does not apply."""
     engine = CasadiEngine()
     active = selected_rows(engine, derive(engine, model).M)
     free = model.m - (model.n - model.r)
@@ -50,7 +50,7 @@ def free_multipliers(model: Model, s: Lagrange, states: Any, derive: Route = mec
     jacobians = _jacobians(model, s, states)[:, :, passive]
     choices = list(combinations(range(model.r), free))
     bound = [[k for k in range(model.r) if k not in choice] for choice in choices]
-    return _best(choices, [jacobians[:, rows, :] for rows in bound], elimination_form, model, derive)
+    return _best(choices, [jacobians[:, rows, :] for rows in bound], elimination, model, derive)
 
 
 def _jacobians(model: Model, s: Lagrange, states: Any) -> Any:
@@ -65,7 +65,7 @@ def _jacobians(model: Model, s: Lagrange, states: Any) -> Any:
 def _best(
     choices: list[Choice],
     squares: Iterable[Any],
-    form: Callable[[CasadiEngine, PeerSystem, Choice], list[Symbol]],
+    method: Callable[[CasadiEngine, PeerSystem, Choice], list[Symbol]],
     model: Model,
     derive: Route,
 ) -> Choice | None:
@@ -81,7 +81,7 @@ def _best(
         engine = CasadiEngine()
         s = derive(engine, model)
         try:
-            costs[k] = casadi.n_nodes(casadi.cse(casadi.vertcat(*form(engine, s, choices[k]))))
+            costs[k] = casadi.n_nodes(casadi.cse(casadi.vertcat(*method(engine, s, choices[k]))))
         except DeadPivotError:
             continue
     return choices[min(costs, key=lambda k: costs[k])] if costs else None

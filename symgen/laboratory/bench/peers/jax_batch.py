@@ -18,7 +18,7 @@ NAMES = {"asin": "arcsin", "acos": "arccos", "atan": "arctan", "atan2": "arctan2
 
 
 def jax_batch(model: Model) -> PythonCandidate:
-    """The form `lean`: (28) with its fixed first inputs, M~ from B B^T, derivatives by JAX."""
+    """The method `lean`: (28) with its fixed first inputs, M~ from B B^T, derivatives by JAX."""
     jax.config.update("jax_enable_x64", True)
     one = _inverse_dynamics(model)
     together = jax.jit(jax.vmap(one))

@@ -1,4 +1,4 @@
-"""The peers of a mechanism given by bodies: every form from frames that are walked in the tool's own scalars."""
+"""The peers of a mechanism given by bodies: every method from frames that are walked in the tool's own scalars."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from symgen.laboratory.bench.peers.algebra import DeadPivotError, ldl_solve
 from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine, adaptor, generated
 from symgen.laboratory.bench.peers.engine import Engine, Symbol
 from symgen.laboratory.bench.peers.expert import free_multipliers, independent_coordinates
-from symgen.laboratory.bench.peers.forms import elimination_form, lean, part, selected_rows
 from symgen.laboratory.bench.peers.frames import lagrange_by_frames, mechanics_by_frames
 from symgen.laboratory.bench.peers.householder import householder_units
 from symgen.laboratory.bench.peers.mechanics import PeerSystem, mechanics
+from symgen.laboratory.bench.peers.methods import elimination, lean, part, selected_rows
 from symgen.model.mechanism import WORLD
 from symgen.model.model import Model
 from symgen.witness.lagrange import Lagrange, differentiate
@@ -37,7 +37,7 @@ def mechanism_peers(model: Model, states: Any) -> tuple[tuple[CCandidate, ...], 
     """Candidates in float64, and (name, reason) of what was left out; `states` (k, 3 n + P)."""
     found = _as_written(model)
     left_out: list[tuple[str, str]] = []
-    forms = _forms(model, states, left_out)
+    methods = _methods(model, states, left_out)
     engines: list[type[Engine]] = [CasadiEngine]
     if _depth(model) > DEEPEST_WRITTEN_OUT:
         left_out.append(("SymPy, wrenfold", "written out, the sums of so many links in a row take minutes"))
@@ -48,7 +48,7 @@ def mechanism_peers(model: Model, states: Any) -> tuple[tuple[CCandidate, ...], 
         if len(engines) > 1 and model.n <= MOST_WITH_ENERGIES:
             routes[FROM_ENERGIES] = mechanics
         for route, derive in routes.items():
-            for name, build in forms.items():
+            for name, build in methods.items():
                 try:
                     found.append(_candidate(engine_type(), model, f"{name}{route}", derive, build))
                 except DeadPivotError:
@@ -79,25 +79,25 @@ def _others(left_out: list[tuple[str, str]]) -> list[type[Engine]]:
     return found
 
 
-def _forms(model: Model, states: Any, left_out: list[tuple[str, str]]) -> dict[str, Build]:
-    """lean up to a size, part, and elimination where M selects coordinates; a serial arm has one form."""
+def _methods(model: Model, states: Any, left_out: list[tuple[str, str]]) -> dict[str, Build]:
+    """lean up to a size, part, and elimination where M selects coordinates; a serial arm has one method."""
     if not model.r:
-        return {SERIAL: lambda engine, s: elimination_form(engine, s, ())} if _selects(model) else {"lean": lean}
-    forms: dict[str, Build] = {}
+        return {SERIAL: lambda engine, s: elimination(engine, s, ())} if _selects(model) else {"lean": lean}
+    methods: dict[str, Build] = {}
     if model.n <= MOST_LEAN or model.r > model.n // 2:
-        forms["lean"] = lean
-        forms["lean LDLᵀ"] = lambda engine, s: lean(engine, s, ldl_solve)
+        methods["lean"] = lean
+        methods["lean LDLᵀ"] = lambda engine, s: lean(engine, s, ldl_solve)
     s = lagrange_by_frames(model)
     short = model.n <= MOST_DENSE
     independent = independent_coordinates(model, s, states, mechanics_by_frames) if short else None
     free = free_multipliers(model, s, states, mechanics_by_frames)
     if independent is not None:
-        forms["part"] = lambda engine, s: part(engine, s, independent, ldl_solve, direct=True)
+        methods["part"] = lambda engine, s: part(engine, s, independent, ldl_solve, direct=True)
     if free is not None:
-        forms["elimination"] = lambda engine, s: elimination_form(engine, s, free)
+        methods["elimination"] = lambda engine, s: elimination(engine, s, free)
     else:
-        left_out.append(("form elimination", "the control matrix does not select coordinates"))
-    return forms
+        left_out.append(("method elimination", "the control matrix does not select coordinates"))
+    return methods
 
 
 def _selects(model: Model) -> bool:
@@ -124,21 +124,21 @@ def _as_written(model: Model) -> list[CCandidate]:
     return found
 
 
-def _matrix_candidate(model: Model, s: Lagrange, form: str, balance: Callable[[Lagrange], Any]) -> CCandidate:
-    entry = f"casadi_{form}_float64".lower().replace(" ", "_")
+def _matrix_candidate(model: Model, s: Lagrange, method: str, balance: Callable[[Lagrange], Any]) -> CCandidate:
+    entry = f"casadi_{method}_float64".lower().replace(" ", "_")
     name = f"function_of_{entry}"
     value = native.inverse_dynamics(model, s, balance)
     source, functions = generated(name, [s.q, s.qd, s.qdd, s.p], value)
     units = (CUnit(source), CUnit(adaptor(entry, name), is_adaptor=True))
-    return CCandidate("CasADi", form, "float64", entry, units, functions)
+    return CCandidate("CasADi", method, "float64", entry, units, functions)
 
 
-def _candidate(engine: Engine, model: Model, form: str, derive: Route, build: Build) -> CCandidate:
-    entry = f"{engine.tool}_{form}_float64".lower().replace(" ldlᵀ", "_ldl").replace(" ", "_")
+def _candidate(engine: Engine, model: Model, method: str, derive: Route, build: Build) -> CCandidate:
+    entry = f"{engine.tool}_{method}_float64".lower().replace(" ldlᵀ", "_ldl").replace(" ", "_")
     name = f"function_of_{entry}"
     system = derive(engine, model)
     source, functions, needs_adaptor = engine.c_function(name, system.inputs, build(engine, system))
     units: tuple[CUnit, ...] = (CUnit(source, renamed={name: entry}),)
     if needs_adaptor:
         units = (CUnit(source), CUnit(adaptor(entry, name), is_adaptor=True))
-    return CCandidate(engine.tool, form, "float64", entry, units, functions)
+    return CCandidate(engine.tool, method, "float64", entry, units, functions)

@@ -33,14 +33,14 @@ def peers(model: Model, task: Task, states: Any) -> Peers:
     s = differentiate(model)
     if task.quantity != "inverse_dynamics":
         return Peers((_native(model, s, task),), ())
-    forms, left_out = _forms(model, s, states)
+    methods, left_out = _methods(model, s, states)
     # What inlining CasADi's exported helpers is worth, which a shared library does not allow.
     inlined = replace(_native(model, s, task, "native_fpie"), form="native -fPIE", flags=("-fPIE",))
     found = [_native(model, s, task), inlined]
     for engine_type in _engines():
-        for form, build in forms.items():
-            if form not in SYMPY_ONLY or engine_type.tool == "SymPy":
-                found.append(_candidate(engine_type(), model, form, build))
+        for method, build in methods.items():
+            if method not in SYMPY_ONLY or engine_type.tool == "SymPy":
+                found.append(_candidate(engine_type(), model, method, build))
     found.append(_householder(model, s))
     absent = [(tool, "not installed") for tool, module in OPTIONAL.items() if find_spec(module) is None]
     return Peers(tuple(found), (*left_out, *absent))
@@ -74,25 +74,25 @@ def in_single(candidate: CCandidate) -> CCandidate:
     return replace(candidate, scalar="float32", entry=single(candidate.entry), units=units, functions=functions)
 
 
-def _forms(model: Model, s: Lagrange, states: Any) -> tuple[dict[str, Build], list[tuple[str, str]]]:
+def _methods(model: Model, s: Lagrange, states: Any) -> tuple[dict[str, Build], list[tuple[str, str]]]:
     from symgen.laboratory.bench.peers.algebra import ldl_solve
     from symgen.laboratory.bench.peers.expert import free_multipliers, independent_coordinates
-    from symgen.laboratory.bench.peers.forms import elimination_form, lean, part
+    from symgen.laboratory.bench.peers.methods import elimination, lean, part
 
-    forms: dict[str, Build] = {"lean": lean, "lean LDLᵀ": lambda engine, system: lean(engine, system, ldl_solve)}
+    methods: dict[str, Build] = {"lean": lean, "lean LDLᵀ": lambda engine, system: lean(engine, system, ldl_solve)}
     left_out = []
     independent = independent_coordinates(model, s, states)
     if independent is None:
-        left_out.append(("form part", "fewer inputs than degrees of freedom, or too many choices of coordinates"))
+        left_out.append(("method part", "fewer inputs than degrees of freedom, or too many choices of coordinates"))
     else:
-        forms["part"] = lambda engine, system: part(engine, system, independent)
-        forms["part LDLᵀ"] = lambda engine, system: part(engine, system, independent, ldl_solve, direct=True)
+        methods["part"] = lambda engine, system: part(engine, system, independent)
+        methods["part LDLᵀ"] = lambda engine, system: part(engine, system, independent, ldl_solve, direct=True)
     free = free_multipliers(model, s, states)
     if free is None:
-        left_out.append(("form elimination", "the control matrix does not select coordinates"))
+        left_out.append(("method elimination", "the control matrix does not select coordinates"))
     else:
-        forms["elimination"] = lambda engine, system: elimination_form(engine, system, free)
-    return forms, left_out
+        methods["elimination"] = lambda engine, system: elimination(engine, system, free)
+    return methods, left_out
 
 
 def _engines() -> list[type[Engine]]:
@@ -111,11 +111,11 @@ def _engines() -> list[type[Engine]]:
     return found
 
 
-def _candidate(engine: Engine, model: Model, form: str, build: Build) -> CCandidate:
+def _candidate(engine: Engine, model: Model, method: str, build: Build) -> CCandidate:
     from symgen.laboratory.bench.peers.casadi_engine import adaptor
     from symgen.laboratory.bench.peers.mechanics import mechanics
 
-    entry = f"{engine.tool.lower()}_{form}_float64".replace(" LDLᵀ", "_ldl")
+    entry = f"{engine.tool.lower()}_{method}_float64".replace(" LDLᵀ", "_ldl")
     name = f"function_of_{entry}"
     system = mechanics(engine, model)
     source, functions, needs_adaptor = engine.c_function(name, system.inputs, build(engine, system))
@@ -123,7 +123,7 @@ def _candidate(engine: Engine, model: Model, form: str, build: Build) -> CCandid
         units: tuple[CUnit, ...] = (CUnit(source), CUnit(adaptor(entry, name), is_adaptor=True))
     else:
         units = (CUnit(source, renamed={name: entry}),)
-    return CCandidate(engine.tool, form, "float64", entry, units, functions)
+    return CCandidate(engine.tool, method, "float64", entry, units, functions)
 
 
 def _native(model: Model, s: Lagrange, task: Task, name: str = "native") -> CCandidate:

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 PAPER = ("skate", "front_car", "rear_car", "rapkm_2rrr_rr")
 AS_WRITTEN = "CasADi as written"
 BEST_VALID = "best peer valid wherever B has full rank"
-BEST_ANY = "best peer in any form"
+BEST_ANY = "best peer by any method"
 # Counted early was the parallel robot without payload, its energy written with the velocities of the mass centres.
 COUNTED_EARLY = {"rapkm_2rrr_rr": "rapkm_without_payload"}
-VALID_FORMS = frozenset({"native", "lean", "lean LDLᵀ"})
+VALID_METHODS = frozenset({"native", "lean", "lean LDLᵀ"})
 REPRODUCED_WITHIN = 0.05
 
 
@@ -35,7 +35,7 @@ GOALS = (
 # Code and stack of u over those of the best peer, at most, for two models; the library's trigonometry on both sides.
 FOOTPRINT_GOALS = {"code": 0.55, "stack": 0.85}
 FOOTPRINT_MODELS = ("front_car", "rapkm_2rrr_rr")
-# The early counts, and the tool and form that gave them.
+# The early counts, and the tool and method that gave them.
 EARLY_COUNTS: dict[str, tuple[tuple[int, str], ...]] = {
     AS_WRITTEN: ((262, "CasADi native"), (821, "CasADi native"), (751, "CasADi native"), (3696, "CasADi native")),
     BEST_VALID: ((156, "SymPy lean"), (562, "wrenfold lean"), (530, "SymPy lean"), (1975, "wrenfold lean")),

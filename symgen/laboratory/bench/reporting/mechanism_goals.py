@@ -17,12 +17,12 @@ GOALS = (
 )
 # What counts as "as written": G and C as matrices, (27) and (28) with `inv` and `@`; where that is too long,
 # the motion equations along directions; without loops, these of energies in world axes.
-AS_WRITTEN_FORMS = (
+AS_WRITTEN_METHODS = (
     frozenset({"AD in world axes"}),
     frozenset({"native", "native from energies"}),
     frozenset({"literal", "literal from energies"}),
 )
-WRITTEN = frozenset({"AD"}).union(*AS_WRITTEN_FORMS)
+WRITTEN = frozenset({"AD"}).union(*AS_WRITTEN_METHODS)
 # Its cars, RA-PKM and chains are these, the other mechanisms were counted with other parameters.
 EARLY_COUNTS: dict[str, tuple[int | None, ...]] = {
     AS_WRITTEN: (821, 3696, 1735, 11126, 9464, 51463, None, 5157),

@@ -7,7 +7,7 @@ from typing import Any
 
 from symgen.laboratory.bench.reporting.goals import AS_WRITTEN, Goal
 from symgen.laboratory.bench.reporting.mechanism_goals import (
-    AS_WRITTEN_FORMS,
+    AS_WRITTEN_METHODS,
     CHEAPEST_WRITTEN,
     EARLY_COUNTS,
     GOALS,
@@ -16,7 +16,7 @@ from symgen.laboratory.bench.reporting.mechanism_goals import (
 )
 from symgen.terminal import columns
 
-SERIAL_FORM = "AD"  # of peers of mechanisms without loops
+SERIAL_METHOD = "AD"  # of peers of mechanisms without loops
 COLUMNS = ("", "instructions", "ns", "code", "stack", "operations", "difference")
 Row = Mapping[str, Any]
 Results = Mapping[str, Mapping[str, Any]]
@@ -29,14 +29,14 @@ are drawn from the ranges of the coordinates. symgen's kernels return statuses, 
 The peers walk the frames in their own scalars, as somebody writes a mechanism who knows the tool: rotation matrices and
 velocities in body axes from frame to frame, energies as sums over bodies, motion equations by the tool's derivatives
 along directions, never through matrices. **literal** is (27) with (28) on those, **native** the same with the matrices
-G and C; **lean**, **part** and **elimination** are the forms of [the other page](README.md), **AD** is a mechanism
+G and C; **lean**, **part** and **elimination** are the methods of [the other page](README.md), **AD** is a mechanism
 without loops, *in world axes* with rotation matrices multiplied up and the velocities of mass centres as the world sees
 them. *from energies* starts from energies written out in world axes, which is shorter for a few mechanisms in the
 plane.
 
 *As written* is what a user of CasADi writes down: native, where it is not too long to be built (16 links: literal);
 without loops AD of energies in world axes. The row below it takes whichever of native, literal and AD is cheapest, for
-comparison; the best peer in any form is the strongest of all.
+comparison; the best peer by any method is the strongest of all.
 """
 
 
@@ -77,7 +77,7 @@ def _library(results: Results, names: Sequence[str]) -> str:
     measured = [name for name in names if not isinstance(results[name]["pinocchio"], str)]
     if not measured:
         return ""
-    asked = ["0.25" if SERIAL_FORM in _forms(results[name]) else "0.08" for name in measured]
+    asked = ["0.25" if SERIAL_METHOD in _methods(results[name]) else "0.08" for name in measured]
     cells = [f"{_pinocchio(results[name])} (goal {goal})" for name, goal in zip(measured, asked, strict=True)]
     return (
         "## Pinocchio\n\nTimes of symgen's u with portable sine and cosine over those of Pinocchio, in a program of "
@@ -92,7 +92,7 @@ def _pinocchio(result: Mapping[str, Any]) -> str:
     return f"{mine / time:.2f}: {mine:.0f} / {time:.0f} ns, difference {difference:.0e}"
 
 
-def _forms(result: Mapping[str, Any]) -> set[str]:
+def _methods(result: Mapping[str, Any]) -> set[str]:
     return {row["form"] for row in result["kernels"]}
 
 
@@ -144,7 +144,7 @@ def _own(rows: Sequence[Row], trig: str) -> Row:
 def _peer(rows: Sequence[Row], against: str) -> Row | None:
     peers = [row for row in rows if row["generator"] != "symgen"]
     if against == AS_WRITTEN:
-        kinds = ([row for row in peers if row["form"] in forms] for forms in AS_WRITTEN_FORMS)
+        kinds = ([row for row in peers if row["form"] in methods] for methods in AS_WRITTEN_METHODS)
         peers = next(filter(None, kinds), [])
     elif against == CHEAPEST_WRITTEN:
         peers = [row for row in peers if row["form"] in WRITTEN]

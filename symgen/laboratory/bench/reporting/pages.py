@@ -18,7 +18,7 @@ from symgen.laboratory.bench.reporting.goals import (
     GOALS,
     PAPER,
     REPRODUCED_WITHIN,
-    VALID_FORMS,
+    VALID_METHODS,
     Goal,
 )
 
@@ -36,7 +36,7 @@ inputs for all and differ from state to state. Errors are those of whole kernels
 reference of 50 digits, relative to its norm; a unit is d + eps |u|, where d is how far the exact result moves when
 inputs, parameters and literals are rounded.
 
-Forms of the peers: **native** is the paper's (27) with (28) as a user writes it, with full matrices, `inv` and `@`;
+Methods of the peers: **native** is the paper's (27) with (28) as a user writes it, with full matrices, `inv` and `@`;
 **lean** applies Cholesky factors of B Bᵀ to vectors; **part** takes a basis of ker B from chosen coordinates;
 **elimination** solves the passive rows for the multipliers, where M selects rows. `LDLᵀ` stands for factors without
 roots, and for m = δ a direct solution. The choice of coordinates and multipliers is an expert's: the cheapest one that
@@ -214,7 +214,7 @@ def _label(row: Row) -> str:
 
 _PEERS: dict[str, Callable[[Row], bool]] = {
     AS_WRITTEN: lambda row: _label(row) == "CasADi native",
-    BEST_VALID: lambda row: row["form"] in VALID_FORMS,
+    BEST_VALID: lambda row: row["form"] in VALID_METHODS,
     BEST_ANY: lambda row: bool(row["form"]),
 }
 

@@ -1,7 +1,7 @@
 """What each thing that a scene does not need is worth: operations of u with one of them kept at a time.
 
-Measured on the minor form, which every model has; "kept" means that a number the structure analysis knows is treated
-as if it came at run time.  The weight of operations is that of the choice of forms (`symgen.symbolic.traverse.Cost`).
+Measured on the minor method, which every model has; "kept" means that a number the structure analysis knows is treated
+as if it came at run time.  The weight of operations is that of the choice of methods (`symgen.symbolic.traverse.Cost`).
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ BY_MINORS = (
 
 @dataclass(frozen=True, slots=True)
 class Skipped:
-    """Weighted operations of u: as generated, by the minor form, and with one thing kept."""
+    """Weighted operations of u: as generated, by the minor method, and with one thing kept."""
 
     model: str
     generated: int
@@ -51,7 +51,7 @@ class Skipped:
 
 @dataclass(frozen=True, slots=True)
 class KeptWeight:
-    """The weight with one thing kept, and without; None where there is nothing of the kind, or too long a form."""
+    """The weight with one thing kept, and without; None where there is nothing of the kind, or too long a method."""
 
     what: str
     weight: int | None
@@ -151,7 +151,7 @@ def skipped(model: Model) -> Skipped:
 
 
 def _of_minors(plain: System, generic: Genericity, outputs: Vector) -> Iterator[KeptWeight]:
-    """What the minor form skips."""
+    """What the minor method skips."""
     model, b = plain.model, plain.constraint_jacobian
     free = [bool(b) and all(row[j].is_zero for row in b) for j in range(model.n)]
     everywhere, nowhere = [True] * model.n, [False] * model.n
@@ -191,8 +191,8 @@ def _of_axes(model: Model, generic: Genericity) -> KeptWeight:
         mechanics = System(model)
         change = absolute_angles(mechanics.q, mechanics.constraint_jacobian)
         seen = mechanics if change.is_identity else System(model, mechanics, change)
-        form = elimination_candidate(seen, generic, steps)
-        return None if form is None else counted_cost(form.derived.outputs)
+        made = elimination_candidate(seen, generic, steps)
+        return None if made is None else counted_cost(made.derived.outputs)
 
     plain, world = weight(Elimination), weight(_WorldAxes)
     return KeptWeight("body-fixed axes", None if plain is None or world == plain else world, plain or 0)
@@ -239,7 +239,7 @@ def counted_cost(outputs: Sequence[Scalar]) -> int:
 def page(rows: Sequence[Skipped]) -> str:
     """The page docs/skipping.md."""
     names = [kept.what for kept in rows[0].kept]
-    head = ["model", "u as generated", "minor form", *names]
+    head = ["model", "u as generated", "minor method", *names]
     lines = [table_line(head), table_line(["---"] * len(head))]
     for row in rows:
         minor = "too long" if row.minor is None else row.minor
@@ -262,7 +262,7 @@ them kept, that is, treated as if its number came at run time or its work were d
 
 TABLE
 
-- *u as generated* against *minor form* is what the choice of the form is worth, for one thing that M selects rows.
+- *u as generated* against *minor method* is what the choice of the method is worth, for one thing that M selects rows.
 - *coordinates no constraint touches*, *zeros of B and M*: their zero entries as numbers at run time. *constants*: the
   entries that are numbers other than 0. *forces that vanish*: the zero entries of Q.
 - *τ without G and C*: G q̈ + C q̇ with the matrices G and C instead of the vector by itself, which is the cheaper of

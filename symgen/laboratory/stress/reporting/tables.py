@@ -62,7 +62,7 @@ def _breaches(result: Stress) -> str:
 
 
 def _methods(result: Stress) -> str:
-    """Along all parameter singularities: the largest relative error of each method, and where it is beyond tolerance."""
+    """Along all parameter singularities: largest relative error of each method, and where it is beyond tolerance."""
     chosen = [i for i, family in enumerate(result.families) if family.kind == "parameter"]
     rows = []
     for quantity, symbol in SHORTEST.items():

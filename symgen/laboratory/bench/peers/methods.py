@@ -1,4 +1,4 @@
-"""The three cheap forms of u that are equal to (27) with (28) wherever the system is fully actuated.
+"""The three cheap methods of u that are equal to (27) with (28) wherever the system is fully actuated.
 
 u is the minimum-norm solution of M u + Bᵀλ = τ.  `lean` projects with B Bᵀ on vectors; `part` takes any basis F of
 ker B, made from a choice of independent coordinates; `elimination` is for M that selects coordinates.
@@ -84,7 +84,7 @@ def selected_rows(engine: Engine, M: Matrix) -> list[int] | None:
     return rows if len(set(rows)) == len(rows) else None
 
 
-def elimination_form(engine: Engine, s: PeerSystem, free: Sequence[int]) -> list[Symbol]:
+def elimination(engine: Engine, s: PeerSystem, free: Sequence[int]) -> list[Symbol]:
     """The passive rows give λ but for the `free` multipliers (m − δ of them), and these minimise the norm of u."""
     active = selected_rows(engine, s.M)
     assert active is not None
