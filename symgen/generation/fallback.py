@@ -272,7 +272,7 @@ class Fallback:
         return self._measured(draft, whole, draft.kernels_along(whole, tuple(one.kernels)), expected)
 
     def _with_more_digits(self, draft: Draft, quantity: str, expected: Expected) -> Iterator[_Passing]:
-        """What loses digits in float32 alone with twice as many there, then the shortest ways with more in both."""
+        """What loses digits in float32 alone with twice as many there, then the shortest with more in both."""
         if quantity in self._widened or self._options.methods.get(quantity, AUTO) != AUTO:
             return
         self._widened.add(quantity)

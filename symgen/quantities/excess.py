@@ -45,11 +45,11 @@ def with_test_of_excess(mechanics: System, generic: Genericity, derived: Quantit
     inputs = not generic.actuation_is_identical and generic.alpha < min(generic.m, generic.delta) and solves
     if not rows and not inputs:
         return derived
-    ways: list[Tests] = [_by_reflections(mechanics, generic, rows, inputs)]
+    tests: list[Tests] = [_by_reflections(mechanics, generic, rows, inputs)]
     few = has_few_minors(mechanics.constraint_jacobian, generic.rank)
     if few and (not inputs or _few_inputs(mechanics, generic)):
-        ways.append(_by_minors(mechanics, generic, rows, inputs))
-    candidates = [replace(derived, guards=(*before, *derived.guards, *after)) for before, after in ways]
+        tests.append(_by_minors(mechanics, generic, rows, inputs))
+    candidates = [replace(derived, guards=(*before, *derived.guards, *after)) for before, after in tests]
     return min(candidates, key=_weight)
 
 

@@ -1,7 +1,7 @@
 """Whether a kernel is the function that was meant, told apart from digits lost: evaluated in balls at exact states.
 
 Numbers rounded to a scalar type lie beside V.  Where rows depend on each other, or the inputs reach fewer directions
-on V than beside it, a quantity is defined on V alone, and two correct forms differ beside it; so there the states are
+on V than beside it, a quantity is defined on V alone, and two correct methods differ beside it; so there the states are
 brought back onto V, exact parameters with them, before anything is compared.
 """
 

@@ -1,4 +1,4 @@
-"""What is measured: one way to compute one quantity, as C that is compiled and linked or as a Python function."""
+"""What is measured: one quantity by one method, as C that is compiled and linked or as a Python function."""
 
 from __future__ import annotations
 

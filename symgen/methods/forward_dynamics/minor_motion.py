@@ -165,7 +165,7 @@ class MinorMotion:
 def minor_motion(problem: Problem) -> MinorMotion:
     """By minors, with p and D multiplied out where that costs little: inertias that vanish have cancelled exactly."""
     plain, expanded = (MinorMotion(problem, expanded) for expanded in (False, True))
-    weights = [cost((*way.motion.accelerations, *way.motion.multipliers)).weight for way in (plain, expanded)]
+    weights = [cost((*one.motion.accelerations, *one.motion.multipliers)).weight for one in (plain, expanded)]
     return expanded if weights[1] <= (1 + CANCELLATION_WORTH) * weights[0] else plain
 
 
