@@ -9,7 +9,7 @@ Lumped (lumps.py), the bodies of a frame are one.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
@@ -120,7 +120,7 @@ class _Recursion:
             lumps, rotors = lumped_bodies(self.bodies, [frame.name for frame in frames])
             wrenches = {name: self._inertial_about_origin(lump, working[name]) for name, lump in lumps.items()}
         else:
-            wrenches = self.wrenches(frames, working)
+            wrenches = self._handed_wrenches(frames, working, twists)
         totals = [self.graph.zero] * len(self.bodies.q)
         for frame in reversed(frames):
             wrench, joint = wrenches[frame.name], self.kinematics.joint(frame.name)
@@ -160,6 +160,42 @@ class _Recursion:
             if body.frame != WORLD:
                 found[body.frame] = _sum(found[body.frame], self._inertial(body, motions[body.frame]))
         return found
+
+    def _handed_wrenches(
+        self, frames: Sequence[Frame], motions: Mapping[str, FrameMotion], twists: Collection[str]
+    ) -> dict[str, Wrench]:
+        """The same, but the force on a mass that stands still on a frame further in is that frame's from the start.
+
+        Turned into the axes of a wheel and back, a weight would leave a rounding of itself, which is all there is where
+        the wheel hardly moves.
+        """
+        found = {frame.name: Wrench(self.none, self.none) for frame in frames}
+        for body in self.bodies.mechanism.bodies:
+            if body.frame == WORLD:
+                continue
+            name, com = self._carrier(body, twists)
+            if name == body.frame:
+                found[name] = _sum(found[name], self._inertial(body, motions[name]))
+                continue
+            turning = _turning_moment(self.bodies.inertia(body.name), motions[body.frame])
+            found[body.frame] = _sum(found[body.frame], Wrench(self.none, turning))
+            if name != WORLD:
+                mass = self.bodies.scalars.value(body.mass)
+                found[name] = _sum(found[name], self._on_point(name, mass, com, motions[name]))
+        return found
+
+    def _carrier(self, body: Body, twists: Collection[str]) -> tuple[str, Vector3]:
+        """The innermost frame on which the centre of mass stands still, and where: balanced wheels stand on their axle.
+
+        A frame that hands nothing on keeps what it has.
+        """
+        name, com = body.frame, self.kinematics.space.values(body.com)
+        while name != WORLD and name not in twists:
+            joint = self.kinematics.joint(name)
+            if not all(rate.is_zero for rate in (*joint.place_rate, *cross(joint.turning, com))):
+                break
+            name, com = self.kinematics.frames[name].parent, plus(joint.place, applied(joint.axes, com))
+        return name, com
 
     def _loaded(self) -> set[str]:
         """Frames that carry bodies, by themselves or further out."""
@@ -219,21 +255,25 @@ class _Recursion:
         return replace(motion, field=_field(self.none, motion.acceleration))
 
     def _inertial(self, body: Body, motion: FrameMotion) -> Wrench:
-        """What moving a body so takes: m a of its centre of mass; the moment of that and I w' + w x I w.
+        """What moving a body so takes: m a of its centre of mass; the moment of that and I w' + w x I w."""
+        mass, com = self.bodies.scalars.value(body.mass), self.kinematics.space.values(body.com)
+        point = self._on_point(body.frame, mass, com, motion)
+        return replace(point, moment=plus(_turning_moment(self.bodies.inertia(body.name), motion), point.moment))
+
+    def _on_point(self, name: str, mass: Scalar, place: Vector3, motion: FrameMotion) -> Wrench:
+        """What moving a mass at a place c of a frame takes: m a, and its moment.
 
         On a parent that is still, centrifugal forces stand apart from the others, c x (w x (w x c)) = (w.c) (c x w):
         without a rounding they have no moment about w, which c x (m a) gives a rest of.
         """
-        mass, com = self.bodies.scalars.value(body.mass), self.kinematics.space.values(body.com)
-        tensor = self.bodies.inertia(body.name)
-        x, y, z = (mass * a for a in plus(motion.linear, applied(motion.field, com)))
-        if motion is not self.motions[body.frame] or not self._on_still_parent(body.frame):
-            return Wrench((x, y, z), plus(_turning_moment(tensor, motion), cross(com, (x, y, z))))
-        along = inner(motion.velocity, com)
-        others = cross(com, plus(motion.linear, cross(motion.acceleration, com)))
-        centrifugal = (along * a for a in cross(com, motion.velocity))
+        x, y, z = (mass * a for a in plus(motion.linear, applied(motion.field, place)))
+        if motion is not self.motions[name] or not self._on_still_parent(name):
+            return Wrench((x, y, z), cross(place, (x, y, z)))
+        along = inner(motion.velocity, place)
+        others = cross(place, plus(motion.linear, cross(motion.acceleration, place)))
+        centrifugal = (along * a for a in cross(place, motion.velocity))
         a, b, c = (mass * (one + other) for one, other in zip(others, centrifugal, strict=True))
-        return Wrench((x, y, z), plus(_turning_moment(tensor, motion), (a, b, c)))
+        return Wrench((x, y, z), (a, b, c))
 
     def _on_still_parent(self, name: str) -> bool:
         """Whether a frame turns about a fixed place: what its own rate alone loads its joint with is exactly 0 then."""

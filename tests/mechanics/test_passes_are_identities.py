@@ -79,7 +79,7 @@ def _out(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) -> Sequence[Scal
 
 
 PASSES: dict[str, Rewriting] = {
-    **{one.name: one.rewrite for one in (*grouping.PASSES, *grouping.BEGINNINGS)},
+    **{f"{one.of} {one.at}": one.rewrite for one in (*grouping.STEPS, *grouping.BEGINNINGS)},
     "dividing by a number": _divided,
     "multiplying out": _out,
     "sharing angles": lambda graph, _, outputs: share_angles(graph, outputs),
@@ -105,7 +105,7 @@ def test_a_wrong_pass_ends_generation_and_is_named(monkeypatch: pytest.MonkeyPat
     def wrong(graph: Graph, _: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
         return [graph.raw("neg", (output,)) for output in outputs]
 
-    monkeypatch.setattr(grouping, "PASSES", (grouping.Pass("made wrong", "is not to be noticed", wrong),))
+    monkeypatch.setattr(grouping, "STEPS", (grouping.Step("made", "wrong", wrong),))
     with pytest.raises(SymgenBug, match="made wrong: changes the value of"):
         derive_quantities(model("scara"), ("inverse_dynamics",))
 

@@ -1,4 +1,4 @@
-"""Products and sums regrouped, so that least is computed at each state: the passes, each taken where it saves.
+"""Products and sums regrouped, so that least is computed: the steps of two passes, each taken where it saves.
 
 The constructors leave factors and terms in the order in which they came, so that equal ones are recognised.  What a
 pass is worth over all models is on a page of its own, docs/passes.md.
@@ -12,7 +12,6 @@ from typing import TypeAlias
 from symgen.records import dataclass
 from symgen.symbolic.identity import same_values
 from symgen.symbolic.passes.factoring import Factoring
-from symgen.symbolic.passes.quotients import with_quotients
 from symgen.symbolic.passes.shared_parts import with_shared_products, with_shared_sums
 from symgen.symbolic.passes.sum_factors import with_common_factors
 from symgen.symbolic.passes.twins import without_twins
@@ -22,51 +21,39 @@ from symgen.symbolic.traverse import cost, reached
 Rewriting: TypeAlias = Callable[[Graph, Factoring, Sequence[Scalar]], list[Scalar]]
 
 
-@dataclass(frozen=True, slots=True)
-class Pass:
-    """A rewriting that keeps all values, by name, and what it does in a sentence."""
+# The passes, each with what it does in a sentence; what one leaves the next may find.
+COMMON_FACTORS, SHARED_PARTS = "common factors", "shared parts"
+PASSES = {
+    COMMON_FACTORS: "x + f a + f b becomes x + f (a + b): first for any f, or for parameters, where that leads to less "
+    "in the end; then where nothing else needs the products",
+    SHARED_PARTS: "a + b, or a b, is computed once where several sums, or products, hold both",
+}
 
-    name: str
-    does: str
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A rewriting that keeps all values: the pass that it belongs to, and what it looks at."""
+
+    of: str
+    at: str
     rewrite: Rewriting
 
 
-COMMON_FACTORS = Pass(
-    "common factors",
-    "x + f a + f b becomes x + f (a + b) where nothing else needs the products",
-    lambda graph, _, outputs: with_common_factors(graph, outputs),
+LONE_FACTORS = Step(
+    COMMON_FACTORS, "of products that nothing else needs", lambda graph, _, outputs: with_common_factors(graph, outputs)
 )
-PARAMETER_FACTORS = Pass(
-    "parameter factors",
-    "x + f a + f b becomes x + f (a + b) for parameters and numbers f, also where the products are needed elsewhere",
+PARAMETER_FACTORS = Step(
+    COMMON_FACTORS,
+    "that are parameters or numbers",
     lambda graph, factoring, outputs: with_common_factors(graph, outputs, factoring.fixed),
 )
-ALL_FACTORS = Pass(
-    "all factors",
-    "x + f a + f b becomes x + f (a + b) for any f, also where the products are needed elsewhere",
-    lambda graph, _, outputs: with_common_factors(graph, outputs, shared=True),
+ALL_FACTORS = Step(
+    COMMON_FACTORS, "of all products", lambda graph, _, outputs: with_common_factors(graph, outputs, shared=True)
 )
-SHARED_SUMS = Pass(
-    "shared sums",
-    "a + b is added once where several sums hold both",
-    lambda graph, _, outputs: with_shared_sums(graph, outputs),
-)
-SHARED_PRODUCTS = Pass(
-    "shared products",
-    "a b is multiplied once where several products hold both",
-    lambda graph, _, outputs: with_shared_products(graph, outputs),
-)
-QUOTIENTS = Pass(
-    "quotients",
-    "(1 / b) a becomes a / b where nothing else needs 1 / b",
-    lambda graph, _, outputs: with_quotients(graph, outputs),
-)
-# In their order: what two sums held is found in more of them once those two are one, so that three are taken twice.
-PASSES = (
-    *(COMMON_FACTORS, SHARED_SUMS, SHARED_PRODUCTS),
-    *(COMMON_FACTORS, SHARED_SUMS, SHARED_PRODUCTS),
-    QUOTIENTS,
-)
+SHARED_SUMS = Step(SHARED_PARTS, "of sums", lambda graph, _, outputs: with_shared_sums(graph, outputs))
+SHARED_PRODUCTS = Step(SHARED_PARTS, "of products", lambda graph, _, outputs: with_shared_products(graph, outputs))
+# In their order: what two sums held is found in more of them once those two are one, so that all are taken twice.
+STEPS = (LONE_FACTORS, SHARED_SUMS, SHARED_PRODUCTS) * 2
 # What comes out of sums first decides what is found later, and what cancels exactly.  Outputs of no more scalars begin
 # with each of these, and with none; longer ones with the first.
 BEGINNINGS = (ALL_FACTORS, PARAMETER_FACTORS)
@@ -83,35 +70,35 @@ class _Weighed:
 
 
 def grouped(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> list[Scalar]:
-    """The outputs after the passes, each taken where it saves operations."""
+    """The outputs after the steps, each taken where it saves operations."""
     improved = _Improvement(graph, factoring)
     start = _weighed(without_twins(graph, outputs))
     short = len(reached(outputs)) <= SHORT_OUTPUTS
     begun = [improved(start, (one,)) for one in (BEGINNINGS if short else BEGINNINGS[:1])]
     starts = dict.fromkeys((*begun, start) if short else begun)
-    best = min((improved(one, PASSES) for one in starts), key=lambda one: one.weight)
+    best = min((improved(one, STEPS) for one in starts), key=lambda one: one.weight)
     same_values("regrouping", outputs, best.outputs)
     return list(best.outputs)
 
 
 class _Improvement:
-    """Outputs after those passes that save operations; two ways meet often, and a pass is taken once from a place."""
+    """Outputs after those steps that save operations; two ways meet often, and a step is taken once from a place."""
 
     def __init__(self, graph: Graph, factoring: Factoring) -> None:
         self._graph, self._factoring = graph, factoring
-        self._known: dict[tuple[str, tuple[Scalar, ...]], _Weighed] = {}
+        self._known: dict[tuple[Step, tuple[Scalar, ...]], _Weighed] = {}
 
-    def __call__(self, best: _Weighed, passes: Sequence[Pass]) -> _Weighed:
-        for one in passes:
-            place = one.name, best.outputs
+    def __call__(self, best: _Weighed, steps: Sequence[Step]) -> _Weighed:
+        for one in steps:
+            place = one, best.outputs
             if place not in self._known:
                 self._known[place] = self._after(one, best)
             best = self._known[place]
         return best
 
-    def _after(self, taken: Pass, best: _Weighed) -> _Weighed:
+    def _after(self, taken: Step, best: _Weighed) -> _Weighed:
         changed = taken.rewrite(self._graph, self._factoring, best.outputs)
-        same_values(taken.name, best.outputs, changed)
+        same_values(f"{taken.of} {taken.at}", best.outputs, changed)
         if tuple(changed) == best.outputs:
             return best
         found = _weighed(without_twins(self._graph, changed))

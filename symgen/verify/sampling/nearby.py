@@ -33,6 +33,8 @@ OFF = (1.0, 5.0)
 # Powers of ten by which inputs of half of the states are smaller than those of samples, where weights or springs drive
 # the machine too: inputs that hold its heaviest body hide what rounding does to light ones that nothing else moves.
 LITTLE_INPUT = (1.0, 4.0)
+# Powers of ten by which a machine that all but rests is slower than samples are, its inputs as much smaller.
+SLOWER = (1.0, 8.0)
 # In how many samples that is looked at, and how large these forces are beside inputs.
 SAMPLES_LOOKED_AT, LEAST_DRIVE = 8, 0.1
 # A step of differences along the rates, in radians and metres a unit of time.
@@ -131,6 +133,15 @@ class Surroundings:
             q, _ = self._loops.newton(start.parts["q"], start.parts["p"], held)
             parts = {**start.parts, "q": q}
             return self._settled(Nearby(parts, start.admissible, start.origins), start.parts["q"])
+
+    def resting(self, count: int) -> Nearby:
+        """So many samples that all but rest, where what cancels of weights and of inputs is all there is."""
+        start = self.samples.only(np.arange(count) % len(self.samples))
+        dice = random.Random("resting")
+        pace = np.array([10.0 ** -dice.uniform(*SLOWER) for _ in range(count)])[:, None]
+        slow = {name: start.parts[name] * pace for name in ("qd", "qdd", "u")}
+        with np.errstate(all="ignore"):
+            return self._settled(Nearby({**start.parts, **slow}, start.admissible, start.origins), start.parts["q"])
 
     def measures(self, states: Nearby) -> Lanes:
         """What tells how far rows and inputs are from a drop of rank, a row for each state."""

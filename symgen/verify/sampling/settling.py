@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from math import hypot, isfinite
+from math import hypot, isfinite, sqrt
 
 from symgen.verify.reference.closing import onto_manifold
 from symgen.verify.reference.manifold import exceeds
@@ -34,7 +34,9 @@ class Settling:
         self.measures = [share * min(usual, max(column) / 10, *column) for column in columns]
         with precision(SAMPLING_BITS):
             lengths = [self._lengths(sample.state) for sample in samples[:TYPICAL]]
-        self._rows = [min(REGULAR_SHARE * max(column), *column) for column in zip(*lengths, strict=True)]
+        self._rows = [
+            sqrt(share) * min(REGULAR_SHARE * max(column), *column) for column in zip(*lengths, strict=True)
+        ]
 
     def sample(self, state: State, admissible: bool, quantity: str) -> Sample | None:
         """None where that leads nowhere, near a singularity, or to where the quantity has no value."""

@@ -15,6 +15,8 @@ from symgen.quantities.select import derive_quantities
 from symgen.symbolic.passes import grouping
 
 INVERSE = "inverse_dynamics"
+# In place of beginnings that are left out.
+_AS_IT_IS = grouping.Step("", "as it is", lambda _, __, outputs: list(outputs))
 # Of fewer operations one more is a large part.
 SHORT = 20
 
@@ -28,24 +30,19 @@ class Counted:
     without: Mapping[str, Mapping[str, int]]
 
 
-def passes() -> tuple[grouping.Pass, ...]:
-    """All of them, each once."""
-    return tuple(dict.fromkeys((*grouping.PASSES, *grouping.BEGINNINGS)))
-
-
 def counted(model: Model, outputs: Sequence[str]) -> Counted:
     """The quantities of a model derived with all passes, and again without each."""
     without = {}
-    for one in passes():
-        with _left_out(one):
-            without[one.name] = _costs(model, outputs)
+    for name in grouping.PASSES:
+        with _left_out(name):
+            without[name] = _costs(model, outputs)
     return Counted(model, _costs(model, outputs), without)
 
 
 @contextmanager
-def _left_out(gone: grouping.Pass) -> Iterator[None]:
-    kept, begun = (tuple(one for one in group if one is not gone) for group in (grouping.PASSES, grouping.BEGINNINGS))
-    with patch.object(grouping, "PASSES", kept), patch.object(grouping, "BEGINNINGS", begun):
+def _left_out(gone: str) -> Iterator[None]:
+    kept, begun = (tuple(one for one in group if one.of != gone) for group in (grouping.STEPS, grouping.BEGINNINGS))
+    with patch.object(grouping, "STEPS", kept), patch.object(grouping, "BEGINNINGS", begun or (_AS_IT_IS,)):
         yield
 
 
@@ -70,12 +67,12 @@ def page(shipped: Sequence[Counted], drawn: Sequence[Counted]) -> str:
     }
     head = ["pass", *classes, "most for one quantity"]
     lines = [table_line(head), table_line(["---"] * len(head))]
-    for one in passes():
-        worth = {name: _ratios(members, one.name) for name, members in classes.items()}
-        most = max(_quantities(shipped), key=lambda member: _ratio(member[0], member[1], one.name))
-        where = f"{_percent(_ratio(most[0], most[1], one.name))} ({most[1].replace('_', ' ')} of {most[0].model.name})"
-        lines.append(table_line([one.name, *(_percent(fmean(ratios)) for ratios in worth.values()), where]))
-    sentences = "\n".join(f"- **{one.name}**: {one.does}." for one in passes())
+    for one in grouping.PASSES:
+        worth = {name: _ratios(members, one) for name, members in classes.items()}
+        most = max(_quantities(shipped), key=lambda member: _ratio(member[0], member[1], one))
+        where = f"{_percent(_ratio(most[0], most[1], one))} ({most[1].replace('_', ' ')} of {most[0].model.name})"
+        lines.append(table_line([one, *(_percent(fmean(ratios)) for ratios in worth.values()), where]))
+    sentences = "\n".join(f"- **{name}**: {does}." for name, does in grouping.PASSES.items())
     counts = f"{len(shipped)} shipped models, {len(drawn)} drawn ones"
     return _PAGE.replace("SENTENCES", sentences).replace("TABLE", "\n".join(lines)).replace("COUNTS", counts)
 

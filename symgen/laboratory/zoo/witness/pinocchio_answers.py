@@ -23,6 +23,9 @@ from symgen.laboratory.zoo.witness.tape import NodeProgram
 WITHOUT = ("bodies", "gravity")
 # an entry smaller than this beside the largest one is known as well as that, times this
 SMALL = 1e-3
+# of the weight of all bodies, on levers of a metre: it is turned into the axes of bodies and back, and what rounding
+# leaves of that is all there is where a machine all but rests
+TURNED = 1e-6
 COMPARED = ("inverse_dynamics", "forward_dynamics")
 
 
@@ -46,7 +49,7 @@ class PinocchioAnswers:
         rotors: Any = np.array(at.mass)
         control: Any = np.array(at.control).reshape(len(q), -1)
         # of what cancels, rounding leaves a share of the parts
-        parts = np.abs(bias) + np.abs(at.bias)
+        parts = np.abs(bias) + np.abs(at.bias) + TURNED * self._tree.weight
         free = null_space(at, self._ranks.constraints)
         if quantity == "inverse_dynamics":
             load = self._tree.load(q, qd, qdd) + rotors @ qdd + np.array(at.bias)

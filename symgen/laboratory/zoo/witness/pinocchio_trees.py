@@ -146,6 +146,11 @@ class PinocchioTree:
         bias = self._pin.nonLinearEffects(self._model, self._data, at.place, at.rates @ qd)
         return at.rates.T @ mass @ at.rates, at.rates.T @ (bias + mass @ at.drift)
 
+    @property
+    def weight(self) -> float:
+        """Of all bodies together."""
+        return float(sum(body.mass for body in self._model.inertias) * np.linalg.norm(self._model.gravity.linear))
+
     def load(self, q: Any, qd: Any, qdd: Any) -> Any:
         """The forces that a motion takes, by the recursion of Newton's and Euler's equations (RNEA)."""
         at = self._kinematics(q, qd)

@@ -35,6 +35,9 @@ FURTHEST = 3.2
 # a step along every free direction at most; where ranges or loops that do not close take too many, walks of half the
 # stride each find the rest
 STRIDE, WALKS = 0.6, 5
+# one in so many states all but rests: rates, accelerations and inputs are this much of what they usually are
+SLOW_ONES = 4
+PACES = 1e-2, 1e-4, 1e-6, 1e-8
 # why there are fewer states than were asked for
 NOT_CLOSED, STUCK = "the start does not close", "the start is singular and every step led back"
 LOST_STEPS, IRREGULAR, LED_ELSEWHERE = "most steps were lost", "most configurations are singular", "refined elsewhere"
@@ -88,7 +91,9 @@ class Walker:
                 break
             nearest = self.refined(q, parameters)
             if nearest is not None:
-                found.append(self.state(nearest, parameters))
+                rests, place = len(found) % SLOW_ONES == SLOW_ONES - 1, len(found) // SLOW_ONES
+                pace = PACES[place % len(PACES)] if rests else 1.0
+                found.append(self.state(nearest, parameters, pace=pace))
         if len(found) < count:
             lost = {
                 LOST_STEPS: walked * wanted - len(points),
@@ -275,16 +280,21 @@ class Walker:
         control[:, idle], lengths[idle] = 0, 1
         return rank_of((null_space(at).T @ (control / lengths)).T, threshold, absolute=True)
 
-    def state(self, q: Any, parameters: Mapping[str, float], rank: int | None = None) -> FloatState:
-        """A state with admissible rates and accelerations at a configuration, `rank` being that of the rows."""
+    def state(
+        self, q: Any, parameters: Mapping[str, float], rank: int | None = None, pace: float = 1.0
+    ) -> FloatState:
+        """A state with admissible rates and accelerations at a configuration, `rank` being that of the rows.
+
+        `pace` times what is usual are rates, accelerations but those that the rates ask for, and inputs.
+        """
         free = null_space(self.numbers(q, parameters), rank)
-        spread = [self._dice.uniform(-1.5, 1.5) for _ in range(free.shape[1])]
+        spread = [pace * self._dice.uniform(-1.5, 1.5) for _ in range(free.shape[1])]
         qd = free @ np.array(spread)
         moving = self.numbers(q, parameters, qd)
-        qdd = free @ np.array([self._dice.uniform(-4, 4) for _ in range(free.shape[1])])
+        qdd = free @ np.array([pace * self._dice.uniform(-4, 4) for _ in range(free.shape[1])])
         if moving.drift:
             qdd = qdd - self._inverse(moving.rows, rank) @ np.array(moving.drift)
-        u = [self._dice.uniform(-8, 8) for _ in self._system.inputs]
+        u = [pace * self._dice.uniform(-8, 8) for _ in self._system.inputs]
         return FloatState(*(tuple(map(float, part)) for part in (q, qd, qdd, u, parameters.values())))
 
     @staticmethod
