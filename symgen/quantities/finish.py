@@ -9,6 +9,7 @@ from symgen.mechanics.system import System
 from symgen.methods.method import INPUTS, MOTIONS
 from symgen.methods.quantity import Quantity, is_fixed, scalars
 from symgen.quantities.excess import with_test_of_excess
+from symgen.quantities.moving_axes import in_moving_axes
 from symgen.quantities.row_units import in_units_of_the_file
 from symgen.symbolic.hidden_zeros import without_hidden_zeros
 from symgen.symbolic.passes.grouping import grouped as grouped_scalars
@@ -22,6 +23,7 @@ def finished(mechanics: System, generic: Genericity, derived: Quantity) -> Quant
 def complete(mechanics: System, generic: Genericity, derived: Quantity) -> Quantity:
     """A quantity without entries that are 0 unseen, with ranks tested that other branches may exceed, told what its
     reader must know, rows in the units of the file."""
+    derived = in_moving_axes(mechanics, derived)
     outputs = without_hidden_zeros(derived.outputs)
     # what is locked is so where B has its rank, and results that are fixed may rest on that
     needless = is_fixed(outputs) and not (generic.locked and is_fixed(derived.outputs))

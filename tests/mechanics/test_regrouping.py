@@ -9,6 +9,7 @@ import pytest
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.passes.factoring import Factoring
 from symgen.symbolic.passes.grouping import grouped
+from symgen.symbolic.passes.quotients import with_quotients
 from symgen.symbolic.passes.rebuilt import rebuilt
 from symgen.symbolic.passes.sum_factors import with_common_factors
 from symgen.symbolic.passes.terms import MOST_FACTORED_TERMS
@@ -126,3 +127,12 @@ def test_an_operation_made_twice_counts_once(graph: Graph) -> None:
     outputs = [a * twin, b * (f * g)]
     assert multiplications(outputs) == 4
     assert multiplications(grouped(graph, Factoring(graph, [f, g]), outputs)) == 3
+
+
+def test_a_reciprocal_that_serves_one_product_is_a_quotient(graph: Graph) -> None:
+    a, b, c, *_ = symbols(graph)
+    once, twice = graph.raw("div", (graph.one, b)), graph.raw("div", (graph.one, c))
+    outputs = [graph.raw("mul", (a, once)), graph.raw("mul", (a, twice)), graph.raw("mul", (b, twice))]
+    found = with_quotients(graph, outputs)
+    assert [node.op for node in found] == ["div", "mul", "mul"]
+    assert values(found) == pytest.approx(values(outputs))

@@ -112,8 +112,9 @@ size_t front_car_inverse_dynamics_batch(size_t count, size_t stride, const doubl
     const double Theta_2 = p->Theta_2;
     const double t7 = m_1 + m_2;
     const double t12 = L * m_2;
-    const double t17 = L * t12;
-    const double t18 = Theta_1 + t17;
+    const double t17 = 1.0 / L;
+    const double t18 = L * t12;
+    const double t19 = Theta_1 + t18;
     double copy[7][LANES]; /* the last states, the first of them repeated */
     double result[2][LANES];
     double flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -161,22 +162,22 @@ size_t front_car_inverse_dynamics_batch(size_t count, size_t stride, const doubl
             const double t14 = theta_dot * t13;
             const double t15 = t11 - t14;
             const double t16 = t4 * t15;
-            const double t19 = theta_ddot * t18;
-            const double t20 = y_ddot * t6;
-            const double t21 = x_ddot * t5;
-            const double t22 = t20 - t21;
-            const double t23 = t12 * t22;
-            const double t24 = t19 + t23;
-            const double t25 = t24 / L;
-            const double t26 = t3 * t25;
-            const double t27 = t16 + t26;
-            const double t28 = phi_ddot * Theta_2;
-            double rest = (t27 - t27) * t28;
+            const double t20 = theta_ddot * t19;
+            const double t21 = y_ddot * t6;
+            const double t22 = x_ddot * t5;
+            const double t23 = t21 - t22;
+            const double t24 = t12 * t23;
+            const double t25 = t20 + t24;
+            const double t26 = t17 * t25;
+            const double t27 = t3 * t26;
+            const double t28 = t16 + t27;
+            const double t29 = phi_ddot * Theta_2;
+            double rest = (t28 - t28) * t29;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += 100000.0 >= t2 ? 0.0 : 1.0;
             flag[k] = rest;
-            result[0][k] = t27;
-            result[1][k] = t28;
+            result[0][k] = t28;
+            result[1][k] = t29;
         }
         memcpy(bits, flag, sizeof bits);
         int64_t flags = 0;
@@ -445,224 +446,28 @@ size_t front_car_forward_dynamics_batch(size_t count, size_t stride, const doubl
 }
 
 size_t front_car_multipliers_batch(size_t count, size_t stride, const double *q, const double *qd, const double *u, const front_car_params *p, double *lambda_B, unsigned char *status) {
-    const double L = p->L;
-    const double m_1 = p->m_1;
-    const double m_2 = p->m_2;
-    const double Theta_1 = p->Theta_1;
-    const double Theta_2 = p->Theta_2;
-    const double t29 = fabs(m_2);
-    const double t27 = fabs(Theta_2);
-    const double t28 = fabs(Theta_1);
-    const double t30 = fabs(L);
-    const double t31 = t30 * t30;
-    const double t32 = t29 * t31;
-    const double t33 = t28 + t32;
-    const double t35 = fabs(m_1);
-    const double t36 = t35 + t29;
-    const double t42 = L * Theta_2;
-    const double t50 = L * m_2;
-    const double t67 = L * t50;
-    const double t68 = Theta_1 + t67;
-    const double t59 = m_1 + m_2;
-    double copy[7][LANES]; /* the last states, the first of them repeated */
-    double result[2][LANES];
-    double flag[LANES]; /* 0 where a check passed and the result is finite */
-    int64_t bits[LANES];
     size_t refused = 0;
-    for (size_t start = 0; start < count; start += LANES) {
-        const size_t length = count - start < LANES ? count - start : (size_t)LANES;
-        const double *from[7];
-        from[0] = q + 2 * stride + start;
-        from[1] = q + 3 * stride + start;
-        from[2] = qd + 0 * stride + start;
-        from[3] = qd + 1 * stride + start;
-        from[4] = qd + 2 * stride + start;
-        from[5] = qd + 3 * stride + start;
-        from[6] = u + 0 * stride + start;
-        if (length < LANES) {
-            for (size_t i = 0; i < 7; ++i) {
-                for (size_t k = 0; k < LANES; ++k) {
-                    copy[i][k] = from[i][k < length ? k : 0];
-                }
-                from[i] = copy[i];
-            }
+    for (size_t k = 0; k < count; ++k) {
+        double q_one[4];
+        for (size_t i = 0; i < 4; ++i) {
+            q_one[i] = q[i * stride + k];
         }
-        for (size_t k = 0; k < LANES; ++k) {
-            const double theta = from[0][k];
-            const double phi = from[1][k];
-            const double x_dot = from[2][k];
-            const double y_dot = from[3][k];
-            const double theta_dot = from[4][k];
-            const double phi_dot = from[5][k];
-            const double K_f = from[6][k];
-            const double t1 = fabs(phi);
-            const double t2 = fabs(theta);
-            double t3;
-            double t4;
-            front_car_sincos(phi, &t3, &t4);
-            double t5;
-            double t6;
-            front_car_sincos(theta, &t5, &t6);
-            const double t7 = t3 * t3;
-            const double t8 = L * t4;
-            const double t9 = t5 * t8;
-            const double t10 = t9 * t9;
-            const double t11 = t6 * t8;
-            const double t12 = t11 * t11;
-            const double t13 = t10 + t12;
-            const double t14 = t7 + t13;
-            const double t15 = t8 * t8;
-            const double t16 = 1.0 + t15;
-            const double t17 = t16 * 7.888609052210118e-31;
-            const double t34 = t7 * t33;
-            const double t37 = t36 * t13;
-            const double t38 = t34 + t37;
-            const double t39 = t27 * t38;
-            const double t40 = t39 * 8.881784197001252e-16;
-            const double t19 = m_1 * t4;
-            const double t18 = Theta_1 * t7;
-            const double t20 = t4 * t19;
-            const double t21 = m_2 + t20;
-            const double t22 = L * t21;
-            const double t23 = L * t22;
-            const double t24 = t18 + t23;
-            const double t25 = Theta_2 * t24;
-            const double t26 = fabs(t25);
-            const double t43 = t5 * t4;
-            const double t44 = t6 * t3;
-            const double t45 = t43 + t44;
-            const double t54 = t6 * t4;
-            const double t55 = t5 * t3;
-            const double t56 = t54 - t55;
-            const double t46 = m_2 * t45;
-            const double t47 = t5 * t19;
-            const double t48 = t46 + t47;
-            const double t49 = t42 * t48;
-            const double t86 = m_2 * t56;
-            const double t87 = t6 * t19;
-            const double t88 = t86 + t87;
-            const double t89 = t42 * t88;
-            const double t41 = 1.0 / t25;
-            const double t52 = theta_dot * t6;
-            const double t61 = theta_dot * t5;
-            const double t72 = L * t3;
-            const double t62 = y_dot * t61;
-            const double t63 = x_dot * t52;
-            const double t64 = t62 + t63;
-            const double t73 = theta_dot * t72;
-            const double t74 = phi_dot * t73;
-            const double t75 = theta_dot + phi_dot;
-            const double t76 = x_dot * t56;
-            const double t77 = y_dot * t45;
-            const double t78 = t76 + t77;
-            const double t79 = t75 * t78;
-            const double t80 = t74 + t79;
-            const double t71 = t64 * t56;
-            const double t81 = t6 * t80;
-            const double t82 = t71 - t81;
-            const double t91 = t5 * t80;
-            const double t92 = t64 * t45;
-            const double t93 = t91 - t92;
-            const double t90 = t82 * t89;
-            const double t94 = t49 * t93;
-            const double t95 = t90 - t94;
-            const double t96 = t41 * t95;
-            const double t116 = K_f * t72;
-            const double t118 = t50 * t64;
-            const double t117 = t68 * t96;
-            const double t119 = t117 - t118;
-            const double t120 = t116 + t119;
-            const double t97 = t50 * t96;
-            const double t51 = theta_dot * t50;
-            const double t53 = t51 * t52;
-            const double t57 = K_f * t56;
-            const double t58 = t53 + t57;
-            const double t102 = t51 * t61;
-            const double t103 = K_f * t45;
-            const double t104 = t102 + t103;
-            const double t65 = t8 * t64;
-            const double t69 = t3 * t68;
-            const double t70 = Theta_2 * t69;
-            const double t66 = t65 * t49;
-            const double t83 = t70 * t82;
-            const double t84 = t66 - t83;
-            const double t105 = t70 * t93;
-            const double t106 = t65 * t89;
-            const double t107 = t105 - t106;
-            const double t60 = t59 * t41;
-            const double t85 = t60 * t84;
-            const double t98 = t5 * t97;
-            const double t99 = t85 - t98;
-            const double t100 = t58 + t99;
-            const double t108 = t60 * t107;
-            const double t109 = t6 * t97;
-            const double t110 = t108 + t109;
-            const double t111 = t104 + t110;
-            const double t115 = t70 * t100;
-            const double t121 = t89 * t120;
-            const double t122 = t115 - t121;
-            const double t125 = t70 * t111;
-            const double t126 = t49 * t120;
-            const double t127 = t125 - t126;
-            const double t101 = t49 * t100;
-            const double t112 = t89 * t111;
-            const double t113 = t101 - t112;
-            const double t114 = t8 * t113;
-            const double t123 = t56 * t122;
-            const double t124 = t114 - t123;
-            const double t128 = t45 * t127;
-            const double t129 = t124 - t128;
-            const double t130 = t41 * t129;
-            const double t131 = t5 * t127;
-            const double t132 = t6 * t122;
-            const double t133 = t131 + t132;
-            const double t134 = t41 * t133;
-            double rest = (t130 - t130) * t134;
-            rest += 100000.0 >= t1 ? 0.0 : 1.0;
-            rest += 100000.0 >= t2 ? 0.0 : 1.0;
-            rest += t14 > t17 ? 0.0 : 1.0;
-            rest += t26 > t40 ? 0.0 : 1.0;
-            flag[k] = rest;
-            result[0][k] = t130;
-            result[1][k] = t134;
+        double qd_one[4];
+        for (size_t i = 0; i < 4; ++i) {
+            qd_one[i] = qd[i * stride + k];
         }
-        memcpy(bits, flag, sizeof bits);
-        int64_t flags = 0;
-        for (size_t k = 0; k < LANES; ++k) {
-            flags |= bits[k];
-        }
-        for (size_t k = 0; k < length && status; ++k) {
-            status[start + k] = FRONT_CAR_OK;
-        }
-        for (size_t k = 0; k < length && flags; ++k) {
-            if (bits[k]) {
-                double q_one[4];
-                for (size_t i = 0; i < 4; ++i) {
-                    q_one[i] = q[i * stride + start + k];
-                }
-                double qd_one[4];
-                for (size_t i = 0; i < 4; ++i) {
-                    qd_one[i] = qd[i * stride + start + k];
-                }
-                double u_one[2];
-                for (size_t i = 0; i < 2; ++i) {
-                    u_one[i] = u[i * stride + start + k];
-                }
-                double y[2];
-                const int code = (int)front_car_multipliers(q_one, qd_one, u_one, p, y);
-                for (size_t i = 0; i < 2; ++i) {
-                    result[i][k] = code ? (double)NAN : y[i];
-                }
-                refused += code != 0;
-                if (status) {
-                    status[start + k] = (unsigned char)code;
-                }
-            }
-        }
+        double u_one[2];
         for (size_t i = 0; i < 2; ++i) {
-            for (size_t k = 0; k < length; ++k) {
-                lambda_B[i * stride + start + k] = result[i][k];
-            }
+            u_one[i] = u[i * stride + k];
+        }
+        double y[2];
+        const int code = (int)front_car_multipliers(q_one, qd_one, u_one, p, y);
+        for (size_t i = 0; i < 2; ++i) {
+            lambda_B[i * stride + k] = code ? (double)NAN : y[i];
+        }
+        refused += code != 0;
+        if (status) {
+            status[k] = (unsigned char)code;
         }
     }
     return refused;

@@ -99,8 +99,9 @@ size_t front_car_inverse_dynamics_batch_f(size_t count, size_t stride, const flo
     const float Theta_2 = p->Theta_2;
     const float t7 = m_1 + m_2;
     const float t12 = L * m_2;
-    const float t17 = L * t12;
-    const float t18 = Theta_1 + t17;
+    const float t17 = 1.0f / L;
+    const float t18 = L * t12;
+    const float t19 = Theta_1 + t18;
     float copy[7][LANES]; /* the last states, the first of them repeated */
     float result[2][LANES];
     float flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -148,22 +149,22 @@ size_t front_car_inverse_dynamics_batch_f(size_t count, size_t stride, const flo
             const float t14 = theta_dot * t13;
             const float t15 = t11 - t14;
             const float t16 = t4 * t15;
-            const float t19 = theta_ddot * t18;
-            const float t20 = y_ddot * t6;
-            const float t21 = x_ddot * t5;
-            const float t22 = t20 - t21;
-            const float t23 = t12 * t22;
-            const float t24 = t19 + t23;
-            const float t25 = t24 / L;
-            const float t26 = t3 * t25;
-            const float t27 = t16 + t26;
-            const float t28 = phi_ddot * Theta_2;
-            float rest = (t27 - t27) * t28;
+            const float t20 = theta_ddot * t19;
+            const float t21 = y_ddot * t6;
+            const float t22 = x_ddot * t5;
+            const float t23 = t21 - t22;
+            const float t24 = t12 * t23;
+            const float t25 = t20 + t24;
+            const float t26 = t17 * t25;
+            const float t27 = t3 * t26;
+            const float t28 = t16 + t27;
+            const float t29 = phi_ddot * Theta_2;
+            float rest = (t28 - t28) * t29;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += 100.0f >= t2 ? 0.0f : 1.0f;
             flag[k] = rest;
-            result[0][k] = t27;
-            result[1][k] = t28;
+            result[0][k] = t28;
+            result[1][k] = t29;
         }
         memcpy(bits, flag, sizeof bits);
         int32_t flags = 0;
@@ -432,224 +433,28 @@ size_t front_car_forward_dynamics_batch_f(size_t count, size_t stride, const flo
 }
 
 size_t front_car_multipliers_batch_f(size_t count, size_t stride, const float *q, const float *qd, const float *u, const front_car_params_f *p, float *lambda_B, unsigned char *status) {
-    const float L = p->L;
-    const float m_1 = p->m_1;
-    const float m_2 = p->m_2;
-    const float Theta_1 = p->Theta_1;
-    const float Theta_2 = p->Theta_2;
-    const float t29 = fabsf(m_2);
-    const float t27 = fabsf(Theta_2);
-    const float t28 = fabsf(Theta_1);
-    const float t30 = fabsf(L);
-    const float t31 = t30 * t30;
-    const float t32 = t29 * t31;
-    const float t33 = t28 + t32;
-    const float t35 = fabsf(m_1);
-    const float t36 = t35 + t29;
-    const float t42 = L * Theta_2;
-    const float t50 = L * m_2;
-    const float t67 = L * t50;
-    const float t68 = Theta_1 + t67;
-    const float t59 = m_1 + m_2;
-    float copy[7][LANES]; /* the last states, the first of them repeated */
-    float result[2][LANES];
-    float flag[LANES]; /* 0 where a check passed and the result is finite */
-    int32_t bits[LANES];
     size_t refused = 0;
-    for (size_t start = 0; start < count; start += LANES) {
-        const size_t length = count - start < LANES ? count - start : (size_t)LANES;
-        const float *from[7];
-        from[0] = q + 2 * stride + start;
-        from[1] = q + 3 * stride + start;
-        from[2] = qd + 0 * stride + start;
-        from[3] = qd + 1 * stride + start;
-        from[4] = qd + 2 * stride + start;
-        from[5] = qd + 3 * stride + start;
-        from[6] = u + 0 * stride + start;
-        if (length < LANES) {
-            for (size_t i = 0; i < 7; ++i) {
-                for (size_t k = 0; k < LANES; ++k) {
-                    copy[i][k] = from[i][k < length ? k : 0];
-                }
-                from[i] = copy[i];
-            }
+    for (size_t k = 0; k < count; ++k) {
+        float q_one[4];
+        for (size_t i = 0; i < 4; ++i) {
+            q_one[i] = q[i * stride + k];
         }
-        for (size_t k = 0; k < LANES; ++k) {
-            const float theta = from[0][k];
-            const float phi = from[1][k];
-            const float x_dot = from[2][k];
-            const float y_dot = from[3][k];
-            const float theta_dot = from[4][k];
-            const float phi_dot = from[5][k];
-            const float K_f = from[6][k];
-            const float t1 = fabsf(phi);
-            const float t2 = fabsf(theta);
-            float t3;
-            float t4;
-            front_car_sincos_f(phi, &t3, &t4);
-            float t5;
-            float t6;
-            front_car_sincos_f(theta, &t5, &t6);
-            const float t7 = t3 * t3;
-            const float t8 = L * t4;
-            const float t9 = t5 * t8;
-            const float t10 = t9 * t9;
-            const float t11 = t6 * t8;
-            const float t12 = t11 * t11;
-            const float t13 = t10 + t12;
-            const float t14 = t7 + t13;
-            const float t15 = t8 * t8;
-            const float t16 = 1.0f + t15;
-            const float t17 = t16 * 2.2737368e-13f;
-            const float t34 = t7 * t33;
-            const float t37 = t36 * t13;
-            const float t38 = t34 + t37;
-            const float t39 = t27 * t38;
-            const float t40 = t39 * 4.7683716e-07f;
-            const float t19 = m_1 * t4;
-            const float t18 = Theta_1 * t7;
-            const float t20 = t4 * t19;
-            const float t21 = m_2 + t20;
-            const float t22 = L * t21;
-            const float t23 = L * t22;
-            const float t24 = t18 + t23;
-            const float t25 = Theta_2 * t24;
-            const float t26 = fabsf(t25);
-            const float t43 = t5 * t4;
-            const float t44 = t6 * t3;
-            const float t45 = t43 + t44;
-            const float t54 = t6 * t4;
-            const float t55 = t5 * t3;
-            const float t56 = t54 - t55;
-            const float t46 = m_2 * t45;
-            const float t47 = t5 * t19;
-            const float t48 = t46 + t47;
-            const float t49 = t42 * t48;
-            const float t86 = m_2 * t56;
-            const float t87 = t6 * t19;
-            const float t88 = t86 + t87;
-            const float t89 = t42 * t88;
-            const float t41 = 1.0f / t25;
-            const float t52 = theta_dot * t6;
-            const float t61 = theta_dot * t5;
-            const float t72 = L * t3;
-            const float t62 = y_dot * t61;
-            const float t63 = x_dot * t52;
-            const float t64 = t62 + t63;
-            const float t73 = theta_dot * t72;
-            const float t74 = phi_dot * t73;
-            const float t75 = theta_dot + phi_dot;
-            const float t76 = x_dot * t56;
-            const float t77 = y_dot * t45;
-            const float t78 = t76 + t77;
-            const float t79 = t75 * t78;
-            const float t80 = t74 + t79;
-            const float t71 = t64 * t56;
-            const float t81 = t6 * t80;
-            const float t82 = t71 - t81;
-            const float t91 = t5 * t80;
-            const float t92 = t64 * t45;
-            const float t93 = t91 - t92;
-            const float t90 = t82 * t89;
-            const float t94 = t49 * t93;
-            const float t95 = t90 - t94;
-            const float t96 = t41 * t95;
-            const float t116 = K_f * t72;
-            const float t118 = t50 * t64;
-            const float t117 = t68 * t96;
-            const float t119 = t117 - t118;
-            const float t120 = t116 + t119;
-            const float t97 = t50 * t96;
-            const float t51 = theta_dot * t50;
-            const float t53 = t51 * t52;
-            const float t57 = K_f * t56;
-            const float t58 = t53 + t57;
-            const float t102 = t51 * t61;
-            const float t103 = K_f * t45;
-            const float t104 = t102 + t103;
-            const float t65 = t8 * t64;
-            const float t69 = t3 * t68;
-            const float t70 = Theta_2 * t69;
-            const float t66 = t65 * t49;
-            const float t83 = t70 * t82;
-            const float t84 = t66 - t83;
-            const float t105 = t70 * t93;
-            const float t106 = t65 * t89;
-            const float t107 = t105 - t106;
-            const float t60 = t59 * t41;
-            const float t85 = t60 * t84;
-            const float t98 = t5 * t97;
-            const float t99 = t85 - t98;
-            const float t100 = t58 + t99;
-            const float t108 = t60 * t107;
-            const float t109 = t6 * t97;
-            const float t110 = t108 + t109;
-            const float t111 = t104 + t110;
-            const float t115 = t70 * t100;
-            const float t121 = t89 * t120;
-            const float t122 = t115 - t121;
-            const float t125 = t70 * t111;
-            const float t126 = t49 * t120;
-            const float t127 = t125 - t126;
-            const float t101 = t49 * t100;
-            const float t112 = t89 * t111;
-            const float t113 = t101 - t112;
-            const float t114 = t8 * t113;
-            const float t123 = t56 * t122;
-            const float t124 = t114 - t123;
-            const float t128 = t45 * t127;
-            const float t129 = t124 - t128;
-            const float t130 = t41 * t129;
-            const float t131 = t5 * t127;
-            const float t132 = t6 * t122;
-            const float t133 = t131 + t132;
-            const float t134 = t41 * t133;
-            float rest = (t130 - t130) * t134;
-            rest += 100.0f >= t1 ? 0.0f : 1.0f;
-            rest += 100.0f >= t2 ? 0.0f : 1.0f;
-            rest += t14 > t17 ? 0.0f : 1.0f;
-            rest += t26 > t40 ? 0.0f : 1.0f;
-            flag[k] = rest;
-            result[0][k] = t130;
-            result[1][k] = t134;
+        float qd_one[4];
+        for (size_t i = 0; i < 4; ++i) {
+            qd_one[i] = qd[i * stride + k];
         }
-        memcpy(bits, flag, sizeof bits);
-        int32_t flags = 0;
-        for (size_t k = 0; k < LANES; ++k) {
-            flags |= bits[k];
-        }
-        for (size_t k = 0; k < length && status; ++k) {
-            status[start + k] = FRONT_CAR_OK;
-        }
-        for (size_t k = 0; k < length && flags; ++k) {
-            if (bits[k]) {
-                float q_one[4];
-                for (size_t i = 0; i < 4; ++i) {
-                    q_one[i] = q[i * stride + start + k];
-                }
-                float qd_one[4];
-                for (size_t i = 0; i < 4; ++i) {
-                    qd_one[i] = qd[i * stride + start + k];
-                }
-                float u_one[2];
-                for (size_t i = 0; i < 2; ++i) {
-                    u_one[i] = u[i * stride + start + k];
-                }
-                float y[2];
-                const int code = (int)front_car_multipliers_f(q_one, qd_one, u_one, p, y);
-                for (size_t i = 0; i < 2; ++i) {
-                    result[i][k] = code ? (float)NAN : y[i];
-                }
-                refused += code != 0;
-                if (status) {
-                    status[start + k] = (unsigned char)code;
-                }
-            }
-        }
+        float u_one[2];
         for (size_t i = 0; i < 2; ++i) {
-            for (size_t k = 0; k < length; ++k) {
-                lambda_B[i * stride + start + k] = result[i][k];
-            }
+            u_one[i] = u[i * stride + k];
+        }
+        float y[2];
+        const int code = (int)front_car_multipliers_f(q_one, qd_one, u_one, p, y);
+        for (size_t i = 0; i < 2; ++i) {
+            lambda_B[i * stride + k] = code ? (float)NAN : y[i];
+        }
+        refused += code != 0;
+        if (status) {
+            status[k] = (unsigned char)code;
         }
     }
     return refused;

@@ -1,4 +1,4 @@
-"""Products and sums regrouped, so that least is computed: the steps of two passes, each taken where it saves.
+"""Products and sums regrouped, so that least is computed: the steps of three passes, each taken where it saves.
 
 The constructors leave factors and terms in the order in which they came, so that equal ones are recognised.  What a
 pass is worth over all models is on a page of its own, docs/passes.md.
@@ -12,6 +12,7 @@ from typing import TypeAlias
 from symgen.records import dataclass
 from symgen.symbolic.identity import same_values
 from symgen.symbolic.passes.factoring import Factoring
+from symgen.symbolic.passes.quotients import with_quotients
 from symgen.symbolic.passes.shared_parts import with_shared_products, with_shared_sums
 from symgen.symbolic.passes.sum_factors import with_common_factors
 from symgen.symbolic.passes.twins import without_twins
@@ -22,11 +23,12 @@ Rewriting: TypeAlias = Callable[[Graph, Factoring, Sequence[Scalar]], list[Scala
 
 
 # The passes, each with what it does in a sentence; what one leaves the next may find.
-COMMON_FACTORS, SHARED_PARTS = "common factors", "shared parts"
+COMMON_FACTORS, SHARED_PARTS, QUOTIENTS = "common factors", "shared parts", "quotients"
 PASSES = {
     COMMON_FACTORS: "x + f a + f b becomes x + f (a + b): first for any f, or for parameters, where that leads to less "
     "in the end; then where nothing else needs the products",
     SHARED_PARTS: "a + b, or a b, is computed once where several sums, or products, hold both",
+    QUOTIENTS: "(1 / b) a becomes a / b where nothing else needs 1 / b",
 }
 
 
@@ -52,8 +54,9 @@ ALL_FACTORS = Step(
 )
 SHARED_SUMS = Step(SHARED_PARTS, "of sums", lambda graph, _, outputs: with_shared_sums(graph, outputs))
 SHARED_PRODUCTS = Step(SHARED_PARTS, "of products", lambda graph, _, outputs: with_shared_products(graph, outputs))
-# In their order: what two sums held is found in more of them once those two are one, so that all are taken twice.
-STEPS = (LONE_FACTORS, SHARED_SUMS, SHARED_PRODUCTS) * 2
+LONE_RECIPROCALS = Step(QUOTIENTS, "of reciprocals", lambda graph, _, outputs: with_quotients(graph, outputs))
+# In their order: what two sums held is found in more of them once those two are one, so that three are taken twice.
+STEPS = (*(LONE_FACTORS, SHARED_SUMS, SHARED_PRODUCTS) * 2, LONE_RECIPROCALS)
 # What comes out of sums first decides what is found later, and what cancels exactly.  Outputs of no more scalars begin
 # with each of these, and with none; longer ones with the first.
 BEGINNINGS = (ALL_FACTORS, PARAMETER_FACTORS)

@@ -34,7 +34,7 @@ OFF = (1.0, 5.0)
 # the machine too: inputs that hold its heaviest body hide what rounding does to light ones that nothing else moves.
 LITTLE_INPUT = (1.0, 4.0)
 # Powers of ten by which a machine that all but rests is slower than samples are, its inputs as much smaller.
-SLOWER = (1.0, 8.0)
+SLOWER = (1.0, 4.0)
 # In how many samples that is looked at, and how large these forces are beside inputs.
 SAMPLES_LOOKED_AT, LEAST_DRIVE = 8, 0.1
 # A step of differences along the rates, in radians and metres a unit of time.

@@ -37,7 +37,7 @@ FURTHEST = 3.2
 STRIDE, WALKS = 0.6, 5
 # one in so many states all but rests: rates, accelerations and inputs are this much of what they usually are
 SLOW_ONES = 4
-PACES = 1e-2, 1e-4, 1e-6, 1e-8
+PACES = 1e-1, 1e-2, 1e-3, 1e-4
 # why there are fewer states than were asked for
 NOT_CLOSED, STUCK = "the start does not close", "the start is singular and every step led back"
 LOST_STEPS, IRREGULAR, LED_ELSEWHERE = "most steps were lost", "most configurations are singular", "refined elsewhere"

@@ -1,0 +1,106 @@
+"""What depends on a heading only in that everything turns with it, in axes that turn, too.
+
+A robot on level ground does the same whichever way it heads: in axes of its own its equations hold neither its place
+nor its heading.  So a result at a heading is that at heading 0 with rates and accelerations turned back by it, turned
+itself where it is an acceleration.  Written so it has no terms that cancel by cos^2 + sin^2 = 1, which leave a rounding
+of what is cancelled (the symmetry of Chaplygin systems: Bloch, Nonholonomic Mechanics and Control, 2003, ch. 5).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import permutations
+
+from symgen.linear_algebra.guards import Guard
+from symgen.mechanics.system import System
+from symgen.methods.quantity import Quantity, scalars
+from symgen.records import dataclass
+from symgen.symbolic.angles.sharing import share_angles
+from symgen.symbolic.identity import same_values
+from symgen.symbolic.matrix import Vector
+from symgen.symbolic.scalar import Scalar
+from symgen.symbolic.traverse import cost, reached, substitute
+
+
+@dataclass(frozen=True, slots=True)
+class _Heading:
+    """The place of an angle by which something heads, and of two coordinates that carry it along axes of the world.
+
+    What holds neither these coordinates nor their rates has no `carried`.
+    """
+
+    angle: int
+    carried: tuple[int, ...]
+
+
+def in_moving_axes(mechanics: System, derived: Quantity) -> Quantity:
+    """A quantity in axes that turn with a heading on which nothing else depends, where that takes fewer operations."""
+    best, least = derived, _weight(derived)
+    for heading in _headings(mechanics, derived):
+        turned = _turned(mechanics, derived, heading)
+        if turned is not None and (weight := _weight(turned)) < least:
+            best, least = turned, weight
+    return best
+
+
+def _headings(mechanics: System, derived: Quantity) -> Iterator[_Heading]:
+    """Those that a quantity may turn with: it holds the angle, and rates of the two places but not these."""
+    held = reached(scalars(derived))
+    coordinates = mechanics.model.coordinates
+    angles = [k for k, c in enumerate(coordinates) if c.is_angle and mechanics.q[k] in held]
+    moved = [
+        k
+        for k, c in enumerate(coordinates)
+        if not c.is_angle and mechanics.q[k] not in held and not held.isdisjoint((mechanics.qd[k], mechanics.qdd[k]))
+    ]
+    for angle in angles:
+        yield _Heading(angle, ())
+        for carried in permutations(moved, 2):
+            yield _Heading(angle, carried)
+
+
+def _turned(mechanics: System, derived: Quantity, heading: _Heading) -> Quantity | None:
+    """The quantity at heading 0 with what comes in turned back; None where that is another one."""
+    graph, angle = mechanics.graph, mechanics.q[heading.angle]
+    cosine, sine = graph.trig("cos", angle), graph.trig("sin", angle)
+    back = {angle: graph.zero}
+    for vector in (mechanics.qd, mechanics.qdd) if heading.carried else ():
+        x, y = (vector[k] for k in heading.carried)
+        back |= {x: cosine * x + sine * y, y: cosine * y - sine * x}
+    outputs = substitute(graph, derived.outputs, back)
+    if not _same(derived.outputs, outputs):
+        if not heading.carried or len(outputs) != mechanics.n:
+            return None
+        along, across = heading.carried
+        x, y = outputs[along], outputs[across]
+        outputs[along], outputs[across] = cosine * x - sine * y, sine * x + cosine * y
+        if not _same(derived.outputs, outputs):
+            return None
+    guards = [_turned_guard(guard, back) for guard in derived.guards]
+    found = tuple(guard for guard in guards if guard is not None)
+    if len(found) < len(guards):
+        return None
+    turned = replace(derived, outputs=tuple(outputs), guards=found)
+    same_values("turning axes", scalars(derived), scalars(turned))
+    return turned
+
+
+def _turned_guard(guard: Guard, back: dict[Scalar, Scalar]) -> Guard | None:
+    """A guard that does not change with the heading; None where it does."""
+    given = (guard.denominator,) if guard.scale is None else (guard.denominator, guard.scale)
+    turned = substitute(guard.denominator.graph, given, back)
+    first = [_turned_guard(one, back) for one in guard.first]
+    kept = tuple(one for one in first if one is not None)
+    if not _same(given, turned) or len(kept) < len(first):
+        return None
+    return replace(guard, denominator=turned[0], scale=None if guard.scale is None else turned[1], first=kept)
+
+
+def _same(before: Sequence[Scalar], after: Sequence[Scalar]) -> bool:
+    return all(one.value == other.value for one, other in zip(before, after, strict=True))
+
+
+def _weight(derived: Quantity) -> int:
+    needed: Vector = scalars(derived)
+    return cost(share_angles(needed[0].graph, needed)).weight if needed else 0

@@ -1,0 +1,90 @@
+"""Results that turn with a heading are computed at heading 0: what comes in is turned back, what comes out turned."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from symgen.methods.quantity import Quantity, scalars
+from symgen.model.load import load_model
+from symgen.quantities.moving_axes import in_moving_axes
+from symgen.quantities.select import Selection, derive_quantities
+from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.traverse import cost, reached
+
+MOTION = ("forward_dynamics", "multipliers")
+# A tractor with a blade on an arm that swings sideways.
+TRACTOR = """
+model: tractor
+parameters: {m: {value: 2000}, J: {value: 900}, a: {value: 1.1}, b: {value: 1.7}, slope: {value: 0.1}}
+coordinates:
+  x: {unit: m}
+  y: {unit: m}
+  heading: {unit: rad}
+  swing: {unit: rad}
+kinetic_energy: >-
+  m/2*(x_dot**2 + y_dot**2) + a*m*heading_dot*(cos(heading)*y_dot - sin(heading)*x_dot)
+  + (J + m*a**2)/2*heading_dot**2 + 60*(heading_dot + swing_dot)**2
+potential_energy: POTENTIAL
+constraints:
+  nonholonomic:
+    axle: cos(heading)*y_dot - sin(heading)*x_dot
+    blade: cos(heading + swing)*y_dot - sin(heading + swing)*x_dot - b*cos(swing)*heading_dot - 0.4*swing_dot
+inputs:
+  push: {acts_on: {x: cos(heading), y: sin(heading)}}
+  ram: {acts_on: {swing: 1}}
+configuration: {x: 0, y: 0, heading: 0.3, swing: 0.4}
+"""
+LEVEL, UPHILL = (TRACTOR.replace("POTENTIAL", potential) for potential in ("0", "9.81*m*slope*y"))
+
+
+def _selection(folder: Path, text: str) -> Selection:
+    path = folder / "tractor.yaml"
+    path.write_text(text, encoding="utf-8")
+    return derive_quantities(load_model(path), MOTION)
+
+
+def _both(folder: Path, text: str, monkeypatch: pytest.MonkeyPatch) -> list[tuple[Quantity, Quantity]]:
+    """q_ddot and lambda as they are derived, and as they are turned."""
+    turned = _selection(folder, text).quantities
+    monkeypatch.setattr("symgen.quantities.finish.in_moving_axes", lambda _, derived: derived)
+    return list(zip(_selection(folder, text).quantities, turned, strict=True))
+
+
+@pytest.mark.parametrize("text", [LEVEL, UPHILL])
+def test_turned_results_are_the_same(text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    dice = random.Random(4)
+    for plain, turned in _both(tmp_path, text, monkeypatch):
+        held = reached((*plain.outputs, *turned.outputs))
+        symbols = sorted(str(node.payload) for node in held if node.op == "symbol")
+        for _ in range(5):
+            at = {symbol: dice.uniform(0.3, 1.5) for symbol in symbols}
+            expected = Evaluator(plain.outputs)(at)
+            assert Evaluator(turned.outputs)(at) == pytest.approx(expected, rel=1e-9, abs=1e-9)
+
+
+def test_on_level_ground_axes_turn_with_the_heading(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    _, (plain, turned) = _both(tmp_path, LEVEL, monkeypatch)
+    before, after = (cost(scalars(one)) for one in (plain, turned))
+    assert after.additive + after.multiplications < 0.8 * (before.additive + before.multiplications)
+
+
+def test_what_feels_a_slope_stays_in_axes_of_the_world(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for plain, turned in _both(tmp_path, UPHILL, monkeypatch):
+        assert cost(scalars(turned)).weight == cost(scalars(plain)).weight
+
+
+def test_a_denominator_that_feels_the_heading_keeps_the_quantity(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("symgen.quantities.finish.in_moving_axes", lambda _, derived: derived)
+    selection = _selection(tmp_path, LEVEL)
+    mechanics, derived = selection.mechanics, selection.quantities[1]
+    assert in_moving_axes(mechanics, derived) is not derived
+    guard, *others = derived.guards
+    felt = guard.denominator * (2 + mechanics.graph.trig("cos", mechanics.q[2]))
+    other = replace(derived, guards=(replace(guard, denominator=felt), *others))
+    assert in_moving_axes(mechanics, other) is other
