@@ -22,7 +22,7 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics     348    359      0      0      6      0
- * forward_dynamics     800    865     32      0      6      0
+ * forward_dynamics     800    858     32      0      6      0
  * singularity            0      0      0      0      0      0
  * (changes of sign are not counted)
  *

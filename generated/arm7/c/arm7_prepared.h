@@ -14,12 +14,12 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    double value[154];
+    double value[153];
 } arm7_prepared;
 
 arm7_prepared arm7_prepare(const arm7_params *p);
 
-/* q̈: accelerations under the inputs, (15); 1421 operations instead of 1754 */
+/* q̈: accelerations under the inputs, (15); 1415 operations instead of 1747 */
 arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7], const double u[7], const arm7_prepared *p, double qdd[7]);
 
 #ifdef __cplusplus

@@ -14,12 +14,12 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    float value[154];
+    float value[153];
 } arm7_prepared_f;
 
 arm7_prepared_f arm7_prepare_f(const arm7_params_f *p);
 
-/* q̈: accelerations under the inputs, (15); 1421 operations instead of 1754 */
+/* q̈: accelerations under the inputs, (15); 1415 operations instead of 1747 */
 arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7], const float u[7], const arm7_prepared_f *p, float qdd[7]);
 
 #ifdef __cplusplus

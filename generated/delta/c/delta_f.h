@@ -16,9 +16,9 @@
  *   u[2] u_3 [N*m] torque of motor 3
  *
  * Operations           + -      *      /   sqrt sincos  other
- * inverse_dynamics      52     72      1      0      3      0
- * forward_dynamics     253    379     11      2      3      0
- * multipliers          235    353     11      2      3      0
+ * inverse_dynamics      52     71      1      0      3      0
+ * forward_dynamics     253    376     11      2      3      0
+ * multipliers          235    350     11      2      3      0
  * singularity           56    107     13      3      3      0
  * (changes of sign are not counted)
  *

@@ -19,7 +19,7 @@ typedef struct {
 
 delta_prepared delta_prepare(const delta_params *p);
 
-/* u: the smallest inputs that produce the motion, (27); 118 operations instead of 137 */
+/* u: the smallest inputs that produce the motion, (27); 117 operations instead of 136 */
 delta_status delta_inverse_dynamics_prepared(const double q[6], const double qd[6], const double qdd[6], const delta_prepared *p, double u[3]);
 
 #ifdef __cplusplus

@@ -19,7 +19,7 @@ typedef struct {
 
 delta_prepared_f delta_prepare_f(const delta_params_f *p);
 
-/* u: the smallest inputs that produce the motion, (27); 118 operations instead of 137 */
+/* u: the smallest inputs that produce the motion, (27); 117 operations instead of 136 */
 delta_status delta_inverse_dynamics_prepared_f(const float q[6], const float qd[6], const float qdd[6], const delta_prepared_f *p, float u[3]);
 
 #ifdef __cplusplus

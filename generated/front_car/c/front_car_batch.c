@@ -112,9 +112,8 @@ size_t front_car_inverse_dynamics_batch(size_t count, size_t stride, const doubl
     const double Theta_2 = p->Theta_2;
     const double t7 = m_1 + m_2;
     const double t12 = L * m_2;
-    const double t17 = 1.0 / L;
-    const double t18 = L * t12;
-    const double t19 = Theta_1 + t18;
+    const double t17 = L * t12;
+    const double t18 = Theta_1 + t17;
     double copy[7][LANES]; /* the last states, the first of them repeated */
     double result[2][LANES];
     double flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -162,22 +161,22 @@ size_t front_car_inverse_dynamics_batch(size_t count, size_t stride, const doubl
             const double t14 = theta_dot * t13;
             const double t15 = t11 - t14;
             const double t16 = t4 * t15;
-            const double t20 = theta_ddot * t19;
-            const double t21 = y_ddot * t6;
-            const double t22 = x_ddot * t5;
-            const double t23 = t21 - t22;
-            const double t24 = t12 * t23;
-            const double t25 = t20 + t24;
-            const double t26 = t17 * t25;
-            const double t27 = t3 * t26;
-            const double t28 = t16 + t27;
-            const double t29 = phi_ddot * Theta_2;
-            double rest = (t28 - t28) * t29;
+            const double t19 = theta_ddot * t18;
+            const double t20 = y_ddot * t6;
+            const double t21 = x_ddot * t5;
+            const double t22 = t20 - t21;
+            const double t23 = t12 * t22;
+            const double t24 = t19 + t23;
+            const double t25 = t24 / L;
+            const double t26 = t3 * t25;
+            const double t27 = t16 + t26;
+            const double t28 = phi_ddot * Theta_2;
+            double rest = (t27 - t27) * t28;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += 100000.0 >= t2 ? 0.0 : 1.0;
             flag[k] = rest;
-            result[0][k] = t28;
-            result[1][k] = t29;
+            result[0][k] = t27;
+            result[1][k] = t28;
         }
         memcpy(bits, flag, sizeof bits);
         int64_t flags = 0;
@@ -446,28 +445,206 @@ size_t front_car_forward_dynamics_batch(size_t count, size_t stride, const doubl
 }
 
 size_t front_car_multipliers_batch(size_t count, size_t stride, const double *q, const double *qd, const double *u, const front_car_params *p, double *lambda_B, unsigned char *status) {
+    const double L = p->L;
+    const double m_1 = p->m_1;
+    const double m_2 = p->m_2;
+    const double Theta_1 = p->Theta_1;
+    const double Theta_2 = p->Theta_2;
+    const double t24 = fabs(m_2);
+    const double t22 = fabs(Theta_2);
+    const double t23 = fabs(Theta_1);
+    const double t25 = fabs(L);
+    const double t26 = t25 * t25;
+    const double t27 = t24 * t26;
+    const double t28 = t23 + t27;
+    const double t30 = fabs(m_1);
+    const double t31 = t30 + t24;
+    const double t44 = L * Theta_2;
+    const double t52 = m_1 + m_2;
+    const double t48 = L * m_2;
+    const double t59 = L * t48;
+    const double t60 = Theta_1 + t59;
+    double copy[7][LANES]; /* the last states, the first of them repeated */
+    double result[2][LANES];
+    double flag[LANES]; /* 0 where a check passed and the result is finite */
+    int64_t bits[LANES];
     size_t refused = 0;
-    for (size_t k = 0; k < count; ++k) {
-        double q_one[4];
-        for (size_t i = 0; i < 4; ++i) {
-            q_one[i] = q[i * stride + k];
+    for (size_t start = 0; start < count; start += LANES) {
+        const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        const double *from[7];
+        from[0] = q + 2 * stride + start;
+        from[1] = q + 3 * stride + start;
+        from[2] = qd + 0 * stride + start;
+        from[3] = qd + 1 * stride + start;
+        from[4] = qd + 2 * stride + start;
+        from[5] = qd + 3 * stride + start;
+        from[6] = u + 0 * stride + start;
+        if (length < LANES) {
+            for (size_t i = 0; i < 7; ++i) {
+                for (size_t k = 0; k < LANES; ++k) {
+                    copy[i][k] = from[i][k < length ? k : 0];
+                }
+                from[i] = copy[i];
+            }
         }
-        double qd_one[4];
-        for (size_t i = 0; i < 4; ++i) {
-            qd_one[i] = qd[i * stride + k];
+        for (size_t k = 0; k < LANES; ++k) {
+            const double theta = from[0][k];
+            const double phi = from[1][k];
+            const double x_dot = from[2][k];
+            const double y_dot = from[3][k];
+            const double theta_dot = from[4][k];
+            const double phi_dot = from[5][k];
+            const double K_f = from[6][k];
+            const double t1 = fabs(phi);
+            const double t2 = fabs(theta);
+            double t3;
+            double t4;
+            front_car_sincos(phi, &t3, &t4);
+            double t5;
+            double t6;
+            front_car_sincos(theta, &t5, &t6);
+            const double t7 = t3 * t3;
+            const double t8 = L * t4;
+            const double t9 = t8 * t8;
+            const double t10 = t7 + t9;
+            const double t11 = 1.0 + t9;
+            const double t12 = t11 * 7.888609052210118e-31;
+            const double t29 = t7 * t28;
+            const double t32 = t9 * t31;
+            const double t33 = t29 + t32;
+            const double t34 = t22 * t33;
+            const double t35 = t34 * 8.881784197001252e-16;
+            const double t13 = Theta_1 * t7;
+            const double t14 = m_1 * t4;
+            const double t15 = t4 * t14;
+            const double t16 = m_2 + t15;
+            const double t17 = L * t16;
+            const double t18 = L * t17;
+            const double t19 = t13 + t18;
+            const double t20 = Theta_2 * t19;
+            const double t21 = fabs(t20);
+            const double t36 = t4 * t4;
+            const double t37 = m_1 * t36;
+            const double t38 = m_2 + t37;
+            const double t39 = L * t38;
+            const double t40 = L * t39;
+            const double t41 = t40 + t13;
+            const double t42 = Theta_2 * t41;
+            const double t43 = 1.0 / t42;
+            const double t45 = m_2 * t3;
+            const double t46 = t44 * t45;
+            const double t86 = t4 * t52;
+            const double t87 = t44 * t86;
+            const double t53 = x_dot * t6;
+            const double t54 = y_dot * t5;
+            const double t55 = t53 + t54;
+            const double t56 = theta_dot * t55;
+            const double t57 = t46 * t56;
+            const double t64 = L * t3;
+            const double t63 = t4 * t56;
+            const double t65 = theta_dot * t64;
+            const double t66 = phi_dot * t65;
+            const double t67 = theta_dot + phi_dot;
+            const double t68 = t6 * t4;
+            const double t69 = t5 * t3;
+            const double t70 = t68 - t69;
+            const double t71 = x_dot * t70;
+            const double t72 = t5 * t4;
+            const double t73 = t6 * t3;
+            const double t74 = t72 + t73;
+            const double t75 = y_dot * t74;
+            const double t76 = t71 + t75;
+            const double t77 = t67 * t76;
+            const double t78 = t66 + t77;
+            const double t79 = t63 - t78;
+            const double t89 = t3 * t57;
+            const double t90 = t87 * t79;
+            const double t91 = t89 + t90;
+            const double t92 = t43 * t91;
+            const double t88 = K_f * t3;
+            const double t94 = t52 * t56;
+            const double t93 = t48 * t92;
+            const double t95 = t93 - t94;
+            const double t96 = t88 + t95;
+            const double t101 = K_f * t64;
+            const double t103 = t48 * t56;
+            const double t102 = t60 * t92;
+            const double t104 = t102 - t103;
+            const double t105 = t101 + t104;
+            const double t61 = t3 * t60;
+            const double t62 = Theta_2 * t61;
+            const double t58 = t8 * t57;
+            const double t80 = t62 * t79;
+            const double t81 = t58 - t80;
+            const double t47 = K_f * t4;
+            const double t49 = theta_dot * t48;
+            const double t50 = theta_dot * t49;
+            const double t51 = t47 + t50;
+            const double t82 = t43 * t81;
+            const double t83 = t52 * t82;
+            const double t84 = t51 + t83;
+            const double t100 = t62 * t84;
+            const double t106 = t87 * t105;
+            const double t107 = t100 - t106;
+            const double t85 = t46 * t84;
+            const double t97 = t87 * t96;
+            const double t98 = t85 - t97;
+            const double t99 = t8 * t98;
+            const double t108 = t4 * t107;
+            const double t109 = t99 - t108;
+            const double t110 = t62 * t96;
+            const double t111 = t46 * t105;
+            const double t112 = t110 - t111;
+            const double t113 = t3 * t112;
+            const double t114 = t109 - t113;
+            const double t115 = t43 * t114;
+            const double t116 = t43 * t107;
+            double rest = (t115 - t115) * t116;
+            rest += 100000.0 >= t1 ? 0.0 : 1.0;
+            rest += 100000.0 >= t2 ? 0.0 : 1.0;
+            rest += t10 > t12 ? 0.0 : 1.0;
+            rest += t21 > t35 ? 0.0 : 1.0;
+            flag[k] = rest;
+            result[0][k] = t115;
+            result[1][k] = t116;
         }
-        double u_one[2];
+        memcpy(bits, flag, sizeof bits);
+        int64_t flags = 0;
+        for (size_t k = 0; k < LANES; ++k) {
+            flags |= bits[k];
+        }
+        for (size_t k = 0; k < length && status; ++k) {
+            status[start + k] = FRONT_CAR_OK;
+        }
+        for (size_t k = 0; k < length && flags; ++k) {
+            if (bits[k]) {
+                double q_one[4];
+                for (size_t i = 0; i < 4; ++i) {
+                    q_one[i] = q[i * stride + start + k];
+                }
+                double qd_one[4];
+                for (size_t i = 0; i < 4; ++i) {
+                    qd_one[i] = qd[i * stride + start + k];
+                }
+                double u_one[2];
+                for (size_t i = 0; i < 2; ++i) {
+                    u_one[i] = u[i * stride + start + k];
+                }
+                double y[2];
+                const int code = (int)front_car_multipliers(q_one, qd_one, u_one, p, y);
+                for (size_t i = 0; i < 2; ++i) {
+                    result[i][k] = code ? (double)NAN : y[i];
+                }
+                refused += code != 0;
+                if (status) {
+                    status[start + k] = (unsigned char)code;
+                }
+            }
+        }
         for (size_t i = 0; i < 2; ++i) {
-            u_one[i] = u[i * stride + k];
-        }
-        double y[2];
-        const int code = (int)front_car_multipliers(q_one, qd_one, u_one, p, y);
-        for (size_t i = 0; i < 2; ++i) {
-            lambda_B[i * stride + k] = code ? (double)NAN : y[i];
-        }
-        refused += code != 0;
-        if (status) {
-            status[k] = (unsigned char)code;
+            for (size_t k = 0; k < length; ++k) {
+                lambda_B[i * stride + start + k] = result[i][k];
+            }
         }
     }
     return refused;

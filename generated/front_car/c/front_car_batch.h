@@ -24,8 +24,7 @@ size_t front_car_inverse_dynamics_batch(size_t count, size_t stride, const doubl
 /* q̈: accelerations under the inputs, (15); qdd has 4 rows */
 size_t front_car_forward_dynamics_batch(size_t count, size_t stride, const double *q, const double *qd, const double *u, const front_car_params *p, double *qdd, unsigned char *status);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); works with twice the digits; lambda_B has 2
-   rows */
+/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); lambda_B has 2 rows */
 size_t front_car_multipliers_batch(size_t count, size_t stride, const double *q, const double *qd, const double *u, const front_car_params *p, double *lambda_B, unsigned char *status);
 
 #ifdef __cplusplus

@@ -99,9 +99,8 @@ size_t front_car_inverse_dynamics_batch_f(size_t count, size_t stride, const flo
     const float Theta_2 = p->Theta_2;
     const float t7 = m_1 + m_2;
     const float t12 = L * m_2;
-    const float t17 = 1.0f / L;
-    const float t18 = L * t12;
-    const float t19 = Theta_1 + t18;
+    const float t17 = L * t12;
+    const float t18 = Theta_1 + t17;
     float copy[7][LANES]; /* the last states, the first of them repeated */
     float result[2][LANES];
     float flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -149,22 +148,22 @@ size_t front_car_inverse_dynamics_batch_f(size_t count, size_t stride, const flo
             const float t14 = theta_dot * t13;
             const float t15 = t11 - t14;
             const float t16 = t4 * t15;
-            const float t20 = theta_ddot * t19;
-            const float t21 = y_ddot * t6;
-            const float t22 = x_ddot * t5;
-            const float t23 = t21 - t22;
-            const float t24 = t12 * t23;
-            const float t25 = t20 + t24;
-            const float t26 = t17 * t25;
-            const float t27 = t3 * t26;
-            const float t28 = t16 + t27;
-            const float t29 = phi_ddot * Theta_2;
-            float rest = (t28 - t28) * t29;
+            const float t19 = theta_ddot * t18;
+            const float t20 = y_ddot * t6;
+            const float t21 = x_ddot * t5;
+            const float t22 = t20 - t21;
+            const float t23 = t12 * t22;
+            const float t24 = t19 + t23;
+            const float t25 = t24 / L;
+            const float t26 = t3 * t25;
+            const float t27 = t16 + t26;
+            const float t28 = phi_ddot * Theta_2;
+            float rest = (t27 - t27) * t28;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += 100.0f >= t2 ? 0.0f : 1.0f;
             flag[k] = rest;
-            result[0][k] = t28;
-            result[1][k] = t29;
+            result[0][k] = t27;
+            result[1][k] = t28;
         }
         memcpy(bits, flag, sizeof bits);
         int32_t flags = 0;
@@ -433,28 +432,206 @@ size_t front_car_forward_dynamics_batch_f(size_t count, size_t stride, const flo
 }
 
 size_t front_car_multipliers_batch_f(size_t count, size_t stride, const float *q, const float *qd, const float *u, const front_car_params_f *p, float *lambda_B, unsigned char *status) {
+    const float L = p->L;
+    const float m_1 = p->m_1;
+    const float m_2 = p->m_2;
+    const float Theta_1 = p->Theta_1;
+    const float Theta_2 = p->Theta_2;
+    const float t24 = fabsf(m_2);
+    const float t22 = fabsf(Theta_2);
+    const float t23 = fabsf(Theta_1);
+    const float t25 = fabsf(L);
+    const float t26 = t25 * t25;
+    const float t27 = t24 * t26;
+    const float t28 = t23 + t27;
+    const float t30 = fabsf(m_1);
+    const float t31 = t30 + t24;
+    const float t44 = L * Theta_2;
+    const float t52 = m_1 + m_2;
+    const float t48 = L * m_2;
+    const float t59 = L * t48;
+    const float t60 = Theta_1 + t59;
+    float copy[7][LANES]; /* the last states, the first of them repeated */
+    float result[2][LANES];
+    float flag[LANES]; /* 0 where a check passed and the result is finite */
+    int32_t bits[LANES];
     size_t refused = 0;
-    for (size_t k = 0; k < count; ++k) {
-        float q_one[4];
-        for (size_t i = 0; i < 4; ++i) {
-            q_one[i] = q[i * stride + k];
+    for (size_t start = 0; start < count; start += LANES) {
+        const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        const float *from[7];
+        from[0] = q + 2 * stride + start;
+        from[1] = q + 3 * stride + start;
+        from[2] = qd + 0 * stride + start;
+        from[3] = qd + 1 * stride + start;
+        from[4] = qd + 2 * stride + start;
+        from[5] = qd + 3 * stride + start;
+        from[6] = u + 0 * stride + start;
+        if (length < LANES) {
+            for (size_t i = 0; i < 7; ++i) {
+                for (size_t k = 0; k < LANES; ++k) {
+                    copy[i][k] = from[i][k < length ? k : 0];
+                }
+                from[i] = copy[i];
+            }
         }
-        float qd_one[4];
-        for (size_t i = 0; i < 4; ++i) {
-            qd_one[i] = qd[i * stride + k];
+        for (size_t k = 0; k < LANES; ++k) {
+            const float theta = from[0][k];
+            const float phi = from[1][k];
+            const float x_dot = from[2][k];
+            const float y_dot = from[3][k];
+            const float theta_dot = from[4][k];
+            const float phi_dot = from[5][k];
+            const float K_f = from[6][k];
+            const float t1 = fabsf(phi);
+            const float t2 = fabsf(theta);
+            float t3;
+            float t4;
+            front_car_sincos_f(phi, &t3, &t4);
+            float t5;
+            float t6;
+            front_car_sincos_f(theta, &t5, &t6);
+            const float t7 = t3 * t3;
+            const float t8 = L * t4;
+            const float t9 = t8 * t8;
+            const float t10 = t7 + t9;
+            const float t11 = 1.0f + t9;
+            const float t12 = t11 * 2.2737368e-13f;
+            const float t29 = t7 * t28;
+            const float t32 = t9 * t31;
+            const float t33 = t29 + t32;
+            const float t34 = t22 * t33;
+            const float t35 = t34 * 4.7683716e-07f;
+            const float t13 = Theta_1 * t7;
+            const float t14 = m_1 * t4;
+            const float t15 = t4 * t14;
+            const float t16 = m_2 + t15;
+            const float t17 = L * t16;
+            const float t18 = L * t17;
+            const float t19 = t13 + t18;
+            const float t20 = Theta_2 * t19;
+            const float t21 = fabsf(t20);
+            const float t36 = t4 * t4;
+            const float t37 = m_1 * t36;
+            const float t38 = m_2 + t37;
+            const float t39 = L * t38;
+            const float t40 = L * t39;
+            const float t41 = t40 + t13;
+            const float t42 = Theta_2 * t41;
+            const float t43 = 1.0f / t42;
+            const float t45 = m_2 * t3;
+            const float t46 = t44 * t45;
+            const float t86 = t4 * t52;
+            const float t87 = t44 * t86;
+            const float t53 = x_dot * t6;
+            const float t54 = y_dot * t5;
+            const float t55 = t53 + t54;
+            const float t56 = theta_dot * t55;
+            const float t57 = t46 * t56;
+            const float t64 = L * t3;
+            const float t63 = t4 * t56;
+            const float t65 = theta_dot * t64;
+            const float t66 = phi_dot * t65;
+            const float t67 = theta_dot + phi_dot;
+            const float t68 = t6 * t4;
+            const float t69 = t5 * t3;
+            const float t70 = t68 - t69;
+            const float t71 = x_dot * t70;
+            const float t72 = t5 * t4;
+            const float t73 = t6 * t3;
+            const float t74 = t72 + t73;
+            const float t75 = y_dot * t74;
+            const float t76 = t71 + t75;
+            const float t77 = t67 * t76;
+            const float t78 = t66 + t77;
+            const float t79 = t63 - t78;
+            const float t89 = t3 * t57;
+            const float t90 = t87 * t79;
+            const float t91 = t89 + t90;
+            const float t92 = t43 * t91;
+            const float t88 = K_f * t3;
+            const float t94 = t52 * t56;
+            const float t93 = t48 * t92;
+            const float t95 = t93 - t94;
+            const float t96 = t88 + t95;
+            const float t101 = K_f * t64;
+            const float t103 = t48 * t56;
+            const float t102 = t60 * t92;
+            const float t104 = t102 - t103;
+            const float t105 = t101 + t104;
+            const float t61 = t3 * t60;
+            const float t62 = Theta_2 * t61;
+            const float t58 = t8 * t57;
+            const float t80 = t62 * t79;
+            const float t81 = t58 - t80;
+            const float t47 = K_f * t4;
+            const float t49 = theta_dot * t48;
+            const float t50 = theta_dot * t49;
+            const float t51 = t47 + t50;
+            const float t82 = t43 * t81;
+            const float t83 = t52 * t82;
+            const float t84 = t51 + t83;
+            const float t100 = t62 * t84;
+            const float t106 = t87 * t105;
+            const float t107 = t100 - t106;
+            const float t85 = t46 * t84;
+            const float t97 = t87 * t96;
+            const float t98 = t85 - t97;
+            const float t99 = t8 * t98;
+            const float t108 = t4 * t107;
+            const float t109 = t99 - t108;
+            const float t110 = t62 * t96;
+            const float t111 = t46 * t105;
+            const float t112 = t110 - t111;
+            const float t113 = t3 * t112;
+            const float t114 = t109 - t113;
+            const float t115 = t43 * t114;
+            const float t116 = t43 * t107;
+            float rest = (t115 - t115) * t116;
+            rest += 100.0f >= t1 ? 0.0f : 1.0f;
+            rest += 100.0f >= t2 ? 0.0f : 1.0f;
+            rest += t10 > t12 ? 0.0f : 1.0f;
+            rest += t21 > t35 ? 0.0f : 1.0f;
+            flag[k] = rest;
+            result[0][k] = t115;
+            result[1][k] = t116;
         }
-        float u_one[2];
+        memcpy(bits, flag, sizeof bits);
+        int32_t flags = 0;
+        for (size_t k = 0; k < LANES; ++k) {
+            flags |= bits[k];
+        }
+        for (size_t k = 0; k < length && status; ++k) {
+            status[start + k] = FRONT_CAR_OK;
+        }
+        for (size_t k = 0; k < length && flags; ++k) {
+            if (bits[k]) {
+                float q_one[4];
+                for (size_t i = 0; i < 4; ++i) {
+                    q_one[i] = q[i * stride + start + k];
+                }
+                float qd_one[4];
+                for (size_t i = 0; i < 4; ++i) {
+                    qd_one[i] = qd[i * stride + start + k];
+                }
+                float u_one[2];
+                for (size_t i = 0; i < 2; ++i) {
+                    u_one[i] = u[i * stride + start + k];
+                }
+                float y[2];
+                const int code = (int)front_car_multipliers_f(q_one, qd_one, u_one, p, y);
+                for (size_t i = 0; i < 2; ++i) {
+                    result[i][k] = code ? (float)NAN : y[i];
+                }
+                refused += code != 0;
+                if (status) {
+                    status[start + k] = (unsigned char)code;
+                }
+            }
+        }
         for (size_t i = 0; i < 2; ++i) {
-            u_one[i] = u[i * stride + k];
-        }
-        float y[2];
-        const int code = (int)front_car_multipliers_f(q_one, qd_one, u_one, p, y);
-        for (size_t i = 0; i < 2; ++i) {
-            lambda_B[i * stride + k] = code ? (float)NAN : y[i];
-        }
-        refused += code != 0;
-        if (status) {
-            status[k] = (unsigned char)code;
+            for (size_t k = 0; k < length; ++k) {
+                lambda_B[i * stride + start + k] = result[i][k];
+            }
         }
     }
     return refused;

@@ -136,161 +136,6 @@ FRONT_CAR_GROUP_F void front_car_sincos_group_f(const int count, const float *an
     }
 }
 
-/* A number with twice the digits: what its value lacks stands beside it. */
-typedef struct {
-    float value;
-    float rest;
-} front_car_wide_f;
-
-static front_car_wide_f front_car_wide_f_add(const float a, const float a_rest, const float b, const float b_rest) {
-    const float x0 = a + b;
-    const float x1 = x0 - a;
-    const float x2 = x0 - x1;
-    const float x3 = a - x2;
-    const float x4 = b - x1;
-    const float x5 = x3 + x4;
-    const float x6 = a_rest + b_rest;
-    const float x7 = x5 + x6;
-    const float x8 = x0 + x7;
-    const float x9 = x8 - x0;
-    const float x10 = x7 - x9;
-    const front_car_wide_f pair = {x8, x10};
-    return pair;
-}
-
-static front_car_wide_f front_car_wide_f_div(const float a, const float a_rest, const float b, const float b_rest) {
-    const float x0 = a / b;
-    const float x1 = x0 * b;
-    const float x2 = a - x1;
-    const float x3 = 4097.0f * x0;
-    const float x4 = x3 - x0;
-    const float x5 = x3 - x4;
-    const float x6 = x0 - x5;
-    const float x7 = 4097.0f * b;
-    const float x8 = x7 - b;
-    const float x9 = x7 - x8;
-    const float x10 = b - x9;
-    const float x11 = x5 * x9;
-    const float x12 = x11 - x1;
-    const float x13 = x5 * x10;
-    const float x14 = x12 + x13;
-    const float x15 = x6 * x9;
-    const float x16 = x14 + x15;
-    const float x17 = x6 * x10;
-    const float x18 = x16 + x17;
-    const float x19 = x2 - x18;
-    const float x20 = x0 * b_rest;
-    const float x21 = a_rest - x20;
-    const float x22 = x19 + x21;
-    const float x23 = x22 / b;
-    const float x24 = x0 + x23;
-    const float x25 = x24 - x0;
-    const float x26 = x23 - x25;
-    const front_car_wide_f pair = {x24, x26};
-    return pair;
-}
-
-static front_car_wide_f front_car_wide_f_mul(const float a, const float a_rest, const float b, const float b_rest) {
-    const float x0 = a * b;
-    const float x1 = a * b_rest;
-    const float x2 = a_rest * b;
-    const float x3 = x1 + x2;
-    const float x4 = 4097.0f * a;
-    const float x5 = x4 - a;
-    const float x6 = x4 - x5;
-    const float x7 = a - x6;
-    const float x8 = 4097.0f * b;
-    const float x9 = x8 - b;
-    const float x10 = x8 - x9;
-    const float x11 = b - x10;
-    const float x12 = x6 * x10;
-    const float x13 = x12 - x0;
-    const float x14 = x6 * x11;
-    const float x15 = x13 + x14;
-    const float x16 = x7 * x10;
-    const float x17 = x15 + x16;
-    const float x18 = x7 * x11;
-    const float x19 = x17 + x18;
-    const float x20 = x19 + x3;
-    const float x21 = x0 + x20;
-    const float x22 = x21 - x0;
-    const float x23 = x20 - x22;
-    const front_car_wide_f pair = {x21, x23};
-    return pair;
-}
-
-static front_car_wide_f front_car_wide_f_sub(const float a, const float a_rest, const float b, const float b_rest) {
-    const float x0 = a - b;
-    const float x1 = x0 - a;
-    const float x2 = x0 - x1;
-    const float x3 = a - x2;
-    const float x4 = b + x1;
-    const float x5 = x3 - x4;
-    const float x6 = a_rest - b_rest;
-    const float x7 = x5 + x6;
-    const float x8 = x0 + x7;
-    const float x9 = x8 - x0;
-    const float x10 = x7 - x9;
-    const front_car_wide_f pair = {x8, x10};
-    return pair;
-}
-
-/* An operation on values, by their places. */
-typedef struct {
-    unsigned short operation;
-    unsigned short to[2];
-    unsigned short of[4];
-} front_car_step_f;
-
-/* The steps of a table from the first to before the end. */
-static void front_car_steps_f(const front_car_step_f step[], const int first, const int end, float v[]) {
-    front_car_wide_f pair;
-    float sine;
-    float cosine;
-    for (int k = first; k < end; ++k) {
-        const unsigned short *const to = step[k].to;
-        const unsigned short *const of = step[k].of;
-        switch (step[k].operation) {
-        case 0: /* abs */
-            v[to[0]] = fabsf(v[of[0]]);
-            break;
-        case 1: /* add */
-            v[to[0]] = v[of[0]] + v[of[1]];
-            break;
-        case 2: /* mul */
-            v[to[0]] = v[of[0]] * v[of[1]];
-            break;
-        case 3: /* sincos */
-            front_car_sincos_f(v[of[0]], &sine, &cosine);
-            v[to[0]] = sine;
-            v[to[1]] = cosine;
-            break;
-        case 4: /* wide_add */
-            pair = front_car_wide_f_add(v[of[0]], v[of[1]], v[of[2]], v[of[3]]);
-            v[to[0]] = pair.value;
-            v[to[1]] = pair.rest;
-            break;
-        case 5: /* wide_div */
-            pair = front_car_wide_f_div(v[of[0]], v[of[1]], v[of[2]], v[of[3]]);
-            v[to[0]] = pair.value;
-            v[to[1]] = pair.rest;
-            break;
-        case 6: /* wide_mul */
-            pair = front_car_wide_f_mul(v[of[0]], v[of[1]], v[of[2]], v[of[3]]);
-            v[to[0]] = pair.value;
-            v[to[1]] = pair.rest;
-            break;
-        case 7: /* wide_sub */
-            pair = front_car_wide_f_sub(v[of[0]], v[of[1]], v[of[2]], v[of[3]]);
-            v[to[0]] = pair.value;
-            v[to[1]] = pair.rest;
-            break;
-        default:
-            break;
-        }
-    }
-}
-
 front_car_params_f front_car_default_params_f(void) {
     front_car_params_f p;
     p.L = 2.6f;
@@ -1267,21 +1112,20 @@ front_car_status front_car_orthogonal_complement_f(const float q[4], const front
     if (FRONT_CAR_RARELY_F(!(t9 > t12))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    const float t13 = 1.0f / t4;
     const float t3 = sine[0];
-    const float t14 = t3 * t13;
-    float rest = t14 - t14;
+    const float t13 = t3 / t4;
+    float rest = t13 - t13;
     const float t5 = sine[1];
-    const float t15 = t5 / t8;
-    rest *= t15;
+    const float t14 = t5 / t8;
+    rest *= t14;
     if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     F_B[0] = 1.0f;
     F_B[1] = 0.0f;
-    F_B[2] = t14;
+    F_B[2] = t13;
     F_B[3] = 0.0f;
-    F_B[4] = t15;
+    F_B[4] = t14;
     F_B[5] = 0.0f;
     F_B[6] = 0.0f;
     F_B[7] = 1.0f;
@@ -1367,9 +1211,8 @@ front_car_status front_car_projected_mass_matrix_f(const float q[4], const front
     const float t49 = t6 * t48;
     const float t50 = t6 * t49;
     const float t51 = t42 + t50;
-    const float t52 = 1.0f / t20;
-    const float t53 = t51 * t52;
-    term *= t53;
+    const float t52 = t51 / t20;
+    term *= t52;
     rest += term;
     const float Theta_2 = p->Theta_2;
     rest += Theta_2 - Theta_2;
@@ -1386,7 +1229,7 @@ front_car_status front_car_projected_mass_matrix_f(const float q[4], const front
     G_tilde[7] = 0.0f;
     G_tilde[8] = t38;
     G_tilde[9] = t40;
-    G_tilde[10] = t53;
+    G_tilde[10] = t52;
     G_tilde[11] = 0.0f;
     G_tilde[12] = 0.0f;
     G_tilde[13] = 0.0f;
@@ -1503,7 +1346,7 @@ front_car_status front_car_projected_coriolis_matrix_f(const float q[4], const f
     const float t73 = t4 * t5;
     const float t74 = t72 + t73;
     const float t75 = t5 * t74;
-    const float t76 = t26 + t75;
+    const float t76 = t75 + t26;
     const float t77 = t18 * t76;
     const float t70 = t69 * t54;
     const float t71 = t66 + t70;
@@ -1721,15 +1564,14 @@ front_car_status front_car_minimal_mass_matrix_f(const float q[4], const front_c
     const float Theta_1 = p->Theta_1;
     const float t19 = Theta_1 * t18;
     const float t20 = t17 + t19;
-    const float t21 = 1.0f / t9;
-    const float t22 = t20 * t21;
-    float rest = t22 - t22;
+    const float t21 = t20 / t9;
+    float rest = t21 - t21;
     const float Theta_2 = p->Theta_2;
     rest *= Theta_2;
     if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    G_bar[0] = t22;
+    G_bar[0] = t21;
     G_bar[1] = 0.0f;
     G_bar[2] = 0.0f;
     G_bar[3] = Theta_2;
@@ -1780,54 +1622,53 @@ front_car_status front_car_minimal_coriolis_matrix_f(const float q[4], const flo
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const float t18 = L * L;
-    const float t19 = t6 * t18;
-    const float t20 = t6 * t19;
-    const float t21 = t6 * t20;
-    const float t22 = t4 * t21;
-    const float t23 = t4 * t22;
-    const float t24 = t4 * t23;
-    const float t25 = t14 * t24;
-    const float t26 = 1.0f / t25;
     const float m_2 = p->m_2;
-    const float t27 = m_2 * t18;
+    const float t19 = m_2 * t18;
     const float Theta_1 = p->Theta_1;
-    const float t28 = Theta_1 + t27;
+    const float t20 = Theta_1 + t19;
     const float phi_dot = qd[3];
-    const float t29 = phi_dot * t6;
-    const float t30 = t3 * t29;
-    const float t31 = t28 * t30;
+    const float t21 = phi_dot * t6;
+    const float t22 = t3 * t21;
+    const float t23 = t20 * t22;
     const float theta_dot = qd[2];
-    const float t32 = theta_dot * t5;
-    const float t33 = t28 * t32;
-    const float t34 = (-1.0f) + t18;
-    const float t35 = t34 * t31;
-    const float t36 = t4 * t4;
-    const float t37 = t36 + (-2.0f);
-    const float t38 = t28 * t37;
+    const float t24 = theta_dot * t5;
+    const float t25 = t20 * t24;
+    const float t26 = (-1.0f) + t18;
+    const float t27 = t26 * t23;
+    const float t28 = t4 * t4;
+    const float t29 = t28 + (-2.0f);
+    const float t30 = t20 * t29;
     const float m_1 = p->m_1;
-    const float t39 = m_1 + m_2;
-    const float t40 = t39 * t18;
-    const float t41 = t36 * t40;
-    const float t42 = t39 + t28;
-    const float t43 = t3 * t42;
-    const float t44 = t3 * t43;
-    const float t45 = t41 + t44;
-    const float t46 = L * t45;
-    const float t47 = L * t46;
-    const float t48 = t38 + t47;
-    const float t49 = t4 * t32;
-    const float t50 = t48 * t49;
-    const float t51 = t35 + t50;
+    const float t31 = m_1 + m_2;
+    const float t32 = t31 * t18;
+    const float t33 = t28 * t32;
+    const float t34 = t31 + t20;
+    const float t35 = t3 * t34;
+    const float t36 = t3 * t35;
+    const float t37 = t33 + t36;
+    const float t38 = L * t37;
+    const float t39 = L * t38;
+    const float t40 = t30 + t39;
+    const float t41 = t4 * t24;
+    const float t42 = t40 * t41;
+    const float t43 = t27 + t42;
+    const float t44 = t4 * t43;
+    const float t45 = t25 + t44;
+    const float t46 = t4 * t45;
+    const float t47 = t23 + t46;
+    const float t48 = t6 * t18;
+    const float t49 = t6 * t48;
+    const float t50 = t6 * t49;
+    const float t51 = t4 * t50;
     const float t52 = t4 * t51;
-    const float t53 = t33 + t52;
-    const float t54 = t4 * t53;
-    const float t55 = t31 + t54;
-    const float t56 = t26 * t55;
-    float rest = t56 - t56;
+    const float t53 = t4 * t52;
+    const float t54 = t14 * t53;
+    const float t55 = t47 / t54;
+    float rest = t55 - t55;
     if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    C_bar[0] = t56;
+    C_bar[0] = t55;
     C_bar[1] = 0.0f;
     C_bar[2] = 0.0f;
     C_bar[3] = 0.0f;
@@ -1911,48 +1752,42 @@ front_car_status front_car_admissible_velocity_f(const float q[4], const float q
     const float L = p->L;
     const float t6 = cosine[1];
     const float t8 = L * t6;
-    const float t3 = sine[0];
-    const float t9 = t3 * t8;
-    const float t10 = t9 * t9;
-    const float t11 = t7 + t10;
-    const float t4 = cosine[0];
-    const float t12 = t4 * t8;
-    const float t13 = t12 * t12;
-    const float t14 = t11 + t13;
-    const float t15 = t8 * t8;
-    const float t16 = 1.0f + t15;
-    const float t17 = t16 * 2.2737368e-13f;
-    if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
+    const float t9 = t8 * t8;
+    const float t10 = t7 + t9;
+    const float t11 = 1.0f + t9;
+    const float t12 = t11 * 2.2737368e-13f;
+    if (FRONT_CAR_RARELY_F(!(t10 > t12))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    const float t18 = L / t14;
+    const float t13 = L / t10;
     const float theta_dot = qd[2];
-    const float t19 = theta_dot * t5;
+    const float t14 = theta_dot * t5;
     const float x_dot = qd[0];
-    const float t20 = x_dot * t4;
+    const float t4 = cosine[0];
+    const float t15 = x_dot * t4;
     const float y_dot = qd[1];
-    const float t21 = y_dot * t3;
-    const float t22 = t20 + t21;
-    const float t23 = t8 * t22;
-    const float t24 = t19 + t23;
-    const float t25 = t6 * t24;
-    const float t26 = t18 * t25;
-    const float t27 = t4 * t26;
-    float rest = t27 - t27;
-    const float t28 = t3 * t26;
-    rest *= t28;
-    const float t29 = 1.0f / t14;
-    const float t30 = t5 * t24;
-    const float t31 = t29 * t30;
-    rest *= t31;
+    const float t3 = sine[0];
+    const float t16 = y_dot * t3;
+    const float t17 = t15 + t16;
+    const float t18 = t8 * t17;
+    const float t19 = t14 + t18;
+    const float t20 = t6 * t19;
+    const float t21 = t13 * t20;
+    const float t22 = t4 * t21;
+    float rest = t22 - t22;
+    const float t23 = t3 * t21;
+    rest *= t23;
+    const float t24 = t5 * t19;
+    const float t25 = t24 / t10;
+    rest *= t25;
     const float phi_dot = qd[3];
     rest += phi_dot - phi_dot;
     if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    qd_admissible[0] = t27;
-    qd_admissible[1] = t28;
-    qd_admissible[2] = t31;
+    qd_admissible[0] = t22;
+    qd_admissible[1] = t23;
+    qd_admissible[2] = t25;
     qd_admissible[3] = phi_dot;
     return FRONT_CAR_OK;
 }
@@ -1962,118 +1797,96 @@ front_car_status front_car_admissible_acceleration_f(const float q[4], const flo
     if (FRONT_CAR_RARELY_F(!(4000000.0f >= L))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
-    const float phi = q[3];
-    const float t1 = fabsf(phi);
     const float theta = q[2];
-    const float t2 = fabsf(theta);
+    const float t1 = fabsf(theta);
+    const float phi = q[3];
+    const float t2 = fabsf(phi);
     if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
     if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    const float angle[4] = {phi, theta, theta, theta};
+    const float angle[4] = {theta, phi, phi, phi};
     float sine[4];
     float cosine[4];
     front_car_sincos_group_f(2, angle, sine, cosine);
-    const float t3 = sine[0];
-    const float t7 = t3 * t3;
-    const float t4 = cosine[0];
-    const float t8 = L * t4;
     const float t5 = sine[1];
-    const float t9 = t5 * t8;
-    const float t10 = t9 * t9;
-    const float t11 = t7 + t10;
+    const float t7 = t5 * t5;
     const float t6 = cosine[1];
-    const float t12 = t6 * t8;
-    const float t13 = t12 * t12;
-    const float t14 = t11 + t13;
-    const float t15 = t8 * t8;
-    const float t16 = 1.0f + t15;
-    const float t17 = t16 * 2.2737368e-13f;
-    if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
+    const float t8 = L * t6;
+    const float t9 = t8 * t8;
+    const float t10 = t7 + t9;
+    const float t11 = 1.0f + t9;
+    const float t12 = t11 * 2.2737368e-13f;
+    if (FRONT_CAR_RARELY_F(!(t10 > t12))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    const float t18 = t14 * t14;
-    const float t19 = t14 * t18;
-    const float t20 = L / t19;
-    const float t21 = t6 * t14;
-    const float t22 = t14 * t21;
-    const float y_ddot = qdd[1];
-    const float t23 = y_ddot * t22;
-    const float theta_dot = qd[2];
-    const float t24 = theta_dot * t3;
-    const float x_dot = qd[0];
-    const float t25 = x_dot * t6;
-    const float y_dot = qd[1];
-    const float t26 = y_dot * t5;
-    const float t27 = t25 + t26;
-    const float t28 = t8 * t27;
-    const float t29 = t24 + t28;
-    const float t30 = t3 * t29;
-    const float t31 = t29 * t30;
-    const float t32 = t8 * t31;
-    const float t33 = t23 - t32;
-    const float t34 = t5 * t33;
-    const float x_ddot = qdd[0];
-    const float t35 = x_ddot * t6;
-    const float t36 = t35 * t22;
-    const float t37 = t34 + t36;
-    const float t38 = t8 * t37;
+    const float t13 = t10 * t10;
+    const float t14 = t10 * t13;
+    const float t15 = L / t14;
     const float theta_ddot = qdd[2];
-    const float t39 = theta_ddot * t14;
-    const float t40 = t21 * t39;
-    const float t41 = t5 * t31;
-    const float t42 = t3 * t41;
-    const float t43 = t40 - t42;
-    const float t44 = t3 * t43;
-    const float t45 = t38 + t44;
-    const float t46 = t4 * t45;
+    const float t16 = theta_ddot * t5;
+    const float x_ddot = qdd[0];
+    const float t4 = cosine[0];
+    const float t17 = x_ddot * t4;
+    const float y_ddot = qdd[1];
+    const float t3 = sine[0];
+    const float t18 = y_ddot * t3;
+    const float t19 = t17 + t18;
+    const float t20 = t8 * t19;
+    const float t21 = t16 + t20;
+    const float t22 = t13 * t21;
+    const float t23 = t6 * t22;
+    const float t24 = t5 * t10;
+    const float theta_dot = qd[2];
+    const float t25 = theta_dot * t5;
+    const float x_dot = qd[0];
+    const float t26 = x_dot * t4;
+    const float y_dot = qd[1];
+    const float t27 = y_dot * t3;
+    const float t28 = t26 + t27;
+    const float t29 = t8 * t28;
+    const float t30 = t25 + t29;
     const float phi_dot = qd[3];
-    const float t47 = phi_dot * t30;
-    const float t48 = t21 * t47;
-    const float t49 = t46 - t48;
-    const float t50 = t20 * t49;
-    float rest = t50 - t50;
-    const float t51 = y_ddot * t5;
-    const float t52 = t35 + t51;
-    const float t53 = t18 * t52;
-    const float t54 = t5 * t53;
-    const float t55 = t6 * t31;
-    const float t56 = t8 * t55;
-    const float t57 = t54 + t56;
-    const float t58 = t8 * t57;
-    const float t59 = t5 * t14;
-    const float t60 = t39 * t59;
-    const float t61 = t3 * t55;
-    const float t62 = t60 + t61;
-    const float t63 = t3 * t62;
-    const float t64 = t58 + t63;
-    const float t65 = t4 * t64;
-    const float t66 = t47 * t59;
-    const float t67 = t65 - t66;
-    const float t68 = t20 * t67;
-    rest *= t68;
-    const float t69 = 1.0f / t18;
-    const float t70 = t14 * t52;
-    const float t71 = t3 * t70;
-    const float t72 = phi_dot * t29;
-    const float t73 = L * t72;
-    const float t74 = t71 + t73;
-    const float t75 = t8 * t74;
-    const float t76 = t3 * t39;
-    const float t77 = t3 * t76;
-    const float t78 = t75 + t77;
-    const float t79 = t69 * t78;
-    rest *= t79;
+    const float t31 = phi_dot * t30;
+    const float t32 = t24 * t31;
+    const float t33 = t23 - t32;
+    const float t34 = t15 * t33;
+    const float t35 = t4 * t34;
+    const float t36 = t8 * t5;
+    const float t37 = t36 * t30;
+    const float t38 = t30 * t37;
+    const float t39 = t3 * t3;
+    const float t40 = t4 * t4;
+    const float t41 = t39 + t40;
+    const float t42 = t9 * t41;
+    const float t43 = t7 + t42;
+    const float t44 = t38 / t43;
+    const float t45 = t44 / t43;
+    const float t46 = t3 * t45;
+    const float t47 = t35 - t46;
+    float rest = t47 - t47;
+    const float t48 = t3 * t34;
+    const float t49 = t4 * t45;
+    const float t50 = t48 + t49;
+    rest *= t50;
+    const float t51 = t16 * t24;
+    const float t52 = L * t31;
+    const float t53 = t19 * t24;
+    const float t54 = t52 + t53;
+    const float t55 = t8 * t54;
+    const float t56 = t51 + t55;
+    const float t57 = t56 / t13;
+    rest *= t57;
     const float phi_ddot = qdd[3];
     rest += phi_ddot - phi_ddot;
     if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    qdd_admissible[0] = t50;
-    qdd_admissible[1] = t68;
-    qdd_admissible[2] = t79;
+    qdd_admissible[0] = t47;
+    qdd_admissible[1] = t50;
+    qdd_admissible[2] = t57;
     qdd_admissible[3] = phi_ddot;
     return FRONT_CAR_OK;
 }
@@ -2132,31 +1945,30 @@ front_car_status front_car_inverse_dynamics_f(const float q[4], const float qd[4
     const float t15 = t11 - t14;
     const float t4 = cosine[0];
     const float t16 = t4 * t15;
-    const float t17 = 1.0f / L;
-    const float t18 = L * t12;
+    const float t17 = L * t12;
     const float Theta_1 = p->Theta_1;
-    const float t19 = Theta_1 + t18;
+    const float t18 = Theta_1 + t17;
     const float theta_ddot = qdd[2];
-    const float t20 = theta_ddot * t19;
-    const float t21 = y_ddot * t6;
-    const float t22 = x_ddot * t5;
-    const float t23 = t21 - t22;
-    const float t24 = t12 * t23;
-    const float t25 = t20 + t24;
-    const float t26 = t17 * t25;
+    const float t19 = theta_ddot * t18;
+    const float t20 = y_ddot * t6;
+    const float t21 = x_ddot * t5;
+    const float t22 = t20 - t21;
+    const float t23 = t12 * t22;
+    const float t24 = t19 + t23;
+    const float t25 = t24 / L;
     const float t3 = sine[0];
-    const float t27 = t3 * t26;
-    const float t28 = t16 + t27;
-    float rest = t28 - t28;
+    const float t26 = t3 * t25;
+    const float t27 = t16 + t26;
+    float rest = t27 - t27;
     const float phi_ddot = qdd[3];
     const float Theta_2 = p->Theta_2;
-    const float t29 = phi_ddot * Theta_2;
-    rest *= t29;
+    const float t28 = phi_ddot * Theta_2;
+    rest *= t28;
     if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    u[0] = t28;
-    u[1] = t29;
+    u[0] = t27;
+    u[1] = t28;
     return FRONT_CAR_OK;
 }
 
@@ -2260,15 +2072,14 @@ front_car_status front_car_actuator_mass_matrix_f(const float q[4], const front_
     const float t25 = Theta_1 * t24;
     const float t26 = t23 + t25;
     const float t27 = L * L;
-    const float t28 = 1.0f / t27;
-    const float t29 = t26 * t28;
-    float rest = t29 - t29;
+    const float t28 = t26 / t27;
+    float rest = t28 - t28;
     const float Theta_2 = p->Theta_2;
     rest *= Theta_2;
     if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    G_nu[0] = t29;
+    G_nu[0] = t28;
     G_nu[1] = 0.0f;
     G_nu[2] = 0.0f;
     G_nu[3] = Theta_2;
@@ -2280,85 +2091,74 @@ front_car_status front_car_actuator_bias_f(const float q[4], const float qd[4], 
     if (FRONT_CAR_RARELY_F(!(35000.0f >= m_2))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
-    const float phi = q[3];
-    const float t1 = fabsf(phi);
     const float theta = q[2];
-    const float t2 = fabsf(theta);
-    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
-        return FRONT_CAR_ANGLE_RANGE;
-    }
+    const float phi = q[3];
+    const float t1 = theta + phi;
+    const float t2 = fabsf(phi);
+    const float t3 = fabsf(t1);
     if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    const float angle[4] = {phi, theta, theta, theta};
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t3))) {
+        return FRONT_CAR_ANGLE_RANGE;
+    }
+    const float angle[4] = {phi, t1, t1, t1};
     float sine[4];
     float cosine[4];
     front_car_sincos_group_f(2, angle, sine, cosine);
-    const float t3 = sine[0];
-    const float t7 = t3 * t3;
+    const float t4 = sine[0];
+    const float t8 = t4 * t4;
     const float L = p->L;
-    const float t4 = cosine[0];
-    const float t8 = L * t4;
-    const float t5 = sine[1];
-    const float t9 = t5 * t8;
+    const float t5 = cosine[0];
+    const float t9 = L * t5;
     const float t10 = t9 * t9;
-    const float t11 = t7 + t10;
-    const float t6 = cosine[1];
-    const float t12 = t6 * t8;
-    const float t13 = t12 * t12;
-    const float t14 = t11 + t13;
-    const float t15 = t8 * t8;
-    const float t16 = 1.0f + t15;
-    const float t17 = t16 * 2.2737368e-13f;
-    if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
+    const float t11 = t8 + t10;
+    const float t12 = 1.0f + t10;
+    const float t13 = t12 * 2.2737368e-13f;
+    if (FRONT_CAR_RARELY_F(!(t11 > t13))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    const float t18 = fabsf(L);
-    if (FRONT_CAR_RARELY_F(!(t18 > 0.0f))) {
-        if (!(t14 > t17)) {
+    const float t14 = fabsf(L);
+    if (FRONT_CAR_RARELY_F(!(t14 > 0.0f))) {
+        if (!(t11 > t13)) {
             return FRONT_CAR_CONSTRAINT_RANK;
         }
         return FRONT_CAR_ACTUATION_RANK;
     }
-    const float t19 = L * L;
-    const float t20 = 1.0f / t19;
     const float phi_dot = qd[3];
-    const float t21 = phi_dot * t4;
-    const float t22 = t3 * t21;
-    const float t23 = m_2 * t19;
+    const float t15 = phi_dot * t5;
+    const float t16 = t4 * t15;
+    const float t17 = L * L;
+    const float t18 = m_2 * t17;
     const float Theta_1 = p->Theta_1;
-    const float t24 = Theta_1 + t23;
-    const float t25 = t6 * t4;
-    const float t26 = t5 * t3;
-    const float t27 = t25 - t26;
+    const float t19 = Theta_1 + t18;
     const float x_dot = qd[0];
-    const float t28 = x_dot * t27;
-    const float t29 = t5 * t4;
-    const float t30 = t6 * t3;
-    const float t31 = t29 + t30;
+    const float t7 = cosine[1];
+    const float t20 = x_dot * t7;
     const float y_dot = qd[1];
-    const float t32 = y_dot * t31;
-    const float t33 = t28 + t32;
-    const float t34 = t24 * t33;
+    const float t6 = sine[1];
+    const float t21 = y_dot * t6;
+    const float t22 = t20 + t21;
+    const float t23 = t19 * t22;
     const float theta_dot = qd[2];
-    const float t35 = theta_dot * t3;
-    const float t36 = t24 * t35;
+    const float t24 = theta_dot * t4;
+    const float t25 = t19 * t24;
     const float m_1 = p->m_1;
-    const float t37 = m_1 + m_2;
-    const float t38 = L * t35;
-    const float t39 = t33 + t38;
-    const float t40 = t37 * t39;
-    const float t41 = L * t40;
-    const float t42 = t36 - t41;
-    const float t43 = L * t42;
-    const float t44 = t34 + t43;
-    const float t45 = t22 * t44;
-    const float t46 = t20 * t45;
-    float rest = t46 - t46;
+    const float t26 = m_1 + m_2;
+    const float t27 = L * t24;
+    const float t28 = t22 + t27;
+    const float t29 = t26 * t28;
+    const float t30 = L * t29;
+    const float t31 = t25 - t30;
+    const float t32 = L * t31;
+    const float t33 = t23 + t32;
+    const float t34 = t16 * t33;
+    const float t35 = t34 / t17;
+    float rest = t35 - t35;
     if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    bias_nu[0] = t46;
+    bias_nu[0] = t35;
     bias_nu[1] = 0.0f;
     return FRONT_CAR_OK;
 }
@@ -2538,200 +2338,157 @@ front_car_status front_car_forward_dynamics_f(const float q[4], const float qd[4
 }
 
 front_car_status front_car_multipliers_f(const float q[4], const float qd[4], const float u[2], const front_car_params_f *p, float lambda_B[2]) {
-    static const front_car_step_f step[150] = {
-        {0, {17, 0}, {6, 0, 0, 0}},
-        {0, {18, 0}, {5, 0, 0, 0}},
-        {3, {19, 20}, {6, 0, 0, 0}},
-        {6, {6, 17}, {19, 0, 19, 0}},
-        {6, {18, 21}, {20, 0, 20, 0}},
-        {7, {22, 23}, {1, 0, 6, 17}},
-        {7, {6, 17}, {22, 23, 18, 21}},
-        {1, {18, 0}, {6, 17, 0, 0}},
-        {2, {6, 0}, {2, 18, 0, 0}},
-        {2, {17, 0}, {19, 6, 0, 0}},
-        {2, {18, 0}, {20, 6, 0, 0}},
-        {3, {6, 21}, {5, 0, 0, 0}},
-        {6, {5, 22}, {6, 0, 6, 0}},
-        {6, {23, 24}, {21, 0, 21, 0}},
-        {7, {25, 26}, {1, 0, 5, 22}},
-        {7, {5, 22}, {25, 26, 23, 24}},
-        {1, {23, 0}, {5, 22, 0, 0}},
-        {2, {5, 0}, {2, 23, 0, 0}},
-        {2, {22, 0}, {6, 5, 0, 0}},
-        {2, {23, 0}, {21, 5, 0, 0}},
-        {6, {5, 24}, {19, 17, 19, 17}},
-        {6, {25, 26}, {12, 0, 20, 18}},
-        {6, {27, 28}, {6, 22, 25, 26}},
-        {6, {29, 30}, {27, 28, 27, 28}},
-        {6, {27, 28}, {21, 23, 25, 26}},
-        {6, {31, 32}, {27, 28, 27, 28}},
-        {4, {27, 28}, {29, 30, 31, 32}},
-        {4, {29, 30}, {5, 24, 27, 28}},
-        {6, {30, 31}, {25, 26, 25, 26}},
-        {4, {32, 33}, {1, 0, 30, 31}},
-        {2, {30, 0}, {32, 3, 0, 0}},
-        {0, {31, 0}, {14, 0, 0, 0}},
-        {0, {29, 0}, {16, 0, 0, 0}},
-        {0, {30, 0}, {15, 0, 0, 0}},
-        {0, {32, 0}, {12, 0, 0, 0}},
-        {6, {33, 34}, {32, 0, 32, 0}},
-        {6, {32, 35}, {31, 0, 33, 34}},
-        {4, {33, 34}, {30, 0, 32, 35}},
-        {6, {30, 32}, {5, 24, 33, 34}},
-        {0, {33, 0}, {13, 0, 0, 0}},
-        {4, {34, 35}, {33, 0, 31, 0}},
-        {6, {31, 33}, {34, 35, 27, 28}},
-        {4, {27, 28}, {30, 32, 31, 33}},
-        {6, {30, 31}, {29, 0, 27, 28}},
-        {2, {27, 0}, {30, 4, 0, 0}},
-        {6, {28, 29}, {13, 0, 20, 18}},
-        {6, {30, 31}, {15, 0, 5, 24}},
-        {6, {5, 24}, {20, 18, 28, 29}},
-        {4, {32, 33}, {14, 0, 5, 24}},
-        {6, {5, 24}, {12, 0, 32, 33}},
-        {6, {32, 33}, {12, 0, 5, 24}},
-        {4, {5, 24}, {30, 31, 32, 33}},
-        {6, {30, 31}, {16, 0, 5, 24}},
-        {0, {5, 0}, {30, 0, 0, 0}},
-        {6, {24, 32}, {12, 0, 16, 0}},
-        {6, {5, 27}, {6, 22, 20, 18}},
-        {6, {33, 34}, {21, 23, 19, 17}},
-        {4, {35, 36}, {5, 27, 33, 34}},
-        {6, {5, 27}, {21, 23, 20, 18}},
-        {6, {18, 20}, {6, 22, 19, 17}},
-        {7, {33, 34}, {5, 27, 18, 20}},
-        {6, {5, 18}, {14, 0, 35, 36}},
-        {6, {20, 27}, {6, 22, 28, 29}},
-        {4, {37, 38}, {5, 18, 20, 27}},
-        {6, {5, 18}, {24, 32, 37, 38}},
-        {6, {20, 27}, {14, 0, 33, 34}},
-        {6, {37, 38}, {21, 23, 28, 29}},
-        {4, {28, 29}, {20, 27, 37, 38}},
-        {6, {20, 27}, {24, 32, 28, 29}},
-        {5, {24, 28}, {1, 0, 30, 31}},
-        {6, {29, 30}, {9, 0, 21, 23}},
-        {6, {31, 32}, {9, 0, 6, 22}},
-        {6, {37, 38}, {12, 0, 19, 17}},
-        {6, {39, 40}, {8, 0, 31, 32}},
-        {6, {41, 42}, {7, 0, 29, 30}},
-        {4, {43, 44}, {39, 40, 41, 42}},
-        {6, {39, 40}, {9, 0, 37, 38}},
-        {6, {41, 42}, {10, 0, 39, 40}},
-        {4, {39, 40}, {9, 0, 10, 0}},
-        {6, {10, 45}, {7, 0, 33, 34}},
-        {6, {7, 46}, {8, 0, 35, 36}},
-        {4, {8, 47}, {10, 45, 7, 46}},
-        {6, {7, 10}, {39, 40, 8, 47}},
-        {4, {8, 39}, {41, 42, 7, 10}},
-        {6, {7, 10}, {43, 44, 33, 34}},
-        {6, {40, 41}, {21, 23, 8, 39}},
-        {7, {42, 45}, {7, 10, 40, 41}},
-        {6, {7, 10}, {6, 22, 8, 39}},
-        {6, {8, 39}, {43, 44, 35, 36}},
-        {7, {40, 41}, {7, 10, 8, 39}},
-        {6, {7, 8}, {42, 45, 20, 27}},
-        {6, {10, 39}, {5, 18, 40, 41}},
-        {7, {46, 47}, {7, 8, 10, 39}},
-        {6, {7, 8}, {24, 28, 46, 47}},
-        {6, {10, 39}, {11, 0, 37, 38}},
-        {6, {37, 38}, {12, 0, 14, 0}},
-        {6, {46, 47}, {37, 38, 43, 44}},
-        {6, {48, 49}, {12, 0, 37, 38}},
-        {4, {12, 50}, {15, 0, 48, 49}},
-        {6, {15, 48}, {12, 50, 7, 8}},
-        {7, {49, 51}, {15, 48, 46, 47}},
-        {4, {15, 46}, {10, 39, 49, 51}},
-        {6, {10, 39}, {37, 38, 7, 8}},
-        {6, {7, 8}, {9, 0, 37, 38}},
-        {6, {9, 37}, {7, 8, 29, 30}},
-        {6, {29, 30}, {11, 0, 33, 34}},
-        {4, {38, 47}, {9, 37, 29, 30}},
-        {6, {9, 29}, {7, 8, 31, 32}},
-        {6, {7, 8}, {11, 0, 35, 36}},
-        {4, {11, 30}, {9, 29, 7, 8}},
-        {6, {7, 8}, {25, 26, 43, 44}},
-        {6, {9, 29}, {19, 17, 12, 50}},
-        {6, {12, 17}, {16, 0, 9, 29}},
-        {6, {9, 16}, {7, 8, 5, 18}},
-        {6, {19, 29}, {12, 17, 42, 45}},
-        {7, {31, 32}, {9, 16, 19, 29}},
-        {6, {9, 16}, {12, 17, 40, 41}},
-        {6, {19, 29}, {7, 8, 20, 27}},
-        {7, {7, 8}, {9, 16, 19, 29}},
-        {4, {9, 16}, {13, 0, 14, 0}},
-        {6, {13, 14}, {9, 16, 24, 28}},
-        {6, {9, 16}, {13, 14, 31, 32}},
-        {6, {19, 29}, {6, 22, 10, 39}},
-        {7, {31, 32}, {9, 16, 19, 29}},
-        {4, {9, 16}, {38, 47, 31, 32}},
-        {6, {19, 29}, {13, 14, 7, 8}},
-        {6, {7, 8}, {21, 23, 10, 39}},
-        {4, {10, 13}, {19, 29, 7, 8}},
-        {4, {7, 8}, {11, 30, 10, 13}},
-        {6, {10, 11}, {12, 17, 9, 16}},
-        {6, {13, 14}, {20, 27, 15, 46}},
-        {7, {19, 29}, {10, 11, 13, 14}},
-        {6, {10, 11}, {12, 17, 7, 8}},
-        {6, {12, 13}, {5, 18, 15, 46}},
-        {7, {14, 15}, {10, 11, 12, 13}},
-        {6, {10, 11}, {5, 18, 9, 16}},
-        {6, {5, 9}, {20, 27, 7, 8}},
-        {7, {7, 8}, {10, 11, 5, 9}},
-        {6, {5, 9}, {25, 26, 7, 8}},
-        {6, {7, 8}, {33, 34, 19, 29}},
-        {7, {10, 11}, {5, 9, 7, 8}},
-        {6, {5, 7}, {35, 36, 14, 15}},
-        {7, {8, 9}, {10, 11, 5, 7}},
-        {6, {5, 7}, {24, 28, 8, 9}},
-        {6, {8, 9}, {6, 22, 14, 15}},
-        {6, {6, 10}, {21, 23, 19, 29}},
-        {4, {11, 12}, {8, 9, 6, 10}},
-        {6, {6, 8}, {24, 28, 11, 12}},
-        {1, {9, 0}, {5, 7, 0, 0}},
-        {1, {5, 0}, {6, 8, 0, 0}},
-    };
-    float v[52];
-    v[0] = 0.0f;
-    v[1] = 1.0f;
-    v[2] = 0.5f;
-    v[3] = 1.2924697e-26f;
-    v[4] = 1.1368684e-13f;
-    v[5] = q[2];
-    v[6] = q[3];
-    v[7] = qd[0];
-    v[8] = qd[1];
-    v[9] = qd[2];
-    v[10] = qd[3];
-    v[11] = u[0];
-    v[12] = p->L;
-    v[13] = p->m_1;
-    v[14] = p->m_2;
-    v[15] = p->Theta_1;
-    v[16] = p->Theta_2;
-    front_car_steps_f(step, 0, 2, v);
-    if (FRONT_CAR_RARELY_F(!(100.0f >= v[17]))) {
+    const float phi = q[3];
+    const float t1 = fabsf(phi);
+    const float theta = q[2];
+    const float t2 = fabsf(theta);
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t1))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    if (FRONT_CAR_RARELY_F(!(100.0f >= v[18]))) {
+    if (FRONT_CAR_RARELY_F(!(100.0f >= t2))) {
         return FRONT_CAR_ANGLE_RANGE;
     }
-    front_car_steps_f(step, 2, 20, v);
-    front_car_steps_f(step, 20, 31, v);
-    if (FRONT_CAR_RARELY_F(!(v[29] > v[30]))) {
+    const float angle[4] = {phi, theta, theta, theta};
+    float sine[4];
+    float cosine[4];
+    front_car_sincos_group_f(2, angle, sine, cosine);
+    const float t3 = sine[0];
+    const float t7 = t3 * t3;
+    const float L = p->L;
+    const float t4 = cosine[0];
+    const float t8 = L * t4;
+    const float t9 = t8 * t8;
+    const float t10 = t7 + t9;
+    const float t11 = 1.0f + t9;
+    const float t12 = t11 * 2.2737368e-13f;
+    if (FRONT_CAR_RARELY_F(!(t10 > t12))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    front_car_steps_f(step, 31, 54, v);
-    if (FRONT_CAR_RARELY_F(!(v[5] > v[27]))) {
+    const float m_2 = p->m_2;
+    const float t24 = fabsf(m_2);
+    const float Theta_2 = p->Theta_2;
+    const float t22 = fabsf(Theta_2);
+    const float Theta_1 = p->Theta_1;
+    const float t23 = fabsf(Theta_1);
+    const float t25 = fabsf(L);
+    const float t26 = t25 * t25;
+    const float t27 = t24 * t26;
+    const float t28 = t23 + t27;
+    const float t29 = t7 * t28;
+    const float m_1 = p->m_1;
+    const float t30 = fabsf(m_1);
+    const float t31 = t30 + t24;
+    const float t32 = t9 * t31;
+    const float t33 = t29 + t32;
+    const float t34 = t22 * t33;
+    const float t35 = t34 * 4.7683716e-07f;
+    const float t13 = Theta_1 * t7;
+    const float t14 = m_1 * t4;
+    const float t15 = t4 * t14;
+    const float t16 = m_2 + t15;
+    const float t17 = L * t16;
+    const float t18 = L * t17;
+    const float t19 = t13 + t18;
+    const float t20 = Theta_2 * t19;
+    const float t21 = fabsf(t20);
+    if (FRONT_CAR_RARELY_F(!(t21 > t35))) {
         return FRONT_CAR_MASS_RANK;
     }
-    front_car_steps_f(step, 54, 150, v);
-    float rest = v[9] - v[9];
-    rest *= v[5];
+    const float t36 = t4 * t4;
+    const float t37 = m_1 * t36;
+    const float t38 = m_2 + t37;
+    const float t39 = L * t38;
+    const float t40 = L * t39;
+    const float t41 = t40 + t13;
+    const float t42 = Theta_2 * t41;
+    const float t43 = 1.0f / t42;
+    const float t44 = L * Theta_2;
+    const float t52 = m_1 + m_2;
+    const float t45 = m_2 * t3;
+    const float t46 = t44 * t45;
+    const float t86 = t4 * t52;
+    const float t87 = t44 * t86;
+    const float x_dot = qd[0];
+    const float t6 = cosine[1];
+    const float t53 = x_dot * t6;
+    const float y_dot = qd[1];
+    const float t5 = sine[1];
+    const float t54 = y_dot * t5;
+    const float t55 = t53 + t54;
+    const float theta_dot = qd[2];
+    const float t56 = theta_dot * t55;
+    const float t57 = t46 * t56;
+    const float t64 = L * t3;
+    const float t63 = t4 * t56;
+    const float t65 = theta_dot * t64;
+    const float phi_dot = qd[3];
+    const float t66 = phi_dot * t65;
+    const float t67 = theta_dot + phi_dot;
+    const float t68 = t6 * t4;
+    const float t69 = t5 * t3;
+    const float t70 = t68 - t69;
+    const float t71 = x_dot * t70;
+    const float t72 = t5 * t4;
+    const float t73 = t6 * t3;
+    const float t74 = t72 + t73;
+    const float t75 = y_dot * t74;
+    const float t76 = t71 + t75;
+    const float t77 = t67 * t76;
+    const float t78 = t66 + t77;
+    const float t79 = t63 - t78;
+    const float t89 = t3 * t57;
+    const float t90 = t87 * t79;
+    const float t91 = t89 + t90;
+    const float t92 = t43 * t91;
+    const float t48 = L * m_2;
+    const float K_f = u[0];
+    const float t88 = K_f * t3;
+    const float t94 = t52 * t56;
+    const float t93 = t48 * t92;
+    const float t95 = t93 - t94;
+    const float t96 = t88 + t95;
+    const float t101 = K_f * t64;
+    const float t103 = t48 * t56;
+    const float t59 = L * t48;
+    const float t60 = Theta_1 + t59;
+    const float t102 = t60 * t92;
+    const float t104 = t102 - t103;
+    const float t105 = t101 + t104;
+    const float t61 = t3 * t60;
+    const float t62 = Theta_2 * t61;
+    const float t58 = t8 * t57;
+    const float t80 = t62 * t79;
+    const float t81 = t58 - t80;
+    const float t47 = K_f * t4;
+    const float t49 = theta_dot * t48;
+    const float t50 = theta_dot * t49;
+    const float t51 = t47 + t50;
+    const float t82 = t43 * t81;
+    const float t83 = t52 * t82;
+    const float t84 = t51 + t83;
+    const float t100 = t62 * t84;
+    const float t106 = t87 * t105;
+    const float t107 = t100 - t106;
+    const float t85 = t46 * t84;
+    const float t97 = t87 * t96;
+    const float t98 = t85 - t97;
+    const float t99 = t8 * t98;
+    const float t108 = t4 * t107;
+    const float t109 = t99 - t108;
+    const float t110 = t62 * t96;
+    const float t111 = t46 * t105;
+    const float t112 = t110 - t111;
+    const float t113 = t3 * t112;
+    const float t114 = t109 - t113;
+    const float t115 = t43 * t114;
+    float rest = t115 - t115;
+    const float t116 = t43 * t107;
+    rest *= t116;
     if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    lambda_B[0] = v[9];
-    lambda_B[1] = v[5];
+    lambda_B[0] = t115;
+    lambda_B[1] = t116;
     return FRONT_CAR_OK;
 }
 

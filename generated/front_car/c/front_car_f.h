@@ -28,26 +28,26 @@
  * control_matrix                        1      1      0      0      2      0
  * projected_control_matrix              3     12      3      0      2      0
  * projected_control_pseudoinverse       0      2      1      0      2      0
- * orthogonal_complement                 1      6      2      0      2      0
- * projected_mass_matrix                10     34      3      0      2      0
+ * orthogonal_complement                 1      5      2      0      2      0
+ * projected_mass_matrix                10     33      3      0      2      0
  * projected_coriolis_matrix            62    131     10      0      2      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
- * minimal_mass_matrix                   3     12      1      0      2      0
- * minimal_coriolis_matrix              13     36      1      0      2      0
+ * minimal_mass_matrix                   3     11      1      0      2      0
+ * minimal_coriolis_matrix              13     35      1      0      2      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                1      6      1      0      2      0
- * admissible_velocity                   5     18      2      0      2      0
- * admissible_acceleration              17     54      2      0      2      0
+ * admissible_velocity                   4     13      2      0      2      0
+ * admissible_acceleration              13     34      4      0      2      0
  * projected_configuration               0      0      0      0      0      0
- * inverse_dynamics                      7     15      1      0      2      0
+ * inverse_dynamics                      7     14      1      0      2      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     3      4      0      0      2      0
- * actuator_mass_matrix                  2      8      1      0      1      0
- * actuator_bias                        11     27      1      0      2      0
+ * actuator_mass_matrix                  2      7      1      0      1      0
+ * actuator_bias                         9     18      1      0      2      0
  * forward_dynamics                     34     83      1      0      2      0
- * multipliers                        1762    790      2      0      2      0
+ * multipliers                          31     72      1      0      2      0
  * energy                                7     14      0      0      1      0
  * singularity                          12     23      5      1      2      0
  * (changes of sign are not counted)
@@ -193,7 +193,7 @@ front_car_status front_car_actuator_bias_f(const float q[4], const float qd[4], 
 /* q̈: accelerations under the inputs, (15); length 4 */
 front_car_status front_car_forward_dynamics_f(const float q[4], const float qd[4], const float u[2], const front_car_params_f *p, float qdd[4]);
 
-/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); works with twice the digits; length 2 */
+/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); length 2 */
 front_car_status front_car_multipliers_f(const float q[4], const float qd[4], const float u[2], const front_car_params_f *p, float lambda_B[2]);
 
 /* T, U: kinetic and potential energy; length 2 */

@@ -25,6 +25,9 @@ front_car_status front_car_inverse_dynamics_sc(const front_car_trig *sc, const d
 /* q̈: accelerations under the inputs, (15) */
 front_car_status front_car_forward_dynamics_sc(const front_car_trig *sc, const double q[4], const double qd[4], const double u[2], const front_car_params *p, double qdd[4]);
 
+/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14) */
+front_car_status front_car_multipliers_sc(const front_car_trig *sc, const double q[4], const double qd[4], const double u[2], const front_car_params *p, double lambda_B[2]);
+
 #ifdef __cplusplus
 }
 #endif

@@ -25,6 +25,9 @@ front_car_status front_car_inverse_dynamics_sc_f(const front_car_trig_f *sc, con
 /* q̈: accelerations under the inputs, (15) */
 front_car_status front_car_forward_dynamics_sc_f(const front_car_trig_f *sc, const float q[4], const float qd[4], const float u[2], const front_car_params_f *p, float qdd[4]);
 
+/* λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14) */
+front_car_status front_car_multipliers_sc_f(const front_car_trig_f *sc, const float q[4], const float qd[4], const float u[2], const front_car_params_f *p, float lambda_B[2]);
+
 #ifdef __cplusplus
 }
 #endif

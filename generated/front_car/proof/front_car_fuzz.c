@@ -393,6 +393,18 @@ static int forward_dynamics_prepared_32(float *const *x, const front_car_params_
     return (int)front_car_forward_dynamics_prepared_f(x[0], x[1], x[3], &ready, y);
 }
 
+static int multipliers_prepared_64(double *const *x, const front_car_params *p, double *y) {
+    const front_car_prepared ready = front_car_prepare(p);
+    feclearexcept(FE_DIVBYZERO); /* what other kernels divide; rule 6 holds this one to one that divides itself */
+    return (int)front_car_multipliers_prepared(x[0], x[1], x[3], &ready, y);
+}
+
+static int multipliers_prepared_32(float *const *x, const front_car_params_f *p, float *y) {
+    const front_car_prepared_f ready = front_car_prepare_f(p);
+    feclearexcept(FE_DIVBYZERO); /* what other kernels divide; rule 6 holds this one to one that divides itself */
+    return (int)front_car_multipliers_prepared_f(x[0], x[1], x[3], &ready, y);
+}
+
 static int inverse_dynamics_sc_64(double *const *x, const front_car_params *p, double *y) {
     front_car_trig sc;
     sc.sin_theta = x[4][0];
@@ -427,6 +439,24 @@ static int forward_dynamics_sc_32(float *const *x, const front_car_params_f *p, 
     sc.sin_phi = x[4][2];
     sc.cos_phi = x[4][3];
     return (int)front_car_forward_dynamics_sc_f(&sc, x[0], x[1], x[3], p, y);
+}
+
+static int multipliers_sc_64(double *const *x, const front_car_params *p, double *y) {
+    front_car_trig sc;
+    sc.sin_theta = x[4][0];
+    sc.cos_theta = x[4][1];
+    sc.sin_phi = x[4][2];
+    sc.cos_phi = x[4][3];
+    return (int)front_car_multipliers_sc(&sc, x[0], x[1], x[3], p, y);
+}
+
+static int multipliers_sc_32(float *const *x, const front_car_params_f *p, float *y) {
+    front_car_trig_f sc;
+    sc.sin_theta = x[4][0];
+    sc.cos_theta = x[4][1];
+    sc.sin_phi = x[4][2];
+    sc.cos_phi = x[4][3];
+    return (int)front_car_multipliers_sc_f(&sc, x[0], x[1], x[3], p, y);
 }
 
 static const Kernel kernels[] = {
@@ -469,10 +499,12 @@ static const Kernel kernels[] = {
     {"singularity", singularity_64, singularity_32, {1, 0, 0, 0, 0}, 2u, 0, 0, NULL, NULL},
     {"inverse_dynamics_prepared", inverse_dynamics_prepared_64, inverse_dynamics_prepared_32, {1, 1, 1, 0, 0}, 2u, 1, 0, inverse_dynamics_64, inverse_dynamics_32},
     {"forward_dynamics_prepared", forward_dynamics_prepared_64, forward_dynamics_prepared_32, {1, 1, 0, 1, 0}, 4u, 1, 0, forward_dynamics_64, forward_dynamics_32},
+    {"multipliers_prepared", multipliers_prepared_64, multipliers_prepared_32, {1, 1, 0, 1, 0}, 2u, 0, 0, multipliers_64, multipliers_32},
     {"inverse_dynamics_sc", inverse_dynamics_sc_64, inverse_dynamics_sc_32, {1, 1, 1, 0, 0}, 2u, 1, 1, NULL, NULL},
     {"forward_dynamics_sc", forward_dynamics_sc_64, forward_dynamics_sc_32, {1, 1, 0, 1, 0}, 4u, 1, 1, NULL, NULL},
+    {"multipliers_sc", multipliers_sc_64, multipliers_sc_32, {1, 1, 0, 1, 0}, 2u, 0, 1, NULL, NULL},
 };
-enum { KERNELS = 41 };
+enum { KERNELS = 43 };
 
 static const size_t sizes[ARRAYS] = {4u, 4u, 4u, 2u, 4u};
 static const float ranges[][2] = {

@@ -28,26 +28,26 @@ weighted_nullspace_projector         15     52      4      0      2      0
 control_matrix                        1      1      0      0      2      0
 projected_control_matrix              3     12      3      0      2      0
 projected_control_pseudoinverse       0      2      1      0      2      0
-orthogonal_complement                 1      6      2      0      2      0
-projected_mass_matrix                10     34      3      0      2      0
+orthogonal_complement                 1      5      2      0      2      0
+projected_mass_matrix                10     33      3      0      2      0
 projected_coriolis_matrix            62    131     10      0      2      0
 projected_potential_force             0      0      0      0      0      0
 projected_applied_force               0      0      0      0      0      0
-minimal_mass_matrix                   3     12      1      0      2      0
-minimal_coriolis_matrix              13     36      1      0      2      0
+minimal_mass_matrix                   3     11      1      0      2      0
+minimal_coriolis_matrix              13     35      1      0      2      0
 minimal_potential_force               0      0      0      0      0      0
 minimal_applied_force                 0      0      0      0      0      0
 minimal_control_matrix                1      6      1      0      2      0
-admissible_velocity                   5     18      2      0      2      0
-admissible_acceleration              17     54      2      0      2      0
+admissible_velocity                   4     13      2      0      2      0
+admissible_acceleration              13     34      4      0      2      0
 projected_configuration               0      0      0      0      0      0
-inverse_dynamics                      7     15      1      0      2      0
+inverse_dynamics                      7     14      1      0      2      0
 inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     3      4      0      0      2      0
-actuator_mass_matrix                  2      8      1      0      1      0
-actuator_bias                        11     27      1      0      2      0
+actuator_mass_matrix                  2      7      1      0      1      0
+actuator_bias                         9     18      1      0      2      0
 forward_dynamics                     34     83      1      0      2      0
-multipliers                        1762    790      2      0      2      0
+multipliers                          31     72      1      0      2      0
 energy                                7     14      0      0      1      0
 singularity                          12     23      5      1      2      0
 (changes of sign are not counted)
@@ -211,99 +211,6 @@ def _sincos(x):
     cs = turn * sin_r
     cosine = cc - cs
     return sine, cosine
-
-
-def _wide_add(a, a_rest, b, b_rest):
-    """Of pairs of numbers, each a value and what it lacks."""
-    x0 = a + b
-    x1 = x0 - a
-    x2 = x0 - x1
-    x3 = a - x2
-    x4 = b - x1
-    x5 = x3 + x4
-    x6 = a_rest + b_rest
-    x7 = x5 + x6
-    x8 = x0 + x7
-    x9 = x8 - x0
-    x10 = x7 - x9
-    return x8, x10
-
-
-def _wide_sub(a, a_rest, b, b_rest):
-    """Of pairs of numbers, each a value and what it lacks."""
-    x0 = a - b
-    x1 = x0 - a
-    x2 = x0 - x1
-    x3 = a - x2
-    x4 = b + x1
-    x5 = x3 - x4
-    x6 = a_rest - b_rest
-    x7 = x5 + x6
-    x8 = x0 + x7
-    x9 = x8 - x0
-    x10 = x7 - x9
-    return x8, x10
-
-
-def _wide_mul(a, a_rest, b, b_rest):
-    """Of pairs of numbers, each a value and what it lacks."""
-    x0 = a * b
-    x1 = a * b_rest
-    x2 = a_rest * b
-    x3 = x1 + x2
-    x4 = 134217729.0 * a
-    x5 = x4 - a
-    x6 = x4 - x5
-    x7 = a - x6
-    x8 = 134217729.0 * b
-    x9 = x8 - b
-    x10 = x8 - x9
-    x11 = b - x10
-    x12 = x6 * x10
-    x13 = x12 - x0
-    x14 = x6 * x11
-    x15 = x13 + x14
-    x16 = x7 * x10
-    x17 = x15 + x16
-    x18 = x7 * x11
-    x19 = x17 + x18
-    x20 = x19 + x3
-    x21 = x0 + x20
-    x22 = x21 - x0
-    x23 = x20 - x22
-    return x21, x23
-
-
-def _wide_div(a, a_rest, b, b_rest):
-    """Of pairs of numbers, each a value and what it lacks."""
-    x0 = a / b
-    x1 = x0 * b
-    x2 = a - x1
-    x3 = 134217729.0 * x0
-    x4 = x3 - x0
-    x5 = x3 - x4
-    x6 = x0 - x5
-    x7 = 134217729.0 * b
-    x8 = x7 - b
-    x9 = x7 - x8
-    x10 = b - x9
-    x11 = x5 * x9
-    x12 = x11 - x1
-    x13 = x5 * x10
-    x14 = x12 + x13
-    x15 = x6 * x9
-    x16 = x14 + x15
-    x17 = x6 * x10
-    x18 = x16 + x17
-    x19 = x2 - x18
-    x20 = x0 * b_rest
-    x21 = a_rest - x20
-    x22 = x19 + x21
-    x23 = x22 / b
-    x24 = x0 + x23
-    x25 = x24 - x0
-    x26 = x23 - x25
-    return x24, x26
 
 
 def mass_matrix(q, p=PARAMETERS):
@@ -1150,15 +1057,14 @@ def orthogonal_complement(q, p=PARAMETERS):
         t11 = 1.0 + t10
         t12 = t11 * 7.888609052210118e-31
         status = _first(status, ~np.asarray(t9 > t12), 2)
-        t13 = 1.0 / t4
-        t14 = t3 * t13
-        t15 = t5 / t8
+        t13 = t3 / t4
+        t14 = t5 / t8
         entries = (
             1.0,
             0.0,
-            t14,
+            t13,
             0.0,
-            t15,
+            t14,
             0.0,
             0.0,
             1.0,
@@ -1233,8 +1139,7 @@ def projected_mass_matrix(q, p=PARAMETERS):
         t49 = t6 * t48
         t50 = t6 * t49
         t51 = t42 + t50
-        t52 = 1.0 / t20
-        t53 = t51 * t52
+        t52 = t51 / t20
         entries = (
             t32,
             t34,
@@ -1246,7 +1151,7 @@ def projected_mass_matrix(q, p=PARAMETERS):
             0.0,
             t38,
             t40,
-            t53,
+            t52,
             0.0,
             0.0,
             0.0,
@@ -1362,7 +1267,7 @@ def projected_coriolis_matrix(q, qd, p=PARAMETERS):
         t73 = t4 * t5
         t74 = t72 + t73
         t75 = t5 * t74
-        t76 = t26 + t75
+        t76 = t75 + t26
         t77 = t18 * t76
         t70 = t69 * t54
         t71 = t66 + t70
@@ -1573,10 +1478,9 @@ def minimal_mass_matrix(q, p=PARAMETERS):
         t18 = t3 * t3
         t19 = Theta_1 * t18
         t20 = t17 + t19
-        t21 = 1.0 / t9
-        t22 = t20 * t21
+        t21 = t20 / t9
         entries = (
-            t22,
+            t21,
             0.0,
             0.0,
             Theta_2,
@@ -1621,46 +1525,45 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         status = _first(status, ~np.asarray(t14 > t17), 2)
         status = _first(status, ~np.asarray(t13 > t17), 2)
         t18 = L * L
-        t19 = t6 * t18
-        t20 = t6 * t19
-        t21 = t6 * t20
-        t22 = t4 * t21
-        t23 = t4 * t22
-        t24 = t4 * t23
-        t25 = t14 * t24
-        t26 = 1.0 / t25
-        t27 = m_2 * t18
-        t28 = Theta_1 + t27
-        t29 = phi_dot * t6
-        t30 = t3 * t29
-        t31 = t28 * t30
-        t32 = theta_dot * t5
+        t19 = m_2 * t18
+        t20 = Theta_1 + t19
+        t21 = phi_dot * t6
+        t22 = t3 * t21
+        t23 = t20 * t22
+        t24 = theta_dot * t5
+        t25 = t20 * t24
+        t26 = (-1.0) + t18
+        t27 = t26 * t23
+        t28 = t4 * t4
+        t29 = t28 + (-2.0)
+        t30 = t20 * t29
+        t31 = m_1 + m_2
+        t32 = t31 * t18
         t33 = t28 * t32
-        t34 = (-1.0) + t18
-        t35 = t34 * t31
-        t36 = t4 * t4
-        t37 = t36 + (-2.0)
-        t38 = t28 * t37
-        t39 = m_1 + m_2
-        t40 = t39 * t18
-        t41 = t36 * t40
-        t42 = t39 + t28
-        t43 = t3 * t42
-        t44 = t3 * t43
-        t45 = t41 + t44
-        t46 = L * t45
-        t47 = L * t46
-        t48 = t38 + t47
-        t49 = t4 * t32
-        t50 = t48 * t49
-        t51 = t35 + t50
+        t34 = t31 + t20
+        t35 = t3 * t34
+        t36 = t3 * t35
+        t37 = t33 + t36
+        t38 = L * t37
+        t39 = L * t38
+        t40 = t30 + t39
+        t41 = t4 * t24
+        t42 = t40 * t41
+        t43 = t27 + t42
+        t44 = t4 * t43
+        t45 = t25 + t44
+        t46 = t4 * t45
+        t47 = t23 + t46
+        t48 = t6 * t18
+        t49 = t6 * t48
+        t50 = t6 * t49
+        t51 = t4 * t50
         t52 = t4 * t51
-        t53 = t33 + t52
-        t54 = t4 * t53
-        t55 = t31 + t54
-        t56 = t26 * t55
+        t53 = t4 * t52
+        t54 = t14 * t53
+        t55 = t47 / t54
         entries = (
-            t56,
+            t55,
             0.0,
             0.0,
             0.0,
@@ -1754,34 +1657,28 @@ def admissible_velocity(q, qd, p=PARAMETERS):
         t5, t6 = _sincos(phi)
         t7 = t5 * t5
         t8 = L * t6
-        t9 = t3 * t8
-        t10 = t9 * t9
-        t11 = t7 + t10
-        t12 = t4 * t8
-        t13 = t12 * t12
-        t14 = t11 + t13
-        t15 = t8 * t8
-        t16 = 1.0 + t15
-        t17 = t16 * 7.888609052210118e-31
-        status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = L / t14
-        t19 = theta_dot * t5
-        t20 = x_dot * t4
-        t21 = y_dot * t3
-        t22 = t20 + t21
-        t23 = t8 * t22
-        t24 = t19 + t23
-        t25 = t6 * t24
-        t26 = t18 * t25
-        t27 = t4 * t26
-        t28 = t3 * t26
-        t29 = 1.0 / t14
-        t30 = t5 * t24
-        t31 = t29 * t30
+        t9 = t8 * t8
+        t10 = t7 + t9
+        t11 = 1.0 + t9
+        t12 = t11 * 7.888609052210118e-31
+        status = _first(status, ~np.asarray(t10 > t12), 2)
+        t13 = L / t10
+        t14 = theta_dot * t5
+        t15 = x_dot * t4
+        t16 = y_dot * t3
+        t17 = t15 + t16
+        t18 = t8 * t17
+        t19 = t14 + t18
+        t20 = t6 * t19
+        t21 = t13 * t20
+        t22 = t4 * t21
+        t23 = t3 * t21
+        t24 = t5 * t19
+        t25 = t24 / t10
         entries = (
-            t27,
-            t28,
-            t31,
+            t22,
+            t23,
+            t25,
             phi_dot,
         )
         return _result("admissible_velocity", status, batch, (4,), entries)
@@ -1807,90 +1704,68 @@ def admissible_acceleration(q, qd, qdd, p=PARAMETERS):
         theta_ddot = qdd[..., 2]
         phi_ddot = qdd[..., 3]
         L = np.float64(p.L)
-        t1 = np.abs(phi)
-        t2 = np.abs(theta)
+        t1 = np.abs(theta)
+        t2 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(phi)
-        t5, t6 = _sincos(theta)
-        t7 = t3 * t3
-        t8 = L * t4
-        t9 = t5 * t8
-        t10 = t9 * t9
-        t11 = t7 + t10
-        t12 = t6 * t8
-        t13 = t12 * t12
-        t14 = t11 + t13
-        t15 = t8 * t8
-        t16 = 1.0 + t15
-        t17 = t16 * 7.888609052210118e-31
-        status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = t14 * t14
-        t19 = t14 * t18
-        t20 = L / t19
-        t21 = t6 * t14
-        t22 = t14 * t21
-        t23 = y_ddot * t22
-        t24 = theta_dot * t3
-        t25 = x_dot * t6
-        t26 = y_dot * t5
-        t27 = t25 + t26
-        t28 = t8 * t27
-        t29 = t24 + t28
-        t30 = t3 * t29
-        t31 = t29 * t30
-        t32 = t8 * t31
+        t3, t4 = _sincos(theta)
+        t5, t6 = _sincos(phi)
+        t7 = t5 * t5
+        t8 = L * t6
+        t9 = t8 * t8
+        t10 = t7 + t9
+        t11 = 1.0 + t9
+        t12 = t11 * 7.888609052210118e-31
+        status = _first(status, ~np.asarray(t10 > t12), 2)
+        t13 = t10 * t10
+        t14 = t10 * t13
+        t15 = L / t14
+        t16 = theta_ddot * t5
+        t17 = x_ddot * t4
+        t18 = y_ddot * t3
+        t19 = t17 + t18
+        t20 = t8 * t19
+        t21 = t16 + t20
+        t22 = t13 * t21
+        t23 = t6 * t22
+        t24 = t5 * t10
+        t25 = theta_dot * t5
+        t26 = x_dot * t4
+        t27 = y_dot * t3
+        t28 = t26 + t27
+        t29 = t8 * t28
+        t30 = t25 + t29
+        t31 = phi_dot * t30
+        t32 = t24 * t31
         t33 = t23 - t32
-        t34 = t5 * t33
-        t35 = x_ddot * t6
-        t36 = t35 * t22
-        t37 = t34 + t36
-        t38 = t8 * t37
-        t39 = theta_ddot * t14
-        t40 = t21 * t39
-        t41 = t5 * t31
-        t42 = t3 * t41
-        t43 = t40 - t42
-        t44 = t3 * t43
-        t45 = t38 + t44
-        t46 = t4 * t45
-        t47 = phi_dot * t30
-        t48 = t21 * t47
-        t49 = t46 - t48
-        t50 = t20 * t49
-        t51 = y_ddot * t5
-        t52 = t35 + t51
-        t53 = t18 * t52
-        t54 = t5 * t53
-        t55 = t6 * t31
-        t56 = t8 * t55
-        t57 = t54 + t56
-        t58 = t8 * t57
-        t59 = t5 * t14
-        t60 = t39 * t59
-        t61 = t3 * t55
-        t62 = t60 + t61
-        t63 = t3 * t62
-        t64 = t58 + t63
-        t65 = t4 * t64
-        t66 = t47 * t59
-        t67 = t65 - t66
-        t68 = t20 * t67
-        t69 = 1.0 / t18
-        t70 = t14 * t52
-        t71 = t3 * t70
-        t72 = phi_dot * t29
-        t73 = L * t72
-        t74 = t71 + t73
-        t75 = t8 * t74
-        t76 = t3 * t39
-        t77 = t3 * t76
-        t78 = t75 + t77
-        t79 = t69 * t78
+        t34 = t15 * t33
+        t35 = t4 * t34
+        t36 = t8 * t5
+        t37 = t36 * t30
+        t38 = t30 * t37
+        t39 = t3 * t3
+        t40 = t4 * t4
+        t41 = t39 + t40
+        t42 = t9 * t41
+        t43 = t7 + t42
+        t44 = t38 / t43
+        t45 = t44 / t43
+        t46 = t3 * t45
+        t47 = t35 - t46
+        t48 = t3 * t34
+        t49 = t4 * t45
+        t50 = t48 + t49
+        t51 = t16 * t24
+        t52 = L * t31
+        t53 = t19 * t24
+        t54 = t52 + t53
+        t55 = t8 * t54
+        t56 = t51 + t55
+        t57 = t56 / t13
         entries = (
+            t47,
             t50,
-            t68,
-            t79,
+            t57,
             phi_ddot,
         )
         return _result("admissible_acceleration", status, batch, (4,), entries)
@@ -1953,22 +1828,21 @@ def inverse_dynamics(q, qd, qdd, p=PARAMETERS):
         t14 = theta_dot * t13
         t15 = t11 - t14
         t16 = t4 * t15
-        t17 = 1.0 / L
-        t18 = L * t12
-        t19 = Theta_1 + t18
-        t20 = theta_ddot * t19
-        t21 = y_ddot * t6
-        t22 = x_ddot * t5
-        t23 = t21 - t22
-        t24 = t12 * t23
-        t25 = t20 + t24
-        t26 = t17 * t25
-        t27 = t3 * t26
-        t28 = t16 + t27
-        t29 = phi_ddot * Theta_2
+        t17 = L * t12
+        t18 = Theta_1 + t17
+        t19 = theta_ddot * t18
+        t20 = y_ddot * t6
+        t21 = x_ddot * t5
+        t22 = t20 - t21
+        t23 = t12 * t22
+        t24 = t19 + t23
+        t25 = t24 / L
+        t26 = t3 * t25
+        t27 = t16 + t26
+        t28 = phi_ddot * Theta_2
         entries = (
+            t27,
             t28,
-            t29,
         )
         return _result("inverse_dynamics", status, batch, (2,), entries)
 
@@ -2071,10 +1945,9 @@ def actuator_mass_matrix(q, p=PARAMETERS):
         t25 = Theta_1 * t24
         t26 = t23 + t25
         t27 = L * L
-        t28 = 1.0 / t27
-        t29 = t26 * t28
+        t28 = t26 / t27
         entries = (
-            t29,
+            t28,
             0.0,
             0.0,
             Theta_2,
@@ -2101,59 +1974,48 @@ def actuator_bias(q, qd, p=PARAMETERS):
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         status = _first(status, ~np.asarray(35000.0 >= m_2), 6)
-        t1 = np.abs(phi)
-        t2 = np.abs(theta)
-        status = _first(status, ~np.asarray(100000.0 >= t1), 4)
+        t1 = theta + phi
+        t2 = np.abs(phi)
+        t3 = np.abs(t1)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(phi)
-        t5, t6 = _sincos(theta)
-        t7 = t3 * t3
-        t8 = L * t4
-        t9 = t5 * t8
+        status = _first(status, ~np.asarray(100000.0 >= t3), 4)
+        t4, t5 = _sincos(phi)
+        t6, t7 = _sincos(t1)
+        t8 = t4 * t4
+        t9 = L * t5
         t10 = t9 * t9
-        t11 = t7 + t10
-        t12 = t6 * t8
-        t13 = t12 * t12
-        t14 = t11 + t13
-        t15 = t8 * t8
-        t16 = 1.0 + t15
-        t17 = t16 * 7.888609052210118e-31
-        status = _first(status, ~np.asarray(t14 > t17), 2)
-        t18 = np.abs(L)
-        _failed_ = ~np.asarray(t18 > 0.0)
+        t11 = t8 + t10
+        t12 = 1.0 + t10
+        t13 = t12 * 7.888609052210118e-31
+        status = _first(status, ~np.asarray(t11 > t13), 2)
+        t14 = np.abs(L)
+        _failed_ = ~np.asarray(t14 > 0.0)
         if np.any(_failed_ & (status == 0)):
-            status = _first(status, _failed_ & ~np.asarray(t14 > t17), 2)
+            status = _first(status, _failed_ & ~np.asarray(t11 > t13), 2)
             status = _first(status, _failed_, 3)
-        t19 = L * L
-        t20 = 1.0 / t19
-        t21 = phi_dot * t4
-        t22 = t3 * t21
-        t23 = m_2 * t19
-        t24 = Theta_1 + t23
-        t25 = t6 * t4
-        t26 = t5 * t3
-        t27 = t25 - t26
-        t28 = x_dot * t27
-        t29 = t5 * t4
-        t30 = t6 * t3
-        t31 = t29 + t30
-        t32 = y_dot * t31
-        t33 = t28 + t32
-        t34 = t24 * t33
-        t35 = theta_dot * t3
-        t36 = t24 * t35
-        t37 = m_1 + m_2
-        t38 = L * t35
-        t39 = t33 + t38
-        t40 = t37 * t39
-        t41 = L * t40
-        t42 = t36 - t41
-        t43 = L * t42
-        t44 = t34 + t43
-        t45 = t22 * t44
-        t46 = t20 * t45
+        t15 = phi_dot * t5
+        t16 = t4 * t15
+        t17 = L * L
+        t18 = m_2 * t17
+        t19 = Theta_1 + t18
+        t20 = x_dot * t7
+        t21 = y_dot * t6
+        t22 = t20 + t21
+        t23 = t19 * t22
+        t24 = theta_dot * t4
+        t25 = t19 * t24
+        t26 = m_1 + m_2
+        t27 = L * t24
+        t28 = t22 + t27
+        t29 = t26 * t28
+        t30 = L * t29
+        t31 = t25 - t30
+        t32 = L * t31
+        t33 = t23 + t32
+        t34 = t16 * t33
+        t35 = t34 / t17
         entries = (
-            t46,
+            t35,
             0.0,
         )
         return _result("actuator_bias", status, batch, (2,), entries)
@@ -2323,8 +2185,8 @@ def forward_dynamics(q, qd, u, p=PARAMETERS):
 
 
 def multipliers(q, qd, u, p=PARAMETERS):
-    """Λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); works with twice the digits: q (..., 4), qd
-    (..., 4), u (..., 2) -> (..., 2)."""
+    """Λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14): q (..., 4), qd (..., 4), u (..., 2) ->
+    (..., 2)."""
     q, qd, u, batch = _states(
         q=_array("q", 4, q),
         qd=_array("qd", 4, qd),
@@ -2349,158 +2211,122 @@ def multipliers(q, qd, u, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
         t3, t4 = _sincos(phi)
-        w1, w2 = _wide_mul(t3, 0.0, t3, 0.0)
-        w3, w4 = _wide_mul(t4, 0.0, t4, 0.0)
-        w5, w6 = _wide_sub(1.0, 0.0, w1, w2)
-        w7, w8 = _wide_sub(w5, w6, w3, w4)
-        w9 = w7 + w8
-        w10 = 0.5 * w9
-        w11 = t3 * w10
-        w12 = t4 * w10
         t5, t6 = _sincos(theta)
-        w13, w14 = _wide_mul(t5, 0.0, t5, 0.0)
-        w15, w16 = _wide_mul(t6, 0.0, t6, 0.0)
-        w17, w18 = _wide_sub(1.0, 0.0, w13, w14)
-        w19, w20 = _wide_sub(w17, w18, w15, w16)
-        w21 = w19 + w20
-        w22 = 0.5 * w21
-        w23 = t5 * w22
-        w24 = t6 * w22
-        t7, w25 = _wide_mul(t3, w11, t3, w11)
-        t8, w26 = _wide_mul(L, 0.0, t4, w12)
-        t9, w27 = _wide_mul(t5, w23, t8, w26)
-        t10, w28 = _wide_mul(t9, w27, t9, w27)
-        t11, w29 = _wide_mul(t6, w24, t8, w26)
-        t12, w30 = _wide_mul(t11, w29, t11, w29)
-        t13, w31 = _wide_add(t10, w28, t12, w30)
-        t14, w32 = _wide_add(t7, w25, t13, w31)
-        t15, w33 = _wide_mul(t8, w26, t8, w26)
-        t16, w34 = _wide_add(1.0, 0.0, t15, w33)
-        t17 = t16 * 7.888609052210118e-31
-        status = _first(status, ~np.asarray(t14 > t17), 2)
-        t29 = np.abs(m_2)
-        t27 = np.abs(Theta_2)
-        t28 = np.abs(Theta_1)
-        t30 = np.abs(L)
-        t31, w36 = _wide_mul(t30, 0.0, t30, 0.0)
-        t32, w37 = _wide_mul(t29, 0.0, t31, w36)
-        t33, w38 = _wide_add(t28, 0.0, t32, w37)
-        t34, w39 = _wide_mul(t7, w25, t33, w38)
-        t35 = np.abs(m_1)
-        t36, w40 = _wide_add(t35, 0.0, t29, 0.0)
-        t37, w41 = _wide_mul(t36, w40, t13, w31)
-        t38, w42 = _wide_add(t34, w39, t37, w41)
-        t39, w43 = _wide_mul(t27, 0.0, t38, w42)
-        t40 = t39 * 8.881784197001252e-16
-        t19, w45 = _wide_mul(m_1, 0.0, t4, w12)
-        t18, w46 = _wide_mul(Theta_1, 0.0, t7, w25)
-        t20, w47 = _wide_mul(t4, w12, t19, w45)
-        t21, w48 = _wide_add(m_2, 0.0, t20, w47)
-        t22, w49 = _wide_mul(L, 0.0, t21, w48)
-        t23, w50 = _wide_mul(L, 0.0, t22, w49)
-        t24, w51 = _wide_add(t18, w46, t23, w50)
-        t25, w52 = _wide_mul(Theta_2, 0.0, t24, w51)
-        t26 = np.abs(t25)
-        status = _first(status, ~np.asarray(t26 > t40), 5)
-        t42, w55 = _wide_mul(L, 0.0, Theta_2, 0.0)
-        t43, w56 = _wide_mul(t5, w23, t4, w12)
-        t44, w57 = _wide_mul(t6, w24, t3, w11)
-        t45, w58 = _wide_add(t43, w56, t44, w57)
-        t54, w59 = _wide_mul(t6, w24, t4, w12)
-        t55, w60 = _wide_mul(t5, w23, t3, w11)
-        t56, w61 = _wide_sub(t54, w59, t55, w60)
-        t46, w62 = _wide_mul(m_2, 0.0, t45, w58)
-        t47, w63 = _wide_mul(t5, w23, t19, w45)
-        t48, w64 = _wide_add(t46, w62, t47, w63)
-        t49, w65 = _wide_mul(t42, w55, t48, w64)
-        t86, w66 = _wide_mul(m_2, 0.0, t56, w61)
-        t87, w67 = _wide_mul(t6, w24, t19, w45)
-        t88, w68 = _wide_add(t86, w66, t87, w67)
-        t89, w69 = _wide_mul(t42, w55, t88, w68)
-        t41, w70 = _wide_div(1.0, 0.0, t25, w52)
-        t52, w71 = _wide_mul(theta_dot, 0.0, t6, w24)
-        t61, w72 = _wide_mul(theta_dot, 0.0, t5, w23)
-        t72, w73 = _wide_mul(L, 0.0, t3, w11)
-        t62, w74 = _wide_mul(y_dot, 0.0, t61, w72)
-        t63, w75 = _wide_mul(x_dot, 0.0, t52, w71)
-        t64, w76 = _wide_add(t62, w74, t63, w75)
-        t73, w77 = _wide_mul(theta_dot, 0.0, t72, w73)
-        t74, w78 = _wide_mul(phi_dot, 0.0, t73, w77)
-        t75, w79 = _wide_add(theta_dot, 0.0, phi_dot, 0.0)
-        t76, w80 = _wide_mul(x_dot, 0.0, t56, w61)
-        t77, w81 = _wide_mul(y_dot, 0.0, t45, w58)
-        t78, w82 = _wide_add(t76, w80, t77, w81)
-        t79, w83 = _wide_mul(t75, w79, t78, w82)
-        t80, w84 = _wide_add(t74, w78, t79, w83)
-        t71, w85 = _wide_mul(t64, w76, t56, w61)
-        t81, w86 = _wide_mul(t6, w24, t80, w84)
-        t82, w87 = _wide_sub(t71, w85, t81, w86)
-        t91, w88 = _wide_mul(t5, w23, t80, w84)
-        t92, w89 = _wide_mul(t64, w76, t45, w58)
-        t93, w90 = _wide_sub(t91, w88, t92, w89)
-        t90, w91 = _wide_mul(t82, w87, t89, w69)
-        t94, w92 = _wide_mul(t49, w65, t93, w90)
-        t95, w93 = _wide_sub(t90, w91, t94, w92)
-        t96, w94 = _wide_mul(t41, w70, t95, w93)
-        t116, w95 = _wide_mul(K_f, 0.0, t72, w73)
-        t50, w96 = _wide_mul(L, 0.0, m_2, 0.0)
-        t118, w97 = _wide_mul(t50, w96, t64, w76)
-        t67, w98 = _wide_mul(L, 0.0, t50, w96)
-        t68, w99 = _wide_add(Theta_1, 0.0, t67, w98)
-        t117, w100 = _wide_mul(t68, w99, t96, w94)
-        t119, w101 = _wide_sub(t117, w100, t118, w97)
-        t120, w102 = _wide_add(t116, w95, t119, w101)
-        t97, w103 = _wide_mul(t50, w96, t96, w94)
-        t51, w104 = _wide_mul(theta_dot, 0.0, t50, w96)
-        t53, w105 = _wide_mul(t51, w104, t52, w71)
-        t57, w106 = _wide_mul(K_f, 0.0, t56, w61)
-        t58, w107 = _wide_add(t53, w105, t57, w106)
-        t102, w108 = _wide_mul(t51, w104, t61, w72)
-        t103, w109 = _wide_mul(K_f, 0.0, t45, w58)
-        t104, w110 = _wide_add(t102, w108, t103, w109)
-        t65, w111 = _wide_mul(t8, w26, t64, w76)
-        t69, w112 = _wide_mul(t3, w11, t68, w99)
-        t70, w113 = _wide_mul(Theta_2, 0.0, t69, w112)
-        t66, w114 = _wide_mul(t65, w111, t49, w65)
-        t83, w115 = _wide_mul(t70, w113, t82, w87)
-        t84, w116 = _wide_sub(t66, w114, t83, w115)
-        t105, w117 = _wide_mul(t70, w113, t93, w90)
-        t106, w118 = _wide_mul(t65, w111, t89, w69)
-        t107, w119 = _wide_sub(t105, w117, t106, w118)
-        t59, w120 = _wide_add(m_1, 0.0, m_2, 0.0)
-        t60, w121 = _wide_mul(t59, w120, t41, w70)
-        t85, w122 = _wide_mul(t60, w121, t84, w116)
-        t98, w123 = _wide_mul(t5, w23, t97, w103)
-        t99, w124 = _wide_sub(t85, w122, t98, w123)
-        t100, w125 = _wide_add(t58, w107, t99, w124)
-        t108, w126 = _wide_mul(t60, w121, t107, w119)
-        t109, w127 = _wide_mul(t6, w24, t97, w103)
-        t110, w128 = _wide_add(t108, w126, t109, w127)
-        t111, w129 = _wide_add(t104, w110, t110, w128)
-        t115, w130 = _wide_mul(t70, w113, t100, w125)
-        t121, w131 = _wide_mul(t89, w69, t120, w102)
-        t122, w132 = _wide_sub(t115, w130, t121, w131)
-        t125, w133 = _wide_mul(t70, w113, t111, w129)
-        t126, w134 = _wide_mul(t49, w65, t120, w102)
-        t127, w135 = _wide_sub(t125, w133, t126, w134)
-        t101, w136 = _wide_mul(t49, w65, t100, w125)
-        t112, w137 = _wide_mul(t89, w69, t111, w129)
-        t113, w138 = _wide_sub(t101, w136, t112, w137)
-        t114, w139 = _wide_mul(t8, w26, t113, w138)
-        t123, w140 = _wide_mul(t56, w61, t122, w132)
-        t124, w141 = _wide_sub(t114, w139, t123, w140)
-        t128, w142 = _wide_mul(t45, w58, t127, w135)
-        t129, w143 = _wide_sub(t124, w141, t128, w142)
-        t130, w144 = _wide_mul(t41, w70, t129, w143)
-        t131, w145 = _wide_mul(t5, w23, t127, w135)
-        t132, w146 = _wide_mul(t6, w24, t122, w132)
-        t133, w147 = _wide_add(t131, w145, t132, w146)
-        t134, w148 = _wide_mul(t41, w70, t133, w147)
-        w149 = t130 + w144
-        w150 = t134 + w148
+        t7 = t3 * t3
+        t8 = L * t4
+        t9 = t8 * t8
+        t10 = t7 + t9
+        t11 = 1.0 + t9
+        t12 = t11 * 7.888609052210118e-31
+        status = _first(status, ~np.asarray(t10 > t12), 2)
+        t24 = np.abs(m_2)
+        t22 = np.abs(Theta_2)
+        t23 = np.abs(Theta_1)
+        t25 = np.abs(L)
+        t26 = t25 * t25
+        t27 = t24 * t26
+        t28 = t23 + t27
+        t29 = t7 * t28
+        t30 = np.abs(m_1)
+        t31 = t30 + t24
+        t32 = t9 * t31
+        t33 = t29 + t32
+        t34 = t22 * t33
+        t35 = t34 * 8.881784197001252e-16
+        t13 = Theta_1 * t7
+        t14 = m_1 * t4
+        t15 = t4 * t14
+        t16 = m_2 + t15
+        t17 = L * t16
+        t18 = L * t17
+        t19 = t13 + t18
+        t20 = Theta_2 * t19
+        t21 = np.abs(t20)
+        status = _first(status, ~np.asarray(t21 > t35), 5)
+        t36 = t4 * t4
+        t37 = m_1 * t36
+        t38 = m_2 + t37
+        t39 = L * t38
+        t40 = L * t39
+        t41 = t40 + t13
+        t42 = Theta_2 * t41
+        t43 = 1.0 / t42
+        t44 = L * Theta_2
+        t52 = m_1 + m_2
+        t45 = m_2 * t3
+        t46 = t44 * t45
+        t86 = t4 * t52
+        t87 = t44 * t86
+        t53 = x_dot * t6
+        t54 = y_dot * t5
+        t55 = t53 + t54
+        t56 = theta_dot * t55
+        t57 = t46 * t56
+        t64 = L * t3
+        t63 = t4 * t56
+        t65 = theta_dot * t64
+        t66 = phi_dot * t65
+        t67 = theta_dot + phi_dot
+        t68 = t6 * t4
+        t69 = t5 * t3
+        t70 = t68 - t69
+        t71 = x_dot * t70
+        t72 = t5 * t4
+        t73 = t6 * t3
+        t74 = t72 + t73
+        t75 = y_dot * t74
+        t76 = t71 + t75
+        t77 = t67 * t76
+        t78 = t66 + t77
+        t79 = t63 - t78
+        t89 = t3 * t57
+        t90 = t87 * t79
+        t91 = t89 + t90
+        t92 = t43 * t91
+        t48 = L * m_2
+        t88 = K_f * t3
+        t94 = t52 * t56
+        t93 = t48 * t92
+        t95 = t93 - t94
+        t96 = t88 + t95
+        t101 = K_f * t64
+        t103 = t48 * t56
+        t59 = L * t48
+        t60 = Theta_1 + t59
+        t102 = t60 * t92
+        t104 = t102 - t103
+        t105 = t101 + t104
+        t61 = t3 * t60
+        t62 = Theta_2 * t61
+        t58 = t8 * t57
+        t80 = t62 * t79
+        t81 = t58 - t80
+        t47 = K_f * t4
+        t49 = theta_dot * t48
+        t50 = theta_dot * t49
+        t51 = t47 + t50
+        t82 = t43 * t81
+        t83 = t52 * t82
+        t84 = t51 + t83
+        t100 = t62 * t84
+        t106 = t87 * t105
+        t107 = t100 - t106
+        t85 = t46 * t84
+        t97 = t87 * t96
+        t98 = t85 - t97
+        t99 = t8 * t98
+        t108 = t4 * t107
+        t109 = t99 - t108
+        t110 = t62 * t96
+        t111 = t46 * t105
+        t112 = t110 - t111
+        t113 = t3 * t112
+        t114 = t109 - t113
+        t115 = t43 * t114
+        t116 = t43 * t107
         entries = (
-            w149,
-            w150,
+            t115,
+            t116,
         )
         return _result("multipliers", status, batch, (2,), entries)
 

@@ -25,16 +25,16 @@
  * constraint_residual                  23      8      0      0      6      0
  * constraint_jacobian                   9     12      0      0      6      0
  * constraint_jacobian_dot              12     18      0      0      6      0
- * constraint_pseudoinverse            142    219     14      4      6      0
- * nullspace_projector                 122    199      9      4      6      0
+ * constraint_pseudoinverse            142    218     14      4      6      0
+ * nullspace_projector                 122    198      9      4      6      0
  * nullspace_projector_dot             383    549     14      4      6      0
  * weighted_pseudoinverse              286    491      1      0      6      0
- * weighted_nullspace_projector        224    351     22      4      6      0
+ * weighted_nullspace_projector        224    350     22      4      6      0
  * control_matrix                        0      0      0      0      0      0
  * projected_control_matrix            101    177      1      0      6      0
  * projected_control_pseudoinverse      55    124      1      0      6      0
  * orthogonal_complement                39     97      3      0      6      0
- * projected_mass_matrix               282    420      9      4      6      0
+ * projected_mass_matrix               282    419      9      4      6      0
  * projected_coriolis_matrix           714    987     14      4      6      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
@@ -43,13 +43,13 @@
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix               27     61      1      0      6      0
- * admissible_velocity                 109    163      9      4      6      0
- * admissible_acceleration             192    272     13      4      6      0
- * projected_configuration             276    326     29     11     12      0
+ * admissible_velocity                 109    162      9      4      6      0
+ * admissible_acceleration             192    271     13      4      6      0
+ * projected_configuration             276    322     29     11     12      0
  * inverse_dynamics                     51     79      3      0      5      0
  * inverse_dynamics_residual             0      0      0      0      0      0
- * forward_dynamics                    412    571     29      3      6      0
- * multipliers                         368    521     29      3      6      0
+ * forward_dynamics                    412    569     29      3      6      0
+ * multipliers                         368    519     29      3      6      0
  * energy                               20     31      0      0      3      0
  * singularity                          55     96     17      4      6      0
  * (changes of sign are not counted)

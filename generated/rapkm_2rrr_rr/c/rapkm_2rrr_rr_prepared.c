@@ -374,7 +374,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared(const double q[6], 
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
     const double t139 = t41 * t138;
-    const double t140 = t126 * t48;
+    const double t140 = t48 * t126;
     const double t153 = t43 * t152;
     const double t154 = t140 - t153;
     const double t155 = t139 + t154;

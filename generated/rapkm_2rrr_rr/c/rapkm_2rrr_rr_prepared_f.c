@@ -361,7 +361,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared_f(const float q[6],
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
     const float t139 = t41 * t138;
-    const float t140 = t126 * t48;
+    const float t140 = t48 * t126;
     const float t153 = t43 * t152;
     const float t154 = t140 - t153;
     const float t155 = t139 + t154;

@@ -296,7 +296,7 @@ void eva_constraint_jacobian_dot(void) {
 
 void eva_constraint_pseudoinverse(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t47, t86, t95, t151, t157, t216, t220. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t47, t86, t95, t151, t157, t221, t216. */
 void eva_constraint_pseudoinverse(void) {
     float q[6];
     rapkm_2rrr_rr_params_f p;
@@ -328,7 +328,7 @@ void eva_constraint_pseudoinverse(void) {
 
 void eva_nullspace_projector(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t47, t86, t95, t151, t157, t219. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t47, t86, t95, t151, t157, t218. */
 void eva_nullspace_projector(void) {
     float q[6];
     rapkm_2rrr_rr_params_f p;
@@ -431,7 +431,7 @@ void eva_weighted_pseudoinverse(void) {
 
 void eva_weighted_nullspace_projector(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t56, t95, t104, t163, t172, t232, t333, t474. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t56, t95, t104, t163, t172, t231, t332, t473. */
 void eva_weighted_nullspace_projector(void) {
     float q[6];
     rapkm_2rrr_rr_params_f p;
@@ -590,7 +590,7 @@ void eva_orthogonal_complement(void) {
 
 void eva_projected_mass_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t56, t95, t104, t163, t172, t234. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t56, t95, t104, t163, t172, t233. */
 void eva_projected_mass_matrix(void) {
     float q[6];
     rapkm_2rrr_rr_params_f p;
@@ -902,7 +902,7 @@ void eva_minimal_control_matrix(void) {
 
 void eva_admissible_velocity(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t47, t86, t95, t151, t157, t219. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t47, t86, t95, t151, t157, t218. */
 void eva_admissible_velocity(void) {
     float q[6];
     float qd[6];
@@ -941,7 +941,7 @@ void eva_admissible_velocity(void) {
 
 void eva_admissible_acceleration(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t47, t86, t95, t151, t157, t252, t254. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t47, t86, t95, t151, t157, t251, t253. */
 void eva_admissible_acceleration(void) {
     float q[6];
     float qd[6];
@@ -987,7 +987,7 @@ void eva_admissible_acceleration(void) {
 
 void eva_projected_configuration(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t79, t83, t109, t155, t151, t199, t258, t255, t47, t305, t113, t205, t307, t426, t432, t480, t489, t549, t555, t616, t618. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t79, t83, t109, t155, t151, t199, t258, t255, t47, t113, t205, t302, t341, t424, t430, t478, t487, t547, t553, t611, t638. */
 void eva_projected_configuration(void) {
     float q[6];
     rapkm_2rrr_rr_params_f p;
@@ -1110,7 +1110,7 @@ void eva_inverse_dynamics_residual(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t56, t95, t104, t163, t172, t286, t278, t324, t361, t261, t409, t491, t501, t506, t477. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t56, t95, t104, t180, t168, t284, t276, t322, t359, t259, t407, t489, t499, t504, t475. */
 void eva_forward_dynamics(void) {
     float q[6];
     float qd[6];
@@ -1153,7 +1153,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t56, t95, t104, t163, t172, t286, t278, t261, t324, t361, t409, t491, t501, t506, t477. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t56, t95, t104, t180, t168, t284, t276, t259, t322, t359, t407, t489, t499, t504, t475. */
 void eva_multipliers(void) {
     float q[6];
     float qd[6];
