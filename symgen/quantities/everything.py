@@ -17,7 +17,7 @@ from symgen.runtime.effort import SCALAR, TooLongError, at_most, done, worth_try
 # Counted cost of all quantities together: what takes under a minute to derive, to verify and to compile.
 OPERATIONS_OF_ALL = 70_000
 # Counted cost of one quantity by a method that loses digits: with twice as many it takes some twenty times as long.
-WIDE_OPERATIONS = 4_000
+WIDE_OPERATIONS = 2_000
 # The same for accelerations and multipliers, which may take more of that than the others.
 WIDE_MAIN_OPERATIONS = 10_000
 # Scalars that are made by one method for one quantity before the others are tried.
