@@ -19,10 +19,10 @@ from flint import arb
 from symgen.ir.kernel import UNIT_ROUNDOFF, Kernel, Literal, Operand, Statement
 from symgen.ir.wide_functions import is_wide, plain_operation
 from symgen.verify.expected import Expected
+from symgen.verify.reference.arithmetic.tape import ball, precision
 from symgen.verify.reference.closing import onto_manifold
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference.system import ParameterValues
-from symgen.verify.reference.tape import ball, precision
 
 # Binary digits that functions are compared in.
 EXACT_BITS = 256

@@ -12,8 +12,8 @@ from typing import Any, TypeAlias
 
 from flint import arb_mat
 
+from symgen.verify.reference.arithmetic.linear import column, norm
 from symgen.verify.reference.evaluation import Evaluation
-from symgen.verify.reference.linear import column, norm
 from symgen.verify.reference.reference import REFERENCE_BITS, Reference
 from symgen.verify.sampling.states import Sample
 from symgen.verify.tolerance import FACTOR, Expectation

@@ -22,9 +22,9 @@ from flint import arb, arb_mat
 
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
 from symgen.model.expressions.expression import Pi
-from symgen.verify.reference.linear import norm
+from symgen.verify.reference.arithmetic.linear import norm
+from symgen.verify.reference.arithmetic.tape import ball, precision
 from symgen.verify.reference.reference import Reference, State
-from symgen.verify.reference.tape import ball, precision
 
 # Units of error that a correct kernel may be away.
 FACTOR = 16.0

@@ -24,11 +24,11 @@ from symgen.methods.derivation import Derivation
 from symgen.methods.spaces import derivations
 from symgen.symbolic.evaluate import Evaluator
 from symgen.verify.reference.allocation import internal_force
+from symgen.verify.reference.arithmetic.linear import column, norm, solve
+from symgen.verify.reference.arithmetic.tape import ball, precision
 from symgen.verify.reference.evaluation import Evaluation
-from symgen.verify.reference.linear import column, norm, solve
 from symgen.verify.reference.quantities import QUANTITIES
 from symgen.verify.reference.reference import State
-from symgen.verify.reference.tape import ball, precision
 from symgen.verify.run import generated_sources, verify
 from symgen.verify.sampling.states import sample_states
 from symgen.verify.tolerance import FACTOR, expectations

@@ -20,7 +20,7 @@ from symgen.validity.search import ZeroSearch, symbols
 from symgen.verify.reference import closing as reference_closing
 from symgen.verify.reference import evaluation as reference_evaluation
 from symgen.verify.reference import linear as reference_linear
-from symgen.verify.reference.linear import solve
+from symgen.verify.reference.arithmetic.linear import solve
 from symgen.verify.reference.reference import Reference
 from symgen.verify.sampling.states import sample_states
 

@@ -35,8 +35,8 @@ from symgen.ir.wide_angles import MOST_PARTS
 from symgen.ir.wide_functions import WIDE, wide_function
 from symgen.verify.exactness import EXACT, ExactFunction
 from symgen.verify.many_states import run_many
+from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.reference import State
-from symgen.verify.reference.tape import precision
 
 SCALARS: tuple[Scalar, ...] = ("float64", "float32")
 

@@ -25,8 +25,8 @@ from symgen.methods.selection import Methods
 from symgen.model.configurations.mechanics import default_values
 from symgen.model.load import load_model
 from symgen.validity.resolution import distinguishable
+from symgen.verify.reference.arithmetic.tape import ball, precision
 from symgen.verify.reference.reference import REFERENCE_BITS, Reference, State
-from symgen.verify.reference.tape import ball, precision
 
 M = np.array([[80.81722, 2.31941332208709], [2.31941332208709, 0.29784188199686]])
 K0 = np.array([[-80.95, -2.59951685249872], [-2.59951685249872, -0.80329488458618]])

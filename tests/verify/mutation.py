@@ -10,7 +10,7 @@ from typing import Any
 
 from symgen.ir.kernel import Kernel, Literal, Local, Operand, Program, Statement
 from symgen.verify.exactness import EXACT
-from symgen.verify.reference.tape import ball
+from symgen.verify.reference.arithmetic.tape import ball
 
 FLIPPED = {"add": "sub", "sub": "add"}
 SWAPPED = ("sub", "div", "atan2", "ratio_or_zero")

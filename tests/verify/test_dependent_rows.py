@@ -14,11 +14,11 @@ from symgen.closedform.mechanics import ExactSystem, make_translator
 from symgen.closedform.points import generic_points
 from symgen.model.kinematics.energy_form import energy_form
 from symgen.model.load import load_text
+from symgen.verify.reference.arithmetic.linear import determinant, norm, right_pseudoinverse, rows_of, solve
+from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.closing import closed
-from symgen.verify.reference.linear import determinant, norm, right_pseudoinverse, rows_of, solve
 from symgen.verify.reference.reference import Reference
 from symgen.verify.reference.system import default_parameters
-from symgen.verify.reference.tape import precision
 from symgen.verify.sampling.states import sample_states
 
 LEVERS = """\

@@ -10,9 +10,8 @@ from flint import arb, arb_mat
 
 from symgen.model.load import load_text
 from symgen.verify.reference import system as reference_system
-from symgen.verify.reference.adjoints import shorter_gradients
-from symgen.verify.reference.driven import Driven, blocks_of_inputs
-from symgen.verify.reference.linear import (
+from symgen.verify.reference.arithmetic.adjoints import shorter_gradients
+from symgen.verify.reference.arithmetic.linear import (
     determinant,
     identity,
     independent_rows,
@@ -20,11 +19,12 @@ from symgen.verify.reference.linear import (
     pseudoinverse,
     right_pseudoinverse,
 )
+from symgen.verify.reference.arithmetic.tape import FUNCTIONS, Tape, precision, replay_of
+from symgen.verify.reference.driven import Driven, blocks_of_inputs
 from symgen.verify.reference.manifold import ManifoldRanks
 from symgen.verify.reference.parts import Part
 from symgen.verify.reference.reference import Reference, State
 from symgen.verify.reference.system import ReferenceSystem
-from symgen.verify.reference.tape import FUNCTIONS, Tape, precision, replay_of
 from symgen.verify.reference.translation import literal_values
 from symgen.verify.sampling import ranks_in_lanes
 from symgen.verify.sampling.ranks_in_lanes import RankedPart, is_regular

@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 
 from symgen.model.load import load_text
+from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.reference import Reference
 from symgen.verify.reference.system import ReferenceSystem
-from symgen.verify.reference.tape import precision
 from symgen.verify.sampling.regular import FEWEST_STATES, SAMPLING_BITS, RegularStateSearch
 
 # Eight joints in space, held at a ball and at a pin, of which one may turn little; a ninth turns freely beside them.

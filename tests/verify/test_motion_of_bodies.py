@@ -12,11 +12,11 @@ import pytest
 import shipped
 
 from symgen.model.load import load_model
+from symgen.verify.reference.arithmetic.linear import norm
+from symgen.verify.reference.arithmetic.tape import ball, precision
 from symgen.verify.reference.evaluation import Evaluation
-from symgen.verify.reference.linear import norm
 from symgen.verify.reference.reference import Reference, State
 from symgen.verify.reference.system import default_parameters
-from symgen.verify.reference.tape import ball, precision
 
 ELEMENTS = Path(__file__).resolve().parents[1] / "mechanisms"
 

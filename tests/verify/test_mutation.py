@@ -14,9 +14,9 @@ from mutation import Mutant, exact_outputs, mutations
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Kernel
 from symgen.verify.comparison import compare
-from symgen.verify.reference.linear import norm
+from symgen.verify.reference.arithmetic.linear import norm
+from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.reference import Reference, State
-from symgen.verify.reference.tape import precision
 from symgen.verify.running.compile import Outcome
 from symgen.verify.sampling.states import Sample, sample_states
 from symgen.verify.tolerance import FACTOR, Expectation, expectations

@@ -7,11 +7,11 @@ from dataclasses import replace
 import pytest
 
 from symgen.model.load import load_text
-from symgen.verify.reference.linear import norm
+from symgen.verify.reference.arithmetic.linear import norm
+from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.measures import measures_of_parts
 from symgen.verify.reference.parts import Part, parts
 from symgen.verify.reference.reference import Reference
-from symgen.verify.reference.tape import precision
 from symgen.verify.sampling.states import sample_states
 
 MODEL = """model: side_by_side

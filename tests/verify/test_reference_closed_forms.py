@@ -12,12 +12,12 @@ from flint import arb, arb_mat
 from mechanisms import build, double_pendulum, skate, slider_crank, three_cranks
 
 from symgen.model.model import Model
+from symgen.verify.reference.arithmetic.linear import column, identity, norm, pseudoinverse
+from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.closing import onto_manifold
-from symgen.verify.reference.linear import column, identity, norm, pseudoinverse
 from symgen.verify.reference.manifold import ManifoldRanks, starts
 from symgen.verify.reference.reference import REFERENCE_DIGITS, Reference, ReferenceValueError, State
 from symgen.verify.reference.system import default_parameters
-from symgen.verify.reference.tape import precision
 
 BITS = 256
 

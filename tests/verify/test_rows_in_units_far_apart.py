@@ -10,10 +10,10 @@ from flint import arb, arb_mat
 
 from symgen.ir.kernel import Scalar
 from symgen.model.load import load_text
-from symgen.verify.reference.linear import independent_rows, right_pseudoinverse
+from symgen.verify.reference.arithmetic.linear import independent_rows, right_pseudoinverse
+from symgen.verify.reference.arithmetic.tape import ball, precision
 from symgen.verify.reference.manifold import exceeds
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
-from symgen.verify.reference.tape import ball, precision
 from symgen.verify.sampling.states import rounded, sample_states
 from symgen.verify.tolerance import expectations
 

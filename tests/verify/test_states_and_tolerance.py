@@ -15,9 +15,9 @@ from mechanisms import build, double_pendulum, skate, slider_crank, three_cranks
 from symgen.model.expressions.expression import Pi
 from symgen.model.load import load_text
 from symgen.verify.expected import Expected
-from symgen.verify.reference.linear import column, norm
+from symgen.verify.reference.arithmetic.linear import column, norm
+from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.reference import Reference, State
-from symgen.verify.reference.tape import precision
 from symgen.verify.sampling.states import VerificationError, affordable_states, rounded, sample_states
 from symgen.verify.tolerance import expectations, perturbed
 

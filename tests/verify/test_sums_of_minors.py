@@ -8,9 +8,9 @@ from itertools import combinations
 import pytest
 from flint import arb, arb_mat
 
-from symgen.verify.reference.blocks import sum_of_minors
-from symgen.verify.reference.linear import columns_of, determinant, rows_of
-from symgen.verify.reference.tape import precision
+from symgen.verify.reference.arithmetic.blocks import sum_of_minors
+from symgen.verify.reference.arithmetic.linear import columns_of, determinant, rows_of
+from symgen.verify.reference.arithmetic.tape import precision
 
 
 @pytest.mark.parametrize("size", [3, 4])

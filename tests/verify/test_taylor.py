@@ -7,8 +7,8 @@ from fractions import Fraction
 import pytest
 from flint import arb
 
-from symgen.verify.reference.tape import Tape, ball, precision, replay_of
-from symgen.verify.reference.taylor import CONSTANT, Polynomial, Taylor
+from symgen.verify.reference.arithmetic.tape import Tape, ball, precision, replay_of
+from symgen.verify.reference.arithmetic.taylor import CONSTANT, Polynomial, Taylor
 
 FUNCTIONS = ("sin", "cos", "tan", "asin", "acos", "atan", "sqrt", "exp", "log", "sinh", "cosh", "tanh")
 POINT = 0.4

@@ -17,7 +17,7 @@ from flint import arb, arb_mat, fmpq
 from symgen.model.expressions.expression import Name
 from symgen.model.kinematics.energy_form import energy_form
 from symgen.model.model import Model
-from symgen.verify.reference.linear import determinant
+from symgen.verify.reference.arithmetic.linear import determinant
 from symgen.verify.reference.reference import Reference
 
 if TYPE_CHECKING:

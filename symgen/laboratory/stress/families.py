@@ -12,9 +12,9 @@ from symgen.laboratory.stress.variants.dimensions import parameter_dimensions
 from symgen.laboratory.stress.zeros import BITS as PLACE_BITS
 from symgen.laboratory.stress.zeros import Place, places
 from symgen.model.model import Model
+from symgen.verify.reference.arithmetic.tape import ball, precision
 from symgen.verify.reference.closing import onto_manifold
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
-from symgen.verify.reference.tape import ball, precision
 from symgen.verify.sampling.states import sample_states
 
 Kind: TypeAlias = Literal[

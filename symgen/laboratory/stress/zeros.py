@@ -11,12 +11,12 @@ from flint import arb
 
 from symgen.laboratory.stress.determinants import Trouble
 from symgen.validity.descent import Evaluated, zero_beside
+from symgen.verify.reference.arithmetic.linear import column, norm
+from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.closing import onto_manifold
-from symgen.verify.reference.linear import column, norm
 from symgen.verify.reference.manifold import starts
 from symgen.verify.reference.reference import Reference
 from symgen.verify.reference.system import default_parameters
-from symgen.verify.reference.tape import precision
 
 BITS = 384
 STARTS = 16

@@ -12,8 +12,8 @@ from typing import Any
 from flint import arb, arb_mat
 
 from symgen.model.model import Allocation
+from symgen.verify.reference.arithmetic.linear import column, columns_of, determinant, pseudoinverse, solve
 from symgen.verify.reference.evaluation import Evaluation
-from symgen.verify.reference.linear import column, columns_of, determinant, pseudoinverse, solve
 
 
 def allocated(e: Evaluation, allocation: Allocation) -> Any:

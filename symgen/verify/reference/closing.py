@@ -8,7 +8,7 @@ from typing import Any
 
 from flint import arb_mat
 
-from symgen.verify.reference.linear import column, identity, norm
+from symgen.verify.reference.arithmetic.linear import column, identity, norm
 from symgen.verify.reference.parts import Part, piece, placed
 from symgen.verify.reference.system import ReferenceSystem
 

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from symgen.verify.reference.linear import determinant, solve
+from symgen.verify.reference.arithmetic.linear import determinant, solve
 from symgen.verify.reference.parts import Part, parts, piece, placed
 
 

@@ -11,15 +11,15 @@ from dataclasses import dataclass, field
 from functools import cached_property, wraps
 from typing import Any, TypeAlias
 
-from symgen.verify.reference.blocks import pseudoinverse_of_parts, right_pseudoinverse_of_parts
-from symgen.verify.reference.driven import Driven
-from symgen.verify.reference.linear import (
+from symgen.verify.reference.arithmetic.blocks import pseudoinverse_of_parts, right_pseudoinverse_of_parts
+from symgen.verify.reference.arithmetic.linear import (
     column,
     columns_of,
     identity,
     rows_of,
     solve,
 )
+from symgen.verify.reference.driven import Driven
 from symgen.verify.reference.manifold import ManifoldRanks
 from symgen.verify.reference.parts import piece, placed
 from symgen.verify.reference.system import Configuration, ReferenceSystem

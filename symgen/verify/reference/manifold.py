@@ -9,8 +9,7 @@ from typing import Any
 
 from flint import arb_mat
 
-from symgen.verify.reference.closing import onto_manifold, powers
-from symgen.verify.reference.linear import (
+from symgen.verify.reference.arithmetic.linear import (
     RANK_NOISE,
     RANK_SIGNAL,
     independent_rows,
@@ -18,9 +17,10 @@ from symgen.verify.reference.linear import (
     right_pseudoinverse,
     rows_of,
 )
+from symgen.verify.reference.arithmetic.tape import precision
+from symgen.verify.reference.closing import onto_manifold, powers
 from symgen.verify.reference.parts import piece, placed
 from symgen.verify.reference.system import ReferenceSystem, default_parameters
-from symgen.verify.reference.tape import precision
 from symgen.verify.reference.translation import literal_values
 
 # Binary digits that ranks are told in.

@@ -15,11 +15,11 @@ from flint import arb_mat
 from symgen.model.expressions.expression import Expression, Number, Pi
 from symgen.model.mechanism import component
 from symgen.model.model import Model
-from symgen.verify.reference.bodies import BodyRows
-from symgen.verify.reference.frames import Frames
+from symgen.verify.reference.arithmetic.tape import Register, Replay, Tape, replay_of
+from symgen.verify.reference.arithmetic.taylor import CONSTANT, Polynomial, Taylor
+from symgen.verify.reference.mechanism.bodies import BodyRows
+from symgen.verify.reference.mechanism.frames import Frames
 from symgen.verify.reference.parts import Part
-from symgen.verify.reference.tape import Register, Replay, Tape, replay_of
-from symgen.verify.reference.taylor import CONSTANT, Polynomial, Taylor
 from symgen.verify.reference.translation import Moving, Translation, translation
 
 

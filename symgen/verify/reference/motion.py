@@ -17,11 +17,11 @@ from flint import arb_mat
 from symgen.model.expressions.expression import Number, Pi
 from symgen.model.mechanism import Body, component
 from symgen.model.model import Model
-from symgen.verify.reference.bodies import BodyJacobian, constants
-from symgen.verify.reference.frames import Frames
-from symgen.verify.reference.moved_bodies import MovedBodies
-from symgen.verify.reference.tape import Register, Tape, replay_of
-from symgen.verify.reference.taylor import CONSTANT, Monomial, Polynomial, Taylor
+from symgen.verify.reference.arithmetic.tape import Register, Tape, replay_of
+from symgen.verify.reference.arithmetic.taylor import CONSTANT, Monomial, Polynomial, Taylor
+from symgen.verify.reference.mechanism.bodies import BodyJacobian, constants
+from symgen.verify.reference.mechanism.frames import Frames
+from symgen.verify.reference.mechanism.moved_bodies import MovedBodies
 from symgen.verify.reference.translation import Moving, Translation, translation
 
 # The number of the one coordinate of polynomials in t; its rate is 1.

@@ -9,8 +9,8 @@ from collections.abc import Callable
 from typing import Any
 
 from symgen.verify.reference.allocation import allocated
+from symgen.verify.reference.arithmetic.linear import column, right_pseudoinverse
 from symgen.verify.reference.evaluation import Evaluation
-from symgen.verify.reference.linear import column, right_pseudoinverse
 from symgen.verify.reference.measures import actuation_measure, constraint_measure
 
 

@@ -18,13 +18,13 @@ from flint import ctx
 from symgen.model.availability import lacking
 from symgen.model.model import Model
 from symgen.model.quantities import ROWS
+from symgen.verify.reference.arithmetic.linear import square
+from symgen.verify.reference.arithmetic.tape import ball, precision
 from symgen.verify.reference.evaluation import Evaluation
-from symgen.verify.reference.linear import square
 from symgen.verify.reference.manifold import ManifoldRanks, generic_ranks
 from symgen.verify.reference.measures import measures_of_parts
 from symgen.verify.reference.quantities import QUANTITIES
 from symgen.verify.reference.system import ReferenceSystem
-from symgen.verify.reference.tape import ball, precision
 from symgen.verify.reference.translation import literal_values
 
 Exact: TypeAlias = int | float | Fraction | Any

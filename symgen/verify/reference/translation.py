@@ -13,9 +13,9 @@ from symgen.diagnostics import SymgenBug
 from symgen.model.expressions.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
 from symgen.model.mechanism import Mechanism, Quaternion, is_component
 from symgen.model.model import Model
+from symgen.verify.reference.arithmetic.tape import Register, ball
+from symgen.verify.reference.arithmetic.taylor import CONSTANT, Polynomial, Taylor
 from symgen.verify.reference.fixed_turns import is_known, sine_and_cosine
-from symgen.verify.reference.tape import Register, ball
-from symgen.verify.reference.taylor import CONSTANT, Polynomial, Taylor
 
 Moving: TypeAlias = Callable[[int], tuple[Polynomial, Polynomial]]
 

@@ -10,10 +10,10 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
+from symgen.verify.reference.arithmetic.tape import Replay
 from symgen.verify.reference.manifold import ROUNDED_DIRECTION
 from symgen.verify.reference.parts import Part
 from symgen.verify.reference.system import ReferenceSystem
-from symgen.verify.reference.tape import Replay
 from symgen.verify.sampling.lanes import Lanes
 
 # Newton steps onto V.

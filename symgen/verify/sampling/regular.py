@@ -16,12 +16,12 @@ from math import inf, isfinite, pi, sqrt
 from typing import Any
 
 from symgen.model.expressions.names import shown_names
+from symgen.verify.reference.arithmetic.tape import ball
 from symgen.verify.reference.closing import admissible, closed
 from symgen.verify.reference.manifold import exceeds, starts
 from symgen.verify.reference.parts import Part
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference.system import ParameterValues, default_parameters
-from symgen.verify.reference.tape import ball
 
 # Regular states that a verification needs.
 FEWEST_STATES = 8

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from math import hypot, isfinite, sqrt
 
+from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.closing import onto_manifold
 from symgen.verify.reference.manifold import exceeds
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference.system import ParameterValues
-from symgen.verify.reference.tape import precision
 from symgen.verify.sampling.regular import PROJECTED, REGULAR_SHARE, SAMPLING_BITS, floats, settled, values_at
 from symgen.verify.sampling.states import Sample
 

@@ -12,9 +12,9 @@ from typing import Any
 from symgen.ir.kernel import Scalar
 from symgen.model.quantities import PARTITION, ROWS
 from symgen.runtime.activity import working
+from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.quantities import RATES
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
-from symgen.verify.reference.tape import precision
 from symgen.verify.sampling.regular import (
     FEWEST_STATES,
     REGULAR_SHARE,

@@ -14,9 +14,9 @@ from typing import Any
 from symgen.laboratory.stress.families import SingularFamilies
 from symgen.laboratory.stress.variants.dimensions import Dimension, parameter_dimensions
 from symgen.records import dataclass
+from symgen.verify.reference.arithmetic.tape import ball, precision
 from symgen.verify.reference.closing import onto_manifold
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
-from symgen.verify.reference.tape import ball, precision
 from symgen.verify.sampling.states import sample_states
 
 BITS = 256

@@ -24,8 +24,8 @@ from symgen.laboratory.stress.variants.dimensions import (
 )
 from symgen.model.model import Model
 from symgen.model.quantities import MAIN
+from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.reference import Reference, State
-from symgen.verify.reference.tape import precision
 from symgen.verify.sampling.states import sample_states
 from symgen.verify.tolerance import FACTOR, expectations
 

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from symgen.diagnostics import SymgenBug
-from symgen.verify.reference.tape import Register, Tape, needed_for, operands
+from symgen.verify.reference.arithmetic.tape import Register, Tape, needed_for, operands
 
 # Operations backwards for one of the value, at most about.
 BACKWARDS = 4

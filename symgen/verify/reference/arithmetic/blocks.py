@@ -10,7 +10,7 @@ from typing import Any
 
 from flint import arb, arb_mat
 
-from symgen.verify.reference.linear import (
+from symgen.verify.reference.arithmetic.linear import (
     check_total,
     columns_of,
     determinant,

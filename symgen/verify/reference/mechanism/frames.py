@@ -12,7 +12,7 @@ from typing import TypeAlias
 
 from symgen.model.expressions.expression import Expression, Number
 from symgen.model.mechanism import WORLD, Body, Frame, Mechanism, Quaternion, Turn, Vector3, component
-from symgen.verify.reference.taylor import CONSTANT, Polynomial, Taylor
+from symgen.verify.reference.arithmetic.taylor import CONSTANT, Polynomial, Taylor
 
 Triple: TypeAlias = list[Polynomial]
 Rows: TypeAlias = list[Triple]

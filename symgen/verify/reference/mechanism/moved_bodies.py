@@ -12,9 +12,9 @@ from typing import Any
 
 from flint import arb_mat
 
-from symgen.verify.reference.adjoints import gradient
-from symgen.verify.reference.bodies import weighted
-from symgen.verify.reference.tape import Register, Tape, replay_of
+from symgen.verify.reference.arithmetic.adjoints import gradient
+from symgen.verify.reference.arithmetic.tape import Register, Tape, replay_of
+from symgen.verify.reference.mechanism.bodies import weighted
 
 
 class MovedBodies:

@@ -13,7 +13,7 @@ from math import factorial
 from typing import TypeAlias
 
 from symgen.diagnostics import SymgenBug
-from symgen.verify.reference.tape import Register, Tape
+from symgen.verify.reference.arithmetic.tape import Register, Tape
 
 Monomial: TypeAlias = tuple[tuple[int, ...], tuple[int, ...]]
 Polynomial: TypeAlias = dict[Monomial, Register]

@@ -1,0 +1,1 @@
+"""What the reference computes with: tapes of balls, truncated Taylor polynomials, linear algebra at known rank."""
