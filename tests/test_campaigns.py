@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from campaign_member import Member
 from campaign_members import all_members, counted, figures
-from campaigns import SAMPLED, Member, inputs_hash, read_record, run_and_record, run_changed
+from campaigns import SAMPLED, inputs_hash, read_record, run_and_record, run_changed
 
 ROOT = Path(__file__).resolve().parent.parent
 COUNT = "open('runs.txt', 'a').write('{0} ')"

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-from campaigns import Member
+from campaign_member import Member
 from imported import imported
 
 PYTHON = "python"  # this one, wherever it is

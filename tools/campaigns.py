@@ -20,10 +20,12 @@ import sys
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
+
+from campaign_member import Member
+from campaign_members import all_members
 
 ROOT = Path(__file__).resolve().parent.parent
 RECORD = "tests/campaigns.json"
@@ -32,23 +34,6 @@ LAST_LINES = 30
 # Folders of what Python and an installation make beside the sources.
 MADE = frozenset({"__pycache__", "compiled"})
 Record = dict[str, dict[str, dict[str, Any]]]
-
-
-@dataclass(frozen=True, slots=True)
-class Member:
-    """One run of a campaign: commands one after the other, the files that go in, and what is kept of the result.
-
-    A command that begins with `python` is run by this interpreter, so that hashes do not depend on where it is.
-    """
-
-    campaign: str
-    name: str
-    commands: tuple[tuple[str, ...], ...]
-    files: tuple[str, ...]
-    tools: tuple[str, ...] = ()
-    result: Callable[[Path], Any] = lambda _: "passed"
-    alone: bool = False
-    environment: tuple[tuple[str, str], ...] = ()
 
 
 def inputs_hash(root: Path, member: Member, version: Callable[[str], str]) -> str:
@@ -191,7 +176,6 @@ def _said(failed: Sequence[str]) -> int:
 
 def main(arguments: Sequence[str]) -> int:
     """The command line; see the top of this file."""
-    from campaign_members import all_members
 
     members = all_members(ROOT)
     match arguments:
