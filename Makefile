@@ -24,6 +24,7 @@ quick: lint
 lint: $(VENV)/installed
 	$(BIN)/ruff check .
 	$(BIN)/mypy
+	$(BIN)/mypy tools
 	$(BIN)/lint-imports
 
 # Every model; git keeps four whole folders, and of the others the derivation and the checksums of their files.

@@ -83,7 +83,8 @@ def picture(needs: dict[str, set[str]]) -> str:
     for row, names in reversed(list(enumerate(rows))):
         # below the middle of those that import it
         above = {name: [place[other][0] for other in place if name in lines_of[other]] for name in names}
-        names.sort(key=lambda name, above=above: (sum(above[name]) / len(above[name]) if above[name] else across, name))
+        below = {name: sum(places) / len(places) if places else across for name, places in above.items()}
+        names.sort(key=lambda name: (below[name], name))
         left = (across - len(names) * (WIDTH + GAP) + GAP) / 2
         for index, name in enumerate(names):
             place[name] = left + index * (WIDTH + GAP), down - MARGIN - HEIGHT - row * ROW

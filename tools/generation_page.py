@@ -56,7 +56,7 @@ def measured(row: Row, folder: Path) -> tuple[float, float]:
     return spent(command, REPEATS if row.seconds else 1)
 
 
-def spent(command: Sequence[str], repeats: int) -> tuple[float, float]:
+def spent(command: list[str], repeats: int) -> tuple[float, float]:
     """CPU seconds of a command and its processes, the least of several runs, and megabytes of the largest process."""
     seconds, megabytes = [], 0.0
     for _ in range(repeats):
@@ -98,7 +98,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         results, imports = [], []
         for row in ROWS:
-            imports.append(spent((sys.executable, "-c", "import sympy"), 1)[0])
+            imports.append(spent([sys.executable, "-c", "import sympy"], 1)[0])
             seconds, megabytes = measured(row, Path(folder))
             print(f"{row.model} {' '.join(row.options)}: {seconds:.2f} s, {megabytes:.0f} MB", flush=True)
             results.append((row, seconds, megabytes))

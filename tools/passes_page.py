@@ -13,7 +13,7 @@ from symgen.laboratory.zoo.campaign import write
 from symgen.laboratory.zoo.draws.families import draw
 from symgen.model.load import load_model
 from symgen.model.model import Model
-from symgen.quantities.everything import MAIN
+from symgen.model.quantities import MAIN
 
 TARGET = Path(__file__).resolve().parent.parent / "docs" / "passes.md"
 SEED, DRAWS = 14, 40
