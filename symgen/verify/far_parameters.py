@@ -39,9 +39,11 @@ BOUND_DIGITS = 2
 # Below and above, as signs of powers.
 SIDES = (-1, 1)
 # States at which that is looked at, fewer for long kernels.
-FAR_STATES = 4
+FAR_STATES = 8
 # Numbers that are held at a time, and that are worked out for the powers of one kernel.
 NUMBERS_HELD, MOST = 4_000_000, 60_000_000
+# Units of an estimate that count as lost: other states than these lose twice as much, and more.
+UNITS_LOST = FACTOR / 2
 # Up to this power the reference judges so many of the worst.
 JUDGED_UP_TO, JUDGED_FAR = 1.0, 2
 
@@ -239,7 +241,7 @@ class _Bounds:
         for scalar in self._kernels:
             units = np.concatenate([np.zeros(0), *(part[scalar] for part in parts)])
             order = np.argsort(-units, kind="stable")
-            found[scalar] = far.only(order[units[order] > FACTOR])
+            found[scalar] = far.only(order[units[order] > UNITS_LOST])
         return found
 
     def _parts(self, far: Far) -> Iterator[Far]:
