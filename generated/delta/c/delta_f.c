@@ -361,7 +361,7 @@ delta_status delta_inverse_dynamics_f(const float q[6], const float qd[6], const
     if (DELTA_RARELY_F(!(l_2 >= 0.024f))) {
         return DELTA_PARAMETER_RANGE;
     }
-    if (DELTA_RARELY_F(!(47.0f >= l_2))) {
+    if (DELTA_RARELY_F(!(8.5f >= l_2))) {
         return DELTA_PARAMETER_RANGE;
     }
     const float a_1 = q[0];
@@ -553,6 +553,10 @@ delta_status delta_inverse_dynamics_f(const float q[6], const float qd[6], const
 }
 
 delta_status delta_forward_dynamics_f(const float q[6], const float qd[6], const float u[3], const delta_params_f *p, float qdd[6]) {
+    const float l_2 = p->l_2;
+    if (DELTA_RARELY_F(!(l_2 >= 1.4e-08f))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const float a_1 = q[0];
     const float t1 = fabsf(a_1);
     const float a_2 = q[1];
@@ -1291,6 +1295,22 @@ delta_status delta_forward_dynamics_f(const float q[6], const float qd[6], const
 }
 
 delta_status delta_multipliers_f(const float q[6], const float qd[6], const float u[3], const delta_params_f *p, float lambda_B[3]) {
+    const float l_1 = p->l_1;
+    if (DELTA_RARELY_F(!(l_1 >= 0.00015f))) {
+        return DELTA_PARAMETER_RANGE;
+    }
+    const float l_2 = p->l_2;
+    if (DELTA_RARELY_F(!(l_2 >= 1.4e-08f))) {
+        return DELTA_PARAMETER_RANGE;
+    }
+    const float m_a = p->m_a;
+    if (DELTA_RARELY_F(!(63.0f >= m_a))) {
+        return DELTA_PARAMETER_RANGE;
+    }
+    const float m_r = p->m_r;
+    if (DELTA_RARELY_F(!(28.0f >= m_r))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const float a_1 = q[0];
     const float t1 = fabsf(a_1);
     const float a_3 = q[2];
@@ -1314,7 +1334,6 @@ delta_status delta_multipliers_f(const float q[6], const float qd[6], const floa
     const float t36 = 0.5f * r;
     const float x = q[3];
     const float t37 = x - t36;
-    const float l_1 = p->l_1;
     const float t7 = cosine[1];
     const float t100 = l_1 * t7;
     const float R = p->R;
@@ -1596,9 +1615,7 @@ delta_status delta_multipliers_f(const float q[6], const float qd[6], const floa
     if (DELTA_RARELY_F(!(t148 > t172))) {
         return DELTA_CONSTRAINT_RANK;
     }
-    const float m_r = p->m_r;
     const float t174 = 0.5f * m_r;
-    const float m_a = p->m_a;
     const float t173 = 0.25f * m_a;
     const float t175 = t173 + t174;
     const float t176 = l_1 * l_1;

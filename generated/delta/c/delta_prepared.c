@@ -406,7 +406,7 @@ delta_status delta_inverse_dynamics_prepared(const double q[6], const double qd[
     if (DELTA_RARELY(!(l_2 >= 4.3e-05))) {
         return DELTA_PARAMETER_RANGE;
     }
-    if (DELTA_RARELY(!(47.0 >= l_2))) {
+    if (DELTA_RARELY(!(8.5 >= l_2))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double a_1 = q[0];

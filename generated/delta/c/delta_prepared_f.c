@@ -393,7 +393,7 @@ delta_status delta_inverse_dynamics_prepared_f(const float q[6], const float qd[
     if (DELTA_RARELY_F(!(l_2 >= 0.024f))) {
         return DELTA_PARAMETER_RANGE;
     }
-    if (DELTA_RARELY_F(!(47.0f >= l_2))) {
+    if (DELTA_RARELY_F(!(8.5f >= l_2))) {
         return DELTA_PARAMETER_RANGE;
     }
     const float a_1 = q[0];

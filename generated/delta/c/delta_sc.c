@@ -266,7 +266,7 @@ delta_status delta_inverse_dynamics_sc(const delta_trig *sc, const double q[6], 
     if (DELTA_RARELY(!(l_2 >= 4.3e-05))) {
         return DELTA_PARAMETER_RANGE;
     }
-    if (DELTA_RARELY(!(47.0 >= l_2))) {
+    if (DELTA_RARELY(!(8.5 >= l_2))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double R = p->R;
@@ -1158,11 +1158,22 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
 }
 
 delta_status delta_multipliers_sc(const delta_trig *sc, const double q[6], const double qd[6], const double u[3], const delta_params *p, double lambda_B[3]) {
+    const double l_1 = p->l_1;
+    if (DELTA_RARELY(!(l_1 >= 0.00015))) {
+        return DELTA_PARAMETER_RANGE;
+    }
+    const double m_a = p->m_a;
+    if (DELTA_RARELY(!(63.0 >= m_a))) {
+        return DELTA_PARAMETER_RANGE;
+    }
+    const double m_r = p->m_r;
+    if (DELTA_RARELY(!(28.0 >= m_r))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const double r = p->r;
     const double t36 = 0.5 * r;
     const double x = q[3];
     const double t37 = x - t36;
-    const double l_1 = p->l_1;
     const double cos_a_3 = sc->cos_a_3;
     const double t100 = l_1 * cos_a_3;
     const double R = p->R;
@@ -1444,9 +1455,7 @@ delta_status delta_multipliers_sc(const delta_trig *sc, const double q[6], const
     if (DELTA_RARELY(!(t148 > t172))) {
         return DELTA_CONSTRAINT_RANK;
     }
-    const double m_r = p->m_r;
     const double t174 = 0.5 * m_r;
-    const double m_a = p->m_a;
     const double t173 = 0.25 * m_a;
     const double t175 = t173 + t174;
     const double t176 = l_1 * l_1;

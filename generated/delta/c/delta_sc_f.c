@@ -261,7 +261,7 @@ delta_status delta_inverse_dynamics_sc_f(const delta_trig_f *sc, const float q[6
     if (DELTA_RARELY_F(!(l_2 >= 0.024f))) {
         return DELTA_PARAMETER_RANGE;
     }
-    if (DELTA_RARELY_F(!(47.0f >= l_2))) {
+    if (DELTA_RARELY_F(!(8.5f >= l_2))) {
         return DELTA_PARAMETER_RANGE;
     }
     const float R = p->R;
@@ -434,6 +434,10 @@ delta_status delta_inverse_dynamics_sc_f(const delta_trig_f *sc, const float q[6
 }
 
 delta_status delta_forward_dynamics_sc_f(const delta_trig_f *sc, const float q[6], const float qd[6], const float u[3], const delta_params_f *p, float qdd[6]) {
+    const float l_2 = p->l_2;
+    if (DELTA_RARELY_F(!(l_2 >= 1.4e-08f))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const float r = p->r;
     const float t36 = 0.5f * r;
     const float x = q[3];
@@ -1153,11 +1157,26 @@ delta_status delta_forward_dynamics_sc_f(const delta_trig_f *sc, const float q[6
 }
 
 delta_status delta_multipliers_sc_f(const delta_trig_f *sc, const float q[6], const float qd[6], const float u[3], const delta_params_f *p, float lambda_B[3]) {
+    const float l_1 = p->l_1;
+    if (DELTA_RARELY_F(!(l_1 >= 0.00015f))) {
+        return DELTA_PARAMETER_RANGE;
+    }
+    const float l_2 = p->l_2;
+    if (DELTA_RARELY_F(!(l_2 >= 1.4e-08f))) {
+        return DELTA_PARAMETER_RANGE;
+    }
+    const float m_a = p->m_a;
+    if (DELTA_RARELY_F(!(63.0f >= m_a))) {
+        return DELTA_PARAMETER_RANGE;
+    }
+    const float m_r = p->m_r;
+    if (DELTA_RARELY_F(!(28.0f >= m_r))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const float r = p->r;
     const float t36 = 0.5f * r;
     const float x = q[3];
     const float t37 = x - t36;
-    const float l_1 = p->l_1;
     const float cos_a_3 = sc->cos_a_3;
     const float t100 = l_1 * cos_a_3;
     const float R = p->R;
@@ -1439,9 +1458,7 @@ delta_status delta_multipliers_sc_f(const delta_trig_f *sc, const float q[6], co
     if (DELTA_RARELY_F(!(t148 > t172))) {
         return DELTA_CONSTRAINT_RANK;
     }
-    const float m_r = p->m_r;
     const float t174 = 0.5f * m_r;
-    const float m_a = p->m_a;
     const float t173 = 0.25f * m_a;
     const float t175 = t173 + t174;
     const float t176 = l_1 * l_1;

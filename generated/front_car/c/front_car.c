@@ -2095,7 +2095,7 @@ front_car_status front_car_actuator_mass_matrix(const double q[4], const front_c
 
 front_car_status front_car_actuator_bias(const double q[4], const double qd[4], const front_car_params *p, double bias_nu[2]) {
     const double m_2 = p->m_2;
-    if (FRONT_CAR_RARELY(!(35000.0 >= m_2))) {
+    if (FRONT_CAR_RARELY(!(11000.0 >= m_2))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
     const double theta = q[2];

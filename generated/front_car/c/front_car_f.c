@@ -2088,7 +2088,7 @@ front_car_status front_car_actuator_mass_matrix_f(const float q[4], const front_
 
 front_car_status front_car_actuator_bias_f(const float q[4], const float qd[4], const front_car_params_f *p, float bias_nu[2]) {
     const float m_2 = p->m_2;
-    if (FRONT_CAR_RARELY_F(!(35000.0f >= m_2))) {
+    if (FRONT_CAR_RARELY_F(!(11000.0f >= m_2))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
     const float theta = q[2];

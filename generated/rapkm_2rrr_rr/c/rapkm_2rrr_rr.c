@@ -516,6 +516,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_applied_force(const double q[6], const double
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_residual(const double q[6], const rapkm_2rrr_rr_params *p, double g[4]) {
+    const double l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY(!(9.4 >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_1 = q[0];
     const double b_1 = q[3];
     const double t1 = a_1 + b_1;
@@ -556,7 +560,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_residual(const double q[6], const 
     const double t11 = cosine[0];
     const double t13 = cosine[1];
     const double t22 = t11 - t13;
-    const double l_1 = p->l_1;
     const double t23 = l_1 * t22;
     const double t15 = cosine[2];
     const double t17 = cosine[3];
@@ -3902,11 +3905,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse(const double q[6], con
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector(const double q[6], const rapkm_2rrr_rr_params *p, double N_BG[36]) {
     const double l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY(!(9.4 >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY(!(9.4 >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double a_2 = q[1];
@@ -6626,6 +6629,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix(const double q[6], cons
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix(const double q[6], const double qd[6], const rapkm_2rrr_rr_params *p, double C_tilde[36]) {
+    const double l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_2 = q[1];
     const double t1 = fabs(a_2);
     const double b_2 = q[4];
@@ -6670,7 +6677,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix(const double q[6], 
     const double l_2 = p->l_2;
     const double t22 = l_2 * t21;
     const double t23 = t22 * t22;
-    const double l_1 = p->l_1;
     const double t24 = l_1 * t7;
     const double t25 = t24 + t22;
     const double t26 = t25 * t25;
@@ -8543,6 +8549,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_applied_force(const double q[6], co
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix(const double q[6], const rapkm_2rrr_rr_params *p, double G_bar[4]) {
+    const double l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_1 = q[0];
     const double t1 = fabs(a_1);
     const double b_1 = q[3];
@@ -8584,7 +8594,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix(const double q[6], const 
     const double t13 = sine[3];
     const double t42 = t11 * t13;
     const double t43 = t41 - t42;
-    const double l_2 = p->l_2;
     const double t44 = l_2 * t43;
     const double t8 = cosine[0];
     const double t10 = cosine[1];
@@ -8825,7 +8834,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix(const double q[6], const 
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix(const double q[6], const double qd[6], const rapkm_2rrr_rr_params *p, double C_bar[4]) {
     const double l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY(!(94.0 >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY(!(30.0 >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const double l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double b_1 = q[3];
@@ -8869,7 +8882,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix(const double q[6], co
     const double t11 = sine[2];
     const double t24 = t9 * t11;
     const double t25 = t23 - t24;
-    const double l_2 = p->l_2;
     const double t26 = l_2 * t25;
     const double t19 = t10 * t11;
     const double t20 = t9 * t12;
@@ -10375,6 +10387,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_velocity(const double q[6], const 
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_acceleration(const double q[6], const double qd[6], const double qdd[6], const rapkm_2rrr_rr_params *p, double qdd_admissible[6]) {
+    const double l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY(!(94.0 >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_2 = q[1];
     const double b_2 = q[4];
     const double t1 = a_2 + b_2;
@@ -10415,7 +10431,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_acceleration(const double q[6], co
     const double l_2 = p->l_2;
     const double t10 = sine[0];
     const double t22 = l_2 * t10;
-    const double l_1 = p->l_1;
     const double t12 = sine[1];
     const double t24 = l_1 * t12;
     const double t25 = t24 + t22;
@@ -10958,11 +10973,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_acceleration(const double q[6], co
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration(const double q[6], const rapkm_2rrr_rr_params *p, double q_projected[6]) {
     const double l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY(!(16.0 >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY(!(16.0 >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY(!(5.3 >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double a_1 = q[0];
@@ -12011,6 +12026,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_residual(const double q[6], 
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics(const double q[6], const double qd[6], const double u[3], const rapkm_2rrr_rr_params *p, double qdd[6]) {
+    const double m_payload = p->m_payload;
+    const double size_of_m_payload = fabs(m_payload);
+    if (RAPKM_2RRR_RR_RARELY(!(100.0 >= size_of_m_payload))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double b_1 = q[3];
     const double t1 = fabs(b_1);
     const double a_1 = q[0];
@@ -12301,7 +12321,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics(const double q[6], const dou
     if (RAPKM_2RRR_RR_RARELY(!(J_elbow > t239))) {
         return RAPKM_2RRR_RR_MASS_RANK;
     }
-    const double m_payload = p->m_payload;
     const double t240 = m_payload * t227;
     const double J_elbow_1 = J_elbow + t240;
     const double t241 = fabs(m_payload);
@@ -13162,6 +13181,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics(const double q[6], const dou
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers(const double q[6], const double qd[6], const double u[3], const rapkm_2rrr_rr_params *p, double lambda_B[4]) {
+    const double m_payload = p->m_payload;
+    const double size_of_m_payload = fabs(m_payload);
+    if (RAPKM_2RRR_RR_RARELY(!(100.0 >= size_of_m_payload))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_2 = q[1];
     const double t1 = fabs(a_2);
     const double b_2 = q[4];
@@ -13436,7 +13460,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers(const double q[6], const double q
     const double t229 = 0.25 * t228;
     const double J_2 = p->J_2;
     const double J_elbow = J_2 + t229;
-    const double m_payload = p->m_payload;
     const double t240 = m_payload * t227;
     const double J_elbow_1 = J_elbow + t240;
     const double t248 = l_1 * l_1;
@@ -14311,6 +14334,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_energy(const double q[6], const double qd[6],
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_singularity(const double q[6], const rapkm_2rrr_rr_params *p, double measure[2]) {
+    const double l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_2 = q[1];
     const double b_2 = q[4];
     const double t1 = a_2 + b_2;
@@ -14348,7 +14375,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_singularity(const double q[6], const rapkm_2r
     double sine[6];
     double cosine[6];
     rapkm_2rrr_rr_sincos_group(6, angle, sine, cosine);
-    const double l_1 = p->l_1;
     const double t10 = sine[0];
     const double t22 = l_1 * t10;
     const double l_2 = p->l_2;

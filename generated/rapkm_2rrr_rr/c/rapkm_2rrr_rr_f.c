@@ -503,6 +503,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_applied_force_f(const float q[6], const float
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_residual_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float g[4]) {
+    const float l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(9.4f >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_1 = q[0];
     const float b_1 = q[3];
     const float t1 = a_1 + b_1;
@@ -543,7 +547,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_residual_f(const float q[6], const
     const float t11 = cosine[0];
     const float t13 = cosine[1];
     const float t22 = t11 - t13;
-    const float l_1 = p->l_1;
     const float t23 = l_1 * t22;
     const float t15 = cosine[2];
     const float t17 = cosine[3];
@@ -3889,11 +3892,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse_f(const float q[6], co
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float N_BG[36]) {
     const float l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY_F(!(9.4f >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(9.4f >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_2 = q[1];
@@ -5251,6 +5254,10 @@ static RAPKM_2RRR_RR_APART_F rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_contro
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_pseudoinverse_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float M_tilde_pinv[18]) {
+    const float l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(16.0f >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_2 = q[1];
     const float b_2 = q[4];
     const float t1 = a_2 + b_2;
@@ -5301,7 +5308,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_pseudoinverse_f(const float
     const float t29 = l_2 * t10;
     const float t17 = cosine[3];
     const float t36 = l_2 * t17;
-    const float l_1 = p->l_1;
     const float t20 = sine[5];
     const float t25 = l_1 * t20;
     const float t27 = t25 + t26;
@@ -5529,6 +5535,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_pseudoinverse_f(const float
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float F_B[12]) {
+    const float l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(16.0f >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float x_2 = p->x_2;
     if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 2e-07f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -5601,7 +5611,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement_f(const float q[6], con
     const float t62 = t12 * t9;
     const float t63 = t11 * t10;
     const float t64 = t62 + t63;
-    const float l_1 = p->l_1;
     const float t47 = l_1 * t18;
     const float t51 = l_2 * t50;
     const float t52 = t47 + t51;
@@ -6617,6 +6626,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix_f(const float q[6], con
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6], const float qd[6], const rapkm_2rrr_rr_params_f *p, float C_tilde[36]) {
+    const float l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_2 = q[1];
     const float t1 = fabsf(a_2);
     const float b_2 = q[4];
@@ -6661,7 +6674,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float l_2 = p->l_2;
     const float t22 = l_2 * t21;
     const float t23 = t22 * t22;
-    const float l_1 = p->l_1;
     const float t24 = l_1 * t7;
     const float t25 = t24 + t22;
     const float t26 = t25 * t25;
@@ -8534,6 +8546,14 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_applied_force_f(const float q[6], c
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float G_bar[4]) {
+    const float l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(16.0f >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float x_2 = p->x_2;
     if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 2e-07f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -8579,7 +8599,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix_f(const float q[6], const
     const float t13 = sine[3];
     const float t42 = t11 * t13;
     const float t43 = t41 - t42;
-    const float l_2 = p->l_2;
     const float t44 = l_2 * t43;
     const float t8 = cosine[0];
     const float t10 = cosine[1];
@@ -8589,7 +8608,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix_f(const float q[6], const
     const float t30 = t7 * t9;
     const float t31 = t29 - t30;
     const float t48 = l_2 * t31;
-    const float l_1 = p->l_1;
     const float t47 = l_1 * t8;
     const float t49 = t47 + t48;
     const float t50 = t49 * t49;
@@ -8820,7 +8838,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix_f(const float q[6], const
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix_f(const float q[6], const float qd[6], const rapkm_2rrr_rr_params_f *p, float C_bar[4]) {
     const float l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY_F(!(94.0f >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(16.0f >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float x_2 = p->x_2;
@@ -8868,7 +8890,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix_f(const float q[6], c
     const float t11 = sine[2];
     const float t24 = t9 * t11;
     const float t25 = t23 - t24;
-    const float l_2 = p->l_2;
     const float t26 = l_2 * t25;
     const float t19 = t10 * t11;
     const float t20 = t9 * t12;
@@ -9836,6 +9857,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_applied_force_f(const float q[6], con
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float M_bar[6]) {
+    const float l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(16.0f >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float x_2 = p->x_2;
     if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 2e-07f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -9908,7 +9933,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix_f(const float q[6], co
     const float t59 = t18 * t7;
     const float t60 = t17 * t8;
     const float t61 = t59 + t60;
-    const float l_1 = p->l_1;
     const float t47 = l_1 * t10;
     const float t48 = l_2 * t31;
     const float t49 = t47 + t48;
@@ -10378,6 +10402,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_velocity_f(const float q[6], const
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_acceleration_f(const float q[6], const float qd[6], const float qdd[6], const rapkm_2rrr_rr_params_f *p, float qdd_admissible[6]) {
+    const float l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(94.0f >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_2 = q[1];
     const float b_2 = q[4];
     const float t1 = a_2 + b_2;
@@ -10418,7 +10446,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_acceleration_f(const float q[6], c
     const float l_2 = p->l_2;
     const float t10 = sine[0];
     const float t22 = l_2 * t10;
-    const float l_1 = p->l_1;
     const float t12 = sine[1];
     const float t24 = l_1 * t12;
     const float t25 = t24 + t22;
@@ -10961,11 +10988,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_acceleration_f(const float q[6], c
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float q_projected[6]) {
     const float l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY_F(!(16.0f >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(16.0f >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(5.3f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_1 = q[0];
@@ -12014,6 +12041,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_residual_f(const float q[6],
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const float qd[6], const float u[3], const rapkm_2rrr_rr_params_f *p, float qdd[6]) {
+    const float m_payload = p->m_payload;
+    const float size_of_m_payload = fabsf(m_payload);
+    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= size_of_m_payload))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float b_1 = q[3];
     const float t1 = fabsf(b_1);
     const float a_1 = q[0];
@@ -12304,7 +12336,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     if (RAPKM_2RRR_RR_RARELY_F(!(J_elbow > t239))) {
         return RAPKM_2RRR_RR_MASS_RANK;
     }
-    const float m_payload = p->m_payload;
     const float t240 = m_payload * t227;
     const float J_elbow_1 = J_elbow + t240;
     const float t241 = fabsf(m_payload);
@@ -13165,6 +13196,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float qd[6], const float u[3], const rapkm_2rrr_rr_params_f *p, float lambda_B[4]) {
+    const float m_payload = p->m_payload;
+    const float size_of_m_payload = fabsf(m_payload);
+    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= size_of_m_payload))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_2 = q[1];
     const float t1 = fabsf(a_2);
     const float b_2 = q[4];
@@ -13439,7 +13475,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
     const float t229 = 0.25f * t228;
     const float J_2 = p->J_2;
     const float J_elbow = J_2 + t229;
-    const float m_payload = p->m_payload;
     const float t240 = m_payload * t227;
     const float J_elbow_1 = J_elbow + t240;
     const float t248 = l_1 * l_1;
@@ -14314,6 +14349,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_energy_f(const float q[6], const float qd[6],
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_singularity_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float measure[2]) {
+    const float l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_2 = q[1];
     const float b_2 = q[4];
     const float t1 = a_2 + b_2;
@@ -14351,7 +14390,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_singularity_f(const float q[6], const rapkm_2
     float sine[8];
     float cosine[8];
     rapkm_2rrr_rr_sincos_group_f(6, angle, sine, cosine);
-    const float l_1 = p->l_1;
     const float t10 = sine[0];
     const float t22 = l_1 * t10;
     const float l_2 = p->l_2;

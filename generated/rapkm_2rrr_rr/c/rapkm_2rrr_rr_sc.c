@@ -282,6 +282,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_sc(const rapkm_2rrr_rr_trig 
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc(const rapkm_2rrr_rr_trig *sc, const double q[6], const double qd[6], const double u[3], const rapkm_2rrr_rr_params *p, double qdd[6]) {
     (void)q;
+    const double m_payload = p->m_payload;
+    const double size_of_m_payload = fabs(m_payload);
+    if (RAPKM_2RRR_RR_RARELY(!(100.0 >= size_of_m_payload))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double cos_a_2 = sc->cos_a_2;
     const double sin_b_2 = sc->sin_b_2;
     const double t19 = cos_a_2 * sin_b_2;
@@ -538,7 +543,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc(const rapkm_2rrr_rr_trig 
     if (RAPKM_2RRR_RR_RARELY(!(J_elbow > t239))) {
         return RAPKM_2RRR_RR_MASS_RANK;
     }
-    const double m_payload = p->m_payload;
     const double t240 = m_payload * t227;
     const double J_elbow_1 = J_elbow + t240;
     const double t241 = fabs(m_payload);
@@ -1400,6 +1404,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc(const rapkm_2rrr_rr_trig 
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_sc(const rapkm_2rrr_rr_trig *sc, const double q[6], const double qd[6], const double u[3], const rapkm_2rrr_rr_params *p, double lambda_B[4]) {
     (void)q;
+    const double m_payload = p->m_payload;
+    const double size_of_m_payload = fabs(m_payload);
+    if (RAPKM_2RRR_RR_RARELY(!(100.0 >= size_of_m_payload))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double sin_a_1 = sc->sin_a_1;
     const double cos_b_1 = sc->cos_b_1;
     const double t28 = sin_a_1 * cos_b_1;
@@ -1640,7 +1649,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_sc(const rapkm_2rrr_rr_trig *sc, 
     const double t229 = 0.25 * t228;
     const double J_2 = p->J_2;
     const double J_elbow = J_2 + t229;
-    const double m_payload = p->m_payload;
     const double t240 = m_payload * t227;
     const double J_elbow_1 = J_elbow + t240;
     const double t248 = l_1 * l_1;

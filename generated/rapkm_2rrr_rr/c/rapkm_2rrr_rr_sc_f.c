@@ -277,6 +277,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_sc_f(const rapkm_2rrr_rr_tri
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc_f(const rapkm_2rrr_rr_trig_f *sc, const float q[6], const float qd[6], const float u[3], const rapkm_2rrr_rr_params_f *p, float qdd[6]) {
     (void)q;
+    const float m_payload = p->m_payload;
+    const float size_of_m_payload = fabsf(m_payload);
+    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= size_of_m_payload))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float cos_a_2 = sc->cos_a_2;
     const float sin_b_2 = sc->sin_b_2;
     const float t19 = cos_a_2 * sin_b_2;
@@ -533,7 +538,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc_f(const rapkm_2rrr_rr_tri
     if (RAPKM_2RRR_RR_RARELY_F(!(J_elbow > t239))) {
         return RAPKM_2RRR_RR_MASS_RANK;
     }
-    const float m_payload = p->m_payload;
     const float t240 = m_payload * t227;
     const float J_elbow_1 = J_elbow + t240;
     const float t241 = fabsf(m_payload);
@@ -1395,6 +1399,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc_f(const rapkm_2rrr_rr_tri
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_sc_f(const rapkm_2rrr_rr_trig_f *sc, const float q[6], const float qd[6], const float u[3], const rapkm_2rrr_rr_params_f *p, float lambda_B[4]) {
     (void)q;
+    const float m_payload = p->m_payload;
+    const float size_of_m_payload = fabsf(m_payload);
+    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= size_of_m_payload))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float sin_a_1 = sc->sin_a_1;
     const float cos_b_1 = sc->cos_b_1;
     const float t28 = sin_a_1 * cos_b_1;
@@ -1635,7 +1644,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_sc_f(const rapkm_2rrr_rr_trig_f *
     const float t229 = 0.25f * t228;
     const float J_2 = p->J_2;
     const float J_elbow = J_2 + t229;
-    const float m_payload = p->m_payload;
     const float t240 = m_payload * t227;
     const float J_elbow_1 = J_elbow + t240;
     const float t248 = l_1 * l_1;
