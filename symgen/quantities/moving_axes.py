@@ -8,9 +8,9 @@ of what is cancelled (the symmetry of Chaplygin systems: Bloch, Nonholonomic Mec
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
-from itertools import permutations
+from itertools import islice, permutations
 
 from symgen.linear_algebra.guards import Guard
 from symgen.mechanics.system import System
@@ -21,6 +21,9 @@ from symgen.symbolic.identity import same_values
 from symgen.symbolic.matrix import Vector
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost, reached, substitute
+
+# Scalars that are made in trying the headings of one quantity, each of which makes it anew.
+MOST_TURNED = 50_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,28 +39,47 @@ class _Heading:
 
 def in_moving_axes(mechanics: System, derived: Quantity) -> Quantity:
     """A quantity in axes that turn with a heading on which nothing else depends, where that takes fewer operations."""
+    held = reached(scalars(derived))
     best, least = derived, _weight(derived)
-    for heading in _headings(mechanics, derived):
+    for heading in islice(_headings(mechanics, held), MOST_TURNED // (1 + len(held))):
         turned = _turned(mechanics, derived, heading)
         if turned is not None and (weight := _weight(turned)) < least:
             best, least = turned, weight
     return best
 
 
-def _headings(mechanics: System, derived: Quantity) -> Iterator[_Heading]:
+def _headings(mechanics: System, held: Collection[Scalar]) -> Iterator[_Heading]:
     """Those that a quantity may turn with: it holds the angle, and rates of the two places but not these."""
-    held = reached(scalars(derived))
     coordinates = mechanics.model.coordinates
-    angles = [k for k, c in enumerate(coordinates) if c.is_angle and mechanics.q[k] in held]
     moved = [
         k
         for k, c in enumerate(coordinates)
-        if not c.is_angle and mechanics.q[k] not in held and not held.isdisjoint((mechanics.qd[k], mechanics.qdd[k]))
+        if not c.is_angle and mechanics.q[k] not in held and (mechanics.qd[k] in held or mechanics.qdd[k] in held)
     ]
-    for angle in angles:
+    for angle in (k for k, c in enumerate(coordinates) if c.is_angle and mechanics.q[k] in held):
         yield _Heading(angle, ())
-        for carried in permutations(moved, 2):
-            yield _Heading(angle, carried)
+        headings = (_Heading(angle, carried) for carried in permutations(moved, 2))
+        yield from (heading for heading in headings if _turns_rows(mechanics, heading))
+
+
+def _turns_rows(mechanics: System, heading: _Heading) -> bool:
+    """Whether the rows of B only turn with it, which is soon told; most pairs have nothing to do with it."""
+    graph, angle = mechanics.graph, mechanics.q[heading.angle]
+    for row in mechanics.constraint_jacobian:
+        turned = _forward(mechanics, heading, substitute(graph, row, {angle: graph.zero}))
+        if not _same(row, turned):
+            return False
+    return True
+
+
+def _forward(mechanics: System, heading: _Heading, entries: Sequence[Scalar]) -> list[Scalar]:
+    """A vector with an entry for each coordinate, turned by the heading."""
+    graph, angle = mechanics.graph, mechanics.q[heading.angle]
+    cosine, sine = graph.trig("cos", angle), graph.trig("sin", angle)
+    turned, (along, across) = list(entries), heading.carried
+    x, y = entries[along], entries[across]
+    turned[along], turned[across] = cosine * x - sine * y, sine * x + cosine * y
+    return turned
 
 
 def _turned(mechanics: System, derived: Quantity, heading: _Heading) -> Quantity | None:
@@ -72,9 +94,7 @@ def _turned(mechanics: System, derived: Quantity, heading: _Heading) -> Quantity
     if not _same(derived.outputs, outputs):
         if not heading.carried or len(outputs) != mechanics.n:
             return None
-        along, across = heading.carried
-        x, y = outputs[along], outputs[across]
-        outputs[along], outputs[across] = cosine * x - sine * y, sine * x + cosine * y
+        outputs = _forward(mechanics, heading, outputs)
         if not _same(derived.outputs, outputs):
             return None
     guards = [_turned_guard(guard, back) for guard in derived.guards]

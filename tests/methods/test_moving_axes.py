@@ -8,8 +8,10 @@ from pathlib import Path
 
 import pytest
 
+from symgen.mechanics.system import System
 from symgen.methods.quantity import Quantity, scalars
 from symgen.model.load import load_model
+from symgen.quantities import moving_axes
 from symgen.quantities.moving_axes import in_moving_axes
 from symgen.quantities.select import Selection, derive_quantities
 from symgen.symbolic.evaluate import Evaluator
@@ -88,3 +90,21 @@ def test_a_denominator_that_feels_the_heading_keeps_the_quantity(
     felt = guard.denominator * (2 + mechanics.graph.trig("cos", mechanics.q[2]))
     other = replace(derived, guards=(replace(guard, denominator=felt), *others))
     assert in_moving_axes(mechanics, other) is other
+
+
+def test_long_results_are_not_made_anew_for_each_heading(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    tried: list[int] = []
+    turned = moving_axes._turned
+
+    def counted(mechanics: System, derived: Quantity, heading: moving_axes._Heading) -> Quantity | None:
+        tried.append(len(reached(scalars(derived))))
+        return turned(mechanics, derived, heading)
+
+    monkeypatch.setattr(moving_axes, "_turned", counted)
+    _selection(tmp_path, LEVEL)
+    usual, most = len(tried), max(tried)
+    tried.clear()
+    monkeypatch.setattr(moving_axes, "MOST_TURNED", most)
+    _selection(tmp_path, LEVEL)
+    assert 0 < len(tried) < usual
+    assert max(tried) < most
