@@ -44,8 +44,7 @@ class Candidate:
     @property
     def weight(self) -> int:
         """Counted cost of a regular state, outputs and tested denominators; angles that are sums follow from others."""
-        needed = scalars(self.derived)
-        return _weight(needed) if needed else 0
+        return counted_weight(self.derived)
 
 
 class Method(Protocol):
@@ -59,6 +58,12 @@ class Method(Protocol):
 
     def least_cost(self, system: MethodInput) -> int:
         """What it cannot count less than, known before it is built; 0 where nothing is known."""
+
+
+def counted_weight(derived: Quantity) -> int:
+    """Counted cost of a regular state of a quantity, as for a candidate."""
+    needed = scalars(derived)
+    return _weight(needed) if needed else 0
 
 
 @lru_cache(maxsize=16)  # asked for again while candidates are compared

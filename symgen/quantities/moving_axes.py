@@ -14,13 +14,12 @@ from itertools import islice, permutations
 
 from symgen.linear_algebra.guards import Guard
 from symgen.mechanics.system import System
+from symgen.methods.method import counted_weight
 from symgen.methods.quantity import Quantity, scalars
 from symgen.records import dataclass
-from symgen.symbolic.angles.sharing import share_angles
 from symgen.symbolic.identity import same_values
-from symgen.symbolic.matrix import Vector
 from symgen.symbolic.scalar import Scalar
-from symgen.symbolic.traverse import cost, reached, substitute
+from symgen.symbolic.traverse import reached, substitute
 
 # Scalars that are made in trying the headings of one quantity, each of which makes it anew.
 MOST_TURNED = 50_000
@@ -40,10 +39,10 @@ class _Heading:
 def in_moving_axes(mechanics: System, derived: Quantity) -> Quantity:
     """A quantity in axes that turn with a heading on which nothing else depends, where that takes fewer operations."""
     held = reached(scalars(derived))
-    best, least = derived, _weight(derived)
+    best, least = derived, counted_weight(derived)
     for heading in islice(_headings(mechanics, held), MOST_TURNED // (1 + len(held))):
         turned = _turned(mechanics, derived, heading)
-        if turned is not None and (weight := _weight(turned)) < least:
+        if turned is not None and (weight := counted_weight(turned)) < least:
             best, least = turned, weight
     return best
 
@@ -101,9 +100,8 @@ def _turned(mechanics: System, derived: Quantity, heading: _Heading) -> Quantity
     found = tuple(guard for guard in guards if guard is not None)
     if len(found) < len(guards):
         return None
-    turned = replace(derived, outputs=tuple(outputs), guards=found)
-    same_values("turning axes", scalars(derived), scalars(turned))
-    return turned
+    same_values("turning axes", derived.outputs, outputs)
+    return replace(derived, outputs=tuple(outputs), guards=found)
 
 
 def _turned_guard(guard: Guard, back: dict[Scalar, Scalar]) -> Guard | None:
@@ -114,13 +112,9 @@ def _turned_guard(guard: Guard, back: dict[Scalar, Scalar]) -> Guard | None:
     kept = tuple(one for one in first if one is not None)
     if not _same(given, turned) or len(kept) < len(first):
         return None
+    same_values("turning axes", given, turned)
     return replace(guard, denominator=turned[0], scale=None if guard.scale is None else turned[1], first=kept)
 
 
 def _same(before: Sequence[Scalar], after: Sequence[Scalar]) -> bool:
     return all(one.value == other.value for one, other in zip(before, after, strict=True))
-
-
-def _weight(derived: Quantity) -> int:
-    needed: Vector = scalars(derived)
-    return cost(share_angles(needed[0].graph, needed)).weight if needed else 0
