@@ -22,8 +22,10 @@ from symgen.ir.wide_angles import AngleSum, sums_of_shared_angles, with_ranges
 from symgen.ir.wide_functions import HALF, ONE, WIDE, Lines
 
 ZERO = Literal(Fraction(0))
-# Digits of a float32 that thresholds for the rounding errors of plain operations leave unused by pairs.
+# Binary digits that a pair of numbers in float32 has more than one.
 GAINED = 22
+# Those of them by which thresholds in eps are lower: below, squares are so small that their rests are no numbers.
+LOWERED = 12
 # Binary digits that a float64 has more than a float32: thresholds in eps of the two types differ by powers of it.
 BETWEEN_TYPES = 29
 _Pair: TypeAlias = tuple[Operand, Operand]
@@ -44,7 +46,8 @@ def widened(kernel: Kernel, scalar: Scalar) -> Kernel:
 def with_sharp_thresholds(single: Kernel, double: Kernel) -> Kernel:
     """A float32 kernel with thresholds of status as its pairs allow, where it differs from that in float64 by these.
 
-    They are multiples of eps or its square, eps that of a type; angles stay in the range of the sine.
+    They are multiples of eps or its square, eps that of a type; angles stay in the range of the sine.  A pair has the
+    exponents of its type: thresholds do not follow its digits all the way.
     """
     sharp = _Thresholds()
     if _shape(single) != _shape(double):
@@ -96,7 +99,7 @@ class _Thresholds:
         times, rest = divmod(bits, BETWEEN_TYPES)
         if rest or ratio != 2**bits:
             return single
-        return Literal(single.value / 2 ** (times * GAINED))
+        return Literal(single.value / 2 ** (times * LOWERED))
 
 
 class _PairWriter:

@@ -109,8 +109,10 @@ class FarErrors:
 
 
 def _is_unfounded(status: Status, regular: bool) -> bool:
-    """Whether a kernel names a drop of rank that is due to masses or lengths far apart."""
-    return status is Status.MASS_RANK or (regular and status in (Status.CONSTRAINT_RANK, Status.ACTUATION_RANK))
+    """Whether a kernel refuses what is due to masses or lengths far apart: a drop of rank, or numbers too large."""
+    if status in (Status.CONSTRAINT_RANK, Status.ACTUATION_RANK):
+        return regular
+    return status in (Status.MASS_RANK, Status.NOT_FINITE)
 
 
 def _with_numbers_of_float32(kernel: Kernel) -> Kernel:

@@ -26,24 +26,33 @@ from symgen.verify.interpreted import outcomes
 from symgen.verify.reference.reference import ReferenceValueError, State
 from symgen.verify.running.compile import Outcome
 from symgen.verify.sampling.lanes import Lanes
-from symgen.verify.sampling.loops_in_lanes import LoopsInLanes
+from symgen.verify.sampling.loops_in_lanes import CLOSED_IN_LANES, LoopsInLanes
 from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, ranked_parts
+from symgen.verify.sampling.rates_in_lanes import RatesInLanes
 from symgen.verify.tolerance import FACTOR, expectations
 
 # Powers of ten by which a parameter is away at most: they are looked at one by one.
 FURTHEST = 9
-# Of a power of ten: steps in which the first one that is too far is looked at again.  A bound is one before the loss.
+# Of a power of ten: steps in which the first one that is too far is looked at again.
 QUARTER = 0.25
+# Powers of ten from a loss to the bound.
+MARGIN = 1.0
 # Digits in which a bound is given.
 BOUND_DIGITS = 2
 # Below and above, as signs of powers.
 SIDES = (-1, 1)
 # States at which that is looked at, fewer for long kernels.
 FAR_STATES = 8
+# States from which places are looked for where the loops close.
+FAR_STARTS = 32
 # Numbers that are held at a time, and that are worked out for the powers of one kernel.
 NUMBERS_HELD, MOST = 4_000_000, 60_000_000
+# Rows and inputs this far from a drop of rank are no reason for a status: parameters are.
+CLEAR = 1e-4
 # Units of an estimate that count as lost: other states than these lose twice as much, and more.
 UNITS_LOST = FACTOR / 2
+# Times the steps of Newton's method from a state to where its loops close with a parameter far away.
+FURTHER = 5
 # Up to this power the reference judges so many of the worst.
 JUDGED_UP_TO, JUDGED_FAR = 1.0, 2
 
@@ -63,6 +72,7 @@ class FarParameters:
         self._reference, self._drawn = expected.reference, expected.drawn
         self._loops = LoopsInLanes(expected.reference.system, [float(x) for x in expected.reference.literals()])
         self._parts = ranked_parts(expected.reference.system, expected.reference.ranks)
+        self._rates = RatesInLanes(expected.reference.system, self._parts, self._loops)
 
     def bounds(
         self, kernels: Mapping[Scalar, Kernel], programs: Mapping[Scalar, Program], plain: Kernel | None = None
@@ -80,15 +90,20 @@ class FarParameters:
 
     def led(self, steps: Sequence[tuple[int, float]], states: int) -> Far:
         """States with one parameter far away, for each step (which, and by what power of ten) as far as loops close."""
-        places = range(min(states, len(self._starts["p"])))
-        table = [(which, power, place) for which, power in steps for place in places]
-        which, far, place = (np.array(column) for column in zip(*table, strict=True))
+        configurations, shut = self._closed
+        table = [
+            (*at, which, place, power)
+            for which, power in steps
+            for at in [(int(power > 0), round(abs(power) / QUARTER) - 1)]
+            for place in np.flatnonzero(shut[(*at, which)])[:states].tolist()
+        ]
+        side, step, which, place = np.array([row[:-1] for row in table], dtype=int).reshape(-1, 4).T
+        far = np.array([row[-1] for row in table])
         given = {name: rows[place] for name, rows in self._starts.items()}
         given["p"][np.arange(len(which)), which] *= 10.0**far
-        configurations, shut = self._closed
-        at = (far > 0).astype(int), np.rint(np.abs(far) / QUARTER).astype(int) - 1, which, place
-        given["q"] = configurations[at]
-        return Far(which, far, given, self._regular(given)).only(shut[at])
+        given["q"] = configurations[side, step, which, place]
+        given["qd"], given["qdd"], finite = self._rates.admissible(given)
+        return Far(which, far, given, self._regular(given)).only(finite)
 
     def _regular(self, given: Mapping[str, Lanes]) -> Lanes:
         """Whether neither rows nor inputs are near a drop of rank."""
@@ -96,7 +111,7 @@ class FarParameters:
         with np.errstate(all="ignore"):
             blocks = matrices(self._reference.system, self._parts, self._loops, given["q"], given["p"])
             for part, (rows, control) in zip(self._parts, blocks, strict=True):
-                found &= is_regular(part, rows, control)
+                found &= is_regular(part, rows, control, share=CLEAR)
         return found
 
     def bound(self, parameter: int, low: float | None, high: float | None) -> Bound | None:
@@ -128,38 +143,58 @@ class FarParameters:
 
     @cached_property
     def _leading(self) -> frozenset[int]:
-        """The parameters that move configurations."""
-        configurations, shut = self._closed
-        moved = (configurations != self._starts["q"]).any(axis=-1) & shut
-        return frozenset(np.flatnonzero(moved.any(axis=(0, 1, 3))).tolist())
+        """The parameters that move configurations: beside other values the loops are open."""
+        q, p = self._starts["q"][:1], self._starts["p"][:1]
+        count = p.shape[1]
+        moved = [p * np.where(np.eye(count, dtype=bool), 10.0 ** (sign * QUARTER), 1.0) for sign in SIDES]
+        with np.errstate(all="ignore"):
+            still = [self._loops.shut(q.repeat(count, axis=0), one, CLOSED_IN_LANES) for one in moved]
+        return frozenset(np.flatnonzero(~np.logical_and(*still)).tolist())
 
     @cached_property
     def _closed(self) -> tuple[Lanes, Lanes]:
         """Where the loops close with a parameter further and further away, and whether they do.
 
         By side, quarter of a power of ten, parameter and state: each step starts where the one before it ended.
+        Where that leads nowhere each power of ten is looked for from the state itself.
         """
-        starts, steps = self._starts, round(FURTHEST / QUARTER)
+        starts, leading = self._starts, sorted(self._leading)
         count, parameters = starts["p"].shape
-        which, place = np.arange(parameters).repeat(count), np.tile(np.arange(count), parameters)
-        configurations = np.empty((2, steps, len(which), starts["q"].shape[1]))
-        shut = np.empty((2, steps, len(which)), dtype=bool)
-        for side, sign in enumerate(SIDES):
-            q, closed = starts["q"][place], np.ones(len(which), dtype=bool)
-            for step in range(steps):
+        which, place = np.array(leading, dtype=int).repeat(count), np.tile(np.arange(count), len(leading))
+        shape = 2, round(FURTHEST / QUARTER), parameters, count
+        configurations = np.broadcast_to(starts["q"], (*shape, starts["q"].shape[1])).copy()
+        shut = np.ones(shape, dtype=bool)
+        for side, sign in enumerate(SIDES if leading else ()):
+            q = starts["q"][place]
+            for step in range(shape[1]):
+                power = QUARTER * (step + 1)
                 p = starts["p"][place]
-                p[np.arange(len(which)), which] *= 10.0 ** (sign * QUARTER * (step + 1))
-                with np.errstate(all="ignore"):
-                    q, now = self._loops.newton(q, p)
-                closed &= now.all(axis=1)
+                p[np.arange(len(which)), which] *= 10.0 ** (sign * power)
+                q, closed = self._newton(q, p)
+                for look in (self._loops.damped, self._further) if power.is_integer() else ():
+                    still = np.flatnonzero(~closed)
+                    with np.errstate(all="ignore"):
+                        led = look(starts["q"][place[still]], p[still])
+                    q[still], closed[still] = self._newton(led, p[still])
                 q = np.where(closed[:, None], q, starts["q"][place])
-                configurations[side, step], shut[side, step] = q, closed
-        shape = 2, steps, parameters, count
-        return configurations.reshape(*shape, configurations.shape[-1]), shut.reshape(shape)
+                configurations[side, step, which, place], shut[side, step, which, place] = q, closed
+        return configurations, shut
+
+    def _newton(self, q: Lanes, p: Lanes) -> tuple[Lanes, Lanes]:
+        """Where Newton's method leads, and whether all loops are closed there."""
+        with np.errstate(all="ignore"):
+            q, shut = self._loops.newton(q, p)
+        return q, shut.all(axis=1)
+
+    def _further(self, q: Lanes, p: Lanes) -> Lanes:
+        """Where so many times the steps of Newton's method lead: it takes more of them to far larger lengths."""
+        for _ in range(FURTHER):
+            q, _ = self._newton(q, p)
+        return q
 
     @cached_property
     def _starts(self) -> dict[str, Lanes]:
-        states = [sample.state for sample in self._drawn[:FAR_STATES]]
+        states = [sample.state for sample in self._drawn[:FAR_STARTS]]
         parts = {"q": "q", "qd": "qd", "qdd": "qdd", "u": "u", "p": "parameters"}
         rows = {name: [list(map(float, getattr(state, part))) for state in states] for name, part in parts.items()}
         return {name: np.array(values).reshape(len(states), -1) for name, values in rows.items()}
@@ -231,8 +266,8 @@ class _Bounds:
             worst = steps[index, sign * power]
             if power <= JUDGED_UP_TO and not any(self._far.is_lost(quantity, scalar, tried) for tried in worst):
                 break
-            found = max(min(power, last) - QUARTER, QUARTER)
-        return sign * found
+            found = min(power, last)
+        return sign * _inside(found)
 
     def _lost(self, far: Far) -> dict[Scalar, Far]:
         """By scalar type, what of it seems to lose more than is allowed, the worst first."""
@@ -257,6 +292,16 @@ def _nearest(far: Far) -> dict[tuple[int, int], float]:
         side = index, 1 if power > 0 else -1
         found[side] = min(abs(power), found.get(side, FURTHEST))
     return found
+
+
+def _inside(lost: float) -> float:
+    """The power of ten up to which a parameter may be where something is lost at that one.
+
+    Other states lose ten times as much and more; where the reference judges, the next step inside is enough.
+    """
+    if lost <= JUDGED_UP_TO:
+        return max(lost - QUARTER, QUARTER)
+    return max(lost - MARGIN, JUDGED_UP_TO)
 
 
 def _in_digits(value: float, up: bool) -> Fraction:

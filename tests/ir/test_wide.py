@@ -30,7 +30,7 @@ from symgen.ir.kernel import (
 )
 from symgen.ir.lifted import Lifted, same_kernel
 from symgen.ir.sincos import sincos
-from symgen.ir.wide import GAINED, widened, with_sharp_thresholds
+from symgen.ir.wide import LOWERED, widened, with_sharp_thresholds
 from symgen.ir.wide_angles import MOST_PARTS
 from symgen.ir.wide_functions import WIDE, wide_function
 from symgen.verify.exactness import EXACT, ExactFunction
@@ -351,7 +351,7 @@ def test_sharp_thresholds() -> None:
 
     single, double = (kernel(UNIT_ROUNDOFF[s], largest) for s, largest in (("float32", 100), ("float64", 100_000)))
     sharp = with_sharp_thresholds(single, double)
-    gained = Fraction(1, 2**GAINED)
+    gained = Fraction(1, 2**LOWERED)
     eps = UNIT_ROUNDOFF["float32"]
     assert sharp.blocks[1].statements[1].operands[0] == Literal(8 * eps * gained)
     first, second, third = sharp.blocks[1].checks

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -16,7 +17,10 @@ from symgen.model.load import load_model, load_text
 from symgen.verify.expected import Expected
 from symgen.verify.reference.reference import Reference
 from symgen.verify.sampling.lanes import RoundingErrors
+from symgen.verify.sampling.loops_in_lanes import LoopsInLanes
 from symgen.verify.sampling.nearby import Surroundings
+from symgen.verify.sampling.ranks_in_lanes import ranked_parts
+from symgen.verify.sampling.rates_in_lanes import RatesInLanes
 from symgen.verify.sampling.regular import values_at
 from symgen.verify.sampling.searched import WorstStateSearch
 from symgen.verify.sampling.states import sample_states
@@ -154,6 +158,44 @@ def test_measures_in_lanes_are_those_of_the_reference(name: str) -> None:
     for sample, found in zip(samples, around.measures(around.samples), strict=True):
         exact = values_at(reference, sample.state, ["singularity"])["singularity"]
         assert found == pytest.approx(exact, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ["three_rrr", "skate"])
+def test_states_are_led_towards_a_drop_of_rank_and_stay_above_the_least(name: str) -> None:
+    """A platform towards where its drives do not hold it, a skate towards nothing: its row and its drives never lose rank."""
+    reference = Reference(load_model(Path("models") / f"{name}.yaml"))
+    around = Surroundings(reference, sample_states(reference, ["inverse_dynamics"], 16))
+    least = [1e-15, 1e-15]
+    led = around.towards(256, least)
+    measures, usual = around.measures(led), around.measures(around.samples)
+    assert len(led) > 128
+    assert (measures >= 0.99e-15).all()
+    # of squares: to a hundredth of what the nearest sample has
+    nearer = bool(measures[:, 1].min() < 1e-4 * usual[:, 1].min())
+    assert nearer == (name == "three_rrr")
+    assert all((around.towards(256, least).parts[part] == rows).all() for part, rows in led.parts.items())
+
+
+@pytest.mark.parametrize("name", ["five_bar", "front_car", "rapkm_bodies"])
+def test_rates_in_lanes_are_those_of_the_reference(name: str) -> None:
+    """As close as differences along the rates are."""
+    reference = Reference(load_model(Path("models") / f"{name}.yaml"))
+    samples = sample_states(reference, ["inverse_dynamics"], 8)
+    around = Surroundings(reference, samples)
+    parts = ranked_parts(reference.system, reference.ranks)
+    loops = LoopsInLanes(reference.system, [float(x) for x in reference.literals()])
+    dice = np.random.default_rng(5)
+    given = dict(around.samples.parts)
+    given |= {rates: dice.uniform(-1, 1, given[rates].shape) for rates in ("qd", "qdd")}
+    qd, qdd, finite = RatesInLanes(reference.system, parts, loops).admissible(given)
+    assert finite.all()
+    for k, sample in enumerate(samples):
+        state = replace(sample.state, qd=tuple(given["qd"][k]), qdd=tuple(given["qdd"][k]))
+        exact = values_at(reference, state, ["admissible_velocity"])["admissible_velocity"]
+        assert qd[k] == pytest.approx(exact, abs=1e-6)
+        state = replace(state, qd=tuple(exact))
+        exact = values_at(reference, state, ["admissible_acceleration"])["admissible_acceleration"]
+        assert qdd[k] == pytest.approx(exact, abs=1e-4)
 
 
 # A table on two pairs of links, at a right angle to each other, that stand straight where it is highest.

@@ -18,8 +18,9 @@ import numpy as np
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference.system import default_parameters
 from symgen.verify.sampling.lanes import Lanes
-from symgen.verify.sampling.loops_in_lanes import DEPENDENT, LoopsInLanes, lengths_of, times
+from symgen.verify.sampling.loops_in_lanes import LoopsInLanes
 from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, measures, ranked_parts
+from symgen.verify.sampling.rates_in_lanes import RatesInLanes
 from symgen.verify.sampling.regular import values_at
 from symgen.verify.sampling.states import Sample
 
@@ -35,10 +36,11 @@ OFF = (1.0, 5.0)
 LITTLE_INPUT = (1.0, 4.0)
 # Powers of ten by which a machine that all but rests is slower than samples are, its inputs as much smaller.
 SLOWER = (1.0, 4.0)
+# How often a state is led on along a line that is drawn, how far that goes at most in shares of ranges, how much of the
+# way is left, and the steps that show the slope, shares of that.
+TOWARDS, LONGEST, LEFT, PROBED = 8, 0.4, 0.3, 1e-2
 # In how many samples that is looked at, and how large these forces are beside inputs.
 SAMPLES_LOOKED_AT, LEAST_DRIVE = 8, 0.1
-# A step of differences along the rates, in radians and metres a unit of time.
-DIFFERENCE = 1e-5
 
 
 @dataclass(frozen=True)
@@ -80,6 +82,7 @@ class Surroundings:
     ) -> None:
         self._system, self._parts = reference.system, ranked_parts(reference.system, reference.ranks)
         self._loops = LoopsInLanes(reference.system, [float(x) for x in reference.literals()])
+        self._rates_in_lanes = RatesInLanes(reference.system, self._parts, self._loops)
         states = [sample.state for sample in samples]
         parts = {name: _rows([getattr(state, name) for state in states]) for name in ("q", "qd", "qdd", "u")}
         parts["p"] = _rows([state.parameters for state in states])
@@ -143,6 +146,35 @@ class Surroundings:
         with np.errstate(all="ignore"):
             return self._settled(Nearby({**start.parts, **slow}, start.admissible, start.origins), start.parts["q"])
 
+    def towards(self, count: int, least: Sequence[float]) -> Nearby:
+        """So many nearer and nearer to where rows, or inputs, lose rank, as far as measures stay above the least."""
+        start, dice = self.drawn(count), random.Random("towards")
+        lanes = np.arange(len(start))
+        which, rounds = lanes % 2, lanes // 2 % TOWARDS
+        q, p, low = start.parts["q"], start.parts["p"], np.array(least)
+
+        def far(q: Lanes) -> tuple[Lanes, Lanes]:
+            q, shut = self._loops.newton(q, p)
+            made = measures(self._parts, self._matrices(q, p))
+            inside = ((q >= self._low) & (q <= self._high)).all(axis=1)
+            return q, np.where(shut.all(axis=1) & inside & (made >= low).all(axis=1), made[lanes, which], np.nan)
+
+        with np.errstate(all="ignore"):
+            # a measure is a square, its root falls along a line
+            now = np.sqrt(far(q)[1])
+            for number in range(TOWARDS):
+                along = _shifts(dice, q) * self._widths
+                probe = PROBED * np.minimum(LONGEST, now)
+                slope = (np.sqrt(far(q + probe[:, None] * along)[1]) - now) / probe
+                step = np.clip(-(1 - LEFT) * now / slope, -LONGEST, LONGEST)
+                led, made = far(q + step[:, None] * along)
+                nearer = (np.sqrt(made) < now) & (number < rounds)
+                q, now = np.where(nearer[:, None], led, q), np.where(nearer, np.sqrt(made), now)
+            qd, qdd, good = self._rates_in_lanes.admissible({**start.parts, "q": q})
+        on = start.admissible[:, None]
+        rates = {name: np.where(on, made, start.parts[name]) for name, made in (("qd", qd), ("qdd", qdd))}
+        return Nearby({**start.parts, **rates, "q": q}, start.admissible, start.origins).only(good)
+
     def measures(self, states: Nearby) -> Lanes:
         """What tells how far rows and inputs are from a drop of rank, a row for each state."""
         return measures(self._parts, self._matrices(states.parts["q"], states.parts["p"]))
@@ -190,27 +222,10 @@ class Surroundings:
             else:
                 q[:, these] = np.where(led[:, None], q[:, these], start[:, these])
         parts["q"] = q
-        if self._system.r:
-            on = states.admissible[:, None]
-            rows = [made for made, _ in self._matrices(q, p)]
-            for made in rows:
-                good &= np.isfinite(made).all(axis=(1, 2))
-            lengths = [lengths_of(made) for made in rows]
-            units = [_finite(made / length) for made, length in zip(rows, lengths, strict=True)]
-            inverses = [np.linalg.pinv(unit, rcond=DEPENDENT) for unit in units]
-            qd, qdd = parts["qd"].copy(), parts["qdd"].copy()
-            for part, unit, inverse in zip(self._parts, units, inverses, strict=True):
-                these = list(part.coordinates)
-                qd[:, these] -= times(inverse, times(unit, qd[:, these]))
-            sides = (self._matrices(q + side * DIFFERENCE * qd, p) for side in (1, -1))
-            for part, length, unit, inverse, (ahead, _), (behind, _) in zip(
-                self._parts, lengths, units, inverses, *sides, strict=True
-            ):
-                these = list(part.coordinates)
-                drift = np.nan_to_num(times((ahead - behind) / (2 * DIFFERENCE) / length, qd[:, these]))
-                qdd[:, these] -= times(inverse, times(unit, qdd[:, these]) + drift)
-            parts["qd"], parts["qdd"] = np.where(on, qd, parts["qd"]), np.where(on, qdd, parts["qdd"])
-        return Nearby(parts, states.admissible, states.origins).only(good)
+        qd, qdd, finite = self._rates_in_lanes.admissible(parts)
+        on = states.admissible[:, None]
+        parts["qd"], parts["qdd"] = np.where(on, qd, parts["qd"]), np.where(on, qdd, parts["qdd"])
+        return Nearby(parts, states.admissible, states.origins).only(good & finite)
 
     def _matrices(self, q: Lanes, p: Lanes) -> list[tuple[Lanes, Lanes]]:
         """B and M of each part."""
@@ -224,10 +239,6 @@ def _driven_by_itself(reference: Reference, state: State) -> bool:
     except ReferenceValueError:
         return False
     return hypot(*force) > LEAST_DRIVE * max(map(abs, state.u), default=0.0)
-
-
-def _finite(values: Lanes) -> Lanes:
-    return np.where(np.isfinite(values), values, 0.0)
 
 
 def _rows(values: Sequence[Sequence[Any]]) -> Lanes:

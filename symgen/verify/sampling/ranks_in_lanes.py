@@ -55,7 +55,9 @@ def matrices(
     ]
 
 
-def is_regular(part: RankedPart, rows: Lanes, control: Lanes, other_branches: bool = True) -> Lanes:
+def is_regular(
+    part: RankedPart, rows: Lanes, control: Lanes, other_branches: bool = True, share: float = REGULAR_SHARE
+) -> Lanes:
     """Whether rows, and inputs along what the rows leave free, are as far from dependent as regular states are.
 
     Configurations of greater ranks lie on `other_branches`, which may count or not.
@@ -72,14 +74,14 @@ def is_regular(part: RankedPart, rows: Lanes, control: Lanes, other_branches: bo
     if r:
         sizes, directions = np.linalg.svd(rows / lengths_of(rows), full_matrices=not apart)[1:]
         rank = part.constraints
-        good &= sizes[:, rank - 1] >= REGULAR_SHARE * sizes[:, 0] if rank else True
+        good &= sizes[:, rank - 1] >= share * sizes[:, 0] if rank else True
         if not other_branches:
             good &= (sizes[:, rank:] <= INDEPENDENT).all(axis=1)
         held, free = directions[:, :rank], directions[:, rank:]
     if part.actuation or not other_branches:
         along = np.swapaxes(columns, 1, 2)
         sizes = _along_few_rows(held @ along) if apart else np.linalg.svd(free @ along, compute_uv=False)
-        good &= sizes[:, part.actuation - 1] >= REGULAR_SHARE if part.actuation else True
+        good &= sizes[:, part.actuation - 1] >= share if part.actuation else True
         if not other_branches:
             good &= (sizes[:, part.actuation :] <= INDEPENDENT).all(axis=1)
     return good
