@@ -154,22 +154,25 @@ class Surroundings:
         q, p, low = start.parts["q"], start.parts["p"], np.array(least)
 
         def far(q: Lanes) -> tuple[Lanes, Lanes]:
+            """Where that leads, and how far it is from a drop of rank: the root of a measure falls along a line."""
             q, shut = self._loops.newton(q, p)
             made = measures(self._parts, self._matrices(q, p))
             inside = ((q >= self._low) & (q <= self._high)).all(axis=1)
-            return q, np.where(shut.all(axis=1) & inside & (made >= low).all(axis=1), made[lanes, which], np.nan)
+            good = shut.all(axis=1) & inside & (made >= low).all(axis=1)
+            return q, np.where(good, np.sqrt(made[lanes, which]), np.nan)
 
         with np.errstate(all="ignore"):
-            # a measure is a square, its root falls along a line
-            now = np.sqrt(far(q)[1])
+            now = far(q)[1]
             for number in range(TOWARDS):
-                along = _shifts(dice, q) * self._widths
-                probe = PROBED * np.minimum(LONGEST, now)
-                slope = (np.sqrt(far(q + probe[:, None] * along)[1]) - now) / probe
-                step = np.clip(-(1 - LEFT) * now / slope, -LONGEST, LONGEST)
-                led, made = far(q + step[:, None] * along)
-                nearer = (np.sqrt(made) < now) & (number < rounds)
-                q, now = np.where(nearer[:, None], led, q), np.where(nearer, np.sqrt(made), now)
+                probe = PROBED * np.minimum(LONGEST, now)[:, None]
+                beside, made = far(q + probe * _shifts(dice, q) * self._widths)
+                # along V, so that a long step stays near it
+                along = (beside - q) / probe
+                share = (LEFT - 1) * now / ((made - now) / probe[:, 0])
+                longest = LONGEST / np.abs(along / self._widths).max(axis=1)
+                led, made = far(q + np.clip(share, -longest, longest)[:, None] * along)
+                nearer = (made < now) & (number < rounds)
+                q, now = np.where(nearer[:, None], led, q), np.where(nearer, made, now)
             qd, qdd, good = self._rates_in_lanes.admissible({**start.parts, "q": q})
         on = start.admissible[:, None]
         rates = {name: np.where(on, made, start.parts[name]) for name, made in (("qd", qd), ("qdd", qdd))}
