@@ -194,7 +194,9 @@ class Fallback:
                 if "float64" in one.scalars:
                     passing.append(one)
         for one in self._with_more_digits(draft, quantity, expected):
-            if one.scalars == needed and one.largest <= MARGIN:
+            # more digits in float64, too, are worth a margin only where next to none is left
+            most = MARGIN if one.alternative.choice.wide == needed else NARROW
+            if one.scalars == needed and one.largest <= most:
                 return one
             if "float64" in one.scalars:
                 passing.append(one)

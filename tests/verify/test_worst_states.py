@@ -162,7 +162,7 @@ def test_measures_in_lanes_are_those_of_the_reference(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["three_rrr", "skate"])
 def test_states_are_led_towards_a_drop_of_rank_and_stay_above_the_least(name: str) -> None:
-    """A platform towards where its drives do not hold it, a skate towards nothing: its row and its drives never lose rank."""
+    """A platform towards where its drives do not hold it; row and drives of a skate never lose rank."""
     reference = Reference(load_model(Path("models") / f"{name}.yaml"))
     around = Surroundings(reference, sample_states(reference, ["inverse_dynamics"], 16))
     least = [1e-15, 1e-15]

@@ -94,7 +94,7 @@ class WorstStateSearch:
     def _estimated(self, kernel: Kernel) -> tuple[Nearby, Lanes]:
         """States, and the rounding errors that are estimated there."""
         count = NUMBERS // (len(kernel.statements) + 1)
-        states = self._drawn
+        states = self._beside_singular if kernel.name in MAIN else self._drawn
         if len(states) > count:
             samples = len(self._surroundings.samples)
             others = np.linspace(samples, len(states), max(0, count - samples), endpoint=False).astype(int)
@@ -125,8 +125,13 @@ class WorstStateSearch:
         found = joined(around.samples, around.aligned(self._affordable(ALIGNED)))
         found = joined(found, around.in_modes(self._affordable(IN_MODES)))
         found = joined(found, around.resting(self._affordable(RESTING)))
-        found = joined(found, around.towards(self._affordable(TOWARDS), self._settlings[True].measures))
         return joined(found, around.drawn(self._affordable(DRAWN)))
+
+    @cached_property
+    def _beside_singular(self) -> Nearby:
+        """These and others that are led towards a drop of rank."""
+        least = self._settlings[True].measures
+        return joined(self._drawn, self._surroundings.towards(self._affordable(TOWARDS), least))
 
     def _affordable(self, count: int) -> int:
         """So many states, or as many as large parts leave time for."""
