@@ -1088,130 +1088,130 @@ arm7_status arm7_inverse_dynamics(const double q[7], const double qd[7], const d
 
 arm7_status arm7_forward_dynamics(const double q[7], const double qd[7], const double u[7], const arm7_params *p, double qdd[7]) {
     const double d_5 = p->d_5;
-    if (ARM7_RARELY(!(12.0 >= d_5))) {
+    if (ARM7_RARELY(!(4.0 >= d_5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double d_7 = p->d_7;
-    if (ARM7_RARELY(!(12.0 >= d_7))) {
+    if (ARM7_RARELY(!(2.2 >= d_7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_zz2 = p->I_zz2;
-    if (ARM7_RARELY(!(89000.0 >= I_zz2))) {
+    if (ARM7_RARELY(!(16000.0 >= I_zz2))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double m_3 = p->m_3;
-    if (ARM7_RARELY(!(16000.0 >= m_3))) {
+    if (ARM7_RARELY(!(3000.0 >= m_3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x3 = p->c_x3;
-    if (ARM7_RARELY(!(9.0 >= c_x3))) {
+    if (ARM7_RARELY(!(1.6 >= c_x3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_z3 = p->c_z3;
-    if (ARM7_RARELY(!(31000.0 >= c_z3))) {
+    if (ARM7_RARELY(!(5600.0 >= c_z3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx3 = p->I_xx3;
-    if (ARM7_RARELY(!(940.0 >= I_xx3))) {
+    if (ARM7_RARELY(!(160.0 >= I_xx3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy3 = p->I_yy3;
-    if (ARM7_RARELY(!(480.0 >= I_yy3))) {
+    if (ARM7_RARELY(!(85.0 >= I_yy3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double m_4 = p->m_4;
-    if (ARM7_RARELY(!(8500.0 >= m_4))) {
+    if (ARM7_RARELY(!(1500.0 >= m_4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x4 = p->c_x4;
-    if (ARM7_RARELY(!(6.7 >= c_x4))) {
+    if (ARM7_RARELY(!(1.1 >= c_x4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_y4 = p->c_y4;
-    if (ARM7_RARELY(!(10.0 >= c_y4))) {
+    if (ARM7_RARELY(!(1.7 >= c_y4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx4 = p->I_xx4;
-    if (ARM7_RARELY(!(270.0 >= I_xx4))) {
+    if (ARM7_RARELY(!(48.0 >= I_xx4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy4 = p->I_yy4;
-    if (ARM7_RARELY(!(130.0 >= I_yy4))) {
+    if (ARM7_RARELY(!(24.0 >= I_yy4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double m_5 = p->m_5;
-    if (ARM7_RARELY(!(950.0 >= m_5))) {
+    if (ARM7_RARELY(!(170.0 >= m_5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x5 = p->c_x5;
-    if (ARM7_RARELY(!(15.0 >= c_x5))) {
+    if (ARM7_RARELY(!(2.6 >= c_x5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_y5 = p->c_y5;
-    if (ARM7_RARELY(!(11.0 >= c_y5))) {
+    if (ARM7_RARELY(!(2.0 >= c_y5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_z5 = p->c_z5;
     const double size_of_c_z5 = fabs(c_z5);
-    if (ARM7_RARELY(!(17.0 >= size_of_c_z5))) {
+    if (ARM7_RARELY(!(3.1 >= size_of_c_z5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx5 = p->I_xx5;
-    if (ARM7_RARELY(!(300.0 >= I_xx5))) {
+    if (ARM7_RARELY(!(53.0 >= I_xx5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy5 = p->I_yy5;
-    if (ARM7_RARELY(!(270.0 >= I_yy5))) {
+    if (ARM7_RARELY(!(48.0 >= I_yy5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double m_6 = p->m_6;
-    if (ARM7_RARELY(!(320.0 >= m_6))) {
+    if (ARM7_RARELY(!(56.0 >= m_6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x6 = p->c_x6;
-    if (ARM7_RARELY(!(5.6 >= c_x6))) {
+    if (ARM7_RARELY(!(1.0 >= c_x6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_y6 = p->c_y6;
-    if (ARM7_RARELY(!(1.6 >= c_y6))) {
+    if (ARM7_RARELY(!(0.29 >= c_y6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_z6 = p->c_z6;
     const double size_of_c_z6 = fabs(c_z6);
-    if (ARM7_RARELY(!(20.0 >= size_of_c_z6))) {
+    if (ARM7_RARELY(!(3.5 >= size_of_c_z6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx6 = p->I_xx6;
-    if (ARM7_RARELY(!(18.0 >= I_xx6))) {
+    if (ARM7_RARELY(!(3.2 >= I_xx6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy6 = p->I_yy6;
-    if (ARM7_RARELY(!(28.0 >= I_yy6))) {
+    if (ARM7_RARELY(!(5.1 >= I_yy6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double m_7 = p->m_7;
-    if (ARM7_RARELY(!(9.4 >= m_7))) {
+    if (ARM7_RARELY(!(3.0 >= m_7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x7 = p->c_x7;
-    if (ARM7_RARELY(!(1.7 >= c_x7))) {
+    if (ARM7_RARELY(!(0.31 >= c_x7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_y7 = p->c_y7;
-    if (ARM7_RARELY(!(2.2 >= c_y7))) {
+    if (ARM7_RARELY(!(0.4 >= c_y7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_z7 = p->c_z7;
     const double size_of_c_z7 = fabs(c_z7);
-    if (ARM7_RARELY(!(9.4 >= size_of_c_z7))) {
+    if (ARM7_RARELY(!(1.6 >= size_of_c_z7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx7 = p->I_xx7;
-    if (ARM7_RARELY(!(9.4 >= I_xx7))) {
+    if (ARM7_RARELY(!(1.6 >= I_xx7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy7 = p->I_yy7;
-    if (ARM7_RARELY(!(4.8 >= I_yy7))) {
+    if (ARM7_RARELY(!(0.85 >= I_yy7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double q_2 = q[1];

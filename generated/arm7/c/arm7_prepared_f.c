@@ -689,147 +689,147 @@ arm7_prepared_f arm7_prepare_f(const arm7_params_f *p) {
 
 arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7], const float u[7], const arm7_prepared_f *p, float qdd[7]) {
     const float d_5 = p->value[1];
-    if (ARM7_RARELY_F(!(12.0f >= d_5))) {
+    if (ARM7_RARELY_F(!(4.0f >= d_5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float d_7 = p->value[2];
-    if (ARM7_RARELY_F(!(12.0f >= d_7))) {
+    if (ARM7_RARELY_F(!(2.2f >= d_7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz2 = p->value[8];
-    if (ARM7_RARELY_F(!(89000.0f >= I_zz2))) {
+    if (ARM7_RARELY_F(!(16000.0f >= I_zz2))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_3 = p->value[12];
-    if (ARM7_RARELY_F(!(16000.0f >= m_3))) {
+    if (ARM7_RARELY_F(!(3000.0f >= m_3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x3 = p->value[13];
-    if (ARM7_RARELY_F(!(9.0f >= c_x3))) {
+    if (ARM7_RARELY_F(!(1.6f >= c_x3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_z3 = p->value[15];
-    if (ARM7_RARELY_F(!(31000.0f >= c_z3))) {
+    if (ARM7_RARELY_F(!(5600.0f >= c_z3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx3 = p->value[16];
-    if (ARM7_RARELY_F(!(940.0f >= I_xx3))) {
+    if (ARM7_RARELY_F(!(160.0f >= I_xx3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy3 = p->value[17];
-    if (ARM7_RARELY_F(!(480.0f >= I_yy3))) {
+    if (ARM7_RARELY_F(!(85.0f >= I_yy3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz3 = p->value[18];
-    if (ARM7_RARELY_F(!(37000.0f >= I_zz3))) {
+    if (ARM7_RARELY_F(!(6700.0f >= I_zz3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_4 = p->value[22];
-    if (ARM7_RARELY_F(!(8500.0f >= m_4))) {
+    if (ARM7_RARELY_F(!(1500.0f >= m_4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x4 = p->value[23];
-    if (ARM7_RARELY_F(!(6.7f >= c_x4))) {
+    if (ARM7_RARELY_F(!(1.1f >= c_x4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_y4 = p->value[24];
-    if (ARM7_RARELY_F(!(10.0f >= c_y4))) {
+    if (ARM7_RARELY_F(!(1.7f >= c_y4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx4 = p->value[26];
-    if (ARM7_RARELY_F(!(270.0f >= I_xx4))) {
+    if (ARM7_RARELY_F(!(48.0f >= I_xx4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy4 = p->value[27];
-    if (ARM7_RARELY_F(!(130.0f >= I_yy4))) {
+    if (ARM7_RARELY_F(!(24.0f >= I_yy4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz4 = p->value[28];
-    if (ARM7_RARELY_F(!(34000.0f >= I_zz4))) {
+    if (ARM7_RARELY_F(!(6000.0f >= I_zz4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_5 = p->value[32];
-    if (ARM7_RARELY_F(!(950.0f >= m_5))) {
+    if (ARM7_RARELY_F(!(170.0f >= m_5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x5 = p->value[33];
-    if (ARM7_RARELY_F(!(15.0f >= c_x5))) {
+    if (ARM7_RARELY_F(!(2.6f >= c_x5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_y5 = p->value[34];
-    if (ARM7_RARELY_F(!(11.0f >= c_y5))) {
+    if (ARM7_RARELY_F(!(2.0f >= c_y5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float size_of_c_z5 = p->value[62];
-    if (ARM7_RARELY_F(!(17.0f >= size_of_c_z5))) {
+    if (ARM7_RARELY_F(!(3.1f >= size_of_c_z5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx5 = p->value[36];
-    if (ARM7_RARELY_F(!(300.0f >= I_xx5))) {
+    if (ARM7_RARELY_F(!(53.0f >= I_xx5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy5 = p->value[37];
-    if (ARM7_RARELY_F(!(270.0f >= I_yy5))) {
+    if (ARM7_RARELY_F(!(48.0f >= I_yy5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz5 = p->value[38];
-    if (ARM7_RARELY_F(!(6800.0f >= I_zz5))) {
+    if (ARM7_RARELY_F(!(1200.0f >= I_zz5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_6 = p->value[42];
-    if (ARM7_RARELY_F(!(320.0f >= m_6))) {
+    if (ARM7_RARELY_F(!(56.0f >= m_6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x6 = p->value[43];
-    if (ARM7_RARELY_F(!(5.6f >= c_x6))) {
+    if (ARM7_RARELY_F(!(1.0f >= c_x6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_y6 = p->value[44];
-    if (ARM7_RARELY_F(!(1.6f >= c_y6))) {
+    if (ARM7_RARELY_F(!(0.29f >= c_y6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float size_of_c_z6 = p->value[63];
-    if (ARM7_RARELY_F(!(20.0f >= size_of_c_z6))) {
+    if (ARM7_RARELY_F(!(3.5f >= size_of_c_z6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx6 = p->value[46];
-    if (ARM7_RARELY_F(!(18.0f >= I_xx6))) {
+    if (ARM7_RARELY_F(!(3.2f >= I_xx6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy6 = p->value[47];
-    if (ARM7_RARELY_F(!(28.0f >= I_yy6))) {
+    if (ARM7_RARELY_F(!(5.1f >= I_yy6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz6 = p->value[48];
-    if (ARM7_RARELY_F(!(7200.0f >= I_zz6))) {
+    if (ARM7_RARELY_F(!(1200.0f >= I_zz6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_7 = p->value[52];
-    if (ARM7_RARELY_F(!(9.4f >= m_7))) {
+    if (ARM7_RARELY_F(!(3.0f >= m_7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x7 = p->value[53];
-    if (ARM7_RARELY_F(!(1.7f >= c_x7))) {
+    if (ARM7_RARELY_F(!(0.31f >= c_x7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_y7 = p->value[54];
-    if (ARM7_RARELY_F(!(2.2f >= c_y7))) {
+    if (ARM7_RARELY_F(!(0.4f >= c_y7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float size_of_c_z7 = p->value[64];
-    if (ARM7_RARELY_F(!(9.4f >= size_of_c_z7))) {
+    if (ARM7_RARELY_F(!(1.6f >= size_of_c_z7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx7 = p->value[56];
-    if (ARM7_RARELY_F(!(9.4f >= I_xx7))) {
+    if (ARM7_RARELY_F(!(1.6f >= I_xx7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy7 = p->value[57];
-    if (ARM7_RARELY_F(!(4.8f >= I_yy7))) {
+    if (ARM7_RARELY_F(!(0.85f >= I_yy7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz7 = p->value[58];
-    if (ARM7_RARELY_F(!(3700.0f >= I_zz7))) {
+    if (ARM7_RARELY_F(!(670.0f >= I_zz7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float q_2 = q[1];

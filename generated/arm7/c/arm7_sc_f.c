@@ -872,150 +872,150 @@ arm7_status arm7_inverse_dynamics_sc_f(const arm7_trig_f *sc, const float q[7], 
 arm7_status arm7_forward_dynamics_sc_f(const arm7_trig_f *sc, const float q[7], const float qd[7], const float u[7], const arm7_params_f *p, float qdd[7]) {
     (void)q;
     const float d_5 = p->d_5;
-    if (ARM7_RARELY_F(!(12.0f >= d_5))) {
+    if (ARM7_RARELY_F(!(4.0f >= d_5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float d_7 = p->d_7;
-    if (ARM7_RARELY_F(!(12.0f >= d_7))) {
+    if (ARM7_RARELY_F(!(2.2f >= d_7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz2 = p->I_zz2;
-    if (ARM7_RARELY_F(!(89000.0f >= I_zz2))) {
+    if (ARM7_RARELY_F(!(16000.0f >= I_zz2))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_3 = p->m_3;
-    if (ARM7_RARELY_F(!(16000.0f >= m_3))) {
+    if (ARM7_RARELY_F(!(3000.0f >= m_3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x3 = p->c_x3;
-    if (ARM7_RARELY_F(!(9.0f >= c_x3))) {
+    if (ARM7_RARELY_F(!(1.6f >= c_x3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_z3 = p->c_z3;
-    if (ARM7_RARELY_F(!(31000.0f >= c_z3))) {
+    if (ARM7_RARELY_F(!(5600.0f >= c_z3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx3 = p->I_xx3;
-    if (ARM7_RARELY_F(!(940.0f >= I_xx3))) {
+    if (ARM7_RARELY_F(!(160.0f >= I_xx3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy3 = p->I_yy3;
-    if (ARM7_RARELY_F(!(480.0f >= I_yy3))) {
+    if (ARM7_RARELY_F(!(85.0f >= I_yy3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz3 = p->I_zz3;
-    if (ARM7_RARELY_F(!(37000.0f >= I_zz3))) {
+    if (ARM7_RARELY_F(!(6700.0f >= I_zz3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_4 = p->m_4;
-    if (ARM7_RARELY_F(!(8500.0f >= m_4))) {
+    if (ARM7_RARELY_F(!(1500.0f >= m_4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x4 = p->c_x4;
-    if (ARM7_RARELY_F(!(6.7f >= c_x4))) {
+    if (ARM7_RARELY_F(!(1.1f >= c_x4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_y4 = p->c_y4;
-    if (ARM7_RARELY_F(!(10.0f >= c_y4))) {
+    if (ARM7_RARELY_F(!(1.7f >= c_y4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx4 = p->I_xx4;
-    if (ARM7_RARELY_F(!(270.0f >= I_xx4))) {
+    if (ARM7_RARELY_F(!(48.0f >= I_xx4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy4 = p->I_yy4;
-    if (ARM7_RARELY_F(!(130.0f >= I_yy4))) {
+    if (ARM7_RARELY_F(!(24.0f >= I_yy4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz4 = p->I_zz4;
-    if (ARM7_RARELY_F(!(34000.0f >= I_zz4))) {
+    if (ARM7_RARELY_F(!(6000.0f >= I_zz4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_5 = p->m_5;
-    if (ARM7_RARELY_F(!(950.0f >= m_5))) {
+    if (ARM7_RARELY_F(!(170.0f >= m_5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x5 = p->c_x5;
-    if (ARM7_RARELY_F(!(15.0f >= c_x5))) {
+    if (ARM7_RARELY_F(!(2.6f >= c_x5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_y5 = p->c_y5;
-    if (ARM7_RARELY_F(!(11.0f >= c_y5))) {
+    if (ARM7_RARELY_F(!(2.0f >= c_y5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_z5 = p->c_z5;
     const float size_of_c_z5 = fabsf(c_z5);
-    if (ARM7_RARELY_F(!(17.0f >= size_of_c_z5))) {
+    if (ARM7_RARELY_F(!(3.1f >= size_of_c_z5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx5 = p->I_xx5;
-    if (ARM7_RARELY_F(!(300.0f >= I_xx5))) {
+    if (ARM7_RARELY_F(!(53.0f >= I_xx5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy5 = p->I_yy5;
-    if (ARM7_RARELY_F(!(270.0f >= I_yy5))) {
+    if (ARM7_RARELY_F(!(48.0f >= I_yy5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz5 = p->I_zz5;
-    if (ARM7_RARELY_F(!(6800.0f >= I_zz5))) {
+    if (ARM7_RARELY_F(!(1200.0f >= I_zz5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_6 = p->m_6;
-    if (ARM7_RARELY_F(!(320.0f >= m_6))) {
+    if (ARM7_RARELY_F(!(56.0f >= m_6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x6 = p->c_x6;
-    if (ARM7_RARELY_F(!(5.6f >= c_x6))) {
+    if (ARM7_RARELY_F(!(1.0f >= c_x6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_y6 = p->c_y6;
-    if (ARM7_RARELY_F(!(1.6f >= c_y6))) {
+    if (ARM7_RARELY_F(!(0.29f >= c_y6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_z6 = p->c_z6;
     const float size_of_c_z6 = fabsf(c_z6);
-    if (ARM7_RARELY_F(!(20.0f >= size_of_c_z6))) {
+    if (ARM7_RARELY_F(!(3.5f >= size_of_c_z6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx6 = p->I_xx6;
-    if (ARM7_RARELY_F(!(18.0f >= I_xx6))) {
+    if (ARM7_RARELY_F(!(3.2f >= I_xx6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy6 = p->I_yy6;
-    if (ARM7_RARELY_F(!(28.0f >= I_yy6))) {
+    if (ARM7_RARELY_F(!(5.1f >= I_yy6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz6 = p->I_zz6;
-    if (ARM7_RARELY_F(!(7200.0f >= I_zz6))) {
+    if (ARM7_RARELY_F(!(1200.0f >= I_zz6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_7 = p->m_7;
-    if (ARM7_RARELY_F(!(9.4f >= m_7))) {
+    if (ARM7_RARELY_F(!(3.0f >= m_7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x7 = p->c_x7;
-    if (ARM7_RARELY_F(!(1.7f >= c_x7))) {
+    if (ARM7_RARELY_F(!(0.31f >= c_x7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_y7 = p->c_y7;
-    if (ARM7_RARELY_F(!(2.2f >= c_y7))) {
+    if (ARM7_RARELY_F(!(0.4f >= c_y7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_z7 = p->c_z7;
     const float size_of_c_z7 = fabsf(c_z7);
-    if (ARM7_RARELY_F(!(9.4f >= size_of_c_z7))) {
+    if (ARM7_RARELY_F(!(1.6f >= size_of_c_z7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx7 = p->I_xx7;
-    if (ARM7_RARELY_F(!(9.4f >= I_xx7))) {
+    if (ARM7_RARELY_F(!(1.6f >= I_xx7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy7 = p->I_yy7;
-    if (ARM7_RARELY_F(!(4.8f >= I_yy7))) {
+    if (ARM7_RARELY_F(!(0.85f >= I_yy7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz7 = p->I_zz7;
-    if (ARM7_RARELY_F(!(3700.0f >= I_zz7))) {
+    if (ARM7_RARELY_F(!(670.0f >= I_zz7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_2 = p->m_2;

@@ -371,7 +371,7 @@ static DELTA_APART delta_status delta_inverse_dynamics_cause(const double q[6], 
 delta_status delta_inverse_dynamics(const double q[6], const double qd[6], const double qdd[6], const delta_params *p, double u[3]) {
     (void)qd;
     const double l_2 = p->l_2;
-    if (DELTA_RARELY(!(l_2 >= 4.3e-05))) {
+    if (DELTA_RARELY(!(l_2 >= 0.00043))) {
         return DELTA_PARAMETER_RANGE;
     }
     if (DELTA_RARELY(!(8.5 >= l_2))) {
@@ -1304,16 +1304,12 @@ delta_status delta_forward_dynamics(const double q[6], const double qd[6], const
 }
 
 delta_status delta_multipliers(const double q[6], const double qd[6], const double u[3], const delta_params *p, double lambda_B[3]) {
-    const double l_1 = p->l_1;
-    if (DELTA_RARELY(!(l_1 >= 0.00015))) {
-        return DELTA_PARAMETER_RANGE;
-    }
     const double m_a = p->m_a;
-    if (DELTA_RARELY(!(63.0 >= m_a))) {
+    if (DELTA_RARELY(!(20.0 >= m_a))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double m_r = p->m_r;
-    if (DELTA_RARELY(!(28.0 >= m_r))) {
+    if (DELTA_RARELY(!(5.0 >= m_r))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double a_1 = q[0];
@@ -1339,6 +1335,7 @@ delta_status delta_multipliers(const double q[6], const double qd[6], const doub
     const double t36 = 0.5 * r;
     const double x = q[3];
     const double t37 = x - t36;
+    const double l_1 = p->l_1;
     const double t7 = cosine[1];
     const double t100 = l_1 * t7;
     const double R = p->R;

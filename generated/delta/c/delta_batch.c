@@ -299,7 +299,7 @@ size_t delta_inverse_dynamics_batch(size_t count, size_t stride, const double *q
             const double t327 = t320 * t326;
             const double t328 = t315 - t327;
             double rest = (t291 - t291) * t312 * t328;
-            rest += l_2 >= 4.3e-05 ? 0.0 : 1.0;
+            rest += l_2 >= 0.00043 ? 0.0 : 1.0;
             rest += 8.5 >= l_2 ? 0.0 : 1.0;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += 100000.0 >= t2 ? 0.0 : 1.0;
@@ -1814,9 +1814,8 @@ size_t delta_multipliers_batch(size_t count, size_t stride, const double *q, con
             const double t619 = t462 + t614;
             const double t620 = t456 + t608;
             double rest = (t618 - t618) * t619 * t620;
-            rest += l_1 >= 0.00015 ? 0.0 : 1.0;
-            rest += 63.0 >= m_a ? 0.0 : 1.0;
-            rest += 28.0 >= m_r ? 0.0 : 1.0;
+            rest += 20.0 >= m_a ? 0.0 : 1.0;
+            rest += 5.0 >= m_r ? 0.0 : 1.0;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += 100000.0 >= t2 ? 0.0 : 1.0;
             rest += 100000.0 >= t3 ? 0.0 : 1.0;

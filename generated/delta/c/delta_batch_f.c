@@ -286,7 +286,8 @@ size_t delta_inverse_dynamics_batch_f(size_t count, size_t stride, const float *
             const float t327 = t320 * t326;
             const float t328 = t315 - t327;
             float rest = (t291 - t291) * t312 * t328;
-            rest += l_2 >= 0.024f ? 0.0f : 1.0f;
+            rest += 3.5f >= l_1 ? 0.0f : 1.0f;
+            rest += l_2 >= 0.14f ? 0.0f : 1.0f;
             rest += 8.5f >= l_2 ? 0.0f : 1.0f;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += 100.0f >= t2 ? 0.0f : 1.0f;
@@ -349,7 +350,6 @@ size_t delta_forward_dynamics_batch_f(size_t count, size_t stride, const float *
     const float m_p = p->m_p;
     const float J_m = p->J_m;
     const float g = p->g;
-    const float l_2 = p->l_2;
     const float t36 = 0.5f * r;
     const float t174 = 0.5f * m_r;
     const float t173 = 0.25f * m_a;
@@ -1064,7 +1064,6 @@ size_t delta_forward_dynamics_batch_f(size_t count, size_t stride, const float *
             const float t637 = t586 + t636;
             const float t638 = t189 * t637;
             float rest = (t628 - t628) * t634 * t638 + (t647 - t647) * t656 * t665;
-            rest += l_2 >= 1.4e-08f ? 0.0f : 1.0f;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += 100.0f >= t2 ? 0.0f : 1.0f;
             rest += 100.0f >= t3 ? 0.0f : 1.0f;
@@ -1804,10 +1803,9 @@ size_t delta_multipliers_batch_f(size_t count, size_t stride, const float *q, co
             const float t619 = t462 + t614;
             const float t620 = t456 + t608;
             float rest = (t618 - t618) * t619 * t620;
-            rest += l_1 >= 0.00015f ? 0.0f : 1.0f;
-            rest += l_2 >= 1.4e-08f ? 0.0f : 1.0f;
-            rest += 63.0f >= m_a ? 0.0f : 1.0f;
-            rest += 28.0f >= m_r ? 0.0f : 1.0f;
+            rest += l_2 >= 7.5e-08f ? 0.0f : 1.0f;
+            rest += 20.0f >= m_a ? 0.0f : 1.0f;
+            rest += 5.0f >= m_r ? 0.0f : 1.0f;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += 100.0f >= t2 ? 0.0f : 1.0f;
             rest += 100.0f >= t3 ? 0.0f : 1.0f;

@@ -389,8 +389,12 @@ static DELTA_APART_F delta_status delta_inverse_dynamics_prepared_f_cause(const 
 
 delta_status delta_inverse_dynamics_prepared_f(const float q[6], const float qd[6], const float qdd[6], const delta_prepared_f *p, float u[3]) {
     (void)qd;
+    const float l_1 = p->value[2];
+    if (DELTA_RARELY_F(!(3.5f >= l_1))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const float l_2 = p->value[4];
-    if (DELTA_RARELY_F(!(l_2 >= 0.024f))) {
+    if (DELTA_RARELY_F(!(l_2 >= 0.14f))) {
         return DELTA_PARAMETER_RANGE;
     }
     if (DELTA_RARELY_F(!(8.5f >= l_2))) {
@@ -415,7 +419,6 @@ delta_status delta_inverse_dynamics_prepared_f(const float q[6], const float qd[
     float sine[4];
     float cosine[4];
     delta_sincos_group_f(3, angle, sine, cosine);
-    const float l_1 = p->value[2];
     const float t7 = cosine[1];
     const float t19 = l_1 * t7;
     const float t18 = p->value[6];

@@ -257,8 +257,12 @@ static DELTA_APART_F delta_status delta_inverse_dynamics_sc_f_cause(const delta_
 
 delta_status delta_inverse_dynamics_sc_f(const delta_trig_f *sc, const float q[6], const float qd[6], const float qdd[6], const delta_params_f *p, float u[3]) {
     (void)qd;
+    const float l_1 = p->l_1;
+    if (DELTA_RARELY_F(!(3.5f >= l_1))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const float l_2 = p->l_2;
-    if (DELTA_RARELY_F(!(l_2 >= 0.024f))) {
+    if (DELTA_RARELY_F(!(l_2 >= 0.14f))) {
         return DELTA_PARAMETER_RANGE;
     }
     if (DELTA_RARELY_F(!(8.5f >= l_2))) {
@@ -268,7 +272,6 @@ delta_status delta_inverse_dynamics_sc_f(const delta_trig_f *sc, const float q[6
     const float r = p->r;
     const float t12 = R - r;
     const float t18 = -t12;
-    const float l_1 = p->l_1;
     const float cos_a_2 = sc->cos_a_2;
     const float t19 = l_1 * cos_a_2;
     const float t20 = t18 - t19;
@@ -434,10 +437,6 @@ delta_status delta_inverse_dynamics_sc_f(const delta_trig_f *sc, const float q[6
 }
 
 delta_status delta_forward_dynamics_sc_f(const delta_trig_f *sc, const float q[6], const float qd[6], const float u[3], const delta_params_f *p, float qdd[6]) {
-    const float l_2 = p->l_2;
-    if (DELTA_RARELY_F(!(l_2 >= 1.4e-08f))) {
-        return DELTA_PARAMETER_RANGE;
-    }
     const float r = p->r;
     const float t36 = 0.5f * r;
     const float x = q[3];
@@ -1157,26 +1156,23 @@ delta_status delta_forward_dynamics_sc_f(const delta_trig_f *sc, const float q[6
 }
 
 delta_status delta_multipliers_sc_f(const delta_trig_f *sc, const float q[6], const float qd[6], const float u[3], const delta_params_f *p, float lambda_B[3]) {
-    const float l_1 = p->l_1;
-    if (DELTA_RARELY_F(!(l_1 >= 0.00015f))) {
-        return DELTA_PARAMETER_RANGE;
-    }
     const float l_2 = p->l_2;
-    if (DELTA_RARELY_F(!(l_2 >= 1.4e-08f))) {
+    if (DELTA_RARELY_F(!(l_2 >= 7.5e-08f))) {
         return DELTA_PARAMETER_RANGE;
     }
     const float m_a = p->m_a;
-    if (DELTA_RARELY_F(!(63.0f >= m_a))) {
+    if (DELTA_RARELY_F(!(20.0f >= m_a))) {
         return DELTA_PARAMETER_RANGE;
     }
     const float m_r = p->m_r;
-    if (DELTA_RARELY_F(!(28.0f >= m_r))) {
+    if (DELTA_RARELY_F(!(5.0f >= m_r))) {
         return DELTA_PARAMETER_RANGE;
     }
     const float r = p->r;
     const float t36 = 0.5f * r;
     const float x = q[3];
     const float t37 = x - t36;
+    const float l_1 = p->l_1;
     const float cos_a_3 = sc->cos_a_3;
     const float t100 = l_1 * cos_a_3;
     const float R = p->R;

@@ -1593,7 +1593,7 @@ front_car_status front_car_minimal_mass_matrix(const double q[4], const front_ca
 
 front_car_status front_car_minimal_coriolis_matrix(const double q[4], const double qd[4], const front_car_params *p, double C_bar[4]) {
     const double L = p->L;
-    if (FRONT_CAR_RARELY(!(L >= 0.11))) {
+    if (FRONT_CAR_RARELY(!(L >= 0.18))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
     const double phi = q[3];
@@ -2095,7 +2095,7 @@ front_car_status front_car_actuator_mass_matrix(const double q[4], const front_c
 
 front_car_status front_car_actuator_bias(const double q[4], const double qd[4], const front_car_params *p, double bias_nu[2]) {
     const double m_2 = p->m_2;
-    if (FRONT_CAR_RARELY(!(11000.0 >= m_2))) {
+    if (FRONT_CAR_RARELY(!(2000.0 >= m_2))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
     const double theta = q[2];

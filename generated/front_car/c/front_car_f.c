@@ -1580,10 +1580,10 @@ front_car_status front_car_minimal_mass_matrix_f(const float q[4], const front_c
 
 front_car_status front_car_minimal_coriolis_matrix_f(const float q[4], const float qd[4], const front_car_params_f *p, float C_bar[4]) {
     const float L = p->L;
-    if (FRONT_CAR_RARELY_F(!(L >= 0.11f))) {
+    if (FRONT_CAR_RARELY_F(!(L >= 0.18f))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
-    if (FRONT_CAR_RARELY_F(!(710000000.0f >= L))) {
+    if (FRONT_CAR_RARELY_F(!(120000000.0f >= L))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
     const float phi = q[3];
@@ -1794,7 +1794,7 @@ front_car_status front_car_admissible_velocity_f(const float q[4], const float q
 
 front_car_status front_car_admissible_acceleration_f(const float q[4], const float qd[4], const float qdd[4], const front_car_params_f *p, float qdd_admissible[4]) {
     const float L = p->L;
-    if (FRONT_CAR_RARELY_F(!(4000000.0f >= L))) {
+    if (FRONT_CAR_RARELY_F(!(710000.0f >= L))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
     const float theta = q[2];
@@ -2088,7 +2088,7 @@ front_car_status front_car_actuator_mass_matrix_f(const float q[4], const front_
 
 front_car_status front_car_actuator_bias_f(const float q[4], const float qd[4], const front_car_params_f *p, float bias_nu[2]) {
     const float m_2 = p->m_2;
-    if (FRONT_CAR_RARELY_F(!(11000.0f >= m_2))) {
+    if (FRONT_CAR_RARELY_F(!(2000.0f >= m_2))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
     const float theta = q[2];

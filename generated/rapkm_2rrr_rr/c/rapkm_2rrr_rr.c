@@ -517,7 +517,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_applied_force(const double q[6], const double
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_residual(const double q[6], const rapkm_2rrr_rr_params *p, double g[4]) {
     const double l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY(!(9.4 >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double a_1 = q[0];
@@ -874,6 +874,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_jacobian_dot(const double q[6], co
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_pseudoinverse(const double q[6], const rapkm_2rrr_rr_params *p, double B_pinv[24]) {
+    const double l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.027))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_2 = q[1];
     const double b_2 = q[4];
     const double t1 = a_2 + b_2;
@@ -917,7 +921,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_pseudoinverse(const double q[6], c
     const double t16 = sine[3];
     const double t28 = l_2 * t16;
     const double t31 = t28 * t28;
-    const double l_1 = p->l_1;
     const double t12 = sine[1];
     const double t24 = l_1 * t12;
     const double t25 = t24 + t22;
@@ -1398,6 +1401,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_pseudoinverse(const double q[6], c
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_nullspace_projector(const double q[6], const rapkm_2rrr_rr_params *p, double N_B[36]) {
+    const double l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.027))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_2 = q[1];
     const double b_2 = q[4];
     const double t1 = a_2 + b_2;
@@ -1439,7 +1446,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_nullspace_projector(const double q[6], const 
     const double t10 = sine[0];
     const double t22 = l_2 * t10;
     const double t23 = t22 * t22;
-    const double l_1 = p->l_1;
     const double t12 = sine[1];
     const double t24 = l_1 * t12;
     const double t25 = t24 + t22;
@@ -1877,6 +1883,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_nullspace_projector(const double q[6], const 
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_nullspace_projector_dot(const double q[6], const double qd[6], const rapkm_2rrr_rr_params *p, double N_B_dot[36]) {
+    const double l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.027))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_2 = q[1];
     const double b_2 = q[4];
     const double t1 = a_2 + b_2;
@@ -1920,7 +1930,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_nullspace_projector_dot(const double q[6], co
     const double t16 = sine[3];
     const double t28 = l_2 * t16;
     const double t31 = t28 * t28;
-    const double l_1 = p->l_1;
     const double t12 = sine[1];
     const double t24 = l_1 * t12;
     const double t25 = t24 + t22;
@@ -2985,7 +2994,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_nullspace_projector_dot(const double q[6], co
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse(const double q[6], const rapkm_2rrr_rr_params *p, double B_G_pinv[24]) {
     const double l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY(!(1.6 >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double a_3 = q[2];
@@ -3905,7 +3914,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse(const double q[6], con
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector(const double q[6], const rapkm_2rrr_rr_params *p, double N_BG[36]) {
     const double l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.027))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    if (RAPKM_2RRR_RR_RARELY(!(1.6 >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double l_2 = p->l_2;
@@ -4726,6 +4738,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_control_matrix(const double q[6], const rapkm
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_matrix(const double q[6], const rapkm_2rrr_rr_params *p, double M_tilde[18]) {
+    const double l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.027))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_3 = q[2];
     const double b_3 = q[5];
     const double t1 = a_3 + b_3;
@@ -4777,7 +4793,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_matrix(const double q[6], c
     const double t15 = cosine[2];
     const double t37 = l_2 * t15;
     const double t73 = l_2 * l_2;
-    const double l_1 = p->l_1;
     const double t21 = cosine[5];
     const double t36 = l_1 * t21;
     const double t38 = t36 + t37;
@@ -5267,6 +5282,10 @@ static RAPKM_2RRR_RR_APART rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_pseudoinverse(const double q[6], const rapkm_2rrr_rr_params *p, double M_tilde_pinv[18]) {
+    const double l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.027))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_2 = q[1];
     const double b_2 = q[4];
     const double t1 = a_2 + b_2;
@@ -5317,7 +5336,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_pseudoinverse(const double 
     const double t29 = l_2 * t10;
     const double t17 = cosine[3];
     const double t36 = l_2 * t17;
-    const double l_1 = p->l_1;
     const double t20 = sine[5];
     const double t25 = l_1 * t20;
     const double t27 = t25 + t26;
@@ -5769,6 +5787,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement(const double q[6], cons
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix(const double q[6], const rapkm_2rrr_rr_params *p, double G_tilde[36]) {
+    const double l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.027))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_2 = q[1];
     const double t1 = fabs(a_2);
     const double b_2 = q[4];
@@ -5813,7 +5835,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix(const double q[6], cons
     const double l_2 = p->l_2;
     const double t22 = l_2 * t21;
     const double t23 = t22 * t22;
-    const double l_1 = p->l_1;
     const double t24 = l_1 * t7;
     const double t25 = t24 + t22;
     const double t26 = t25 * t25;
@@ -6630,6 +6651,9 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix(const double q[6], cons
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix(const double q[6], const double qd[6], const rapkm_2rrr_rr_params *p, double C_tilde[36]) {
     const double l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.027))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
@@ -8834,11 +8858,14 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix(const double q[6], const 
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix(const double q[6], const double qd[6], const rapkm_2rrr_rr_params *p, double C_bar[4]) {
     const double l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY(!(30.0 >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.027))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    if (RAPKM_2RRR_RR_RARELY(!(5.3 >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY(!(1.6 >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double b_1 = q[3];
@@ -10005,6 +10032,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix(const double q[6], con
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_velocity(const double q[6], const double qd[6], const rapkm_2rrr_rr_params *p, double qd_admissible[6]) {
+    const double l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.027))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_2 = q[1];
     const double b_2 = q[4];
     const double t1 = a_2 + b_2;
@@ -10046,7 +10077,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_velocity(const double q[6], const 
     const double t10 = sine[0];
     const double t22 = l_2 * t10;
     const double t23 = t22 * t22;
-    const double l_1 = p->l_1;
     const double t12 = sine[1];
     const double t24 = l_1 * t12;
     const double t25 = t24 + t22;
@@ -10388,7 +10418,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_velocity(const double q[6], const 
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_acceleration(const double q[6], const double qd[6], const double qdd[6], const rapkm_2rrr_rr_params *p, double qdd_admissible[6]) {
     const double l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY(!(94.0 >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double a_2 = q[1];
@@ -10977,7 +11007,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration(const double q[6], co
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY(!(5.3 >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double a_1 = q[0];
@@ -12028,7 +12058,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_residual(const double q[6], 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics(const double q[6], const double qd[6], const double u[3], const rapkm_2rrr_rr_params *p, double qdd[6]) {
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
-    if (RAPKM_2RRR_RR_RARELY(!(100.0 >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY(!(17.0 >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double b_1 = q[3];
@@ -13183,7 +13213,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics(const double q[6], const dou
 rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers(const double q[6], const double qd[6], const double u[3], const rapkm_2rrr_rr_params *p, double lambda_B[4]) {
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
-    if (RAPKM_2RRR_RR_RARELY(!(100.0 >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY(!(10.0 >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double a_2 = q[1];
@@ -14335,7 +14365,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_energy(const double q[6], const double qd[6],
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_singularity(const double q[6], const rapkm_2rrr_rr_params *p, double measure[2]) {
     const double l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
+    if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.027))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double a_2 = q[1];

@@ -1491,7 +1491,7 @@ size_t rapkm_2rrr_rr_forward_dynamics_batch(size_t count, size_t stride, const d
             const double t1050 = t1048 - t1049;
             const double t1051 = t1050 - t1030;
             double rest = (t1022 - t1022) * t1026 * t1030 + (t1037 - t1037) * t1044 * t1051;
-            rest += 100.0 >= size_of_m_payload ? 0.0 : 1.0;
+            rest += 17.0 >= size_of_m_payload ? 0.0 : 1.0;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += 100000.0 >= t2 ? 0.0 : 1.0;
             rest += 100000.0 >= t3 ? 0.0 : 1.0;
@@ -2582,7 +2582,7 @@ size_t rapkm_2rrr_rr_multipliers_batch(size_t count, size_t stride, const double
             const double t956 = t670 + t943;
             const double t957 = t664 + t937;
             double rest = (t954 - t954) * t955 * t956 + t957 - t957;
-            rest += 100.0 >= size_of_m_payload ? 0.0 : 1.0;
+            rest += 10.0 >= size_of_m_payload ? 0.0 : 1.0;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += 100000.0 >= t2 ? 0.0 : 1.0;
             rest += 100000.0 >= t3 ? 0.0 : 1.0;

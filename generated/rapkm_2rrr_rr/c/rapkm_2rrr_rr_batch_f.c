@@ -1478,7 +1478,7 @@ size_t rapkm_2rrr_rr_forward_dynamics_batch_f(size_t count, size_t stride, const
             const float t1050 = t1048 - t1049;
             const float t1051 = t1050 - t1030;
             float rest = (t1022 - t1022) * t1026 * t1030 + (t1037 - t1037) * t1044 * t1051;
-            rest += 100.0f >= size_of_m_payload ? 0.0f : 1.0f;
+            rest += 17.0f >= size_of_m_payload ? 0.0f : 1.0f;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += 100.0f >= t2 ? 0.0f : 1.0f;
             rest += 100.0f >= t3 ? 0.0f : 1.0f;
@@ -2569,7 +2569,7 @@ size_t rapkm_2rrr_rr_multipliers_batch_f(size_t count, size_t stride, const floa
             const float t956 = t670 + t943;
             const float t957 = t664 + t937;
             float rest = (t954 - t954) * t955 * t956 + t957 - t957;
-            rest += 100.0f >= size_of_m_payload ? 0.0f : 1.0f;
+            rest += 10.0f >= size_of_m_payload ? 0.0f : 1.0f;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += 100.0f >= t2 ? 0.0f : 1.0f;
             rest += 100.0f >= t3 ? 0.0f : 1.0f;

@@ -504,7 +504,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_applied_force_f(const float q[6], const float
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_residual_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float g[4]) {
     const float l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY_F(!(9.4f >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_1 = q[0];
@@ -861,6 +861,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_jacobian_dot_f(const float q[6], c
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_pseudoinverse_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float B_pinv[24]) {
+    const float l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.027f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_2 = q[1];
     const float b_2 = q[4];
     const float t1 = a_2 + b_2;
@@ -904,7 +908,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_pseudoinverse_f(const float q[6], 
     const float t16 = sine[3];
     const float t28 = l_2 * t16;
     const float t31 = t28 * t28;
-    const float l_1 = p->l_1;
     const float t12 = sine[1];
     const float t24 = l_1 * t12;
     const float t25 = t24 + t22;
@@ -1385,6 +1388,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_pseudoinverse_f(const float q[6], 
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_nullspace_projector_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float N_B[36]) {
+    const float l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.027f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_2 = q[1];
     const float b_2 = q[4];
     const float t1 = a_2 + b_2;
@@ -1426,7 +1433,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_nullspace_projector_f(const float q[6], const
     const float t10 = sine[0];
     const float t22 = l_2 * t10;
     const float t23 = t22 * t22;
-    const float l_1 = p->l_1;
     const float t12 = sine[1];
     const float t24 = l_1 * t12;
     const float t25 = t24 + t22;
@@ -1864,6 +1870,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_nullspace_projector_f(const float q[6], const
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_nullspace_projector_dot_f(const float q[6], const float qd[6], const rapkm_2rrr_rr_params_f *p, float N_B_dot[36]) {
+    const float l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.027f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_2 = q[1];
     const float b_2 = q[4];
     const float t1 = a_2 + b_2;
@@ -1907,7 +1917,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_nullspace_projector_dot_f(const float q[6], c
     const float t16 = sine[3];
     const float t28 = l_2 * t16;
     const float t31 = t28 * t28;
-    const float l_1 = p->l_1;
     const float t12 = sine[1];
     const float t24 = l_1 * t12;
     const float t25 = t24 + t22;
@@ -2972,7 +2981,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_nullspace_projector_dot_f(const float q[6], c
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float B_G_pinv[24]) {
     const float l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(1.6f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_3 = q[2];
@@ -3892,7 +3901,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse_f(const float q[6], co
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float N_BG[36]) {
     const float l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.027f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    if (RAPKM_2RRR_RR_RARELY_F(!(1.6f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;
@@ -4713,6 +4725,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_control_matrix_f(const float q[6], const rapk
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_matrix_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float M_tilde[18]) {
+    const float l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.027f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_3 = q[2];
     const float b_3 = q[5];
     const float t1 = a_3 + b_3;
@@ -4764,7 +4780,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_matrix_f(const float q[6], 
     const float t15 = cosine[2];
     const float t37 = l_2 * t15;
     const float t73 = l_2 * l_2;
-    const float l_1 = p->l_1;
     const float t21 = cosine[5];
     const float t36 = l_1 * t21;
     const float t38 = t36 + t37;
@@ -5255,7 +5270,14 @@ static RAPKM_2RRR_RR_APART_F rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_contro
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_pseudoinverse_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float M_tilde_pinv[18]) {
     const float l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY_F(!(16.0f >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.027f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(16.0f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_2 = q[1];
@@ -5295,7 +5317,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_pseudoinverse_f(const float
     float sine[8];
     float cosine[8];
     rapkm_2rrr_rr_sincos_group_f(6, angle, sine, cosine);
-    const float l_2 = p->l_2;
     const float t15 = cosine[2];
     const float t22 = l_2 * t15;
     const float t16 = sine[3];
@@ -5536,11 +5557,15 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_pseudoinverse_f(const float
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float F_B[12]) {
     const float l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY_F(!(16.0f >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(16.0f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float x_2 = p->x_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 2e-07f))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 1.2e-06f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float b_1 = q[3];
@@ -5577,7 +5602,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement_f(const float q[6], con
     float sine[8];
     float cosine[8];
     rapkm_2rrr_rr_sincos_group_f(6, angle, sine, cosine);
-    const float l_2 = p->l_2;
     const float t54 = l_2 * l_2;
     const float t18 = cosine[5];
     const float t8 = cosine[0];
@@ -5766,6 +5790,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement_f(const float q[6], con
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float G_tilde[36]) {
+    const float l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.027f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_2 = q[1];
     const float t1 = fabsf(a_2);
     const float b_2 = q[4];
@@ -5810,7 +5838,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix_f(const float q[6], con
     const float l_2 = p->l_2;
     const float t22 = l_2 * t21;
     const float t23 = t22 * t22;
-    const float l_1 = p->l_1;
     const float t24 = l_1 * t7;
     const float t25 = t24 + t22;
     const float t26 = t25 * t25;
@@ -6627,6 +6654,9 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix_f(const float q[6], con
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6], const float qd[6], const rapkm_2rrr_rr_params_f *p, float C_tilde[36]) {
     const float l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.027f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
@@ -8547,7 +8577,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_applied_force_f(const float q[6], c
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float G_bar[4]) {
     const float l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY_F(!(16.0f >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;
@@ -8555,7 +8585,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix_f(const float q[6], const
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float x_2 = p->x_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 2e-07f))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 1.2e-06f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_1 = q[0];
@@ -8838,15 +8868,18 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix_f(const float q[6], const
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix_f(const float q[6], const float qd[6], const rapkm_2rrr_rr_params_f *p, float C_bar[4]) {
     const float l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY_F(!(16.0f >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.027f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(1.6f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float x_2 = p->x_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 2e-07f))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 1.2e-06f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float b_1 = q[3];
@@ -9858,11 +9891,15 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_applied_force_f(const float q[6], con
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float M_bar[6]) {
     const float l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY_F(!(16.0f >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(16.0f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float x_2 = p->x_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 2e-07f))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 1.2e-06f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float b_3 = q[5];
@@ -9899,7 +9936,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix_f(const float q[6], co
     float sine[8];
     float cosine[8];
     rapkm_2rrr_rr_sincos_group_f(6, angle, sine, cosine);
-    const float l_2 = p->l_2;
     const float t51 = l_2 * l_2;
     const float t10 = cosine[1];
     const float t12 = cosine[2];
@@ -10020,6 +10056,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix_f(const float q[6], co
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_velocity_f(const float q[6], const float qd[6], const rapkm_2rrr_rr_params_f *p, float qd_admissible[6]) {
+    const float l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.027f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_2 = q[1];
     const float b_2 = q[4];
     const float t1 = a_2 + b_2;
@@ -10061,7 +10101,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_velocity_f(const float q[6], const
     const float t10 = sine[0];
     const float t22 = l_2 * t10;
     const float t23 = t22 * t22;
-    const float l_1 = p->l_1;
     const float t12 = sine[1];
     const float t24 = l_1 * t12;
     const float t25 = t24 + t22;
@@ -10403,7 +10442,14 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_velocity_f(const float q[6], const
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_acceleration_f(const float q[6], const float qd[6], const float qdd[6], const rapkm_2rrr_rr_params_f *p, float qdd_admissible[6]) {
     const float l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY_F(!(94.0f >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.027f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_2 = q[1];
@@ -10443,7 +10489,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_acceleration_f(const float q[6], c
     float sine[8];
     float cosine[8];
     rapkm_2rrr_rr_sincos_group_f(6, angle, sine, cosine);
-    const float l_2 = p->l_2;
     const float t10 = sine[0];
     const float t22 = l_2 * t10;
     const float t12 = sine[1];
@@ -10992,7 +11037,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration_f(const float q[6], c
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(5.3f >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_1 = q[0];
@@ -12043,7 +12088,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_residual_f(const float q[6],
 rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const float qd[6], const float u[3], const rapkm_2rrr_rr_params_f *p, float qdd[6]) {
     const float m_payload = p->m_payload;
     const float size_of_m_payload = fabsf(m_payload);
-    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(17.0f >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float b_1 = q[3];
@@ -13198,7 +13243,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
 rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float qd[6], const float u[3], const rapkm_2rrr_rr_params_f *p, float lambda_B[4]) {
     const float m_payload = p->m_payload;
     const float size_of_m_payload = fabsf(m_payload);
-    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(10.0f >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_2 = q[1];
@@ -14350,7 +14395,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_energy_f(const float q[6], const float qd[6],
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_singularity_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float measure[2]) {
     const float l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.027f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_2 = q[1];

@@ -284,7 +284,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc(const rapkm_2rrr_rr_trig 
     (void)q;
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
-    if (RAPKM_2RRR_RR_RARELY(!(100.0 >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY(!(17.0 >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double cos_a_2 = sc->cos_a_2;
@@ -1406,7 +1406,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_sc(const rapkm_2rrr_rr_trig *sc, 
     (void)q;
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
-    if (RAPKM_2RRR_RR_RARELY(!(100.0 >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY(!(10.0 >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double sin_a_1 = sc->sin_a_1;

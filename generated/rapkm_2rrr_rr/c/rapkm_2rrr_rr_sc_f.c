@@ -279,7 +279,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc_f(const rapkm_2rrr_rr_tri
     (void)q;
     const float m_payload = p->m_payload;
     const float size_of_m_payload = fabsf(m_payload);
-    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(17.0f >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float cos_a_2 = sc->cos_a_2;
@@ -1401,7 +1401,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_sc_f(const rapkm_2rrr_rr_trig_f *
     (void)q;
     const float m_payload = p->m_payload;
     const float size_of_m_payload = fabsf(m_payload);
-    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(10.0f >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float sin_a_1 = sc->sin_a_1;
