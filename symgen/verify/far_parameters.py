@@ -36,7 +36,7 @@ FURTHEST = 9
 # Of a power of ten: steps in which the first one that is too far is looked at again.
 QUARTER = 0.25
 # Powers of ten from a loss to the bound.
-MARGIN = 1.0
+BEFORE_A_LOSS = 1.0
 # Digits in which a bound is given.
 BOUND_DIGITS = 2
 # Below and above, as signs of powers.
@@ -52,7 +52,7 @@ CLEAR = 1e-4
 # Units of an estimate that count as lost: other states than these lose twice as much, and more.
 UNITS_LOST = FACTOR / 2
 # Times the steps of Newton's method from a state to where its loops close with a parameter far away.
-FURTHER = 5
+RENEWED = 5
 # Up to this power the reference judges so many of the worst.
 JUDGED_UP_TO, JUDGED_FAR = 1.0, 2
 
@@ -188,7 +188,7 @@ class FarParameters:
 
     def _further(self, q: Lanes, p: Lanes) -> Lanes:
         """Where so many times the steps of Newton's method lead: it takes more of them to far larger lengths."""
-        for _ in range(FURTHER):
+        for _ in range(RENEWED):
             q, _ = self._newton(q, p)
         return q
 
@@ -301,7 +301,7 @@ def _inside(lost: float) -> float:
     """
     if lost <= JUDGED_UP_TO:
         return max(lost - QUARTER, QUARTER)
-    return max(lost - MARGIN, JUDGED_UP_TO)
+    return max(lost - BEFORE_A_LOSS, JUDGED_UP_TO)
 
 
 def _in_digits(value: float, up: bool) -> Fraction:

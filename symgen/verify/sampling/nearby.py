@@ -38,7 +38,7 @@ LITTLE_INPUT = (1.0, 4.0)
 SLOWER = (1.0, 4.0)
 # How often a state is led on along a line that is drawn, how far that goes at most in shares of ranges, how much of the
 # way is left, and the steps that show the slope, shares of that.
-TOWARDS, LONGEST, LEFT, PROBED = 8, 0.4, 0.3, 1e-2
+LED_STEPS, LONGEST_LED, WAY_LEFT, PROBED = 8, 0.4, 0.3, 1e-2
 # In how many samples that is looked at, and how large these forces are beside inputs.
 SAMPLES_LOOKED_AT, LEAST_DRIVE = 8, 0.1
 
@@ -150,7 +150,7 @@ class Surroundings:
         """So many nearer and nearer to where rows, or inputs, lose rank, as far as measures stay above the least."""
         start, dice = self.drawn(count), random.Random("towards")
         lanes = np.arange(len(start))
-        which, rounds = lanes % 2, lanes // 2 % TOWARDS
+        which, rounds = lanes % 2, lanes // 2 % LED_STEPS
         q, p, low = start.parts["q"], start.parts["p"], np.array(least)
 
         def far(q: Lanes) -> tuple[Lanes, Lanes]:
@@ -163,13 +163,13 @@ class Surroundings:
 
         with np.errstate(all="ignore"):
             now = far(q)[1]
-            for number in range(TOWARDS):
-                probe = PROBED * np.minimum(LONGEST, now)[:, None]
+            for number in range(LED_STEPS):
+                probe = PROBED * np.minimum(LONGEST_LED, now)[:, None]
                 beside, made = far(q + probe * _shifts(dice, q) * self._widths)
                 # along V, so that a long step stays near it
                 along = (beside - q) / probe
-                share = (LEFT - 1) * now / ((made - now) / probe[:, 0])
-                longest = LONGEST / np.abs(along / self._widths).max(axis=1)
+                share = (WAY_LEFT - 1) * now / ((made - now) / probe[:, 0])
+                longest = LONGEST_LED / np.abs(along / self._widths).max(axis=1)
                 led, made = far(q + np.clip(share, -longest, longest)[:, None] * along)
                 nearer = (made < now) & (number < rounds)
                 q, now = np.where(nearer[:, None], led, q), np.where(nearer, made, now)
