@@ -20,6 +20,7 @@ from symgen.generation.draft import REJECTED, Draft
 from symgen.generation.results import AUTO, Options
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.methods.quantity import scalars
+from symgen.model.quantities import MAIN
 from symgen.quantities.alternatives import TIERS, Alternative, Alternatives, grouped
 from symgen.quantities.everything import most_with_twice_the_digits, too_wide
 from symgen.quantities.select import Rejection
@@ -37,7 +38,8 @@ from symgen.verify.tolerance import FACTOR
 TOO_LONG = "not tried: it takes many times as long to derive"
 # Of the error that is allowed; which method a quantity takes is decided at a few dozen states.
 MARGIN = FACTOR / 2
-# Beyond this twice the digits are taken where nothing else keeps a margin: of a state in thousands more is lost.
+# Beyond this u, q_ddot and lambda take twice the digits where nothing else keeps a margin: of a state in thousands more
+# is lost.
 NARROW = FACTOR * 3 / 4
 # Share of operations more that keeping a margin may cost.
 MARGIN_WORTH = Fraction(1, 2)
@@ -104,7 +106,7 @@ class Fallback:
                 largest = max(record.largest, searched.largest if searched is not None else 0.0)
                 if largest > MARGIN and quantity not in self._weighed:
                     before, made = made, self._with_margin(made, quantity, largest, expected)
-                    if made is before and largest > NARROW:
+                    if made is before and largest > NARROW and quantity in MAIN:
                         made = self._with_digits(made, quantity, largest, expected)
                     let_go()
         if made is draft:

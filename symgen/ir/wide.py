@@ -33,14 +33,19 @@ _Pair: TypeAlias = tuple[Operand, Operand]
 
 def widened(kernel: Kernel, scalar: Scalar) -> Kernel:
     """The kernel with pairs of numbers in place of numbers; its checks are those of the values."""
+    made = paired(kernel, scalar)
+    same_kernel(f"twice the digits in {kernel.name}", Lifted(kernel), Lifted(made), squares_roots=True)
+    return made
+
+
+def paired(kernel: Kernel, scalar: Scalar) -> Kernel:
+    """The same, unproved: to measure with, not to generate."""
     writer = _PairWriter(kernel, scalar)
     blocks = [replace(block, statements=writer.block(block.statements)) for block in kernel.blocks]
     last, outputs = writer.rounded(kernel.outputs)
     blocks[-1] = replace(blocks[-1], statements=(*blocks[-1].statements, *last))
     blocks = with_ranges(blocks, writer.further_angles, writer.taken)
-    made = pruned(replace(kernel, blocks=tuple(blocks), outputs=outputs))
-    same_kernel(f"twice the digits in {kernel.name}", Lifted(kernel), Lifted(made), squares_roots=True)
-    return made
+    return pruned(replace(kernel, blocks=tuple(blocks), outputs=outputs))
 
 
 def with_sharp_thresholds(single: Kernel, double: Kernel) -> Kernel:

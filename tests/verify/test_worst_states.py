@@ -11,10 +11,11 @@ import pytest
 
 from symgen.generation.draft import draft_of
 from symgen.generation.results import Options
-from symgen.ir.kernel import Block, Kernel, Literal, Load, Local, Statement
+from symgen.ir.kernel import Block, Kernel, Literal, Load, Local, Scalar, Statement
 from symgen.ir.wide import widened
 from symgen.model.load import load_model, load_text
 from symgen.verify.expected import Expected
+from symgen.verify.interpreted import outcomes
 from symgen.verify.reference.reference import Reference
 from symgen.verify.sampling.lanes import RoundingErrors
 from symgen.verify.sampling.loops_in_lanes import LoopsInLanes
@@ -23,7 +24,7 @@ from symgen.verify.sampling.ranks_in_lanes import ranked_parts
 from symgen.verify.sampling.rates_in_lanes import RatesInLanes
 from symgen.verify.sampling.regular import values_at
 from symgen.verify.sampling.searched import WorstStateSearch
-from symgen.verify.sampling.states import sample_states
+from symgen.verify.sampling.states import Sample, rounded, sample_states
 from symgen.verify.tolerance import FACTOR
 
 # A ladder whose feet slide on a floor and along a wall, and a disc that is geared to its turning.
@@ -71,6 +72,7 @@ DETOUR = straight(
     Statement(("less",), "mul", (Literal(Fraction(10**6 - 1)), A)),
     Statement(("sum",), "sub", (Local("near"), Local("less"))),
 )
+DETOUR_OF_LADDER = replace(DETOUR, loads=(Load("x", "q", 0), Load("a", "q", 2)))
 
 
 def test_estimates_are_shares_of_roundings_in_units_of_what_inputs_do() -> None:
@@ -79,6 +81,47 @@ def test_estimates_are_shares_of_roundings_in_units_of_what_inputs_do() -> None:
     unit = (x + a) + 1.5 * (x**2 + a**2) ** 0.5
     state = {"q": np.array([[x, a], [2 * x, 2 * a]])}
     assert RoundingErrors(DETOUR).at(state) == pytest.approx([np.linalg.norm(rounded) / unit] * 2)
+
+
+def test_where_rows_depend_configurations_move_along_v_alone() -> None:
+    """x + 10^6 (x - a) beside x = a is another function than x, and d that of a kernel a million times too large."""
+    kernel = straight(
+        Statement(("off",), "sub", (X, A)),
+        Statement(("far",), "mul", (BIG, Local("off"))),
+        Statement(("sum",), "add", (X, Local("far"))),
+    )
+    state = {"q": np.array([[0.7, 0.7]])}
+    along = np.full((1, 2, 2), 0.5)
+    (unit,), (smaller,) = (RoundingErrors(kernel).with_units(state, tangents)[1] for tangents in (None, along))
+    assert unit == pytest.approx(0.7 + 1.5 * 0.7 * np.hypot(1e6 + 1, 1e6))
+    assert smaller == pytest.approx(0.7 + 1.5 * 0.7 * np.hypot(0.5, 0.5))
+
+
+def test_tangents_are_what_rows_leave_free(reference: Reference) -> None:
+    around = Surroundings(reference, sample_states(reference, ["inverse_dynamics"], 8))
+    q, p = around.samples.parts["q"], around.samples.parts["p"]
+    for tangent, (_, _, a, _), (length, *_) in zip(around.tangents(around.samples), q, p, strict=True):
+        free = np.array([-length * np.sin(a), length * np.cos(a), 1, 2 + np.sin(a)])
+        assert tangent == pytest.approx(np.outer(free, free) / (free @ free), abs=1e-12)
+
+
+def test_of_doubtful_states_the_worst_are_judged() -> None:
+    """Roundings cancel at some states: what they do is measured before the reference is asked."""
+    model = load_text(LADDER, "ladder.yaml")
+    expected = Expected(model, ["inverse_dynamics"], 24, lambda _: None)
+    samples = list(expected.drawn)
+
+    def units(sample: Sample, scalar: Scalar) -> float:
+        x, a = rounded(sample, scalar).state.q[0], rounded(sample, scalar).state.q[2]
+        made = outcomes(DETOUR_OF_LADDER, None, scalar, [rounded(sample, scalar).state])[0].entries[0]
+        exact = Fraction(x) + Fraction(a)
+        return float(abs(Fraction(made) - exact)) / (float(exact) + 1.5 * np.hypot(x, a))
+
+    judged = WorstStateSearch(expected)._worst_of(DETOUR_OF_LADDER, samples)
+    assert len(judged) == 8
+    for scalar in ("float64", "float32"):
+        ordered = sorted(samples, key=lambda sample: -units(sample, scalar))
+        assert all(sample in judged for sample in ordered[:4])
 
 
 def test_states_nearby_satisfy_the_constraints_as_samples_do(reference: Reference) -> None:

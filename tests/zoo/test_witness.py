@@ -391,9 +391,9 @@ outputs: [forward_dynamics]
         return Target("made up", "float64", ("forward_dynamics",), (), lambda *_: Answer(0, (value,)))
 
     for state in found:
-        judged = [witness.compare(answering(value), "forward_dynamics", state, ranks) for value in (0.0, 1e-30)]
-        right, wrong = (one.units for one in judged if one is not None)
-        assert right == 0
+        judged = [witness.compare(answering(value), "forward_dynamics", state, ranks) for value in (0.0, 1e-160, 1e-30)]
+        right, nothing, wrong = (one.units for one in judged if one is not None)
+        assert right == nothing == 0
         assert wrong > 1e3
 
 

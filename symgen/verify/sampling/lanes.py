@@ -50,23 +50,28 @@ class RoundingErrors:
         self._blocks = blocks
         self._outputs = [self._place(output) for output in kernel.outputs]
 
-    def at(self, given: Mapping[str, Lanes]) -> Lanes:
+    def at(self, given: Mapping[str, Lanes], tangents: Lanes | None = None) -> Lanes:
         """The estimates, and 0 where the kernel refuses.
 
         `given` holds the arguments and the parameters `p`, a row for each state.  d is that of the kernel itself for
         arguments and parameters; what literals of the model add is left out, so that this is more than there is rather
-        than less.
+        than less.  With `tangents` (n x n, onto those of V) configurations move along V alone, and parameters do not:
+        beside V, where rows depend on each other, a kernel is another function than what it stands for.
         """
-        own, unit = self.with_units(given)
+        own, unit = self.with_units(given, tangents)
         return own / unit
 
-    def with_units(self, given: Mapping[str, Lanes]) -> tuple[Lanes, Lanes]:
+    def with_units(self, given: Mapping[str, Lanes], tangents: Lanes | None = None) -> tuple[Lanes, Lanes]:
         """The errors and their units, both for a roundoff of 1; 0 and infinite where the kernel refuses."""
         count = len(next(iter(given.values())))
         with np.errstate(all="ignore"):
             values, regular = self._values(given, count)
             outputs = [values[place] for place in self._outputs]
-            own, inputs = self._shares(values, count)
+            own, slopes = self._shares(values, count)
+            if tangents is None:
+                inputs = self._of_inputs(values, slopes, count)
+            else:
+                inputs = self._along(values, slopes, tangents)
             unit = np.sqrt(sum(x * x for x in outputs)) + LARGEST_OF_EIGHT * np.sqrt(inputs)
             regular &= np.isfinite(unit) & (unit > 0) & np.isfinite(own)
         return np.sqrt(np.where(regular, own, 0.0)), np.where(regular, unit, np.inf)
@@ -116,9 +121,9 @@ class RoundingErrors:
                 regular &= met
         return values, regular
 
-    def _shares(self, values: Sequence[Lanes], count: int) -> tuple[Lanes, Lanes]:
-        """Mean squares over combinations of outputs of what one roundoff of each target, all of them together, and of
-        all that is given, does to them."""
+    def _shares(self, values: Sequence[Lanes], count: int) -> tuple[Lanes, Sequence[Lanes]]:
+        """The mean square over combinations of outputs of what one roundoff of each target, all of them together, does
+        to them; and the slopes of these combinations by all that is given."""
         slopes: list[Lanes] = [None] * len(self._locals)
         own = _Squares(count)
 
@@ -164,11 +169,28 @@ class RoundingErrors:
                     for place, factor in zip(operands, taken, strict=True):
                         if place >= 0:
                             add(place, slope * factor)
+        return own.mean(), slopes[: len(self._kernel.loads)]
+
+    def _of_inputs(self, values: Sequence[Lanes], slopes: Sequence[Lanes], count: int) -> Lanes:
+        """The mean square of what one roundoff of each of all that is given does."""
         inputs = _Squares(count)
-        for place, slope in enumerate(slopes[: len(self._kernel.loads)]):
+        for place, slope in enumerate(slopes):
             if slope is not None:
                 inputs.add(slope, values[place])
-        return own.mean(), inputs.mean()
+        return inputs.mean()
+
+    def _along(self, values: Sequence[Lanes], slopes: Sequence[Lanes], tangents: Lanes) -> Lanes:
+        """The same along V."""
+        count, n, _ = tangents.shape
+        inputs, by_place, moved = _Squares(count), np.zeros((COMBINATIONS, count, n)), np.zeros((count, n))
+        for place, (load, slope) in enumerate(zip(self._kernel.loads, slopes, strict=True)):
+            if slope is not None and load.argument == "q":
+                by_place[:, :, load.index], moved[:, load.index] = slope, values[place]
+            elif slope is not None and load.argument != "p":
+                inputs.add(slope, values[place])
+        for slope, value in zip(np.moveaxis(np.einsum("ckj,kji->cki", by_place, tangents), 2, 0), moved.T, strict=True):
+            inputs.add(slope, value)
+        return inputs.mean()
 
 
 class _Squares:

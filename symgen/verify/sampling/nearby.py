@@ -18,7 +18,7 @@ import numpy as np
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference.system import default_parameters
 from symgen.verify.sampling.lanes import Lanes
-from symgen.verify.sampling.loops_in_lanes import LoopsInLanes
+from symgen.verify.sampling.loops_in_lanes import DEPENDENT, LoopsInLanes, lengths_of
 from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, measures, ranked_parts
 from symgen.verify.sampling.rates_in_lanes import RatesInLanes
 from symgen.verify.sampling.regular import values_at
@@ -181,6 +181,17 @@ class Surroundings:
     def measures(self, states: Nearby) -> Lanes:
         """What tells how far rows and inputs are from a drop of rank, a row for each state."""
         return measures(self._parts, self._matrices(states.parts["q"], states.parts["p"]))
+
+    def tangents(self, states: Nearby) -> Lanes:
+        """What is left of changes of coordinates (n x n) along V, for each state."""
+        n = self._system.n
+        found = np.broadcast_to(np.eye(n), (len(states), n, n)).copy()
+        blocks = self._matrices(states.parts["q"], states.parts["p"])
+        for part, (rows, _) in zip(self._parts, blocks, strict=True):
+            unit = np.nan_to_num(rows / lengths_of(rows))
+            these = np.array(part.coordinates)
+            found[:, these[:, None], these] -= np.linalg.pinv(unit, rcond=DEPENDENT) @ unit
+        return found
 
     def moved(self, states: Nearby, seed: str) -> Nearby:
         """States a step further, of which some are left out: those that are not regular or out of range."""

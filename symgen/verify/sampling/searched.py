@@ -1,8 +1,9 @@
 """States at which a kernel is worst, searched for: a few dozen drawn ones do not meet them.
 
 Rounding errors are estimated at hundreds of states near those of the verification, then some steps further from the
-worst of these.  Only where the estimate leaves a doubt are states judged, in units of d + eps |y*| by the reference, as
-at any state of the verification.  A status there is an answer.
+worst of these.  Only where the estimate leaves a doubt are states brought onto V, what rounding does there is measured,
+and the worst are judged, in units of d + eps |y*| by the reference, as at any state of the verification.  A status
+there is an answer.
 """
 
 from __future__ import annotations
@@ -10,16 +11,19 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Sequence
 from functools import cached_property
-from itertools import islice
+from itertools import chain, islice
+from math import dist
 
 import numpy as np
 
-from symgen.ir.kernel import Function, Kernel, Scalar
+from symgen.ir.kernel import UNIT_ROUNDOFF, Function, Kernel, Scalar
+from symgen.ir.wide import paired
 from symgen.model.quantities import MAIN
 from symgen.runtime.activity import working
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import outcomes
 from symgen.verify.reference.reference import ReferenceValueError
+from symgen.verify.running.compile import Outcome
 from symgen.verify.sampling.lanes import Lanes, RoundingErrors
 from symgen.verify.sampling.nearby import Nearby, Surroundings, joined
 from symgen.verify.sampling.settling import Settling
@@ -55,17 +59,33 @@ class WorstStateSearch:
     def look(self, kernel: Kernel) -> None:
         """Adds the worst states of a kernel of plain numbers."""
         with working(f"where {kernel.name} is worst"):
-            self._add(kernel.name, *self._estimated(kernel))
+            self._add(kernel, *self._estimated(kernel))
 
-    def _add(self, quantity: str, states: Nearby, units: Lanes) -> None:
-        settling = self._settling(quantity)
+    def _add(self, kernel: Kernel, states: Nearby, units: Lanes) -> None:
+        settling = self._settling(kernel.name)
         doubtful = (place for place in _worst(units, SETTLED) if units[place] > DOUBTFUL)
         tried = (
-            settling.sample(states.state(place), bool(states.admissible[place]), quantity) for place in doubtful
+            settling.sample(states.state(place), bool(states.admissible[place]), kernel.name) for place in doubtful
         )
-        for sample in islice((sample for sample in tried if sample is not None), JUDGED):
-            if sample not in self._states[quantity]:
-                self._states[quantity].append(sample)
+        samples = [sample for sample in tried if sample is not None]
+        for sample in self._worst_of(kernel, samples) if len(samples) > JUDGED else samples:
+            if sample not in self._states[kernel.name]:
+                self._states[kernel.name].append(sample)
+
+    def _worst_of(self, kernel: Kernel, samples: Sequence[Sample]) -> list[Sample]:
+        """Those that a kernel of plain numbers does worst at, half of them in each scalar type.
+
+        Estimates are what rounding may do; what it does is measured beside twice the digits, or beside float64.
+        """
+        around = Surroundings(self._expected.reference, samples)
+        tangents = around.tangents(around.samples) if self._rows_depend else None
+        unit = RoundingErrors(kernel).with_units(around.samples.parts, tangents)[1]
+        double, single = ([rounded(sample, scalar).state for sample in samples] for scalar in UNIT_ROUNDOFF)
+        made, exact = (outcomes(one, None, "float64", double) for one in (kernel, paired(kernel, "float64")))
+        short, long = (outcomes(kernel, None, scalar, single) for scalar in ("float32", "float64"))
+        apart = _apart(made, exact), _apart(short, long)
+        worst = zip(*(_worst(off / unit, len(samples)).tolist() for off in apart), strict=True)
+        return [samples[place] for place in islice(dict.fromkeys(chain.from_iterable(worst)), JUDGED)]
 
     def largest(self, kernel: Kernel, sincos: Function | None, scalar: Scalar) -> float:
         """The largest error with status 0, in units of d + eps |y*|, at the states that were found for its quantity.
@@ -109,9 +129,15 @@ class WorstStateSearch:
                 states, units = joined(states, further), np.append(units, self._units(errors, further, least))
         return states, units
 
+    @cached_property
+    def _rows_depend(self) -> bool:
+        reference = self._expected.reference
+        return reference.ranks.constraints < reference.system.r
+
     def _units(self, errors: RoundingErrors, states: Nearby, least: Sequence[float]) -> Lanes:
         """What is estimated where nothing speaks against a regular state: others would take the places of these."""
-        units, measures = errors.at(states.parts), self._surroundings.measures(states)
+        tangents = self._surroundings.tangents(states) if self._rows_depend else None
+        units, measures = errors.at(states.parts, tangents), self._surroundings.measures(states)
         return np.where((measures >= least).all(axis=1), units, 0.0)
 
     @cached_property
@@ -152,3 +178,9 @@ class WorstStateSearch:
 def _worst(units: Lanes, count: int) -> Lanes:
     """The places of the largest."""
     return np.argsort(-units, kind="stable")[:count]
+
+
+def _apart(found: Sequence[Outcome], exact: Sequence[Outcome]) -> Lanes:
+    """How far results are apart; 0 where one of them is none."""
+    pairs = zip(found, exact, strict=True)
+    return np.nan_to_num([dist(one.entries, other.entries) for one, other in pairs], posinf=0.0)
