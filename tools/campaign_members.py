@@ -40,8 +40,10 @@ NOTED = (f"--junitxml={FIGURES}", "-o", "junit_family=xunit1")
 # What in tests/ has tests of the mark `campaign`, and the tools they need; a part of each class stays in `make test`.
 TESTED = {
     "backends": ("gcc",),
+    "generation": ("gcc",),
     "growth": (),
     "ir": (),
+    "linear_algebra": ("gcc",),
     "mechanics": ("gcc",),
     "methods": ("gcc",),
     "model": (),

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import pytest
 import shipped
-from mechanisms import build
+from textbook_mechanisms import build
 
 from symgen.backends.c.plain import emit_c
 from symgen.backends.python.module import emit_python

@@ -10,7 +10,7 @@ from math import pi
 import pytest
 from flint import arb
 from linkages import row_of_four_bars
-from mechanisms import build, double_pendulum, skate, slider_crank, three_cranks
+from textbook_mechanisms import build, double_pendulum, skate, slider_crank, three_cranks
 
 from symgen.model.expressions.expression import Pi
 from symgen.model.load import load_text

@@ -9,7 +9,7 @@ import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 REFERENCE = ROOT / "symgen" / "verify" / "reference"
 MODULES = sorted(REFERENCE.glob("*.py"))
 ALLOWED = {

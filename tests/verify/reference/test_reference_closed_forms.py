@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 from flint import arb, arb_mat
-from mechanisms import build, double_pendulum, skate, slider_crank, three_cranks
+from textbook_mechanisms import build, double_pendulum, skate, slider_crank, three_cranks
 
 from symgen.model.model import Model
 from symgen.verify.reference.arithmetic.linear import column, identity, norm, pseudoinverse

@@ -18,7 +18,7 @@ from symgen.verify.reference.evaluation import Evaluation
 from symgen.verify.reference.reference import Reference, State
 from symgen.verify.reference.system import default_parameters
 
-ELEMENTS = Path(__file__).resolve().parents[1] / "mechanisms"
+ELEMENTS = Path(__file__).resolve().parents[2] / "mechanisms"
 
 
 @pytest.mark.parametrize("name", ["delta", "rolling_disc", "gough_stewart", "rear_car", "floating_body", "elements"])
