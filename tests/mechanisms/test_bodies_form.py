@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from linkages import on_two_bases
 from shipped import ALL, NAMES
 
 from symgen.generation.results import Options
@@ -197,8 +198,11 @@ def test_rows_across_the_plane_are_left_out() -> None:
 
 
 def test_dependent_rows_of_a_full_joint() -> None:
-    reference = Reference(mechanism("tilted_four_bar"))
-    assert (reference.model.r, reference.ranks.constraints) == (3, 2)
+    """Three rows of rank two in the axes of the world, two in those of a base that carries both sides."""
+    four_bar = MECHANISMS["tilted_four_bar"].read_text(encoding="utf-8")
+    for text, r in ((four_bar, 2), (on_two_bases(four_bar), 3)):
+        reference = Reference(load_text(text, "four_bar.yaml"))
+        assert (reference.model.r, reference.ranks.constraints) == (r, 2)
 
 
 def test_a_joint_brings_its_coordinates_and_its_norm() -> None:

@@ -116,7 +116,7 @@ class LoopRows:
         across = [index for index in range(3) if index != axis]
         along, beside, tilted, turned = JOINED.get(kind, (True, True, False, False))
         # a joint that holds every offset holds them in any axes
-        axes = self._carrier(one, other) if along and beside else other
+        axes = self._meeting(one, other) if along and beside else other
         for index in range(3):
             if beside if index in across else along:
                 here, there = (Name(Component(owner, PLACES[index], axes).name) for owner in (one, other))
@@ -128,18 +128,12 @@ class LoopRows:
             yield "turn", Name(Component(one, f"r{across[0] + 1}{across[1] + 1}", other).name)
 
     def _meeting(self, one: str, other: str) -> str:
-        """The frame that carries both sides of a loop: in its axes a length knows nothing of how that moves."""
+        """The frame that carries both sides of a loop.
+
+        In its axes rows know nothing of how it moves itself, and none is left across a plane in which they move.
+        """
         points = self._kinematics.points
         return self._kinematics.meeting(*(points[owner].frame if owner in points else owner for owner in (one, other)))
-
-    def _carrier(self, one: str, other: str) -> str:
-        """The frame that carries both sides of a loop, where it moves, else the world.
-
-        In its axes the rows know nothing of how it moves itself, and none is left across a plane in which they move.
-        """
-        carrier = self._meeting(one, other)
-        twist = self._kinematics.twist(carrier)
-        return carrier if any((*twist.linear, *twist.angular)) else WORLD
 
     def _rolling(self, frame: str, radius: Expression, axle: int) -> Iterator[tuple[str, Expression]]:
         """No slip where the wheel touches the plane, and the height of its centre where that can change.

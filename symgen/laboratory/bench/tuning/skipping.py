@@ -277,6 +277,6 @@ TABLE
   eliminates on the way through the frames.
 - *too long*: with the zeros kept, every choice of 16 or 32 columns has a minor of its own; 18 rows of 24 columns have
   134596 minors.
-- No shipped model has several blocks of B. For two skates and a rod on one plane (`tests/linear_algebra/test_blocks.py`)
-  B⁺ weighs 87 block by block and 158 taken together.
+- No shipped model has several blocks of B. For two skates and a rod on one plane
+  (`tests/linear_algebra/test_blocks.py`) B⁺ weighs 87 block by block and 158 taken together.
 """

@@ -108,12 +108,9 @@ class FramePoses:
         return self._relative[parent].parent if parent.endswith(BASE) else parent
 
     def meeting(self, one: str, other: str) -> str:
-        """The nearest frame that both hang on, if it moves, else the world."""
+        """The nearest frame that both hang on."""
         line = self._line(other)
-        nearest = next(frame for frame in self._line(one) if frame in line)
-        pose = self.pose(nearest)
-        moves = any(rate.number != 0 for rate in (*pose.turning, *self.rates(pose.origin)))
-        return nearest if moves else "world"
+        return next(frame for frame in self._line(one) if frame in line)
 
     def _line(self, frame: str) -> list[str]:
         line = [frame]
