@@ -6,12 +6,17 @@ from __future__ import annotations
 def on_two_bases(four_bar: str) -> str:
     """The tilted four-bar with its rocker on a base of its own, tilted as the other one: both sides of its loop meet at
     the world, and of the three rows in the axes of that two are independent."""
-    base = "base: {rotation: [[x, 0.5], [y, 0.3]]}"
-    rocker = "rocker:  {type: revolute, parent: base,"
-    assert base in four_bar
-    assert rocker in four_bar
-    text = four_bar.replace(base, f"{base}\n  beside: {base[6:]}")
-    return text.replace(rocker, rocker.replace("base", "beside"))
+    base, rocker = "base: {rotation: [[x, 0.5], [y, 0.3]]}", "rocker:  {type: revolute, parent: base,"
+    loop, axis = "{type: revolute, between: [end_of_coupler, end_of_rocker]", ", axis: z}"
+    changes = {
+        base: f"{base}\n  beside: {base[6:]}",
+        rocker: rocker.replace("base", "beside"),
+        loop + axis: loop.replace("revolute", "spherical") + "}",
+    }
+    for part, other in changes.items():
+        assert part in four_bar
+        four_bar = four_bar.replace(part, other)
+    return four_bar
 
 
 def row_of_four_bars(
