@@ -27,6 +27,8 @@ from symgen.symbolic.traverse import cost, reached
 
 # Scalars of an alternative beyond which numbers are grouped only in what is taken: that is most of the work there.
 LONG_ALTERNATIVE = 6_000
+# Counted cost of a method beyond which those of last resort are given up: they take as long as all before them.
+LONGEST_OF_LAST_RESORT = 10_000
 # How many times other methods are offered: valid ones, then those of last resort.
 TIERS = 2
 
@@ -67,10 +69,14 @@ class Alternatives:
         """A quantity by the methods of a tier, but the one taken, that are valid at all regular states.
 
         The one that counts least comes first.  Methods that take much longer to derive than the one taken is are given
-        up, and named in `too_long`.
+        up, and named in `too_long`; so are those of last resort where that one is long itself.
         """
         same = taken.method if taken.title in ("minors", "householder", taken.method) else ""
-        most = worth_trying(dict(taken.costs)[taken.title])
+        cost_taken = dict(taken.costs)[taken.title]
+        if tier and cost_taken > LONGEST_OF_LAST_RESORT:
+            self.too_long[quantity] += _names(quantity, tier)
+            return ()
+        most = worth_trying(cost_taken)
         found = []
         for name in _names(quantity, tier):
             if name in (taken.title, same):

@@ -71,10 +71,13 @@ class FarErrors:
         return {scalar: np.where(masses, units, 0.0) for scalar, units in found.items()}
 
     def _of_pairs(self, far: Far) -> dict[Scalar, Lanes]:
-        """In float64 pairs have digits enough."""
-        found = {scalar: self._refusals(scalar, far) for scalar in self._kernels}
+        """In float64 pairs have digits enough, and refuse where the same operations on plain numbers do."""
+        own, unit = self._estimates.with_units(far.given)
+        found: dict[Scalar, Lanes] = {"float64": np.zeros(len(far))}
+        refused = np.flatnonzero(~np.isfinite(unit))
+        found["float64"][refused] = self._refusals("float64", far.only(refused))
         if self._single is not None:
-            found["float32"] = np.maximum(found["float32"], self._estimates.at(far.given) * 2.0**-GAINED)
+            found["float32"] = np.maximum(self._refusals("float32", far), own / unit * 2.0**-GAINED)
         return found
 
     def _estimated_and_measured(self, far: Far) -> dict[Scalar, Lanes]:

@@ -39,6 +39,8 @@ QUARTER = 0.25
 BEFORE_A_LOSS = 1.0
 # Digits in which a bound is given.
 BOUND_DIGITS = 2
+# Of these as many are looked at together.
+TOGETHER_AWAY = 3
 # Below and above, as signs of powers.
 SIDES = (-1, 1)
 # States at which that is looked at, fewer for long kernels.
@@ -46,7 +48,7 @@ FAR_STATES = 8
 # States from which places are looked for where the loops close.
 FAR_STARTS = 32
 # Numbers that are held at a time, and that are worked out for the powers of one kernel.
-NUMBERS_HELD, MOST = 4_000_000, 60_000_000
+NUMBERS_HELD, MOST = 4_000_000, 30_000_000
 # Rows and inputs this far from a drop of rank are no reason for a status: parameters are.
 CLEAR = 1e-4
 # Units of an estimate that count as lost: other states than these lose twice as much, and more.
@@ -217,9 +219,16 @@ class _Bounds:
     def of(self, read: Sequence[int]) -> dict[Scalar, tuple[Bound, ...]]:
         """By scalar type, those of the parameters that are `read`, given by their places."""
         states = max(1, min(FAR_STATES, MOST // (self._size * len(read) * 2 * FURTHEST)))
-        decades = [(index, sign * power) for index in read for sign in SIDES for power in range(1, FURTHEST + 1)]
-        lost = self._lost(self._far.led(decades, states))
-        first = {scalar: _nearest(far) for scalar, far in lost.items()}
+        first: dict[Scalar, dict[tuple[int, int], float]] = {scalar: {} for scalar in self._kernels}
+        for nearest in range(1, FURTHEST + 1, TOGETHER_AWAY):
+            # nothing is looked for beyond the first loss
+            left = [(k, sign) for k in read for sign in SIDES if any((k, sign) not in one for one in first.values())]
+            if not left:
+                break
+            powers = range(nearest, min(nearest + TOGETHER_AWAY, FURTHEST + 1))
+            lost = self._lost(self._far.led([(k, sign * power) for k, sign in left for power in powers], states))
+            for scalar, far in lost.items():
+                first[scalar] = _nearest(far) | first[scalar]
         closer = {
             (index, sign * (power - 1 + quarter))
             for found in first.values()

@@ -67,6 +67,14 @@ class Nearby:
         return State(q, qd, qdd, u, tuple(map(float, self.parts["p"][place])))
 
 
+def of_samples(samples: Sequence[Sample]) -> Nearby:
+    """Samples as they are."""
+    states = [sample.state for sample in samples]
+    parts = {name: _rows([getattr(state, name) for state in states]) for name in ("q", "qd", "qdd", "u")}
+    parts["p"] = _rows([state.parameters for state in states])
+    return Nearby(parts, np.array([sample.admissible for sample in samples]), np.arange(len(samples)))
+
+
 def joined(first: Nearby, second: Nearby) -> Nearby:
     """All states of both."""
     parts = {name: np.concatenate((values, second.parts[name])) for name, values in first.parts.items()}
@@ -83,11 +91,8 @@ class Surroundings:
         self._system, self._parts = reference.system, ranked_parts(reference.system, reference.ranks)
         self._loops = LoopsInLanes(reference.system, [float(x) for x in reference.literals()])
         self._rates_in_lanes = RatesInLanes(reference.system, self._parts, self._loops)
-        states = [sample.state for sample in samples]
-        parts = {name: _rows([getattr(state, name) for state in states]) for name in ("q", "qd", "qdd", "u")}
-        parts["p"] = _rows([state.parameters for state in states])
-        admissible = np.array([sample.admissible for sample in samples])
-        self.samples = Nearby(parts, admissible, np.arange(len(samples)))
+        self.samples = of_samples(samples)
+        parts = self.samples.parts
         self._modes = np.array([list(q) for q in modes]).reshape(len(modes), reference.model.n)
         self._defaults = np.array([float(x) for x in default_parameters(reference.model)])
         coordinates = self._coordinates = reference.model.coordinates
@@ -100,7 +105,8 @@ class Surroundings:
         self._rates = np.array([float(c.rate_range[1]) for c in coordinates])
         self._accelerations = np.array([float(c.acceleration_range[1]) for c in coordinates])
         self._inputs = np.abs(parts["u"]).max(axis=1, initial=1.0)[:, None]
-        self._driven_by_itself = any(_driven_by_itself(reference, state) for state in states[:SAMPLES_LOOKED_AT])
+        looked_at = samples[:SAMPLES_LOOKED_AT]
+        self._driven_by_itself = any(_driven_by_itself(reference, sample.state) for sample in looked_at)
 
     def drawn(self, count: int) -> Nearby:
         """About so many: a step off each sample in turn, with other rates, accelerations and inputs."""

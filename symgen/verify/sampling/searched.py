@@ -25,7 +25,7 @@ from symgen.verify.interpreted import outcomes
 from symgen.verify.reference.reference import ReferenceValueError
 from symgen.verify.running.compile import Outcome
 from symgen.verify.sampling.lanes import Lanes, RoundingErrors
-from symgen.verify.sampling.nearby import Nearby, Surroundings, joined
+from symgen.verify.sampling.nearby import Nearby, Surroundings, joined, of_samples
 from symgen.verify.sampling.settling import Settling
 from symgen.verify.sampling.states import Sample, rounded
 from symgen.verify.tolerance import FACTOR, Expectation, expectations
@@ -77,9 +77,8 @@ class WorstStateSearch:
 
         Estimates are what rounding may do; what it does is measured beside twice the digits, or beside float64.
         """
-        around = Surroundings(self._expected.reference, samples)
-        tangents = around.tangents(around.samples) if self._rows_depend else None
-        unit = RoundingErrors(kernel).with_units(around.samples.parts, tangents)[1]
+        states = of_samples(samples)
+        unit = RoundingErrors(kernel).with_units(states.parts, self._tangents(states))[1]
         double, single = ([rounded(sample, scalar).state for sample in samples] for scalar in UNIT_ROUNDOFF)
         made, exact = (outcomes(one, None, "float64", double) for one in (kernel, paired(kernel, "float64")))
         short, long = (outcomes(kernel, None, scalar, single) for scalar in ("float32", "float64"))
@@ -129,15 +128,14 @@ class WorstStateSearch:
                 states, units = joined(states, further), np.append(units, self._units(errors, further, least))
         return states, units
 
-    @cached_property
-    def _rows_depend(self) -> bool:
+    def _tangents(self, states: Nearby) -> Lanes | None:
+        """Of V, where rows depend on each other."""
         reference = self._expected.reference
-        return reference.ranks.constraints < reference.system.r
+        return self._surroundings.tangents(states) if reference.ranks.constraints < reference.system.r else None
 
     def _units(self, errors: RoundingErrors, states: Nearby, least: Sequence[float]) -> Lanes:
         """What is estimated where nothing speaks against a regular state: others would take the places of these."""
-        tangents = self._surroundings.tangents(states) if self._rows_depend else None
-        units, measures = errors.at(states.parts, tangents), self._surroundings.measures(states)
+        units, measures = errors.at(states.parts, self._tangents(states)), self._surroundings.measures(states)
         return np.where((measures >= least).all(axis=1), units, 0.0)
 
     @cached_property
