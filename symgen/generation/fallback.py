@@ -35,7 +35,7 @@ from symgen.verify.interpreted import Measurements
 from symgen.verify.sampling.searched import WorstStateSearch
 from symgen.verify.tolerance import FACTOR
 
-TOO_LONG = "not tried: it takes many times as long to derive"
+TOO_LONG = "not tried: it takes too long to derive"
 # Of the error that is allowed; which method a quantity takes is decided at a few dozen states.
 MARGIN = FACTOR / 2
 # Beyond this u, q_ddot and lambda take twice the digits where nothing else keeps a margin: of a state in thousands more

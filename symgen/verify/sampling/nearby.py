@@ -179,10 +179,7 @@ class Surroundings:
                 led, made = far(q + np.clip(share, -longest, longest)[:, None] * along)
                 nearer = (made < now) & (number < rounds)
                 q, now = np.where(nearer[:, None], led, q), np.where(nearer, made, now)
-            qd, qdd, good = self._rates_in_lanes.admissible({**start.parts, "q": q})
-        on = start.admissible[:, None]
-        rates = {name: np.where(on, made, start.parts[name]) for name, made in (("qd", qd), ("qdd", qdd))}
-        return Nearby({**start.parts, **rates, "q": q}, start.admissible, start.origins).only(good)
+        return self._with_rates(Nearby({**start.parts, "q": q}, start.admissible, start.origins))
 
     def measures(self, states: Nearby) -> Lanes:
         """What tells how far rows and inputs are from a drop of rank, a row for each state."""
@@ -242,10 +239,14 @@ class Surroundings:
             else:
                 q[:, these] = np.where(led[:, None], q[:, these], start[:, these])
         parts["q"] = q
-        qd, qdd, finite = self._rates_in_lanes.admissible(parts)
+        return self._with_rates(Nearby(parts, states.admissible, states.origins).only(good))
+
+    def _with_rates(self, states: Nearby) -> Nearby:
+        """Configurations on V with rates and accelerations that are brought onto it where they are to be."""
+        qd, qdd, finite = self._rates_in_lanes.admissible(states.parts)
         on = states.admissible[:, None]
-        parts["qd"], parts["qdd"] = np.where(on, qd, parts["qd"]), np.where(on, qdd, parts["qdd"])
-        return Nearby(parts, states.admissible, states.origins).only(good & finite)
+        rates = {name: np.where(on, made, states.parts[name]) for name, made in (("qd", qd), ("qdd", qdd))}
+        return Nearby({**states.parts, **rates}, states.admissible, states.origins).only(finite)
 
     def _matrices(self, q: Lanes, p: Lanes) -> list[tuple[Lanes, Lanes]]:
         """B and M of each part."""

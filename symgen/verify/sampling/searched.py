@@ -154,8 +154,8 @@ class WorstStateSearch:
     @cached_property
     def _beside_singular(self) -> Nearby:
         """These and others that are led towards a drop of rank."""
-        least = self._settlings[True].measures
-        return joined(self._drawn, self._surroundings.towards(self._affordable(TOWARDS), least))
+        _, nearest = self._settlings
+        return joined(self._drawn, self._surroundings.towards(self._affordable(TOWARDS), nearest.measures))
 
     def _affordable(self, count: int) -> int:
         """So many states, or as many as large parts leave time for."""

@@ -20,6 +20,8 @@ STEPS = 30
 REFINEMENTS = 3
 CLOSED = 1e-12
 SAME = 1e-8
+# of the largest coordinate: what is less after refinement to 30 digits is 0
+ROOT_AT_ZERO = 1e-30
 # a closed configuration that is refined moves less
 ELSEWHERE = 1e-6
 # a step that shows whether V is smooth, and how much further than its square Newton's method may lead
@@ -259,6 +261,8 @@ class Walker:
                 step = onto_rows(at.rows[:geometric], at.residual, rank)
                 exact = [(x + dx).mid() for x, dx in zip(exact, step, strict=True)]
             nearest = np.array([float(x) for x in exact])
+        # what is less than these digits is what steps leave of a root at 0
+        nearest[np.abs(nearest) < ROOT_AT_ZERO * np.abs(nearest).max(initial=0.0)] = 0.0
         return nearest if np.abs(nearest - q).max(initial=0.0) < ELSEWHERE else None
 
     def _free(self, q: Any, parameters: Mapping[str, float]) -> Any:

@@ -40,8 +40,6 @@ ALLOWED = 16.0
 # The truth is known to so much where it is looked at.
 KNOWN = 1e-40
 EPS = {"float64": 2.0**-53, "float32": 2.0**-24}
-# less is nothing: products of two such numbers are none of the type
-UNDERFLOW = {"float64": 2.0**-511, "float32": 2.0**-63}
 # a status is a failure where rows, inputs and masses are further apart than this
 CERTAIN = {"float64": 1e-4, "float32": 2e-2}
 LARGEST = {"float64": 1e280, "float32": 1e30}
@@ -273,7 +271,7 @@ class Witness:
                     # the branch that was drawn is told to be one on which inputs lose rank
                     certain = answer.status != ACTUATION_RANK
                 return JudgedResult(answer.status, 0.0, 0.0, truth.clear, certain)
-            units = self._units(answer, truth, quantity, given, ranks, scalar)
+            units = self._units(answer, truth, quantity, given, ranks, EPS[scalar])
         apart = _norm([a - b for a, b in zip(answer.value, exact, strict=True)])
         return JudgedResult(0, units, apart / (_norm(exact) or 1.0), truth.clear, False)
 
@@ -293,16 +291,14 @@ class Witness:
         return moved / size if size else 0.0 if not moved else math.inf
 
     def _units(
-        self, answer: Answer, truth: Truth, quantity: str, state: FloatState, ranks: GenericRanks, scalar: str
+        self, answer: Answer, truth: Truth, quantity: str, state: FloatState, ranks: GenericRanks, eps: float
     ) -> float:
         """The error over what is allowed; what rounding the inputs does is worked out only where it is needed."""
         if not all(map(math.isfinite, answer.value)) or len(answer.value) != len(truth.value):
             return math.inf
         error = _least_distance(answer.value, truth.value)
-        if error <= UNDERFLOW[scalar]:
-            return 0.0
         size = _norm([float(x.mid()) for x in truth.value])
-        eps, moved = EPS[scalar], 0.0
+        moved = 0.0
         dice = Dice("perturbations", self._seed)
         for _ in range(PERTURBATIONS + 1):
             if error <= ALLOWED * (moved + eps * size):
