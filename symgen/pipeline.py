@@ -172,7 +172,8 @@ def _verified(
     or without verification."""
     if not options.verify:
         return None, None
-    from symgen.verify.run import generated_sources, verify_expecting
+    from symgen.verify.run import verify_expecting
+    from symgen.verify.running.sources import generated_sources
 
     run = {path: text for path, text in sources.items() if backend_of(path) in verified(options)}
     c_sources, python_source = generated_sources(draft.model, run)

@@ -16,8 +16,8 @@ from symgen.model.model import Model
 from symgen.model.quantities import MAIN
 from symgen.quantities.catalogue import CATALOGUE
 from symgen.verify.reference.reference import State
-from symgen.verify.run import generated_sources
 from symgen.verify.running.compile import CFunction, Compilation, Outcome, c_array, find_compiler
+from symgen.verify.running.sources import generated_sources
 from symgen.verify.sampling.states import Sample, rounded
 
 SCALARS: tuple[Scalar, ...] = ("float64", "float32")

@@ -12,7 +12,7 @@ Unlike the fingerprints, which every scalar of a graph carries, nothing here rel
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from math import isqrt
 from operator import mul
@@ -21,7 +21,7 @@ from typing import TypeAlias
 from symgen.symbolic.angles.circle import FIELD, Field
 from symgen.symbolic.fingerprint import opaque
 from symgen.symbolic.scalar import PI, Scalar
-from symgen.symbolic.traverse import reached, topological
+from symgen.symbolic.traverse import topological
 
 # a, or a + b i where b is not 0
 Element: TypeAlias = int | tuple[int, int]
@@ -69,9 +69,14 @@ def half_turns(value: Fraction) -> Fraction | None:
     return turns
 
 
-def holds_roots(outputs: Sequence[Scalar]) -> bool:
-    """Whether a root of what is no number stands in them: at a point that of x^2 is x or -x, either by chance."""
-    return any(node.op == "sqrt" and node.args[0].constant is None for node in reached(outputs))
+def holding_roots(outputs: Iterable[Scalar]) -> set[Scalar]:
+    """The scalars below the outputs in which a root of what is no number stands: at a point that of x^2 is x or -x,
+    either by chance."""
+    found: set[Scalar] = set()
+    for node in topological(outputs):
+        if (node.op == "sqrt" and node.args[0].constant is None) or not found.isdisjoint(node.args):
+            found.add(node)
+    return found
 
 
 class ExactValues:
@@ -94,20 +99,31 @@ class ExactValues:
         self._turns: dict[Scalar, Fraction | None] = {}
         self._pairs: dict[Scalar, tuple[int, int] | None] = {}
 
-    def __call__(self, outputs: Sequence[Scalar]) -> list[Value]:
-        """The outputs' values."""
-        order = topological(outputs, self._known)
+    def waiting(self, outputs: Sequence[Scalar]) -> Sequence[Scalar]:
+        """What the outputs reach and is not worked out yet, operands first."""
+        return topological(outputs, self._known)
+
+    def __call__(self, outputs: Sequence[Scalar], order: Sequence[Scalar] | None = None) -> list[Value]:
+        """The outputs' values; `order` is what `waiting` said here, or at a point that was asked for the same."""
+        order = self.waiting(outputs) if order is None else order
         angles = [node.args[0] for node in order if node.op in ("sin", "cos")]
         if angles and self._inside is not None:
             self._inside(angles)
             self._add_turns(angles)
         known, prime = self._known, self._field.prime
         for node in order:
-            op, args = node.op, node.args
+            op = node.op
             # most are these
-            if op in _RING and (a := known[args[0]]).__class__ is int and (b := known[args[1]]).__class__ is int:
-                value = a * b if op == "mul" else a + b if op == "add" else a - b
-                known[node] = value % prime
+            if op in _RING:
+                first, second = node.args
+                a, b = known[first], known[second]
+                if a.__class__ is int and b.__class__ is int:
+                    value = a * b if op == "mul" else a + b if op == "add" else a - b
+                    known[node] = value % prime
+                elif a is not None and b is not None:
+                    known[node] = self._ring(op, a, b)
+                else:
+                    known[node] = self._value(node)
             else:
                 known[node] = self._value(node)
         return [self._known[output] for output in outputs]
@@ -142,14 +158,8 @@ class ExactValues:
     def _operation(self, node: Scalar, args: list[Element]) -> Value:
         first, second = (*args, 0)[:2]
         match node.op:
-            case "add":
-                return self._plus(first, second)
-            case "sub":
-                return self._plus(first, self._minus(second))
             case "neg":
                 return self._minus(first)
-            case "mul":
-                return self._times(first, second)
             case "div":
                 return self._over(first, second)
             case "ratio_or_zero":
@@ -184,16 +194,19 @@ class ExactValues:
             if root * root == number:
                 return field.number(root) or 0
         if isinstance(a, int):
-            return field.root(a) if field.positive(a) else (0, field.root(-a))
+            root_or_not = field.root(a)
+            return root_or_not if root_or_not * root_or_not % field.prime == a else (0, field.root(-a))
         return pow(self._opaque("sqrt", a), 2, field.prime)
 
     def _whole(self, a: int, b: int) -> Element:
         p = self._field.prime
         return (a % p, b % p) if b % p else a % p
 
-    def _plus(self, a: Element, b: Element) -> Element:
+    def _ring(self, op: str, a: Element, b: Element) -> Element:
+        if op == "mul":
+            return self._times(a, b)
         (x, y), (z, w) = _parts(a), _parts(b)
-        return self._whole(x + z, y + w)
+        return self._whole(x + z, y + w) if op == "add" else self._whole(x - z, y - w)
 
     def _minus(self, a: Element) -> Element:
         x, y = _parts(a)

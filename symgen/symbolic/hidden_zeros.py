@@ -11,7 +11,7 @@ import random
 from collections.abc import Sequence
 
 from symgen.symbolic.evaluate import Evaluator
-from symgen.symbolic.exact import ExactValues, holds_roots
+from symgen.symbolic.exact import ExactValues, holding_roots
 from symgen.symbolic.identity import POINTS_OF_SIGNS
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import reached
@@ -31,7 +31,8 @@ def without_hidden_zeros(scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
     if not hidden:
         return tuple(scalars)
     zeros = set(_zeros(hidden, 0))
-    rooted = [scalar for scalar in zeros if holds_roots([scalar])]
+    holding = holding_roots(zeros)
+    rooted = [scalar for scalar in zeros if scalar in holding]
     zeros -= {*rooted}
     for seed in range(1, 1 + POINTS_OF_SIGNS):
         rooted = _zeros(rooted, seed)

@@ -7,12 +7,12 @@ root of, nor what turns by fixed angles do, and then exact evaluation decides.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from contextlib import contextmanager
 
 from symgen.diagnostics import SymgenBug
-from symgen.symbolic.exact import ExactValues, Value, holds_roots
-from symgen.symbolic.scalar import Scalar
+from symgen.symbolic.exact import ExactValues, Value, holding_roots
+from symgen.symbolic.scalar import Graph, Scalar
 
 # Points at which signs are right, half of them by chance.
 POINTS_OF_SIGNS = 12
@@ -55,8 +55,13 @@ def same_values(
         for one, other in zip(before, after, strict=True)
         if (one.value != other.value or _Thoroughly.on) and one is not other
     ]
-    differ = [pair for pair in differ if not _equal(*pair)]
-    for seed in range(1, 1 + POINTS_OF_SIGNS if differ else 1):
+    rooted = holding_roots([scalar for pair in differ for scalar in pair])
+    differ = [pair for pair in differ if not _equal(*pair, rooted)]
+    if not differ:
+        return
+    values = _Values([scalar for pair in differ for scalar in pair])
+    for seed in range(1, 1 + POINTS_OF_SIGNS):
+        values.work_out(seed)
         changed = [(one, other) for one, other in differ if _changed(one, other, seed)]
         if squares_roots:
             changed = [(one, other) for one, other in changed if not _point(other, seed).any_root_in([other])]
@@ -64,12 +69,27 @@ def same_values(
             raise SymgenBug(f"{rule}: changes the value of {wrong} of {len(before)} scalars")
 
 
-def _equal(one: Scalar, other: Scalar) -> bool:
-    """Whether one point is enough to tell that two scalars are the same function."""
-    value = _value(one, 0)
-    if value is None or value != _value(other, 0):
+class _Values:
+    """Scalars whose values are worked out at one point after another, in one order."""
+
+    def __init__(self, scalars: Sequence[Scalar]) -> None:
+        graphs = {id(scalar.graph): scalar.graph for scalar in scalars}
+        self._by_graph = [(graph, [s for s in scalars if s.graph is graph]) for graph in graphs.values()]
+        # what is known at one of these points is known at all of them
+        self._orders = [_point_of(graph, 1).waiting(members) for graph, members in self._by_graph]
+
+    def work_out(self, seed: int) -> None:
+        """At the point of a seed, 1 or more."""
+        for (graph, members), order in zip(self._by_graph, self._orders, strict=True):
+            _point_of(graph, seed)(members, order)
+
+
+def _equal(one: Scalar, other: Scalar, rooted: Container[Scalar]) -> bool:
+    """Whether one point is enough to tell that two scalars are the same function; `rooted` ones hold roots."""
+    if one.value != other.value and (one in rooted or other in rooted):
         return False
-    return one.value == other.value or not holds_roots([one, other])
+    value = _value(one, 0)
+    return value is not None and value == _value(other, 0)
 
 
 def _changed(one: Scalar, other: Scalar, seed: int) -> bool:
@@ -83,8 +103,12 @@ def _value(scalar: Scalar, seed: int) -> Value:
 
 
 def _point(scalar: Scalar, seed: int) -> ExactValues:
+    return _point_of(scalar.graph, seed)
+
+
+def _point_of(graph: Graph, seed: int) -> ExactValues:
     """The point of a seed; the values that are known there stay with the graph, as most scalars are met again."""
-    points = scalar.graph.points
+    points = graph.points
     if seed not in points:
         points[seed] = ExactValues(seed, signs=seed > 0)
     return points[seed]

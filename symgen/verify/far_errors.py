@@ -19,8 +19,9 @@ from symgen.ir.interpret import round_literal
 from symgen.ir.kernel import UNIT_ROUNDOFF, Block, Kernel, Literal, Operand, Program, Scalar, Status
 from symgen.ir.wide import GAINED
 from symgen.ir.wide_functions import works_with_pairs
+from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.many_states import run_many
-from symgen.verify.sampling.lanes import Lanes, RoundingErrors
+from symgen.verify.sampling.lanes import RoundingErrors
 
 
 @dataclass(frozen=True)

@@ -23,9 +23,9 @@ from symgen.runtime.activity import working
 from symgen.verify.expected import Expected
 from symgen.verify.far_errors import Far, FarErrors
 from symgen.verify.interpreted import outcomes
+from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.reference.reference import ReferenceValueError, State
 from symgen.verify.running.compile import Outcome
-from symgen.verify.sampling.lanes import Lanes
 from symgen.verify.sampling.loops_in_lanes import CLOSED_IN_LANES, LoopsInLanes
 from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, ranked_parts
 from symgen.verify.sampling.rates_in_lanes import RatesInLanes

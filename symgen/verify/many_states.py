@@ -1,15 +1,18 @@
-"""Kernels at many states at once, the same operations with the same bits as `ir/interpret.py` has one by one."""
+"""Kernels at many states at once, the same operations with the same bits as `ir/interpret.py` has one by one.
+
+Statements of one operation that do not wait for each other run as one operation on arrays: a kernel of ten thousand
+statements has a few hundred such groups.
+"""
 
 from __future__ import annotations
 
-import math
-import operator
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections import deque
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
 
-from symgen.ir.interpret import OPERATIONS, round_float32, round_literal
 from symgen.ir.kernel import (
     Block,
     Check,
@@ -23,162 +26,171 @@ from symgen.ir.kernel import (
     Statement,
     Status,
 )
-from symgen.ir.wide_functions import is_wide, wide_function
+from symgen.verify.lane_arithmetic import TYPES, Arithmetic, Lanes, number
 
-# A number of the scalar type for each state.
-_Lanes: TypeAlias = Any
-_TYPES: dict[Scalar, Any] = {"float64": np.float64, "float32": np.float32}
+_Places: TypeAlias = Any
 
 
 def run_many(
     kernel: Kernel, sincos: Function | None, scalar: Scalar, arguments: Sequence[Mapping[str, Sequence[float]]]
 ) -> list[tuple[Status, list[float]]]:
     """The status of each state and, where it is OK, the outputs; `arguments` hold the parameters `p`, too."""
+    if not arguments:
+        return []
     with np.errstate(all="ignore"):
         return _KernelRun(kernel, sincos, scalar, arguments).outcomes()
 
 
 class _KernelRun:
+    """Values stand in a row for each local and each number."""
+
     def __init__(
         self, kernel: Kernel, sincos: Function | None, scalar: Scalar, given: Sequence[Mapping[str, Sequence[float]]]
     ) -> None:
-        self._kernel, self._sincos, self._scalar = kernel, sincos, scalar
-        self._type, self._count = _TYPES[scalar], len(given)
-        columns = ((load, [one[load.argument][load.index] for one in given]) for load in kernel.loads)
-        self._values: dict[str, _Lanes] = {load.local: np.array(column, self._type) for load, column in columns}
-        self._numbers: dict[Literal, _Lanes] = {}
-        self._functions: dict[OperationName, _Steps] = {}
+        self._arithmetic, self._count = Arithmetic(scalar, sincos), len(given)
+        self._plan = plan = _plan_of(kernel)
+        self._values = np.empty((plan.rows, len(given)), TYPES[scalar])
+        for load in kernel.loads:
+            self._values[plan.loaded[load.local]] = [one[load.argument][load.index] for one in given]
+        places, numbers = plan.rounded(scalar)
+        self._values[places] = numbers[:, None]
 
     def outcomes(self) -> list[tuple[Status, list[float]]]:
         """Of all states."""
         status = np.zeros(self._count, dtype=int)
-        for block in self._kernel.blocks:
-            status = np.where(status == 0, self._block(block, self._values), status)
-        outputs = np.empty((len(self._kernel.outputs), self._count), self._type)
-        for place, output in enumerate(self._kernel.outputs):
-            outputs[place] = self._operand(output, self._values)
+        for block in self._plan.blocks:
+            status = np.where(status == 0, self._block(block), status)
+        outputs = self._values[self._plan.outputs]
         status = np.where((status == 0) & ~np.isfinite(outputs).all(axis=0), Status.NOT_FINITE, status)
         found = zip(status.tolist(), outputs.T.tolist(), strict=True)
         return [(Status(code), entries if code == 0 else []) for code, entries in found]
 
-    def _block(self, block: Block, values: dict[str, _Lanes]) -> _Lanes:
+    def _block(self, block: _BlockPlan) -> Lanes:
         """The first status of each state."""
-        self._statements(block.statements, values)
+        values = self._values
+        for group in block.groups:
+            made = self._arithmetic.apply(group.operation, [values[places] for places in group.operands])
+            for places, result in zip(group.targets, made, strict=True):
+                values[places] = result
         status = np.zeros(self._count, dtype=int)
         for check in block.checks:
-            status = np.where(status == 0, self._check(check, values), status)
+            status = np.where(status == 0, self._check(check), status)
         return status
 
-    def _check(self, check: Check, values: dict[str, _Lanes]) -> _Lanes:
-        value, limit = self._operand(check.value, values), self._operand(check.limit, values)
+    def _check(self, check: _CheckPlan) -> Lanes:
+        value, limit = self._values[check.value], self._values[check.limit]
         failed = ~(value >= limit if check.inclusive else value > limit)
-        first: _Lanes = 0
+        first: Lanes = 0
         if check.first is not None and np.any(failed):
-            first = self._block(check.first, dict(values))
+            first = self._block(check.first)
         return np.where(failed, np.where(first == 0, check.status, first), 0)
 
-    def _statements(self, statements: Iterable[Statement], values: dict[str, _Lanes]) -> None:
+
+@dataclass(frozen=True)
+class _Group:
+    """Statements of one operation: places of their first operands, of their second ones; likewise targets."""
+
+    operation: OperationName
+    operands: tuple[_Places, ...]
+    targets: tuple[_Places, ...]
+
+
+@dataclass(frozen=True)
+class _CheckPlan:
+    status: Status
+    inclusive: bool
+    value: int
+    limit: int
+    first: _BlockPlan | None
+
+
+@dataclass(frozen=True)
+class _BlockPlan:
+    groups: tuple[_Group, ...]
+    checks: tuple[_CheckPlan, ...]
+
+
+class _Plan:
+    """Where values stand, and what runs together."""
+
+    def __init__(self, kernel: Kernel) -> None:
+        # of each place, how many groups of its block come before it at least
+        self._depth: list[int] = []
+        self._numbers: list[tuple[int, Literal]] = []
+        self._rounded: dict[Scalar, tuple[_Places, Lanes]] = {}
+        # by identity: the values of numbers take longer to compare than to store twice
+        self._placed: dict[int, int] = {}
+        self.loaded = {load.local: self._new(0) for load in kernel.loads}
+        known = dict(self.loaded)
+        self.blocks = [self._block(block, known) for block in kernel.blocks]
+        self.outputs = [self._place(output, known) for output in kernel.outputs]
+
+    @property
+    def rows(self) -> int:
+        """How many there are."""
+        return len(self._depth)
+
+    def rounded(self, scalar: Scalar) -> tuple[_Places, Lanes]:
+        """Where numbers stand, and what they are in a scalar type."""
+        if scalar not in self._rounded:
+            numbers = [number(literal, scalar) for _, literal in self._numbers]
+            places = [place for place, _ in self._numbers]
+            self._rounded[scalar] = np.array(places, int), np.array(numbers, TYPES[scalar])
+        return self._rounded[scalar]
+
+    def _new(self, depth: int) -> int:
+        self._depth.append(depth)
+        return len(self._depth) - 1
+
+    def _place(self, operand: Operand, known: Mapping[str, int]) -> int:
+        if not isinstance(operand, Literal):
+            return known[operand.name]
+        place = self._placed.get(id(operand))
+        if place is None:
+            place = self._placed[id(operand)] = self._new(0)
+            self._numbers.append((place, operand))
+        return place
+
+    def _block(self, block: Block, known: dict[str, int]) -> _BlockPlan:
+        """`known` are the places of locals, to which those of the block are added."""
+        groups = self._groups(block.statements, known)
+        return _BlockPlan(groups, tuple(self._check(check, known) for check in block.checks))
+
+    def _groups(self, statements: Iterable[Statement], known: dict[str, int]) -> tuple[_Group, ...]:
+        depth = self._depth
+        found: dict[tuple[int, OperationName], list[tuple[list[int], list[int]]]] = {}
         for statement in statements:
             operands = [
-                values[o.name] if o.__class__ is Local else self._operand(o, values) for o in statement.operands
+                known[o.name] if o.__class__ is Local else self._place(o, known) for o in statement.operands
             ]
-            if (vectorised := VECTORISED.get(statement.operation)) is not None:
-                values[statement.targets[0]] = vectorised(*operands)
-                continue
-            results: Sequence[_Lanes]
-            if statement.operation == "sincos":
-                results = self._pair(operands[0])
-            elif is_wide(statement):
-                results = self._wide(statement.operation)(operands)
-            else:
-                results = (self._one_by_one(OPERATIONS[statement.operation], operands),)
-            values.update(zip(statement.targets, results, strict=True))
+            level = 1 + max([depth[place] for place in operands])
+            targets = []
+            for target in statement.targets:
+                known[target] = len(depth)
+                targets.append(len(depth))
+                depth.append(level)
+            found.setdefault((level, statement.operation), []).append((operands, targets))
+        groups = []
+        for (_, operation), members in sorted(found.items(), key=lambda item: item[0]):
+            read, made = (tuple(np.array(places).T) for places in zip(*members, strict=True))
+            groups.append(_Group(operation, read, made))
+        return tuple(groups)
 
-    def _pair(self, angle: _Lanes) -> tuple[_Lanes, ...]:
-        if self._sincos is not None:
-            return self._called(self._sincos, [angle])
-        return tuple(self._one_by_one(function, [angle]) for function in (_sine, _cosine))
-
-    def _wide(self, operation: OperationName) -> _Steps:
-        if operation not in self._functions:
-            self._functions[operation] = _Steps(wide_function(operation, self._scalar), self._scalar)
-        return self._functions[operation]
-
-    def _called(self, function: Function, operands: Sequence[_Lanes]) -> tuple[_Lanes, ...]:
-        values = dict(zip(function.parameters, operands, strict=True))
-        self._statements(function.statements, values)
-        return tuple(values[name] for name in function.results)
-
-    def _one_by_one(self, function: Callable[..., float], operands: Sequence[_Lanes]) -> _Lanes:
-        """A function of the library, which NumPy has with other bits."""
-        given = np.broadcast_arrays(*operands, np.empty(self._count))[:-1]
-        rounding = round_float32 if self._scalar == "float32" else float
-        found = [rounding(function(*one)) for one in zip(*(lane.tolist() for lane in given), strict=True)]
-        return np.array(found, self._type)
-
-    def _operand(self, operand: Operand, values: Mapping[str, _Lanes]) -> _Lanes:
-        if not isinstance(operand, Literal):
-            return values[operand.name]
-        if operand not in self._numbers:
-            self._numbers[operand] = self._type(round_literal(operand.value, self._scalar))
-        return self._numbers[operand]
+    def _check(self, check: Check, known: Mapping[str, int]) -> _CheckPlan:
+        # what a failure looks at is nobody else's
+        first = None if check.first is None else self._block(check.first, dict(known))
+        value, limit = self._place(check.value, known), self._place(check.limit, known)
+        return _CheckPlan(check.status, check.inclusive, value, limit, first)
 
 
-class _Steps:
-    """A function of vectorised operations with its operands found by place: kernels with twice the digits call a few
-    of them tens of thousands of times."""
-
-    def __init__(self, function: Function, scalar: Scalar) -> None:
-        places = {name: place for place, name in enumerate(function.parameters)}
-        self._numbers: list[_Lanes] = []
-        literals = {o: None for s in function.statements for o in s.operands if isinstance(o, Literal)}
-        known: dict[Operand, int] = {}
-        for literal in literals:
-            known[literal] = len(places) + len(self._numbers)
-            self._numbers.append(_TYPES[scalar](round_literal(literal.value, scalar)))
-        self._steps: list[tuple[Callable[..., _Lanes], tuple[int, ...]]] = []
-        count = len(places) + len(self._numbers)
-        for statement in function.statements:
-            operands = (known[o] if isinstance(o, Literal) else places[o.name] for o in statement.operands)
-            self._steps.append((VECTORISED[statement.operation], tuple(operands)))
-            (target,) = statement.targets
-            places[target], count = count, count + 1
-        self._results = [places[name] for name in function.results]
-
-    def __call__(self, operands: Sequence[_Lanes]) -> list[_Lanes]:
-        values = [*operands, *self._numbers]
-        for function, given in self._steps:
-            if len(given) == 2:
-                first, second = given
-                values.append(function(values[first], values[second]))
-            else:
-                values.append(function(*(values[place] for place in given)))
-        return [values[place] for place in self._results]
+def _plan_of(kernel: Kernel) -> _Plan:
+    """The plan of a kernel; one after another runs are of the same few."""
+    for known, plan in _planned:
+        if known is kernel:
+            return plan
+    plan = _Plan(kernel)
+    _planned.append((kernel, plan))
+    return plan
 
 
-def _sine(x: float) -> float:
-    return math.sin(x) if math.isfinite(x) else math.nan
-
-
-def _cosine(x: float) -> float:
-    return math.cos(x) if math.isfinite(x) else math.nan
-
-
-def _ratio_or_zero(a: _Lanes, b: _Lanes) -> _Lanes:
-    return np.where(b == 0, b.dtype.type(0), np.divide(a, b))
-
-
-# Operations whose bits are those of every IEEE machine.
-VECTORISED: dict[OperationName, Callable[..., _Lanes]] = {
-    "add": operator.add,
-    "sub": operator.sub,
-    "mul": operator.mul,
-    "div": np.divide,
-    "neg": operator.neg,
-    "abs": np.abs,
-    "sqrt": np.sqrt,
-    "copysign": np.copysign,
-    "ratio_or_zero": _ratio_or_zero,
-    "min": lambda a, b: np.where(a < b, a, b),
-    "max": lambda a, b: np.where(a > b, a, b),
-}
+_planned: deque[tuple[Kernel, _Plan]] = deque(maxlen=4)

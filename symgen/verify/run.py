@@ -15,7 +15,6 @@ import flint
 import symgen
 from symgen.backends.backend import backend
 from symgen.backends.c.endings import BATCH, PREPARED, SINES_GIVEN
-from symgen.backends.scalars import SUFFIX
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.model.model import Model
 from symgen.runtime.activity import each, working
@@ -168,25 +167,6 @@ def _same(made: Results, others: Results) -> bool:
     return all(others.get(name) == outcomes for name, outcomes in made.items())
 
 
-def generated_sources(model: Model, files: Mapping[str, str | bytes]) -> tuple[dict[Scalar, CSource], str | None]:
-    """C sources by scalar type, and the Python source, among the files of a model (paths relative to its folder)."""
-    texts = {path: content if isinstance(content, str) else content.decode() for path, content in files.items()}
-    made = backend("c")
-    c_sources = {}
-    for scalar in SUFFIX:
-        plain, *others = (made.paths(model, scalar, variant.ending) for variant in made.variants)
-        if all(path in texts for path in plain):
-            header, source = (texts[path] for path in plain)
-            companions = ((_name(path), texts[path]) for paths in others for path in paths if path in texts)
-            c_sources[scalar] = CSource(PurePosixPath(plain[0]).stem, header, source, tuple(companions))
-    (module,) = backend("python").paths(model, "float64")
-    return c_sources, texts.get(module)
-
-
-def _name(path: str) -> str:
-    return PurePosixPath(path).name
-
-
 @contextmanager
 def _compilations(
     compiler: Compiler | None, c_sources: Mapping[Scalar, CSource]
@@ -249,7 +229,7 @@ def _run_c(
 
 def _header(model: Model, scalar: Scalar, ending: str) -> str:
     """What the header of a variant is called."""
-    return _name(backend("c").paths(model, scalar, ending)[0])
+    return PurePosixPath(backend("c").paths(model, scalar, ending)[0]).name
 
 
 def _run_python(

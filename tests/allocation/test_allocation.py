@@ -29,7 +29,8 @@ from symgen.verify.reference.arithmetic.tape import ball, precision
 from symgen.verify.reference.evaluation import Evaluation
 from symgen.verify.reference.quantities import QUANTITIES
 from symgen.verify.reference.reference import State
-from symgen.verify.run import generated_sources, verify
+from symgen.verify.run import verify
+from symgen.verify.running.sources import generated_sources
 from symgen.verify.sampling.states import sample_states
 from symgen.verify.tolerance import FACTOR, expectations
 

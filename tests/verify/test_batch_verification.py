@@ -16,10 +16,10 @@ from symgen.backends.defaults import default_values
 from symgen.backends.quantities import BATCHED
 from symgen.ir.kernel import Program
 from symgen.verify.reference.reference import State
-from symgen.verify.run import generated_sources
 from symgen.verify.running.batch import run_batch
 from symgen.verify.running.compile import CFunction, Compilation, c_array, find_compiler
 from symgen.verify.running.prepared import run_prepared
+from symgen.verify.running.sources import generated_sources
 from symgen.verify.sampling.states import Sample
 
 pytestmark = pytest.mark.toolchain

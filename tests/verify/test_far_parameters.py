@@ -25,8 +25,8 @@ from symgen.verify.expected import Expected
 from symgen.verify.far_errors import Far, FarErrors
 from symgen.verify.far_parameters import FarParameters
 from symgen.verify.interpreted import outcomes
+from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.reference.reference import State
-from symgen.verify.sampling.lanes import Lanes
 from symgen.verify.sampling.regular import values_at
 from symgen.verify.tolerance import FACTOR, expectations
 

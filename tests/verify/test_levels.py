@@ -8,8 +8,9 @@ import pytest
 import shipped
 
 from symgen.verify.certificate import Certificate
-from symgen.verify.run import generated_sources, verify
+from symgen.verify.run import verify
 from symgen.verify.running import compile as compiling
+from symgen.verify.running.sources import generated_sources
 
 pytestmark = pytest.mark.toolchain
 NAME, STATES = "skate", 8

@@ -18,8 +18,9 @@ from symgen.lowering.schedule import schedule
 from symgen.quantities.select import derive_quantities
 from symgen.verify import run
 from symgen.verify.certificate import Certificate
-from symgen.verify.run import generated_sources, verify
+from symgen.verify.run import verify
 from symgen.verify.running.compile import find_compiler
+from symgen.verify.running.sources import generated_sources
 
 QUANTITIES = ("nullspace_projector", "constraint_jacobian", "inverse_dynamics", "forward_dynamics")
 STATES = 8

@@ -8,15 +8,13 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
 from symgen.ir.kernel import Kernel, Literal, Operand, OperationName, Statement, Status
-from symgen.verify.many_states import VECTORISED
+from symgen.verify.lane_arithmetic import VECTORISED, Lanes
 
-# A float64 for each state; slopes have a row for each combination of outputs, too.
-Lanes: TypeAlias = Any
 # Combinations of outputs with random signs, which stand for all of them.
 COMBINATIONS = 3
 # An operation, places of what it works on and of what it makes, and whether nothing is rounded.

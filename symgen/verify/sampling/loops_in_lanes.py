@@ -6,15 +6,16 @@ state, so that starts all over the ranges end in one assembly mode or another.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
+from functools import cached_property
 
 import numpy as np
 
-from symgen.verify.reference.arithmetic.tape import Replay
+from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.reference.manifold import ROUNDED_DIRECTION
 from symgen.verify.reference.parts import Part
 from symgen.verify.reference.system import ReferenceSystem
-from symgen.verify.sampling.lanes import Lanes
+from symgen.verify.sampling.lane_replay import LaneReplay
 
 # Newton steps onto V.
 LANE_STEPS = 12
@@ -27,13 +28,6 @@ DAMPED_STEPS = 40
 # How small its damping becomes.
 LEAST_DAMPING = 1e-14
 
-FUNCTIONS: dict[str, Callable[..., Lanes]] = {
-    "add": np.add, "sub": np.subtract, "mul": np.multiply, "div": np.divide, "neg": np.negative, "pow": np.power,
-    "sin": np.sin, "cos": np.cos, "tan": np.tan, "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan,
-    "atan2": np.arctan2, "sqrt": np.sqrt, "exp": np.exp, "log": np.log, "sinh": np.sinh, "cosh": np.cosh,
-    "tanh": np.tanh,
-}  # fmt: skip
-
 
 class LoopsInLanes:
     """The loops of a system; `literals` are the values of its literals."""
@@ -41,10 +35,21 @@ class LoopsInLanes:
     def __init__(self, system: ReferenceSystem, literals: Sequence[float]) -> None:
         self._system, self._literals = system, list(literals)
 
-    def run(self, replay: Replay, q: Lanes, p: Lanes) -> list[Lanes]:
-        """The outputs of a replay; none of those that are run here reads rates."""
-        made = replay.run([*q.T, *([None] * self._system.n), *p.T, *self._literals], FUNCTIONS)
-        return [np.broadcast_to(x, len(q)) for x in made] or [np.zeros(len(q))]
+    @cached_property
+    def _geometry(self) -> LaneReplay:
+        return LaneReplay(self._system.geometry_replay)
+
+    @cached_property
+    def _matrices(self) -> LaneReplay:
+        return LaneReplay(self._system.matrices_replay)
+
+    def matrices(self, q: Lanes, p: Lanes) -> Lanes:
+        """The entries of B and M, row by row of each."""
+        return self._run(self._matrices, q, p)
+
+    def _run(self, replay: LaneReplay, q: Lanes, p: Lanes) -> Lanes:
+        # none of those that are run here reads rates
+        return replay.run([*q.T, *([None] * self._system.n), *p.T, *self._literals], len(q))
 
     def newton(self, q: Lanes, p: Lanes, held: tuple[Lanes, Lanes] | None = None) -> tuple[Lanes, Lanes]:
         """The places where Newton's method ends, and whether the loops of each coordinate are closed there.
@@ -115,7 +120,7 @@ class LoopsInLanes:
     def _evaluated(self, q: Lanes, p: Lanes) -> Iterator[tuple[Part, Lanes, Lanes, Lanes]]:
         """Each loop with its rows, what they leave open, and where all of that is finite."""
         r, n = self._system.r_geometric, self._system.n
-        made = self.run(self._system.geometry_replay, q, p)
+        made = self._run(self._geometry, q, p)
         for loop in self._system.loops:
             rows = block(made, [[r + i * n + j for j in loop.coordinates] for i in loop.rows])
             gaps = block(made, [[i] for i in loop.rows])[:, :, 0]
@@ -140,12 +145,11 @@ def _in_own_units(rows: Lanes, gaps: Lanes) -> tuple[Lanes, Lanes]:
     return rows / lengths, gaps / lengths[:, :, 0]
 
 
-def block(made: Sequence[Lanes], places: Sequence[Sequence[int]], columns: int = 1) -> Lanes:
-    """A matrix at each state, of numbers by their places; without rows it still has columns."""
-    count = len(made[0])
+def block(made: Lanes, places: Sequence[Sequence[int]], columns: int = 1) -> Lanes:
+    """A matrix at each state, of numbers by their rows; without rows it still has columns."""
     if not places or not places[0]:
-        return np.zeros((count, len(places), columns if not places else 0))
-    return np.stack([np.stack([made[k] for k in row], axis=1) for row in places], axis=1)
+        return np.zeros((made.shape[1], len(places), columns if not places else 0))
+    return np.ascontiguousarray(np.moveaxis(made[np.array(places)], 2, 0))
 
 
 def lengths_of(rows: Lanes) -> Lanes:

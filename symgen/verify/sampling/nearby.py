@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
+from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference.system import default_parameters
-from symgen.verify.sampling.lanes import Lanes
 from symgen.verify.sampling.loops_in_lanes import DEPENDENT, LoopsInLanes, lengths_of
 from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, measures, ranked_parts
 from symgen.verify.sampling.rates_in_lanes import RatesInLanes

@@ -9,9 +9,9 @@ from math import comb
 
 import numpy as np
 
+from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.reference.manifold import ManifoldRanks
 from symgen.verify.reference.system import ReferenceSystem
-from symgen.verify.sampling.lanes import Lanes
 from symgen.verify.sampling.loops_in_lanes import DEPENDENT, LoopsInLanes, block, lengths_of
 from symgen.verify.sampling.regular import REGULAR_SHARE
 
@@ -45,7 +45,7 @@ def matrices(
 ) -> list[tuple[Lanes, Lanes]]:
     """B and M of each part."""
     n, m, r = system.n, system.m, system.r
-    made = loops.run(system.matrices_replay, q, p)
+    made = loops.matrices(q, p)
     return [
         (
             block(made, [[i * n + j for j in part.coordinates] for i in part.rows], len(part.coordinates)),

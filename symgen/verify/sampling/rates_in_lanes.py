@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.reference.system import ReferenceSystem
-from symgen.verify.sampling.lanes import Lanes
 from symgen.verify.sampling.loops_in_lanes import DEPENDENT, LoopsInLanes, lengths_of, times
 from symgen.verify.sampling.ranks_in_lanes import RankedPart, matrices
 

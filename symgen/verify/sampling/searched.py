@@ -22,9 +22,10 @@ from symgen.model.quantities import MAIN
 from symgen.runtime.activity import working
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import outcomes
+from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.reference.reference import ReferenceValueError
 from symgen.verify.running.compile import Outcome
-from symgen.verify.sampling.lanes import Lanes, RoundingErrors
+from symgen.verify.sampling.lanes import RoundingErrors
 from symgen.verify.sampling.nearby import Nearby, Surroundings, joined, of_samples
 from symgen.verify.sampling.settling import Settling
 from symgen.verify.sampling.states import Sample, rounded

@@ -8,7 +8,7 @@ Taylor arithmetic itself) are folded: literals of the model stay inputs, so that
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
@@ -142,6 +142,15 @@ class Tape:
 
 
 @dataclass(frozen=True)
+class Places:
+    """A replay by places, for other numbers than balls: constants come first, then inputs, then groups."""
+
+    inputs: tuple[int, ...]
+    groups: tuple[tuple[str, tuple[int, ...], tuple[int, ...] | None], ...]
+    outputs: tuple[int, ...]
+
+
+@dataclass(frozen=True)
 class Replay:
     """The part of a tape that some outputs need.
 
@@ -153,16 +162,14 @@ class Replay:
     groups: tuple[tuple[str, Callable[[Sequence[Any]], Any], Callable[[Sequence[Any]], Any] | None], ...]
     outputs: Callable[[Sequence[Any]], tuple[Any, ...]]
     operations: int
+    places: Places
 
-    def run(self, inputs: Sequence[Any], functions: Mapping[str, Callable[..., Any]] | None = None) -> tuple[Any, ...]:
-        """The outputs, in balls of the working precision; `inputs` are balls.
-
-        Other numbers go through the `functions` of their own; constants are floats then.
-        """
-        registers: list[Any] = list(self.constants.balls() if functions is None else self.constants.floats())
+    def run(self, inputs: Sequence[Any]) -> tuple[Any, ...]:
+        """The outputs, in balls of the working precision; `inputs` are balls."""
+        registers: list[Any] = list(self.constants.balls())
         registers.extend(self.inputs(inputs))
         for operation, left, right in self.groups:
-            function = (functions or FUNCTIONS)[operation]
+            function = FUNCTIONS[operation]
             if right is None:
                 registers.extend(map(function, left(registers)))
             else:
@@ -192,20 +199,21 @@ def replay_of(tape: Tape, outputs: Iterable[Register]) -> Replay:
         operation = tape.records[register][0]
         if operation not in ("constant", "input"):
             kinds.setdefault((depth[register], operation), []).append(register)
-    groups = []
+    groups: list[tuple[str, tuple[int, ...], tuple[int, ...] | None]] = []
     for (_, operation), members in sorted(kinds.items()):
-        lefts = picker([place[tape.records[r][1]] for r in members])
+        lefts = tuple(place[tape.records[r][1]] for r in members)
         two = tape.records[members[0]][2] is not None
-        rights = picker([place[tape.records[r][2]] for r in members]) if two else None
-        groups.append((operation, lefts, rights))
+        groups.append((operation, lefts, tuple(place[tape.records[r][2]] for r in members) if two else None))
         for register in members:
             place[register] = len(place)
+    places = Places(tuple(tape.records[r][1] for r in inputs), tuple(groups), tuple(place[r] for r in wanted))
     return Replay(
         Constants(tape.records[r][1] for r in constants),
-        picker([tape.records[r][1] for r in inputs]),
-        tuple(groups),
-        picker([place[r] for r in wanted]),
+        picker(places.inputs),
+        tuple((kind, picker(lefts), None if rights is None else picker(rights)) for kind, lefts, rights in groups),
+        picker(places.outputs),
         sum(map(len, kinds.values())),
+        places,
     )
 
 
