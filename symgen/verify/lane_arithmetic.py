@@ -23,7 +23,7 @@ def number(literal: Literal, scalar: Scalar) -> Any:
     return TYPES[scalar](round_literal(literal.value, scalar))
 
 
-class Arithmetic:
+class LaneArithmetic:
     """Operations on arrays of a scalar type."""
 
     def __init__(self, scalar: Scalar, sincos: Function | None) -> None:
@@ -61,7 +61,7 @@ class Arithmetic:
 class _Steps:
     """A function with its operands found by place."""
 
-    def __init__(self, function: Function, arithmetic: Arithmetic) -> None:
+    def __init__(self, function: Function, arithmetic: LaneArithmetic) -> None:
         self._arithmetic = arithmetic
         places = {name: place for place, name in enumerate(function.parameters)}
         literals = {o: None for s in function.statements for o in s.operands if isinstance(o, Literal)}

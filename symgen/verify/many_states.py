@@ -26,7 +26,7 @@ from symgen.ir.kernel import (
     Statement,
     Status,
 )
-from symgen.verify.lane_arithmetic import TYPES, Arithmetic, Lanes, number
+from symgen.verify.lane_arithmetic import TYPES, LaneArithmetic, Lanes, number
 
 _Places: TypeAlias = Any
 
@@ -47,7 +47,7 @@ class _KernelRun:
     def __init__(
         self, kernel: Kernel, sincos: Function | None, scalar: Scalar, given: Sequence[Mapping[str, Sequence[float]]]
     ) -> None:
-        self._arithmetic, self._count = Arithmetic(scalar, sincos), len(given)
+        self._arithmetic, self._count = LaneArithmetic(scalar, sincos), len(given)
         self._plan = plan = _plan_of(kernel)
         self._values = np.empty((plan.rows, len(given)), TYPES[scalar])
         for load in kernel.loads:
@@ -87,7 +87,7 @@ class _KernelRun:
 
 
 @dataclass(frozen=True)
-class _Group:
+class _StatementGroup:
     """Statements of one operation: places of their first operands, of their second ones; likewise targets."""
 
     operation: OperationName
@@ -106,7 +106,7 @@ class _CheckPlan:
 
 @dataclass(frozen=True)
 class _BlockPlan:
-    groups: tuple[_Group, ...]
+    groups: tuple[_StatementGroup, ...]
     checks: tuple[_CheckPlan, ...]
 
 
@@ -156,7 +156,7 @@ class _Plan:
         groups = self._groups(block.statements, known)
         return _BlockPlan(groups, tuple(self._check(check, known) for check in block.checks))
 
-    def _groups(self, statements: Iterable[Statement], known: dict[str, int]) -> tuple[_Group, ...]:
+    def _groups(self, statements: Iterable[Statement], known: dict[str, int]) -> tuple[_StatementGroup, ...]:
         depth = self._depth
         found: dict[tuple[int, OperationName], list[tuple[list[int], list[int]]]] = {}
         for statement in statements:
@@ -173,7 +173,7 @@ class _Plan:
         groups = []
         for (_, operation), members in sorted(found.items(), key=lambda item: item[0]):
             read, made = (tuple(np.array(places).T) for places in zip(*members, strict=True))
-            groups.append(_Group(operation, read, made))
+            groups.append(_StatementGroup(operation, read, made))
         return tuple(groups)
 
     def _check(self, check: Check, known: Mapping[str, int]) -> _CheckPlan:

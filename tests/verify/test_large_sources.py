@@ -8,10 +8,11 @@ from pathlib import Path
 import pytest
 import shipped
 
-from symgen.verify.run import generated_sources, verify
+from symgen.verify.run import verify
 from symgen.verify.running import compile as compiling
 from symgen.verify.running import python_module
 from symgen.verify.running.compile import Compilation, Compiler, CSource
+from symgen.verify.running.sources import generated_sources
 
 NAME, STATES = "skate", 8
 SMALL = CSource("small", "int three(void);", '#include "small.h"\nint three(void) { return 3; }\n')

@@ -142,7 +142,7 @@ class Tape:
 
 
 @dataclass(frozen=True)
-class Places:
+class RegisterPlaces:
     """A replay by places, for other numbers than balls: constants come first, then inputs, then groups."""
 
     inputs: tuple[int, ...]
@@ -162,7 +162,7 @@ class Replay:
     groups: tuple[tuple[str, Callable[[Sequence[Any]], Any], Callable[[Sequence[Any]], Any] | None], ...]
     outputs: Callable[[Sequence[Any]], tuple[Any, ...]]
     operations: int
-    places: Places
+    places: RegisterPlaces
 
     def run(self, inputs: Sequence[Any]) -> tuple[Any, ...]:
         """The outputs, in balls of the working precision; `inputs` are balls."""
@@ -206,7 +206,7 @@ def replay_of(tape: Tape, outputs: Iterable[Register]) -> Replay:
         groups.append((operation, lefts, tuple(place[tape.records[r][2]] for r in members) if two else None))
         for register in members:
             place[register] = len(place)
-    places = Places(tuple(tape.records[r][1] for r in inputs), tuple(groups), tuple(place[r] for r in wanted))
+    places = RegisterPlaces(tuple(tape.records[r][1] for r in inputs), tuple(groups), tuple(place[r] for r in wanted))
     return Replay(
         Constants(tape.records[r][1] for r in constants),
         picker(places.inputs),
