@@ -85,7 +85,7 @@ def add_method(parser: argparse.ArgumentParser) -> None:
         default=[],
         dest="methods",
         help="how a quantity is computed: "
-        + "; ".join(f"{quantity}={_offered(quantity)}" for quantity in NAMED_METHODS)
+        + "; ".join(f"{quantity}: {_offered(quantity)}" for quantity in NAMED_METHODS)
         + f"; {AUTO}: the cheapest valid at every regular state (default); without QUANTITY: {USUAL}; repeatable",
     )
 
@@ -95,7 +95,12 @@ def _offered(quantity: str) -> str:
     by_label: dict[str, list[str]] = {}
     for method in NAMED_METHODS[quantity]:
         by_label.setdefault(label(quantity, method), []).append(method)
-    return ", ".join(f"{told} {'|'.join(methods)}".lstrip() for told, methods in by_label.items())
+    return ", ".join(f"{told} {_listed(methods)}".lstrip() for told, methods in by_label.items())
+
+
+def _listed(methods: Sequence[str]) -> str:
+    """Names with spaces between them, so that lines end there."""
+    return " or ".join(filter(None, (", ".join(methods[:-1]), methods[-1])))
 
 
 def method_of(text: str) -> tuple[str, str]:
