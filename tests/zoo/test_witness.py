@@ -471,3 +471,23 @@ inputs: {pull: {point: end, direction: [1, 0, 0], axes: lever}}
     witness = Witness(text, {"a": 2.66})
     _, ranks = witness.walker().states(witness.defaults(), 5)
     assert ranks.actuation == 0
+
+
+def test_refinement_ends_on_the_constraints_beside_a_flat_pose() -> None:
+    """Rows are as short there as the way to where they vanish: three steps leave a thousandth of it."""
+    text = """model: cranks
+coordinates: {a: {}, b: {}, c: {}}
+parameters: {m: {value: 1}}
+kinetic_energy: m/2*(a_dot**2 + b_dot**2 + c_dot**2)
+constraints:
+  geometric:
+    along: 0.67*cos(a) + cos(c) - 1 - 0.67*cos(b)
+    across: 0.67*sin(a) + sin(c) - 0.67*sin(b)
+outputs: [forward_dynamics]
+"""
+    witness = Witness(text, {"a": -0.61, "b": -0.61, "c": 0.0})
+    walker, defaults = witness.walker(), witness.defaults()
+    a, b, c = walker.refined(np.array([4e-9, 5.9e-9, 1e-9]), defaults)
+    assert c == 0.0
+    assert abs(a - b) < 1e-22
+    assert 2e-9 < a < 8e-9

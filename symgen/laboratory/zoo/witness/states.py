@@ -17,7 +17,8 @@ from symgen.laboratory.zoo.witness.linear import NOTHING
 from symgen.laboratory.zoo.witness.reader import SystemReader
 
 STEPS = 30
-REFINEMENTS = 3
+# steps of refinement at most, and the last of them: it leaves 30 digits of what is 1e-9 away from a singular pose
+REFINEMENTS, REFINED = 12, 1e-20
 CLOSED = 1e-12
 SAME = 1e-8
 # of the largest coordinate: what is less after refinement to 30 digits is 0
@@ -241,7 +242,8 @@ class Walker:
         return q if best < CLOSED else None
 
     def refined(self, q: Any, parameters: Mapping[str, float]) -> Any:
-        """The float nearest to a configuration that satisfies the rows to 30 digits; None where that is another one.
+        """The float nearest to a configuration that satisfies the rows to 30 digits; None where that is another one, or
+        none is reached.
 
         Where rows depend on each other nothing is defined off V but by rounding.  Where one of them all but vanishes,
         rounding passes for a direction of it, and the steps lead away.
@@ -260,6 +262,11 @@ class Walker:
                 at = self._evaluate({**fixed, **dict(zip(names, exact, strict=True))}, self._balls)
                 step = onto_rows(at.rows[:geometric], at.residual, rank)
                 exact = [(x + dx).mid() for x, dx in zip(exact, step, strict=True)]
+                # the next one is of the square of this, in units of the way to where rows lose rank
+                if max(abs(float(dx)) for dx in step) < REFINED:
+                    break
+            else:
+                return None
             nearest = np.array([float(x) for x in exact])
         # what is less than these digits is what steps leave of a root at 0
         nearest[np.abs(nearest) < ROOT_AT_ZERO * np.abs(nearest).max(initial=0.0)] = 0.0
