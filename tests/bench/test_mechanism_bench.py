@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import ctypes
+import subprocess
 from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import casadi
+import numpy as np
 import pytest
 from shipped import ROOT, model
 
@@ -13,13 +18,17 @@ from symgen.laboratory.bench import mechanisms
 from symgen.laboratory.bench.mechanisms import drawn_states, mechanism_benchmark
 from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine
 from symgen.laboratory.bench.peers.frames import lagrange_by_frames, mechanics_by_frames
-from symgen.laboratory.bench.peers.mechanics import mechanics
+from symgen.laboratory.bench.peers.mechanics import PeerSystem, mechanics
 from symgen.laboratory.bench.peers.native import direct_balance
 from symgen.laboratory.bench.peers.pinocchio_program import pinocchio_time, tree_text
+from symgen.laboratory.bench.peers.recursion import mechanics_by_recursion
+from symgen.laboratory.bench.peers.ssa_engine import SsaEngine
 from symgen.laboratory.bench.reporting import mechanism_pages
 from symgen.laboratory.bench.reporting.goals import AS_WRITTEN, Goal
 from symgen.laboratory.bench.reporting.mechanism_goals import CHEAPEST_WRITTEN, EARLY_COUNTS, GOALS, MECHANISMS
 from symgen.laboratory.bench.reporting.mechanism_pages import page, table_of
+from symgen.model.load import load_text
+from symgen.model.model import Model
 
 
 def quiet(_: str) -> None:
@@ -46,6 +55,73 @@ def test_frames_and_energies_give_the_same_equations(name: str) -> None:
         state = drawn_states(model(name), 1)[0]
         found.append(function(state[:n], state[n : 2 * n], state[2 * n : 3 * n], state[3 * n :]).full())
     assert found[0] == pytest.approx(found[1], rel=1e-10, abs=1e-10)
+
+
+# Joints that turn and slide about slanted axes, an attitude on a branch, a rotor, wind.
+TREE = """
+model: crane_on_a_cart
+parameters: {m: {value: 1.3}, k: {value: 40}, d: {value: 0.7}, g: {value: 9.81}}
+gravity: [0.3, 0, -g]
+joints:
+  cart: {type: prismatic, axis: [1, 2, 0], at: [0, 0.1, 0], coordinate: s}
+  mast: {type: revolute, parent: cart, axis: [0, 1, 3], at: [0.2, 0, 0.4], rotation: [[x, 0.3]], coordinate: a}
+  boom: {type: prismatic, parent: mast, axis: x, at: [0, 0, d], coordinate: b}
+  hook: {type: revolute, parent: boom, axis: y, at: [0.5, 0, 0], coordinate: c}
+  side: {type: spherical, parent: cart, at: [0, -0.2, 0], coordinates: [e0, e1, e2, e3]}
+bodies:
+  cart: {mass: 5}
+  mast: {mass: m, com: [0, 0.02, 0.3], inertia: {xx: 0.1, yy: 0.2, zz: 0.05, xy: 0.01}}
+  boom: {mass: 2*m, com: [0.3, 0, 0], inertia: {xx: 0.01, yy: 0.2, zz: 0.2, yz: -0.003}}
+  hook: {mass: 0.6, com: [0, 0, -0.2], inertia: {xx: 0.02, yy: 0.02, zz: 0.01}}
+  side: {mass: 0.8, com: [0.1, 0, 0.05], inertia: {xx: 0.02, yy: 0.03, zz: 0.01}}
+rotor_inertias: {c: 0.4}
+points: {tip: {frame: hook, at: [0, 0, -0.3]}}
+forces: {wind: {point: tip, direction: [1, 0, 0], magnitude: "-k*tip.vx"}}
+friction: {s: {viscous: 3}}
+inputs: {drive: {joint: s}, turn: {joint: a}}
+"""
+
+
+def balance_and_inputs(derive: Callable[[Any, Model], PeerSystem], described: Model) -> casadi.Function:
+    s = derive(CasadiEngine(), described)
+    arguments = [casadi.vertcat(*s.inputs[array]) for array in ("q", "qd", "qdd", "p")]
+    return casadi.Function("f", arguments, [casadi.vertcat(*s.balance, *(x for row in s.M for x in row))])
+
+
+@pytest.mark.parametrize("name", ["arm7", "scara", "crane"])
+def test_a_recursion_gives_the_same_equations(name: str) -> None:
+    described = load_text(TREE, "crane.yaml") if name == "crane" else model(name)
+    n, state = described.n, np.random.default_rng(3).uniform(0.2, 1.1, 3 * described.n + len(described.parameters))
+    parts = state[:n], state[n : 2 * n], state[2 * n : 3 * n], state[3 * n :]
+    found = [balance_and_inputs(d, described)(*parts).full() for d in (mechanics_by_frames, mechanics_by_recursion)]
+    assert found[0] == pytest.approx(found[1], rel=1e-10, abs=1e-10)
+
+
+@pytest.mark.toolchain
+def test_straight_lines_compute_what_casadi_does(tool: Callable[[str], str], tmp_path: Path) -> None:
+    described, engine = load_text(TREE, "crane.yaml"), SsaEngine()
+    s = mechanics_by_recursion(engine, described)
+    source, (name,), by_arrays = engine.c_function("balance", s.inputs, s.balance)
+    assert not by_arrays
+    (tmp_path / "b.c").write_text(source)
+    library = tmp_path / "b.so"
+    flags = ["-DREAL=double", "-O1", "-shared", "-fPIC"]
+    subprocess.run([tool("gcc"), *flags, str(tmp_path / "b.c"), "-o", str(library), "-lm"], check=True)
+    n, state = described.n, np.random.default_rng(4).uniform(0.2, 1.1, 3 * described.n + len(described.parameters))
+    parts = state[:n], state[n : 2 * n], state[2 * n : 3 * n], state[3 * n :]
+    made = np.zeros(n)
+    pointers = [part.ctypes.data_as(ctypes.POINTER(ctypes.c_double)) for part in (*parts, made)]
+    ctypes.CDLL(str(library))[name](*pointers)
+    assert made == pytest.approx(balance_and_inputs(mechanics_by_recursion, described)(*parts).full()[:n, 0], rel=1e-11)
+
+
+def test_straight_lines_are_the_same_whatever_the_addresses_of_objects() -> None:
+    sources = set()
+    for _ in range(2):
+        engine = SsaEngine()
+        s = mechanics_by_recursion(engine, model("scara"))
+        sources.add(engine.c_function("balance", s.inputs, s.balance)[0])
+    assert len(sources) == 1
 
 
 @pytest.mark.bench

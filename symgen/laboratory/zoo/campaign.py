@@ -22,7 +22,7 @@ from symgen.laboratory.zoo.run import run_command
 from symgen.laboratory.zoo.shrink import shrink
 from symgen.laboratory.zoo.verdict import FAILED, REFUSED, DrawVerdict, verdict_of, without_numbers
 from symgen.laboratory.zoo.witness.coverage import Coverage
-from symgen.laboratory.zoo.witness.states import STUCK
+from symgen.laboratory.zoo.witness.states import NOWHERE_SMOOTH, STUCK
 from symgen.laboratory.zoo.witness.witness import check
 
 # CPU seconds that making a failing draw small may take: one that takes too long each time would take hours
@@ -99,8 +99,8 @@ def _witnessed(
 
 
 def without_states(verdict: DrawVerdict, lack: str) -> DrawVerdict:
-    """The verdict where nothing was compared: a failure, unless the walk cannot leave a singular start."""
-    if lack == STUCK:
+    """The verdict where nothing was compared: a failure, unless the walk cannot leave what is singular."""
+    if lack in (STUCK, NOWHERE_SMOOTH):
         return replace(verdict, signature=f"no state to compare: {lack}")
     return DrawVerdict(FAILED, "no state to compare", lack)
 

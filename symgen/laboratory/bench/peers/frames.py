@@ -67,8 +67,18 @@ class Written:
     applied: list[Symbol]
 
 
-def written(engine: Engine, model: Model, world_axes: bool = False) -> Written:
-    """The mechanism in the scalars of one tool; velocities in the axes of the bodies or of the world."""
+@dataclass(frozen=True, slots=True)
+class Walk:
+    """The frames of a mechanism in the scalars of one tool, and every name of the file."""
+
+    inputs: Inputs
+    scope: dict[str, Symbol]
+    scalars: _Scalars
+    kinematics: Kinematics[Symbol, Symbol]
+
+
+def walk(engine: Engine, model: Model) -> Walk:
+    """Frames and names before energies, rows and forces are written."""
     lengths = {"q": model.n, "qd": model.n, "qdd": model.n, "p": len(model.parameters)}
     inputs = {array: engine.symbols(array, length) for array, length in lengths.items()}
     scope = {coordinate.name: inputs["q"][i] for i, coordinate in enumerate(model.coordinates)}
@@ -78,42 +88,57 @@ def written(engine: Engine, model: Model, world_axes: bool = False) -> Written:
         scope[definition.name] = translate(engine, definition.value, scope)
     scalars = _Scalars(engine, scope, inputs)
     kinematics: Kinematics[Symbol, Symbol] = Kinematics(model.mechanism, scalars, sums_of_angles=False)
-    kinetic, potential = _energies(engine, model, scalars, kinematics, world_axes)
     for name in components_in(model):
         one = component(name)
         scope[name] = kinematics.component_rate(one) if one.is_rate else kinematics.component(one)
     for definition in model.definitions:
         if definition.name not in scope:
             scope[definition.name] = translate(engine, definition.value, scope)
-    places = {coordinate.name: i for i, coordinate in enumerate(model.coordinates)}
-    zero = engine.number(Fraction(0))
-    columns = []
-    for actuator in model.inputs:
-        column = [zero] * model.n
-        if actuator.velocity is not None:
-            column = engine.gradient(translate(engine, actuator.velocity, scope), inputs["qd"])
-        for name, value in actuator.acts_on:
-            column[places[name]] = column[places[name]] + translate(engine, value, scope)
-        columns.append(column)
-    applied = [zero] * model.n
-    for force in model.applied_forces:
-        applied[places[force.coordinate]] = applied[places[force.coordinate]] + translate(
-            engine, force.expression, scope
-        )
-    for element in model.forces:
-        magnitude = translate(engine, element.magnitude, scope)
-        shares = engine.gradient(translate(engine, element.velocity, scope), inputs["qd"])
-        applied = [a if engine.is_zero(x) else a + magnitude * x for a, x in zip(applied, shares, strict=True)]
-    rows = [(row.kind, translate(engine, row.expression, scope)) for row in model.constraints]
+    return Walk(inputs, scope, scalars, kinematics)
+
+
+def written(engine: Engine, model: Model, world_axes: bool = False) -> Written:
+    """The mechanism in the scalars of one tool; velocities in the axes of the bodies or of the world."""
+    at = walk(engine, model)
+    kinetic, potential = _energies(engine, model, at.scalars, at.kinematics, world_axes)
+    rows = [(row.kind, translate(engine, row.expression, at.scope)) for row in model.constraints]
     return Written(
-        inputs,
-        kinetic + translate(engine, model.kinetic_energy, scope),
-        potential + translate(engine, model.potential_energy, scope),
+        at.inputs,
+        kinetic + translate(engine, model.kinetic_energy, at.scope),
+        potential + translate(engine, model.potential_energy, at.scope),
         [value for kind, value in rows if kind == "geometric"],
         [value for kind, value in rows if kind == "nonholonomic"],
-        [[column[i] for column in columns] for i in range(model.n)],
-        applied,
+        control_matrix(engine, model, at),
+        applied_forces(engine, model, at),
     )
+
+
+def control_matrix(engine: Engine, model: Model, at: Walk) -> Matrix:
+    """M."""
+    places = {coordinate.name: i for i, coordinate in enumerate(model.coordinates)}
+    columns = []
+    for actuator in model.inputs:
+        column = [engine.number(Fraction(0))] * model.n
+        if actuator.velocity is not None:
+            column = engine.gradient(translate(engine, actuator.velocity, at.scope), at.inputs["qd"])
+        for name, value in actuator.acts_on:
+            column[places[name]] = column[places[name]] + translate(engine, value, at.scope)
+        columns.append(column)
+    return [[column[i] for column in columns] for i in range(model.n)]
+
+
+def applied_forces(engine: Engine, model: Model, at: Walk) -> list[Symbol]:
+    """Q_a."""
+    places = {coordinate.name: i for i, coordinate in enumerate(model.coordinates)}
+    applied = [engine.number(Fraction(0))] * model.n
+    for force in model.applied_forces:
+        place = places[force.coordinate]
+        applied[place] = applied[place] + translate(engine, force.expression, at.scope)
+    for element in model.forces:
+        magnitude = translate(engine, element.magnitude, at.scope)
+        shares = engine.gradient(translate(engine, element.velocity, at.scope), at.inputs["qd"])
+        applied = [a if engine.is_zero(x) else a + magnitude * x for a, x in zip(applied, shares, strict=True)]
+    return applied
 
 
 def mechanics_by_frames(engine: Engine, model: Model) -> PeerSystem:

@@ -16,6 +16,8 @@ from symgen.laboratory.bench.peers.frames import lagrange_by_frames, mechanics_b
 from symgen.laboratory.bench.peers.householder import householder_units
 from symgen.laboratory.bench.peers.mechanics import PeerSystem, mechanics
 from symgen.laboratory.bench.peers.methods import elimination, lean, part, selected_rows
+from symgen.laboratory.bench.peers.recursion import is_recursive, mechanics_by_recursion
+from symgen.laboratory.bench.peers.ssa_engine import SsaEngine
 from symgen.model.mechanism import WORLD
 from symgen.model.model import Model
 from symgen.witness.lagrange import Lagrange, differentiate
@@ -30,7 +32,12 @@ MOST_DENSE = 14  # coordinates, of peers whose C grows with the square of their 
 MOST_WITH_ENERGIES = 6
 SERIAL = "AD"
 SERIAL_IN_WORLD_AXES = "AD in world axes"
+RECURSIVE = "recursion"
 FROM_ENERGIES = " from energies"
+
+
+def _of_inputs(engine: Engine, s: PeerSystem) -> list[Symbol]:
+    return elimination(engine, s, ())
 
 
 def mechanism_peers(model: Model, states: Any) -> tuple[tuple[CCandidate, ...], tuple[tuple[str, str], ...]]:
@@ -53,6 +60,9 @@ def mechanism_peers(model: Model, states: Any) -> tuple[tuple[CCandidate, ...], 
                     found.append(_candidate(engine_type(), model, f"{name}{route}", derive, build))
                 except DeadPivotError:
                     left_out.append((f"{engine_type.tool} {name}{route}", "its fixed choice is singular everywhere"))
+    if is_recursive(model) and _selects(model):
+        for engine in (CasadiEngine(), SsaEngine()):
+            found.append(_candidate(engine, model, RECURSIVE, mechanics_by_recursion, _of_inputs))
     if model.n <= MOST_DENSE:
         units, functions = householder_units(model, lagrange_by_frames(model), "c_householder_float64")
         found.append(CCandidate("C", "Householder QR", "float64", "c_householder_float64", units, functions))
@@ -82,7 +92,7 @@ def _others(left_out: list[tuple[str, str]]) -> list[type[Engine]]:
 def _methods(model: Model, states: Any, left_out: list[tuple[str, str]]) -> dict[str, Build]:
     """lean up to a size, part, and elimination where M selects coordinates; a serial arm has one method."""
     if not model.r:
-        return {SERIAL: lambda engine, s: elimination(engine, s, ())} if _selects(model) else {"lean": lean}
+        return {SERIAL: _of_inputs} if _selects(model) else {"lean": lean}
     methods: dict[str, Build] = {}
     if model.n <= MOST_LEAN or model.r > model.n // 2:
         methods["lean"] = lean

@@ -43,6 +43,7 @@ SLOW_ONES = 4
 PACES = 1e-1, 1e-2, 1e-3, 1e-4
 # why there are fewer states than were asked for
 NOT_CLOSED, STUCK = "the start does not close", "the start is singular and every step led back"
+NOWHERE_SMOOTH = "the start is singular and so is all that it leads to"
 LOST_STEPS, IRREGULAR, LED_ELSEWHERE = "most steps were lost", "most configurations are singular", "refined elsewhere"
 
 
@@ -81,6 +82,8 @@ class Walker:
             self.lack = STUCK
         elif not points and self.closed(self._start, parameters) is None:
             self.lack = NOT_CLOSED
+        elif self._nowhere_smooth(points, parameters):
+            self.lack = NOWHERE_SMOOTH
         if self.lack:
             return [], GenericRanks(0, 0)
         ranks, regular = self._regular(points, parameters)
@@ -148,6 +151,14 @@ class Walker:
             for place in (q, q + 0.3, q - 0.2)
         )
         return bool((here < DEPENDENT * np.max(beside, axis=0)).any())
+
+    def _nowhere_smooth(self, points: list[Any], parameters: Mapping[str, float]) -> bool:
+        """Whether the walk began where two sheets of V touch and led along both.
+
+        A row is the square of a distance between them there, and what rounding leaves of that decides on ranks.
+        """
+        geometric = any(row.geometric for row in self._system.rows)
+        return bool(points) and geometric and not any(self.is_regular(q, parameters) for q in points)
 
     def is_regular(self, q: Any, parameters: Mapping[str, float]) -> bool:
         """Whether V is smooth at a configuration, of the dimension that its rows there say.
