@@ -32,7 +32,8 @@ along directions, never through matrices. **literal** is (27) with (28) on those
 G and C; **lean**, **part** and **elimination** are the methods of [the other page](README.md), **AD** is a mechanism
 without loops, *in world axes* with rotation matrices multiplied up and the velocities of mass centres as the world sees
 them. *from energies* starts from energies written out in world axes, which is shorter for a few mechanisms in the
-plane.
+plane. **recursion** is the recursive Newton-Euler algorithm of textbooks, for trees: through CasADi, and as straight
+lines of C (*SSA*) in which every value is a constant of its own and no habit of a tool counts.
 
 *As written* is what a user of CasADi writes down: native, where it is not too long to be built (16 links: literal);
 without loops AD of energies in world axes. The row below it takes whichever of native, literal and AD is cheapest, for
@@ -131,8 +132,8 @@ def _early(results: Results, names: Sequence[str]) -> str:
         "## The peers are no straw men\n\nInstructions of the peers as counted before the goals were set, how far the "
         "peers here are from them, and symgen's u with libm (portable) over the early count. The arm, Delta and "
         "Gough-Stewart platform of the early counts have other parameters: the platform here has its joints given by "
-        "angles, whose sines the peers evaluate. The arm's strongest peer here, AD in body axes, was not counted "
-        "then.\n\n"
+        "angles, whose sines the peers evaluate. The arm's strongest peers here, recursions, were not counted then, "
+        "nor when its goals were set.\n\n"
         + _table(["against", *names], rows)
     )
 
