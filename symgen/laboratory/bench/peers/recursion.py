@@ -35,14 +35,14 @@ def _is_nothing(energy: Expression) -> bool:
 def mechanics_by_recursion(engine: Engine, model: Model) -> PeerSystem:
     """tau and M; there are no rows."""
     at = walk(engine, model)
-    forces = _Recursion(engine, model, at).forces()
+    forces = _OutAndBack(engine, model, at).forces()
     applied = applied_forces(engine, model, at)
     balance = [engine.name(force - own) for force, own in zip(forces, applied, strict=True)]
     return PeerSystem(at.inputs, balance, [], control_matrix(engine, model, at))
 
 
 @dataclass(frozen=True, slots=True)
-class _Motion:
+class _FrameRates:
     """Of a frame in its own axes; accelerations of origins are those against free fall."""
 
     angular: Vector3
@@ -50,7 +50,7 @@ class _Motion:
     linear: Vector3
 
 
-class _Recursion:
+class _OutAndBack:
     def __init__(self, engine: Engine, model: Model, at: Walk) -> None:
         self._engine, self._model = engine, model
         self._inputs: Inputs = at.inputs
@@ -58,7 +58,7 @@ class _Recursion:
         self._space = at.kinematics.space
         still = self._space.still
         gravity = self._space.values(model.mechanism.gravity)
-        self._motions = {WORLD: _Motion(still, still, (-gravity[0], -gravity[1], -gravity[2]))}
+        self._motions = {WORLD: _FrameRates(still, still, (-gravity[0], -gravity[1], -gravity[2]))}
         self._loads: dict[str, tuple[Vector3, Vector3]] = {}
 
     def forces(self) -> list[Symbol]:
@@ -78,7 +78,7 @@ class _Recursion:
             works[place].append(self._scalars.value(rotor.inertia) * self._inputs["qdd"][place])
         return [total(self._engine, terms) for terms in works]
 
-    def _outwards(self, frame: Frame) -> _Motion:
+    def _outwards(self, frame: Frame) -> _FrameRates:
         space, joint = self._space, self._kinematics.joint(frame.name)
         above, back = self._motions[frame.parent], transposed(joint.axes)
         carried = self._named(space.turned(back, above.angular))
@@ -90,7 +90,7 @@ class _Recursion:
         linear = space.summed(linear, self._crossed(above.angular, self._named(around)))
         linear = space.summed(linear, self._crossed(above.angular, joint.place_rate))
         linear = space.summed(linear, self._rates(joint.place_rate))
-        return _Motion(angular, turning, self._named(space.turned(back, linear)))
+        return _FrameRates(angular, turning, self._named(space.turned(back, linear)))
 
     def _inertial(self, body: Body) -> tuple[Vector3, Vector3]:
         """Force and moment about the origin of the frame that a body's motion takes."""
