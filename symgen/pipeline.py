@@ -25,15 +25,14 @@ from symgen.generation.notices import notices
 from symgen.generation.refusals import beyond_range
 from symgen.generation.requested import requested_outputs
 from symgen.generation.results import LargestError, Options, Result, Summary
-from symgen.ir.kernel import Program, Scalar
 from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.runtime.activity import working
 from symgen.runtime.garbage import let_go_and_keep
 
 if TYPE_CHECKING:
-    from symgen.generation.fallback import Fallback
     from symgen.generation.parameter_bounds import ParameterBounds
+    from symgen.generation.trial import Trial
     from symgen.report.facts import ReportFiles
     from symgen.report.proof import ProofFacts
     from symgen.report.targets import TargetCore
@@ -43,8 +42,6 @@ if TYPE_CHECKING:
 
 # Scalars, at half a kilobyte each: derivations of fewer leave little behind.
 LARGE_GRAPH = 100_000
-# Statements of all kernels in all scalar types: trying them is nothing beside writing and compiling their C.
-LONG = 50_000
 
 Progress = Callable[[str], None]
 
@@ -60,8 +57,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
     model = load_model(path)
     outputs = requested_outputs(model, options)
     draft: Draft | None = None
-    expected: Expected | None = None
-    fallback: Fallback | None = None
+    trial: Trial | None = None
     bounds: ParameterBounds | None = None
     while True:
         with _reporting(model, options.verify) if "report" in options.parts else nullcontext() as reporting:
@@ -70,23 +66,19 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
                 draft = _derive(model, outputs, options)
                 if len(draft.derivations.mechanics.graph) > LARGE_GRAPH:
                     let_go_and_keep()
-                if options.verify and verified(options) and _is_long(draft.programs):
+                if options.verify and verified(options):
+                    from symgen.generation.parameter_bounds import ParameterBounds
                     from symgen.generation.trial import Trial
 
                     with _literals_in_range(path):
                         trial = Trial(path, draft, options, progress)
-                    fallback, expected = trial.fallback, trial.expected
                     draft, tried = trial.settled(draft)
                     if not draft.program.kernels:
                         return _result(draft, options, {}, replace(tried, left_out=draft.left_out))
-            if options.verify and verified(options):
-                from symgen.generation.parameter_bounds import ParameterBounds
-                from symgen.generation.states import expected_of
-
+                    bounds = ParameterBounds(trial.expected)
+            if bounds is not None:
                 with _literals_in_range(path):
                     check_literals(draft.programs)
-                expected = expected or expected_of(path, draft, options.states, progress)
-                bounds = bounds or ParameterBounds(expected)
                 progress("verifying: how far parameters may be")
                 draft = bounds.of(draft)
             if reporting is not None:
@@ -94,17 +86,10 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
             progress("writing")
             with _literals_in_range(path):
                 sources = sources_of(draft, options)
-            certificate, expected = _verified(draft, sources, options, progress, expected)
-            if certificate is not None and expected is None and certificate.faults:
-                from symgen.generation.states import without_states
-
-                raise without_states(path, draft.model, certificate.faults[0].what)
+            certificate = None if trial is None else _verified(draft, sources, options, progress, trial.expected)
             other = None
-            if certificate is not None and expected is not None:
-                from symgen.generation.fallback import Fallback
-
-                fallback = fallback or Fallback(options, progress)
-                other = fallback.other(draft, certificate, expected)
+            if trial is not None and certificate is not None:
+                other = trial.fallback.other(draft, certificate, trial.expected)
             if other is None or certificate is None:
                 with _literals_in_range(path):
                     files = files_of(draft, options, sources)
@@ -147,11 +132,6 @@ def _derive(model: Model, outputs: tuple[str, ...], options: Options) -> Draft:
     return as_recorded(model, outputs, options)
 
 
-def _is_long(programs: Mapping[Scalar, Program]) -> bool:
-    every = (kernel for program in programs.values() for kernel in program.kernels)
-    return sum(len(block.statements) for kernel in every for block in kernel.blocks) > LONG
-
-
 @contextmanager
 def _literals_in_range(path: Path) -> Iterator[None]:
     """Numbers of the file that a scalar type does not hold are its author's mistake."""
@@ -162,26 +142,19 @@ def _literals_in_range(path: Path) -> Iterator[None]:
 
 
 def _verified(
-    draft: Draft,
-    sources: Mapping[str, str],
-    options: Options,
-    progress: Progress,
-    expected: Expected | None,
-) -> tuple[Certificate | None, Expected | None]:
-    """What is wrong with the sources that are asked for, and what is expected at the states; None where there are none,
-    or without verification."""
-    if not options.verify:
-        return None, None
+    draft: Draft, sources: Mapping[str, str], options: Options, progress: Progress, expected: Expected
+) -> Certificate | None:
+    """What is wrong with the sources that are asked for; None where there are none."""
     from symgen.verify.run import verify_expecting
     from symgen.verify.running.sources import generated_sources
 
     run = {path: text for path, text in sources.items() if backend_of(path) in verified(options)}
     c_sources, python_source = generated_sources(draft.model, run)
     if not c_sources and python_source is None:
-        return None, None
+        return None
     kernels = {scalar: program.kernels for scalar, program in draft.written.items()}
-    found = verify_expecting(draft.model, kernels, c_sources, python_source, options.states, progress, expected)
-    return replace(found[0], left_out=draft.left_out), found[1]
+    found = verify_expecting(expected, kernels, c_sources, python_source, progress)
+    return replace(found, left_out=draft.left_out)
 
 
 def _reporting(model: Model, measured: bool) -> Background[ReportFiles]:

@@ -1,4 +1,4 @@
-"""Long kernels are tried before any C is made of them.
+"""Kernels are tried before any C is made of them.
 
 Writing and compiling tens of thousands of operations takes as long as deriving them. Interpreted at the states of the
 verification, where they have the bits of C and Python, they take a fraction of that: what is rejected takes another

@@ -19,6 +19,7 @@ from symgen.symbolic.fingerprint import PRIME, angle_pair, combine, leaf_pair, o
 from symgen.symbolic.identity import same_values
 from symgen.symbolic.scalar import Graph
 from symgen.symbolic.scalar import Scalar as Node
+from symgen.symbolic.traverse import topological
 
 # A scalar of a graph, or its value in the field of fingerprints.
 Value = TypeVar("Value")
@@ -83,7 +84,17 @@ _read: deque[tuple[Kernel, Meant[int]]] = deque(maxlen=8)
 
 
 def _values(meant: Meant[Node]) -> Meant[int]:
-    return Meant(tuple(x.value for x in meant.outputs), meant.kinds, tuple(x.value for x in meant.compared))
+    """Fingerprints as statements have them, where nothing keeps a value that is rounded apart from what it was."""
+    order = topological([*meant.outputs, *meant.compared])
+    found = {node: node.value for node in order}
+    if any(node.op == "rounded" for node in order):
+        for node in order:
+            if node.op == "rounded":
+                found[node] = found[node.args[0]]
+            # an angle of rounded values would be read by what it is made of: exact values decide
+            elif node.op not in ("sin", "cos") and any(found[a] != a.value for a in node.args):
+                found[node] = combine(node.op, [found[a] for a in node.args], node.payload)
+    return Meant(tuple(found[x] for x in meant.outputs), meant.kinds, tuple(found[x] for x in meant.compared))
 
 
 def _plain(meant: Meant[Value]) -> Meant[Value]:

@@ -21,6 +21,7 @@ from symgen.linear_algebra.reflected_inputs import ReflectedInputs
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
 from symgen.symbolic.matrix import Vector, dot
+from symgen.symbolic.polynomials.nested_factors import nested_factors
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import reached
 
@@ -43,6 +44,10 @@ def solvable(
         return apart
     if isinstance(forms, ActuationForms) and mechanics.factoring.fixed(denominator):
         return (*apart, Guard(status, denominator, 1 if forms.single else 2, space.guards))
+    if isinstance(forms, ActuationForms) and forms.single:
+        factors = nested_factors(denominator, mechanics.factoring.fixed)
+        if len(factors) > 1:
+            return (*apart, *(Guard(status, factor, 1, space.guards) for factor in factors))
     lengths = [dot(graph, column, column) for column in columns]
     bounds = magnitude(graph, lengths)
     sizes = [bound if _near(mechanics, x) else own for x, own, bound in zip(columns, lengths, bounds, strict=True)]

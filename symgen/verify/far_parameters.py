@@ -29,7 +29,7 @@ from symgen.verify.running.compile import Outcome
 from symgen.verify.sampling.loops_in_lanes import CLOSED_IN_LANES, LoopsInLanes
 from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, ranked_parts
 from symgen.verify.sampling.rates_in_lanes import RatesInLanes
-from symgen.verify.tolerance import FACTOR, expectations
+from symgen.verify.tolerance import FACTOR, is_beyond
 
 # Powers of ten by which a parameter is away at most: they are looked at one by one.
 FURTHEST = 9
@@ -137,11 +137,12 @@ class FarParameters:
 
     def is_lost(self, quantity: str, scalar: Scalar, tried: _Tried) -> bool:
         """Whether the reference finds that more is lost than is allowed."""
+        if not tried.outcome.valid:
+            return False
         try:
-            made = expectations(self._reference, tried.state, [quantity], scalar, "far")[quantity]
+            return is_beyond(self._reference, tried.state, quantity, scalar, "far", tried.outcome.entries, FACTOR)
         except ReferenceValueError:
             return False
-        return tried.outcome.valid and made.in_units(made.distance(tried.outcome.entries)) > FACTOR
 
     @cached_property
     def _leading(self) -> frozenset[int]:

@@ -52,37 +52,36 @@ def verify(
     states: int = USUAL_STATES,
     progress: Progress = lambda _: None,
 ) -> Certificate:
-    """The certificate alone, of types that have the same kernels; see `verify_expecting`."""
+    """The certificate of types that have the same kernels, at states that are looked for; see `verify_expecting`.
+
+    Fewer than 8 admissible states found is a fault.
+    """
     every: dict[Scalar, Sequence[Kernel]] = {"float64": kernels, **dict.fromkeys(c_sources, kernels)}
-    return verify_expecting(model, every, c_sources, python_source, states, progress)[0]
+    progress("verifying: looking for states")
+    try:
+        expected = Expected(model, tuple(dict.fromkeys(kernel.name for kernel in kernels)), states, progress)
+        return verify_expecting(expected, every, c_sources, python_source, progress)
+    except (VerificationError, ReferenceValueError) as fault:
+        compiler = find_compiler() if c_sources else None
+        return replace(blank_certificate(model, compiler, c_sources, python_source), faults=(Fault(str(fault)),))
 
 
 def verify_expecting(
-    model: Model,
+    expected: Expected,
     kernels: Mapping[Scalar, Sequence[Kernel]],
     c_sources: Mapping[Scalar, CSource],
     python_source: str | None,
-    states: int,
     progress: Progress,
-    expected: Expected | None = None,
-) -> tuple[Certificate, Expected | None]:
-    """Run what was generated and compare it with the reference; what goes wrong is a fault of the certificate.
+) -> Certificate:
+    """Run what was generated and compare it with what is expected; what goes wrong is a fault of the certificate.
 
-    `kernels` name the emitted quantities of each type with their arguments and shapes.
-    Fewer than 8 admissible states found is a fault, no C compiler a note.  What is `expected` at the states is handed
-    back, None where there are no states; a further verification of these quantities, or of some, takes it as it is.
+    `kernels` name the emitted quantities of each type with their arguments and shapes.  No C compiler is a note.
+    Raises VerificationError where fewer than 8 states are left in a scalar type.
     """
     compiler = find_compiler() if c_sources else None
-    blank = blank_certificate(model, compiler, c_sources, python_source)
-    try:
-        with _compilations(compiler, c_sources) as compilations:
-            if expected is None:
-                progress("verifying: looking for states")
-                names = dict.fromkeys(kernel.name for every in kernels.values() for kernel in every)
-                expected = Expected(model, tuple(names), states, progress)
-            return _verified(blank, expected, kernels, c_sources, compilations, python_source, progress), expected
-    except (VerificationError, ReferenceValueError) as fault:
-        return replace(blank, faults=(Fault(str(fault)),)), None
+    blank = blank_certificate(expected.reference.model, compiler, c_sources, python_source)
+    with _compilations(compiler, c_sources) as compilations:
+        return _verified(blank, expected, kernels, c_sources, compilations, python_source, progress)
 
 
 def blank_certificate(

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import random
 import struct
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -68,8 +68,45 @@ def expectations(
 
     With `all_literals` those move too that the type holds.
     """
+    for found in _estimates(reference, state, quantities, scalar, seed, all_literals):
+        made = found
+    return made
+
+
+def is_beyond(
+    reference: Reference, state: State, quantity: str, scalar: Scalar, seed: str, entries: Sequence[float], units: float
+) -> bool:
+    """Whether entries are more than so many units away from the reference value of `expectations`.
+
+    Of its changes no more are looked at than it takes to see that they are not.
+    """
+    distance: float | None = None
+    for found in _estimates(reference, state, [quantity], scalar, seed):
+        expected = found[quantity]
+        distance = expected.distance(entries) if distance is None else distance
+        if expected.in_units(distance) <= units:
+            return False
+    return True
+
+
+def _estimates(
+    reference: Reference,
+    state: State,
+    quantities: Sequence[str],
+    scalar: Scalar,
+    seed: str,
+    all_literals: bool = False,
+) -> Iterator[dict[str, Expectation]]:
+    """Expectations with no change looked at, with one, and so on: units of error grow up to the last ones."""
     exact = reference.precise(state, quantities)
+    eps = float(UNIT_ROUNDOFF[scalar])
+    sizes = {name: norm(exact[name]) for name in quantities}
     worst = dict.fromkeys(quantities, 0.0)
+
+    def made() -> dict[str, Expectation]:
+        return {name: Expectation(exact[name], sizes[name], worst[name] + eps * sizes[name]) for name in quantities}
+
+    yield made()
     generator = random.Random(seed)
     with precision(PERTURBED_BITS):
         state = State(*(tuple(map(ball, part)) for part in (state.q, state.qd, state.qdd, state.u, state.parameters)))
@@ -80,9 +117,7 @@ def expectations(
         with precision(DISTANCE_BITS):
             for name, matrix in results.items():
                 worst[name] = max(worst[name], norm(matrix - exact[name]))
-    eps = float(UNIT_ROUNDOFF[scalar])
-    sizes = {name: norm(exact[name]) for name in quantities}
-    return {name: Expectation(exact[name], sizes[name], worst[name] + eps * sizes[name]) for name in quantities}
+        yield made()
 
 
 def perturbed(

@@ -209,7 +209,7 @@ def spoil_named(monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[Motion], Moti
     [
         (cancelling, "error .* is allowed"),
         (refusing, "status 5 at 8 of 8"),
-        (refusing_float32, r"status 5 at 8 of 8 .*\(C float32\)"),
+        (refusing_float32, r"status 5 at 8 of 8 .*\(float32\)"),
     ],
 )
 def test_what_is_rejected_takes_the_next_method(

@@ -7,6 +7,7 @@ from math import acos, atan2, cos, hypot, inf, isfinite, nan, pi, sin
 import pytest
 import special_texts as texts
 from laws_harness import System, shipped_system, system
+from linkages import row_of_four_bars
 
 from symgen.ir.kernel import Scalar, Status
 from symgen.verify.reference.reference import State
@@ -53,6 +54,19 @@ def _arm(tip: tuple[float, float], x: float, y: float, l_1: float, l_2: float) -
     reach = hypot(tip[0] - x, tip[1] - y)
     elbow = acos((reach**2 - l_1**2 - l_2**2) / (2 * l_1 * l_2))
     return atan2(tip[1] - y, tip[0] - x) - _lead(l_1, l_2, reach), elbow
+
+
+@pytest.mark.parametrize("scalar", SCALARS)
+@pytest.mark.parametrize("count", [2, 4])
+def test_loops_in_a_row_are_lost_where_one_of_them_is(count: int, scalar: Scalar) -> None:
+    """What is divided by is one factor for each loop: their product is nothing long before one of them is."""
+    row = system(row_of_four_bars(count, "0.4", "0.3"), ("inverse_dynamics",))
+    for angle in (0.1, 1e-3, 1e-4):
+        row.assert_right(row.state([angle] * (count + 1) + [0.0] * count, scalar=scalar), ["inverse_dynamics"], scalar)
+    # the driven crank cannot turn the others out of the line, nor out of what is rounded to it
+    for angle in (0.0, EPS[scalar]):
+        flat = row.state([angle] * (count + 1) + [0.0] * count, scalar=scalar)
+        assert row.run("inverse_dynamics", flat, scalar)[0] in (Status.ACTUATION_RANK, Status.CONSTRAINT_RANK)
 
 
 @pytest.mark.parametrize("scalar", SCALARS)

@@ -25,6 +25,7 @@ from symgen.methods.system import MethodInput
 from symgen.methods.workspace import Workspace
 from symgen.records import dataclass
 from symgen.symbolic.matrix import Matrix, Vector, identity, matmul, transpose
+from symgen.symbolic.polynomials.nested_factors import nested_factors
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import cost
 
@@ -71,13 +72,22 @@ def nullspace_candidate(system: MethodInput, allowed: Callable[[Scalar], bool]) 
         if not small_family([[0]], columns, degree):
             return "the determinants of the inputs are too many"
         forms = ActuationForms(RowForms(graph, (), len(directions), 0), columns, degree)
-        power = 1 if forms.single else 2
-        guards.append(Guard(Status.ACTUATION_RANK, forms.denominator(), power, regular, directions=degree))
+        guards += _guards(system, forms, regular)
         for k, value in zip(acting, forms.solve(tuple(force[i] for i in directions)), strict=True):
             u[k] = value
     made = solved_for_u(system, u, guards)
     pivots = tuple(pivot for pivot in basis.pivots if pivot not in made.divisors and pivot.constant is None)
     return replace(made, divisors=(*made.divisors, *pivots))
+
+
+def _guards(system: MethodInput, forms: ActuationForms, regular: tuple[Guard, ...]) -> Iterator[Guard]:
+    """A determinant of blocks is compared block by block: of many the product is small far from where one vanishes."""
+    degree = 1 if forms.single else 2
+    factors = (forms.denominator(),)
+    if forms.single:
+        factors = nested_factors(forms.denominator(), system.mechanics.factoring.fixed)
+    for factor in factors:
+        yield Guard(Status.ACTUATION_RANK, factor, degree, regular, directions=forms.degree)
 
 
 def _decoupled(inputs: Matrix, system: MethodInput) -> list[tuple[Sequence[int], Sequence[int]]]:

@@ -1,0 +1,60 @@
+"""The factors of a determinant of blocks, which nest in it: a (d p) - c (b p), with p = e h - g f, is (a d - c b) p."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from symgen.symbolic.scalar import Graph, Scalar
+
+
+def nested_factors(scalar: Scalar, fixed: Callable[[Scalar], bool]) -> tuple[Scalar, ...]:
+    """Scalars one of which is 0 wherever the scalar is; those that are `fixed` belong to the first of the others.
+
+    The scalar itself where it is no product.
+    """
+    found = list(dict.fromkeys(_factors(scalar)))
+    constant, moving = [x for x in found if fixed(x)], [x for x in found if not fixed(x)]
+    if len(moving) < 2:
+        return (scalar,)
+    return (scalar.graph.product([*constant, moving[0]]), *moving[1:])
+
+
+def _factors(scalar: Scalar) -> Iterator[Scalar]:
+    graph = scalar.graph
+    _, powers = graph.products.monomial(scalar)
+    if any(power < 0 for power in powers.values()):
+        yield scalar
+        return
+    for factor in powers:
+        common, rest = _content(graph, factor)
+        if rest is None:
+            yield factor
+        else:
+            yield from (inner for x in common for inner in _factors(x))
+            yield from _factors(rest)
+
+
+def _content(graph: Graph, factor: Scalar) -> tuple[list[Scalar], Scalar | None]:
+    """What all terms of a sum have as a factor, and the sum without it; None where there is nothing."""
+    if factor.op not in ("add", "sub"):
+        return [], None
+    terms = list(_terms(factor, 1))
+    monomials = [graph.products.monomial(term)[1] for _, term in terms]
+    first, *others = monomials
+    shared = {x: min(power, *(other.get(x, 0) for other in others)) for x, power in first.items()}
+    common = {x: power for x, power in shared.items() if power > 0}
+    if not common:
+        return [], None
+    rest = graph.sum(sign * graph.products.quotient(term, common) for sign, term in terms)
+    return list(common), rest
+
+
+def _terms(scalar: Scalar, sign: int) -> Iterator[tuple[int, Scalar]]:
+    match scalar.op:
+        case "add" | "sub":
+            yield from _terms(scalar.args[0], sign)
+            yield from _terms(scalar.args[1], sign if scalar.op == "add" else -sign)
+        case "neg":
+            yield from _terms(scalar.args[0], -sign)
+        case _:
+            yield sign, scalar

@@ -1,0 +1,40 @@
+"""Factors of determinants of blocks: where one of them is 0 the determinant is, and the other way round."""
+
+from __future__ import annotations
+
+import random
+
+from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.polynomials.nested_factors import nested_factors
+from symgen.symbolic.scalar import Graph, Scalar
+
+LETTERS = "abcdefgh"
+
+
+def _fixed(scalar: Scalar) -> bool:
+    return str(scalar.payload) in "ef"
+
+
+def _values(outputs: list[Scalar]) -> list[float]:
+    source = random.Random(5)
+    return Evaluator(outputs)({name: source.uniform(0.5, 2) for name in LETTERS})
+
+
+def test_blocks_in_a_row_are_told_apart() -> None:
+    graph = Graph()
+    a, b, c, d, e, f, g, h = map(graph.symbol, LETTERS)
+    inner = a * b - c * d
+    middle = g * (h * inner) - b * (c * inner)
+    outer = (e * a) * (d * middle) - (e * f) * (middle * g)
+    found = nested_factors(outer, _fixed)
+    # the fixed factor belongs to the first of the others
+    assert found == (e * inner, g * h - b * c, a * d - f * g)
+    first, second, third, whole = _values([*found, outer])
+    assert abs(first * second * third / whole - 1) < 1e-13
+
+
+def test_what_is_no_product_stays_whole() -> None:
+    graph = Graph()
+    a, b, c, d, e, *_ = map(graph.symbol, LETTERS)
+    for scalar in (a * b - c * d, e * (a - b), (a * b) / (c - d), a):
+        assert nested_factors(scalar, _fixed) == (scalar,)
