@@ -1114,29 +1114,32 @@ front_car_status front_car_orthogonal_complement(const double q[4], const front_
     double cosine[2];
     front_car_sincos_group(2, angle, sine, cosine);
     const double L = p->L;
-    const double t6 = cosine[1];
-    const double t7 = L * t6;
     const double t4 = cosine[0];
-    const double t8 = t4 * t7;
-    const double t9 = t8 * t8;
-    const double t10 = t7 * t7;
-    const double t11 = 1.0 + t10;
-    const double t12 = t11 * 7.888609052210118e-31;
-    if (FRONT_CAR_RARELY(!(t9 > t12))) {
+    const double t7 = L * t4;
+    const double t8 = fabs(t7);
+    const double t9 = fabs(L);
+    const double t10 = t9 * 3.552713678800501e-15;
+    if (FRONT_CAR_RARELY(!(t8 > t10))) {
+        return FRONT_CAR_CONSTRAINT_RANK;
+    }
+    const double t6 = cosine[1];
+    const double t11 = fabs(t6);
+    if (FRONT_CAR_RARELY(!(t11 > 3.552713678800501e-15))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const double t3 = sine[0];
-    const double t13 = t3 / t4;
-    double rest = t13 - t13;
+    const double t12 = t3 / t4;
+    double rest = t12 - t12;
+    const double t13 = t6 * t7;
     const double t5 = sine[1];
-    const double t14 = t5 / t8;
+    const double t14 = t5 / t13;
     rest *= t14;
     if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     F_B[0] = 1.0;
     F_B[1] = 0.0;
-    F_B[2] = t13;
+    F_B[2] = t12;
     F_B[3] = 0.0;
     F_B[4] = t14;
     F_B[5] = 0.0;
@@ -1554,37 +1557,41 @@ front_car_status front_car_minimal_mass_matrix(const double q[4], const front_ca
     double cosine[2];
     front_car_sincos_group(2, angle, sine, cosine);
     const double L = p->L;
-    const double t4 = cosine[0];
-    const double t7 = L * t4;
     const double t6 = cosine[1];
-    const double t8 = t6 * t7;
-    const double t9 = t8 * t8;
-    const double t10 = t7 * t7;
-    const double t11 = 1.0 + t10;
-    const double t12 = t11 * 7.888609052210118e-31;
-    if (FRONT_CAR_RARELY(!(t9 > t12))) {
+    const double t7 = L * t6;
+    const double t8 = fabs(t7);
+    const double t9 = fabs(L);
+    const double t10 = t9 * 3.552713678800501e-15;
+    if (FRONT_CAR_RARELY(!(t8 > t10))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    const double t13 = t4 * t4;
+    const double t4 = cosine[0];
+    const double t11 = fabs(t4);
+    if (FRONT_CAR_RARELY(!(t11 > 3.552713678800501e-15))) {
+        return FRONT_CAR_CONSTRAINT_RANK;
+    }
+    const double t12 = t4 * t4;
     const double m_1 = p->m_1;
-    const double t14 = m_1 * t13;
+    const double t13 = m_1 * t12;
     const double m_2 = p->m_2;
-    const double t15 = m_2 + t14;
+    const double t14 = m_2 + t13;
+    const double t15 = L * t14;
     const double t16 = L * t15;
-    const double t17 = L * t16;
     const double t3 = sine[0];
-    const double t18 = t3 * t3;
+    const double t17 = t3 * t3;
     const double Theta_1 = p->Theta_1;
-    const double t19 = Theta_1 * t18;
-    const double t20 = t17 + t19;
-    const double t21 = t20 / t9;
-    double rest = t21 - t21;
+    const double t18 = Theta_1 * t17;
+    const double t19 = t16 + t18;
+    const double t20 = t4 * t7;
+    const double t21 = t20 * t20;
+    const double t22 = t19 / t21;
+    double rest = t22 - t22;
     const double Theta_2 = p->Theta_2;
     rest *= Theta_2;
     if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    G_bar[0] = t21;
+    G_bar[0] = t22;
     G_bar[1] = 0.0;
     G_bar[2] = 0.0;
     G_bar[3] = Theta_2;
@@ -1612,73 +1619,80 @@ front_car_status front_car_minimal_coriolis_matrix(const double q[4], const doub
     front_car_sincos_group(2, angle, sine, cosine);
     const double t3 = sine[0];
     const double t7 = t3 * t3;
-    const double t4 = cosine[0];
-    const double t8 = L * t4;
     const double t5 = sine[1];
-    const double t9 = t5 * t8;
-    const double t10 = t9 * t9;
-    const double t11 = t7 + t10;
+    const double t8 = t5 * t5;
     const double t6 = cosine[1];
-    const double t12 = t6 * t8;
-    const double t13 = t12 * t12;
-    const double t14 = t11 + t13;
-    const double t15 = t8 * t8;
-    const double t16 = 1.0 + t15;
-    const double t17 = t16 * 7.888609052210118e-31;
-    if (FRONT_CAR_RARELY(!(t14 > t17))) {
+    const double t9 = t6 * t6;
+    const double t10 = t8 + t9;
+    const double t11 = L * L;
+    const double t4 = cosine[0];
+    const double t12 = t4 * t11;
+    const double t13 = t4 * t12;
+    const double t14 = t10 * t13;
+    const double t15 = t7 + t14;
+    const double t16 = L * t4;
+    const double t17 = t16 * t16;
+    const double t18 = 1.0 + t17;
+    const double t19 = t18 * 7.888609052210118e-31;
+    if (FRONT_CAR_RARELY(!(t15 > t19))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    if (FRONT_CAR_RARELY(!(t13 > t17))) {
+    const double t20 = L * t6;
+    const double t21 = fabs(t20);
+    const double t22 = fabs(L);
+    const double t23 = t22 * 3.552713678800501e-15;
+    if (FRONT_CAR_RARELY(!(t21 > t23))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    const double t18 = L * L;
+    const double t24 = fabs(t4);
+    if (FRONT_CAR_RARELY(!(t24 > 3.552713678800501e-15))) {
+        return FRONT_CAR_CONSTRAINT_RANK;
+    }
     const double m_2 = p->m_2;
-    const double t19 = m_2 * t18;
+    const double t25 = m_2 * t11;
     const double Theta_1 = p->Theta_1;
-    const double t20 = Theta_1 + t19;
+    const double t26 = Theta_1 + t25;
     const double phi_dot = qd[3];
-    const double t21 = phi_dot * t6;
-    const double t22 = t3 * t21;
-    const double t23 = t20 * t22;
+    const double t27 = phi_dot * t6;
+    const double t28 = t3 * t27;
+    const double t29 = t26 * t28;
     const double theta_dot = qd[2];
-    const double t24 = theta_dot * t5;
-    const double t25 = t20 * t24;
-    const double t26 = (-1.0) + t18;
-    const double t27 = t26 * t23;
-    const double t28 = t4 * t4;
-    const double t29 = t28 + (-2.0);
-    const double t30 = t20 * t29;
+    const double t30 = theta_dot * t5;
+    const double t31 = t26 * t30;
+    const double t32 = (-1.0) + t11;
+    const double t33 = t32 * t29;
+    const double t34 = t4 * t4;
+    const double t35 = t34 + (-2.0);
+    const double t36 = t26 * t35;
     const double m_1 = p->m_1;
-    const double t31 = m_1 + m_2;
-    const double t32 = t31 * t18;
-    const double t33 = t28 * t32;
-    const double t34 = t31 + t20;
-    const double t35 = t3 * t34;
-    const double t36 = t3 * t35;
-    const double t37 = t33 + t36;
-    const double t38 = L * t37;
-    const double t39 = L * t38;
-    const double t40 = t30 + t39;
-    const double t41 = t4 * t24;
-    const double t42 = t40 * t41;
-    const double t43 = t27 + t42;
-    const double t44 = t4 * t43;
-    const double t45 = t25 + t44;
-    const double t46 = t4 * t45;
-    const double t47 = t23 + t46;
-    const double t48 = t6 * t18;
-    const double t49 = t6 * t48;
-    const double t50 = t6 * t49;
-    const double t51 = t4 * t50;
+    const double t37 = m_1 + m_2;
+    const double t38 = t37 * t11;
+    const double t39 = t34 * t38;
+    const double t40 = t37 + t26;
+    const double t41 = t3 * t40;
+    const double t42 = t3 * t41;
+    const double t43 = t39 + t42;
+    const double t44 = L * t43;
+    const double t45 = L * t44;
+    const double t46 = t36 + t45;
+    const double t47 = t4 * t30;
+    const double t48 = t46 * t47;
+    const double t49 = t33 + t48;
+    const double t50 = t4 * t49;
+    const double t51 = t31 + t50;
     const double t52 = t4 * t51;
-    const double t53 = t4 * t52;
-    const double t54 = t14 * t53;
-    const double t55 = t47 / t54;
-    double rest = t55 - t55;
+    const double t53 = t29 + t52;
+    const double t54 = t4 * t13;
+    const double t55 = t6 * t54;
+    const double t56 = t6 * t55;
+    const double t57 = t6 * t56;
+    const double t58 = t15 * t57;
+    const double t59 = t53 / t58;
+    double rest = t59 - t59;
     if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    C_bar[0] = t55;
+    C_bar[0] = t59;
     C_bar[1] = 0.0;
     C_bar[2] = 0.0;
     C_bar[3] = 0.0;
@@ -1718,24 +1732,26 @@ front_car_status front_car_minimal_control_matrix(const double q[4], const front
     double cosine[2];
     front_car_sincos_group(2, angle, sine, cosine);
     const double L = p->L;
-    const double t6 = cosine[1];
-    const double t7 = L * t6;
     const double t4 = cosine[0];
-    const double t8 = t4 * t7;
-    const double t9 = t8 * t8;
-    const double t10 = t7 * t7;
-    const double t11 = 1.0 + t10;
-    const double t12 = t11 * 7.888609052210118e-31;
-    if (FRONT_CAR_RARELY(!(t9 > t12))) {
+    const double t7 = L * t4;
+    const double t8 = fabs(t7);
+    const double t9 = fabs(L);
+    const double t10 = t9 * 3.552713678800501e-15;
+    if (FRONT_CAR_RARELY(!(t8 > t10))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    const double t13 = t4 * t6;
-    const double t14 = 1.0 / t13;
-    double rest = t14 - t14;
+    const double t6 = cosine[1];
+    const double t11 = fabs(t6);
+    if (FRONT_CAR_RARELY(!(t11 > 3.552713678800501e-15))) {
+        return FRONT_CAR_CONSTRAINT_RANK;
+    }
+    const double t12 = t4 * t6;
+    const double t13 = 1.0 / t12;
+    double rest = t13 - t13;
     if (FRONT_CAR_RARELY(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    M_bar[0] = t14;
+    M_bar[0] = t13;
     M_bar[1] = 0.0;
     M_bar[2] = 0.0;
     M_bar[3] = 1.0;

@@ -28,16 +28,16 @@
  * control_matrix                        1      1      0      0      2      0
  * projected_control_matrix              3     12      3      0      2      0
  * projected_control_pseudoinverse       0      2      1      0      2      0
- * orthogonal_complement                 1      5      2      0      2      0
+ * orthogonal_complement                 0      3      2      0      2      0
  * projected_mass_matrix                10     33      3      0      2      0
  * projected_coriolis_matrix            62    131     10      0      2      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
- * minimal_mass_matrix                   3     11      1      0      2      0
- * minimal_coriolis_matrix              13     35      1      0      2      0
+ * minimal_mass_matrix                   2     10      1      0      2      0
+ * minimal_coriolis_matrix              13     36      1      0      2      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
- * minimal_control_matrix                1      6      1      0      2      0
+ * minimal_control_matrix                0      3      1      0      2      0
  * admissible_velocity                   4     13      2      0      2      0
  * admissible_acceleration              13     34      4      0      2      0
  * projected_configuration               0      0      0      0      0      0

@@ -1101,29 +1101,32 @@ front_car_status front_car_orthogonal_complement_f(const float q[4], const front
     float cosine[4];
     front_car_sincos_group_f(2, angle, sine, cosine);
     const float L = p->L;
-    const float t6 = cosine[1];
-    const float t7 = L * t6;
     const float t4 = cosine[0];
-    const float t8 = t4 * t7;
-    const float t9 = t8 * t8;
-    const float t10 = t7 * t7;
-    const float t11 = 1.0f + t10;
-    const float t12 = t11 * 2.2737368e-13f;
-    if (FRONT_CAR_RARELY_F(!(t9 > t12))) {
+    const float t7 = L * t4;
+    const float t8 = fabsf(t7);
+    const float t9 = fabsf(L);
+    const float t10 = t9 * 1.9073486e-06f;
+    if (FRONT_CAR_RARELY_F(!(t8 > t10))) {
+        return FRONT_CAR_CONSTRAINT_RANK;
+    }
+    const float t6 = cosine[1];
+    const float t11 = fabsf(t6);
+    if (FRONT_CAR_RARELY_F(!(t11 > 1.9073486e-06f))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
     const float t3 = sine[0];
-    const float t13 = t3 / t4;
-    float rest = t13 - t13;
+    const float t12 = t3 / t4;
+    float rest = t12 - t12;
+    const float t13 = t6 * t7;
     const float t5 = sine[1];
-    const float t14 = t5 / t8;
+    const float t14 = t5 / t13;
     rest *= t14;
     if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
     F_B[0] = 1.0f;
     F_B[1] = 0.0f;
-    F_B[2] = t13;
+    F_B[2] = t12;
     F_B[3] = 0.0f;
     F_B[4] = t14;
     F_B[5] = 0.0f;
@@ -1541,37 +1544,41 @@ front_car_status front_car_minimal_mass_matrix_f(const float q[4], const front_c
     float cosine[4];
     front_car_sincos_group_f(2, angle, sine, cosine);
     const float L = p->L;
-    const float t4 = cosine[0];
-    const float t7 = L * t4;
     const float t6 = cosine[1];
-    const float t8 = t6 * t7;
-    const float t9 = t8 * t8;
-    const float t10 = t7 * t7;
-    const float t11 = 1.0f + t10;
-    const float t12 = t11 * 2.2737368e-13f;
-    if (FRONT_CAR_RARELY_F(!(t9 > t12))) {
+    const float t7 = L * t6;
+    const float t8 = fabsf(t7);
+    const float t9 = fabsf(L);
+    const float t10 = t9 * 1.9073486e-06f;
+    if (FRONT_CAR_RARELY_F(!(t8 > t10))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    const float t13 = t4 * t4;
+    const float t4 = cosine[0];
+    const float t11 = fabsf(t4);
+    if (FRONT_CAR_RARELY_F(!(t11 > 1.9073486e-06f))) {
+        return FRONT_CAR_CONSTRAINT_RANK;
+    }
+    const float t12 = t4 * t4;
     const float m_1 = p->m_1;
-    const float t14 = m_1 * t13;
+    const float t13 = m_1 * t12;
     const float m_2 = p->m_2;
-    const float t15 = m_2 + t14;
+    const float t14 = m_2 + t13;
+    const float t15 = L * t14;
     const float t16 = L * t15;
-    const float t17 = L * t16;
     const float t3 = sine[0];
-    const float t18 = t3 * t3;
+    const float t17 = t3 * t3;
     const float Theta_1 = p->Theta_1;
-    const float t19 = Theta_1 * t18;
-    const float t20 = t17 + t19;
-    const float t21 = t20 / t9;
-    float rest = t21 - t21;
+    const float t18 = Theta_1 * t17;
+    const float t19 = t16 + t18;
+    const float t20 = t4 * t7;
+    const float t21 = t20 * t20;
+    const float t22 = t19 / t21;
+    float rest = t22 - t22;
     const float Theta_2 = p->Theta_2;
     rest *= Theta_2;
     if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    G_bar[0] = t21;
+    G_bar[0] = t22;
     G_bar[1] = 0.0f;
     G_bar[2] = 0.0f;
     G_bar[3] = Theta_2;
@@ -1602,73 +1609,80 @@ front_car_status front_car_minimal_coriolis_matrix_f(const float q[4], const flo
     front_car_sincos_group_f(2, angle, sine, cosine);
     const float t3 = sine[0];
     const float t7 = t3 * t3;
-    const float t4 = cosine[0];
-    const float t8 = L * t4;
     const float t5 = sine[1];
-    const float t9 = t5 * t8;
-    const float t10 = t9 * t9;
-    const float t11 = t7 + t10;
+    const float t8 = t5 * t5;
     const float t6 = cosine[1];
-    const float t12 = t6 * t8;
-    const float t13 = t12 * t12;
-    const float t14 = t11 + t13;
-    const float t15 = t8 * t8;
-    const float t16 = 1.0f + t15;
-    const float t17 = t16 * 2.2737368e-13f;
-    if (FRONT_CAR_RARELY_F(!(t14 > t17))) {
+    const float t9 = t6 * t6;
+    const float t10 = t8 + t9;
+    const float t11 = L * L;
+    const float t4 = cosine[0];
+    const float t12 = t4 * t11;
+    const float t13 = t4 * t12;
+    const float t14 = t10 * t13;
+    const float t15 = t7 + t14;
+    const float t16 = L * t4;
+    const float t17 = t16 * t16;
+    const float t18 = 1.0f + t17;
+    const float t19 = t18 * 2.2737368e-13f;
+    if (FRONT_CAR_RARELY_F(!(t15 > t19))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    if (FRONT_CAR_RARELY_F(!(t13 > t17))) {
+    const float t20 = L * t6;
+    const float t21 = fabsf(t20);
+    const float t22 = fabsf(L);
+    const float t23 = t22 * 1.9073486e-06f;
+    if (FRONT_CAR_RARELY_F(!(t21 > t23))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    const float t18 = L * L;
+    const float t24 = fabsf(t4);
+    if (FRONT_CAR_RARELY_F(!(t24 > 1.9073486e-06f))) {
+        return FRONT_CAR_CONSTRAINT_RANK;
+    }
     const float m_2 = p->m_2;
-    const float t19 = m_2 * t18;
+    const float t25 = m_2 * t11;
     const float Theta_1 = p->Theta_1;
-    const float t20 = Theta_1 + t19;
+    const float t26 = Theta_1 + t25;
     const float phi_dot = qd[3];
-    const float t21 = phi_dot * t6;
-    const float t22 = t3 * t21;
-    const float t23 = t20 * t22;
+    const float t27 = phi_dot * t6;
+    const float t28 = t3 * t27;
+    const float t29 = t26 * t28;
     const float theta_dot = qd[2];
-    const float t24 = theta_dot * t5;
-    const float t25 = t20 * t24;
-    const float t26 = (-1.0f) + t18;
-    const float t27 = t26 * t23;
-    const float t28 = t4 * t4;
-    const float t29 = t28 + (-2.0f);
-    const float t30 = t20 * t29;
+    const float t30 = theta_dot * t5;
+    const float t31 = t26 * t30;
+    const float t32 = (-1.0f) + t11;
+    const float t33 = t32 * t29;
+    const float t34 = t4 * t4;
+    const float t35 = t34 + (-2.0f);
+    const float t36 = t26 * t35;
     const float m_1 = p->m_1;
-    const float t31 = m_1 + m_2;
-    const float t32 = t31 * t18;
-    const float t33 = t28 * t32;
-    const float t34 = t31 + t20;
-    const float t35 = t3 * t34;
-    const float t36 = t3 * t35;
-    const float t37 = t33 + t36;
-    const float t38 = L * t37;
-    const float t39 = L * t38;
-    const float t40 = t30 + t39;
-    const float t41 = t4 * t24;
-    const float t42 = t40 * t41;
-    const float t43 = t27 + t42;
-    const float t44 = t4 * t43;
-    const float t45 = t25 + t44;
-    const float t46 = t4 * t45;
-    const float t47 = t23 + t46;
-    const float t48 = t6 * t18;
-    const float t49 = t6 * t48;
-    const float t50 = t6 * t49;
-    const float t51 = t4 * t50;
+    const float t37 = m_1 + m_2;
+    const float t38 = t37 * t11;
+    const float t39 = t34 * t38;
+    const float t40 = t37 + t26;
+    const float t41 = t3 * t40;
+    const float t42 = t3 * t41;
+    const float t43 = t39 + t42;
+    const float t44 = L * t43;
+    const float t45 = L * t44;
+    const float t46 = t36 + t45;
+    const float t47 = t4 * t30;
+    const float t48 = t46 * t47;
+    const float t49 = t33 + t48;
+    const float t50 = t4 * t49;
+    const float t51 = t31 + t50;
     const float t52 = t4 * t51;
-    const float t53 = t4 * t52;
-    const float t54 = t14 * t53;
-    const float t55 = t47 / t54;
-    float rest = t55 - t55;
+    const float t53 = t29 + t52;
+    const float t54 = t4 * t13;
+    const float t55 = t6 * t54;
+    const float t56 = t6 * t55;
+    const float t57 = t6 * t56;
+    const float t58 = t15 * t57;
+    const float t59 = t53 / t58;
+    float rest = t59 - t59;
     if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    C_bar[0] = t55;
+    C_bar[0] = t59;
     C_bar[1] = 0.0f;
     C_bar[2] = 0.0f;
     C_bar[3] = 0.0f;
@@ -1708,24 +1722,26 @@ front_car_status front_car_minimal_control_matrix_f(const float q[4], const fron
     float cosine[4];
     front_car_sincos_group_f(2, angle, sine, cosine);
     const float L = p->L;
-    const float t6 = cosine[1];
-    const float t7 = L * t6;
     const float t4 = cosine[0];
-    const float t8 = t4 * t7;
-    const float t9 = t8 * t8;
-    const float t10 = t7 * t7;
-    const float t11 = 1.0f + t10;
-    const float t12 = t11 * 2.2737368e-13f;
-    if (FRONT_CAR_RARELY_F(!(t9 > t12))) {
+    const float t7 = L * t4;
+    const float t8 = fabsf(t7);
+    const float t9 = fabsf(L);
+    const float t10 = t9 * 1.9073486e-06f;
+    if (FRONT_CAR_RARELY_F(!(t8 > t10))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    const float t13 = t4 * t6;
-    const float t14 = 1.0f / t13;
-    float rest = t14 - t14;
+    const float t6 = cosine[1];
+    const float t11 = fabsf(t6);
+    if (FRONT_CAR_RARELY_F(!(t11 > 1.9073486e-06f))) {
+        return FRONT_CAR_CONSTRAINT_RANK;
+    }
+    const float t12 = t4 * t6;
+    const float t13 = 1.0f / t12;
+    float rest = t13 - t13;
     if (FRONT_CAR_RARELY_F(isnan(rest) != 0)) {
         return FRONT_CAR_NOT_FINITE;
     }
-    M_bar[0] = t14;
+    M_bar[0] = t13;
     M_bar[1] = 0.0f;
     M_bar[2] = 0.0f;
     M_bar[3] = 1.0f;

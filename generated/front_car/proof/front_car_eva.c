@@ -409,7 +409,7 @@ void eva_projected_control_pseudoinverse(void) {
 
 void eva_orthogonal_complement(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t4, t8. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t4, t13. */
 void eva_orthogonal_complement(void) {
     static const double low_2[] = {-0x1.921fb54442d18p+1, -0x1.78fdb9effea46p+1, -0x1.5fdbbe9bba775p+1, -0x1.46b9c347764a4p+1, -0x1.2d97c7f3321d1p+1, -0x1.10dea8b7767bdp+1, -0x1.e84b12f775b53p+0, -0x1.aed8d47ffe72bp+0, -0x1.7566960887303p+0, -0x1.3bf457910fedcp+0, -0x1.0282191998ab4p+0, -0x1.921fb54442d18p-1, -0x1.1f3b3855544c8p-1, -0x1.58ad76cccb8f0p-2, -0x1.cb91f3bbba140p-4, 0x1.cb91f3bbba140p-4, 0x1.58ad76cccb8f0p-2, 0x1.1f3b3855544c8p-1, 0x1.921fb54442d19p-1, 0x1.0282191998ab4p+0, 0x1.3bf457910fedcp+0, 0x1.7566960887303p+0, 0x1.aed8d47ffe72bp+0, 0x1.e84b12f775b53p+0, 0x1.10dea8b7767bdp+1, 0x1.2d97c7f3321d2p+1, 0x1.46b9c347764a4p+1, 0x1.5fdbbe9bba775p+1, 0x1.78fdb9effea46p+1};
     static const double high_2[] = {-0x1.78fdb9effea46p+1, -0x1.5fdbbe9bba775p+1, -0x1.46b9c347764a4p+1, -0x1.2d97c7f3321d2p+1, -0x1.10dea8b7767bdp+1, -0x1.e84b12f775b53p+0, -0x1.aed8d47ffe72bp+0, -0x1.7566960887303p+0, -0x1.3bf457910fedcp+0, -0x1.0282191998ab4p+0, -0x1.921fb54442d19p-1, -0x1.1f3b3855544c8p-1, -0x1.58ad76cccb8f0p-2, -0x1.cb91f3bbba140p-4, 0x1.cb91f3bbba140p-4, 0x1.58ad76cccb8f0p-2, 0x1.1f3b3855544c8p-1, 0x1.921fb54442d18p-1, 0x1.0282191998ab4p+0, 0x1.3bf457910fedcp+0, 0x1.7566960887303p+0, 0x1.aed8d47ffe72bp+0, 0x1.e84b12f775b53p+0, 0x1.10dea8b7767bdp+1, 0x1.2d97c7f3321d1p+1, 0x1.46b9c347764a4p+1, 0x1.5fdbbe9bba775p+1, 0x1.78fdb9effea46p+1, 0x1.921fb54442d18p+1};
@@ -552,7 +552,7 @@ void eva_projected_applied_force(void) {
 
 void eva_minimal_mass_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t9. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t21. */
 void eva_minimal_mass_matrix(void) {
     static const double low_2[] = {-0x1.921fb54442d18p+1, -0x1.78fdb9effea46p+1, -0x1.5fdbbe9bba775p+1, -0x1.46b9c347764a4p+1, -0x1.2d97c7f3321d1p+1, -0x1.10dea8b7767bdp+1, -0x1.e84b12f775b53p+0, -0x1.aed8d47ffe72bp+0, -0x1.7566960887303p+0, -0x1.3bf457910fedcp+0, -0x1.0282191998ab4p+0, -0x1.921fb54442d18p-1, -0x1.1f3b3855544c8p-1, -0x1.58ad76cccb8f0p-2, -0x1.cb91f3bbba140p-4, 0x1.cb91f3bbba140p-4, 0x1.58ad76cccb8f0p-2, 0x1.1f3b3855544c8p-1, 0x1.921fb54442d19p-1, 0x1.0282191998ab4p+0, 0x1.3bf457910fedcp+0, 0x1.7566960887303p+0, 0x1.aed8d47ffe72bp+0, 0x1.e84b12f775b53p+0, 0x1.10dea8b7767bdp+1, 0x1.2d97c7f3321d2p+1, 0x1.46b9c347764a4p+1, 0x1.5fdbbe9bba775p+1, 0x1.78fdb9effea46p+1};
     static const double high_2[] = {-0x1.78fdb9effea46p+1, -0x1.5fdbbe9bba775p+1, -0x1.46b9c347764a4p+1, -0x1.2d97c7f3321d2p+1, -0x1.10dea8b7767bdp+1, -0x1.e84b12f775b53p+0, -0x1.aed8d47ffe72bp+0, -0x1.7566960887303p+0, -0x1.3bf457910fedcp+0, -0x1.0282191998ab4p+0, -0x1.921fb54442d19p-1, -0x1.1f3b3855544c8p-1, -0x1.58ad76cccb8f0p-2, -0x1.cb91f3bbba140p-4, 0x1.cb91f3bbba140p-4, 0x1.58ad76cccb8f0p-2, 0x1.1f3b3855544c8p-1, 0x1.921fb54442d18p-1, 0x1.0282191998ab4p+0, 0x1.3bf457910fedcp+0, 0x1.7566960887303p+0, 0x1.aed8d47ffe72bp+0, 0x1.e84b12f775b53p+0, 0x1.10dea8b7767bdp+1, 0x1.2d97c7f3321d1p+1, 0x1.46b9c347764a4p+1, 0x1.5fdbbe9bba775p+1, 0x1.78fdb9effea46p+1, 0x1.921fb54442d18p+1};
@@ -583,7 +583,7 @@ void eva_minimal_mass_matrix(void) {
 
 void eva_minimal_coriolis_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t54. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t58. */
 void eva_minimal_coriolis_matrix(void) {
     static const double low_2[] = {-0x1.921fb54442d18p+1, -0x1.78fdb9effea46p+1, -0x1.5fdbbe9bba775p+1, -0x1.46b9c347764a4p+1, -0x1.2d97c7f3321d1p+1, -0x1.10dea8b7767bdp+1, -0x1.e84b12f775b53p+0, -0x1.aed8d47ffe72bp+0, -0x1.7566960887303p+0, -0x1.3bf457910fedcp+0, -0x1.0282191998ab4p+0, -0x1.921fb54442d18p-1, -0x1.1f3b3855544c8p-1, -0x1.58ad76cccb8f0p-2, -0x1.cb91f3bbba140p-4, 0x1.cb91f3bbba140p-4, 0x1.58ad76cccb8f0p-2, 0x1.1f3b3855544c8p-1, 0x1.921fb54442d19p-1, 0x1.0282191998ab4p+0, 0x1.3bf457910fedcp+0, 0x1.7566960887303p+0, 0x1.aed8d47ffe72bp+0, 0x1.e84b12f775b53p+0, 0x1.10dea8b7767bdp+1, 0x1.2d97c7f3321d2p+1, 0x1.46b9c347764a4p+1, 0x1.5fdbbe9bba775p+1, 0x1.78fdb9effea46p+1};
     static const double high_2[] = {-0x1.78fdb9effea46p+1, -0x1.5fdbbe9bba775p+1, -0x1.46b9c347764a4p+1, -0x1.2d97c7f3321d2p+1, -0x1.10dea8b7767bdp+1, -0x1.e84b12f775b53p+0, -0x1.aed8d47ffe72bp+0, -0x1.7566960887303p+0, -0x1.3bf457910fedcp+0, -0x1.0282191998ab4p+0, -0x1.921fb54442d19p-1, -0x1.1f3b3855544c8p-1, -0x1.58ad76cccb8f0p-2, -0x1.cb91f3bbba140p-4, 0x1.cb91f3bbba140p-4, 0x1.58ad76cccb8f0p-2, 0x1.1f3b3855544c8p-1, 0x1.921fb54442d18p-1, 0x1.0282191998ab4p+0, 0x1.3bf457910fedcp+0, 0x1.7566960887303p+0, 0x1.aed8d47ffe72bp+0, 0x1.e84b12f775b53p+0, 0x1.10dea8b7767bdp+1, 0x1.2d97c7f3321d1p+1, 0x1.46b9c347764a4p+1, 0x1.5fdbbe9bba775p+1, 0x1.78fdb9effea46p+1, 0x1.921fb54442d18p+1};
@@ -664,7 +664,7 @@ void eva_minimal_applied_force(void) {
 
 void eva_minimal_control_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t13. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t12. */
 void eva_minimal_control_matrix(void) {
     static const double low_2[] = {-0x1.921fb54442d18p+1, -0x1.78fdb9effea46p+1, -0x1.5fdbbe9bba775p+1, -0x1.46b9c347764a4p+1, -0x1.2d97c7f3321d1p+1, -0x1.10dea8b7767bdp+1, -0x1.e84b12f775b53p+0, -0x1.aed8d47ffe72bp+0, -0x1.7566960887303p+0, -0x1.3bf457910fedcp+0, -0x1.0282191998ab4p+0, -0x1.921fb54442d18p-1, -0x1.1f3b3855544c8p-1, -0x1.58ad76cccb8f0p-2, -0x1.cb91f3bbba140p-4, 0x1.cb91f3bbba140p-4, 0x1.58ad76cccb8f0p-2, 0x1.1f3b3855544c8p-1, 0x1.921fb54442d19p-1, 0x1.0282191998ab4p+0, 0x1.3bf457910fedcp+0, 0x1.7566960887303p+0, 0x1.aed8d47ffe72bp+0, 0x1.e84b12f775b53p+0, 0x1.10dea8b7767bdp+1, 0x1.2d97c7f3321d2p+1, 0x1.46b9c347764a4p+1, 0x1.5fdbbe9bba775p+1, 0x1.78fdb9effea46p+1};
     static const double high_2[] = {-0x1.78fdb9effea46p+1, -0x1.5fdbbe9bba775p+1, -0x1.46b9c347764a4p+1, -0x1.2d97c7f3321d2p+1, -0x1.10dea8b7767bdp+1, -0x1.e84b12f775b53p+0, -0x1.aed8d47ffe72bp+0, -0x1.7566960887303p+0, -0x1.3bf457910fedcp+0, -0x1.0282191998ab4p+0, -0x1.921fb54442d19p-1, -0x1.1f3b3855544c8p-1, -0x1.58ad76cccb8f0p-2, -0x1.cb91f3bbba140p-4, 0x1.cb91f3bbba140p-4, 0x1.58ad76cccb8f0p-2, 0x1.1f3b3855544c8p-1, 0x1.921fb54442d18p-1, 0x1.0282191998ab4p+0, 0x1.3bf457910fedcp+0, 0x1.7566960887303p+0, 0x1.aed8d47ffe72bp+0, 0x1.e84b12f775b53p+0, 0x1.10dea8b7767bdp+1, 0x1.2d97c7f3321d1p+1, 0x1.46b9c347764a4p+1, 0x1.5fdbbe9bba775p+1, 0x1.78fdb9effea46p+1, 0x1.921fb54442d18p+1};

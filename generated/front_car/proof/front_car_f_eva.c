@@ -409,7 +409,7 @@ void eva_projected_control_pseudoinverse(void) {
 
 void eva_orthogonal_complement(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t4, t8. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t4, t13. */
 void eva_orthogonal_complement(void) {
     static const float low_2[] = {-0x1.921fb6p+1f, -0x1.78fdbap+1f, -0x1.5fdbc0p+1f, -0x1.46b9c4p+1f, -0x1.2d97c6p+1f, -0x1.10dea8p+1f, -0x1.e84b10p+0f, -0x1.aed8d2p+0f, -0x1.756696p+0f, -0x1.3bf458p+0f, -0x1.02821ap+0f, -0x1.921fb6p-1f, -0x1.1f3b38p-1f, -0x1.58ad78p-2f, -0x1.cb91f4p-4f, 0x1.cb91f4p-4f, 0x1.58ad78p-2f, 0x1.1f3b38p-1f, 0x1.921fb8p-1f, 0x1.02821ap+0f, 0x1.3bf458p+0f, 0x1.756696p+0f, 0x1.aed8d2p+0f, 0x1.e84b10p+0f, 0x1.10dea8p+1f, 0x1.2d97c8p+1f, 0x1.46b9c4p+1f, 0x1.5fdbc0p+1f, 0x1.78fdbap+1f};
     static const float high_2[] = {-0x1.78fdbap+1f, -0x1.5fdbc0p+1f, -0x1.46b9c4p+1f, -0x1.2d97c8p+1f, -0x1.10dea8p+1f, -0x1.e84b10p+0f, -0x1.aed8d2p+0f, -0x1.756696p+0f, -0x1.3bf458p+0f, -0x1.02821ap+0f, -0x1.921fb8p-1f, -0x1.1f3b38p-1f, -0x1.58ad78p-2f, -0x1.cb91f4p-4f, 0x1.cb91f4p-4f, 0x1.58ad78p-2f, 0x1.1f3b38p-1f, 0x1.921fb6p-1f, 0x1.02821ap+0f, 0x1.3bf458p+0f, 0x1.756696p+0f, 0x1.aed8d2p+0f, 0x1.e84b10p+0f, 0x1.10dea8p+1f, 0x1.2d97c6p+1f, 0x1.46b9c4p+1f, 0x1.5fdbc0p+1f, 0x1.78fdbap+1f, 0x1.921fb6p+1f};
@@ -552,7 +552,7 @@ void eva_projected_applied_force(void) {
 
 void eva_minimal_mass_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t9. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t21. */
 void eva_minimal_mass_matrix(void) {
     static const float low_2[] = {-0x1.921fb6p+1f, -0x1.78fdbap+1f, -0x1.5fdbc0p+1f, -0x1.46b9c4p+1f, -0x1.2d97c6p+1f, -0x1.10dea8p+1f, -0x1.e84b10p+0f, -0x1.aed8d2p+0f, -0x1.756696p+0f, -0x1.3bf458p+0f, -0x1.02821ap+0f, -0x1.921fb6p-1f, -0x1.1f3b38p-1f, -0x1.58ad78p-2f, -0x1.cb91f4p-4f, 0x1.cb91f4p-4f, 0x1.58ad78p-2f, 0x1.1f3b38p-1f, 0x1.921fb8p-1f, 0x1.02821ap+0f, 0x1.3bf458p+0f, 0x1.756696p+0f, 0x1.aed8d2p+0f, 0x1.e84b10p+0f, 0x1.10dea8p+1f, 0x1.2d97c8p+1f, 0x1.46b9c4p+1f, 0x1.5fdbc0p+1f, 0x1.78fdbap+1f};
     static const float high_2[] = {-0x1.78fdbap+1f, -0x1.5fdbc0p+1f, -0x1.46b9c4p+1f, -0x1.2d97c8p+1f, -0x1.10dea8p+1f, -0x1.e84b10p+0f, -0x1.aed8d2p+0f, -0x1.756696p+0f, -0x1.3bf458p+0f, -0x1.02821ap+0f, -0x1.921fb8p-1f, -0x1.1f3b38p-1f, -0x1.58ad78p-2f, -0x1.cb91f4p-4f, 0x1.cb91f4p-4f, 0x1.58ad78p-2f, 0x1.1f3b38p-1f, 0x1.921fb6p-1f, 0x1.02821ap+0f, 0x1.3bf458p+0f, 0x1.756696p+0f, 0x1.aed8d2p+0f, 0x1.e84b10p+0f, 0x1.10dea8p+1f, 0x1.2d97c6p+1f, 0x1.46b9c4p+1f, 0x1.5fdbc0p+1f, 0x1.78fdbap+1f, 0x1.921fb6p+1f};
@@ -583,7 +583,7 @@ void eva_minimal_mass_matrix(void) {
 
 void eva_minimal_coriolis_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t54. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t58. */
 void eva_minimal_coriolis_matrix(void) {
     static const float low_2[] = {-0x1.921fb6p+1f, -0x1.78fdbap+1f, -0x1.5fdbc0p+1f, -0x1.46b9c4p+1f, -0x1.2d97c6p+1f, -0x1.10dea8p+1f, -0x1.e84b10p+0f, -0x1.aed8d2p+0f, -0x1.756696p+0f, -0x1.3bf458p+0f, -0x1.02821ap+0f, -0x1.921fb6p-1f, -0x1.1f3b38p-1f, -0x1.58ad78p-2f, -0x1.cb91f4p-4f, 0x1.cb91f4p-4f, 0x1.58ad78p-2f, 0x1.1f3b38p-1f, 0x1.921fb8p-1f, 0x1.02821ap+0f, 0x1.3bf458p+0f, 0x1.756696p+0f, 0x1.aed8d2p+0f, 0x1.e84b10p+0f, 0x1.10dea8p+1f, 0x1.2d97c8p+1f, 0x1.46b9c4p+1f, 0x1.5fdbc0p+1f, 0x1.78fdbap+1f};
     static const float high_2[] = {-0x1.78fdbap+1f, -0x1.5fdbc0p+1f, -0x1.46b9c4p+1f, -0x1.2d97c8p+1f, -0x1.10dea8p+1f, -0x1.e84b10p+0f, -0x1.aed8d2p+0f, -0x1.756696p+0f, -0x1.3bf458p+0f, -0x1.02821ap+0f, -0x1.921fb8p-1f, -0x1.1f3b38p-1f, -0x1.58ad78p-2f, -0x1.cb91f4p-4f, 0x1.cb91f4p-4f, 0x1.58ad78p-2f, 0x1.1f3b38p-1f, 0x1.921fb6p-1f, 0x1.02821ap+0f, 0x1.3bf458p+0f, 0x1.756696p+0f, 0x1.aed8d2p+0f, 0x1.e84b10p+0f, 0x1.10dea8p+1f, 0x1.2d97c6p+1f, 0x1.46b9c4p+1f, 0x1.5fdbc0p+1f, 0x1.78fdbap+1f, 0x1.921fb6p+1f};
@@ -664,7 +664,7 @@ void eva_minimal_applied_force(void) {
 
 void eva_minimal_control_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t13. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t12. */
 void eva_minimal_control_matrix(void) {
     static const float low_2[] = {-0x1.921fb6p+1f, -0x1.78fdbap+1f, -0x1.5fdbc0p+1f, -0x1.46b9c4p+1f, -0x1.2d97c6p+1f, -0x1.10dea8p+1f, -0x1.e84b10p+0f, -0x1.aed8d2p+0f, -0x1.756696p+0f, -0x1.3bf458p+0f, -0x1.02821ap+0f, -0x1.921fb6p-1f, -0x1.1f3b38p-1f, -0x1.58ad78p-2f, -0x1.cb91f4p-4f, 0x1.cb91f4p-4f, 0x1.58ad78p-2f, 0x1.1f3b38p-1f, 0x1.921fb8p-1f, 0x1.02821ap+0f, 0x1.3bf458p+0f, 0x1.756696p+0f, 0x1.aed8d2p+0f, 0x1.e84b10p+0f, 0x1.10dea8p+1f, 0x1.2d97c8p+1f, 0x1.46b9c4p+1f, 0x1.5fdbc0p+1f, 0x1.78fdbap+1f};
     static const float high_2[] = {-0x1.78fdbap+1f, -0x1.5fdbc0p+1f, -0x1.46b9c4p+1f, -0x1.2d97c8p+1f, -0x1.10dea8p+1f, -0x1.e84b10p+0f, -0x1.aed8d2p+0f, -0x1.756696p+0f, -0x1.3bf458p+0f, -0x1.02821ap+0f, -0x1.921fb8p-1f, -0x1.1f3b38p-1f, -0x1.58ad78p-2f, -0x1.cb91f4p-4f, 0x1.cb91f4p-4f, 0x1.58ad78p-2f, 0x1.1f3b38p-1f, 0x1.921fb6p-1f, 0x1.02821ap+0f, 0x1.3bf458p+0f, 0x1.756696p+0f, 0x1.aed8d2p+0f, 0x1.e84b10p+0f, 0x1.10dea8p+1f, 0x1.2d97c6p+1f, 0x1.46b9c4p+1f, 0x1.5fdbc0p+1f, 0x1.78fdbap+1f, 0x1.921fb6p+1f};

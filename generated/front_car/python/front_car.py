@@ -28,16 +28,16 @@ weighted_nullspace_projector         15     52      4      0      2      0
 control_matrix                        1      1      0      0      2      0
 projected_control_matrix              3     12      3      0      2      0
 projected_control_pseudoinverse       0      2      1      0      2      0
-orthogonal_complement                 1      5      2      0      2      0
+orthogonal_complement                 0      3      2      0      2      0
 projected_mass_matrix                10     33      3      0      2      0
 projected_coriolis_matrix            62    131     10      0      2      0
 projected_potential_force             0      0      0      0      0      0
 projected_applied_force               0      0      0      0      0      0
-minimal_mass_matrix                   3     11      1      0      2      0
-minimal_coriolis_matrix              13     35      1      0      2      0
+minimal_mass_matrix                   2     10      1      0      2      0
+minimal_coriolis_matrix              13     36      1      0      2      0
 minimal_potential_force               0      0      0      0      0      0
 minimal_applied_force                 0      0      0      0      0      0
-minimal_control_matrix                1      6      1      0      2      0
+minimal_control_matrix                0      3      1      0      2      0
 admissible_velocity                   4     13      2      0      2      0
 admissible_acceleration              13     34      4      0      2      0
 projected_configuration               0      0      0      0      0      0
@@ -1050,19 +1050,20 @@ def orthogonal_complement(q, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
         t3, t4 = _sincos(theta)
         t5, t6 = _sincos(phi)
-        t7 = L * t6
-        t8 = t4 * t7
-        t9 = t8 * t8
-        t10 = t7 * t7
-        t11 = 1.0 + t10
-        t12 = t11 * 7.888609052210118e-31
-        status = _first(status, ~np.asarray(t9 > t12), 2)
-        t13 = t3 / t4
-        t14 = t5 / t8
+        t7 = L * t4
+        t8 = np.abs(t7)
+        t9 = np.abs(L)
+        t10 = t9 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t8 > t10), 2)
+        t11 = np.abs(t6)
+        status = _first(status, ~np.asarray(t11 > 3.552713678800501e-15), 2)
+        t12 = t3 / t4
+        t13 = t6 * t7
+        t14 = t5 / t13
         entries = (
             1.0,
             0.0,
-            t13,
+            t12,
             0.0,
             t14,
             0.0,
@@ -1463,24 +1464,26 @@ def minimal_mass_matrix(q, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
         t3, t4 = _sincos(phi)
         t5, t6 = _sincos(theta)
-        t7 = L * t4
-        t8 = t6 * t7
-        t9 = t8 * t8
-        t10 = t7 * t7
-        t11 = 1.0 + t10
-        t12 = t11 * 7.888609052210118e-31
-        status = _first(status, ~np.asarray(t9 > t12), 2)
-        t13 = t4 * t4
-        t14 = m_1 * t13
-        t15 = m_2 + t14
+        t7 = L * t6
+        t8 = np.abs(t7)
+        t9 = np.abs(L)
+        t10 = t9 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t8 > t10), 2)
+        t11 = np.abs(t4)
+        status = _first(status, ~np.asarray(t11 > 3.552713678800501e-15), 2)
+        t12 = t4 * t4
+        t13 = m_1 * t12
+        t14 = m_2 + t13
+        t15 = L * t14
         t16 = L * t15
-        t17 = L * t16
-        t18 = t3 * t3
-        t19 = Theta_1 * t18
-        t20 = t17 + t19
-        t21 = t20 / t9
+        t17 = t3 * t3
+        t18 = Theta_1 * t17
+        t19 = t16 + t18
+        t20 = t4 * t7
+        t21 = t20 * t20
+        t22 = t19 / t21
         entries = (
-            t21,
+            t22,
             0.0,
             0.0,
             Theta_2,
@@ -1512,58 +1515,63 @@ def minimal_coriolis_matrix(q, qd, p=PARAMETERS):
         t3, t4 = _sincos(phi)
         t5, t6 = _sincos(theta)
         t7 = t3 * t3
-        t8 = L * t4
-        t9 = t5 * t8
-        t10 = t9 * t9
-        t11 = t7 + t10
-        t12 = t6 * t8
-        t13 = t12 * t12
-        t14 = t11 + t13
-        t15 = t8 * t8
-        t16 = 1.0 + t15
-        t17 = t16 * 7.888609052210118e-31
-        status = _first(status, ~np.asarray(t14 > t17), 2)
-        status = _first(status, ~np.asarray(t13 > t17), 2)
-        t18 = L * L
-        t19 = m_2 * t18
-        t20 = Theta_1 + t19
-        t21 = phi_dot * t6
-        t22 = t3 * t21
-        t23 = t20 * t22
-        t24 = theta_dot * t5
-        t25 = t20 * t24
-        t26 = (-1.0) + t18
-        t27 = t26 * t23
-        t28 = t4 * t4
-        t29 = t28 + (-2.0)
-        t30 = t20 * t29
-        t31 = m_1 + m_2
-        t32 = t31 * t18
-        t33 = t28 * t32
-        t34 = t31 + t20
-        t35 = t3 * t34
-        t36 = t3 * t35
-        t37 = t33 + t36
-        t38 = L * t37
-        t39 = L * t38
-        t40 = t30 + t39
-        t41 = t4 * t24
-        t42 = t40 * t41
-        t43 = t27 + t42
-        t44 = t4 * t43
-        t45 = t25 + t44
-        t46 = t4 * t45
-        t47 = t23 + t46
-        t48 = t6 * t18
-        t49 = t6 * t48
-        t50 = t6 * t49
-        t51 = t4 * t50
+        t8 = t5 * t5
+        t9 = t6 * t6
+        t10 = t8 + t9
+        t11 = L * L
+        t12 = t4 * t11
+        t13 = t4 * t12
+        t14 = t10 * t13
+        t15 = t7 + t14
+        t16 = L * t4
+        t17 = t16 * t16
+        t18 = 1.0 + t17
+        t19 = t18 * 7.888609052210118e-31
+        status = _first(status, ~np.asarray(t15 > t19), 2)
+        t20 = L * t6
+        t21 = np.abs(t20)
+        t22 = np.abs(L)
+        t23 = t22 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t21 > t23), 2)
+        t24 = np.abs(t4)
+        status = _first(status, ~np.asarray(t24 > 3.552713678800501e-15), 2)
+        t25 = m_2 * t11
+        t26 = Theta_1 + t25
+        t27 = phi_dot * t6
+        t28 = t3 * t27
+        t29 = t26 * t28
+        t30 = theta_dot * t5
+        t31 = t26 * t30
+        t32 = (-1.0) + t11
+        t33 = t32 * t29
+        t34 = t4 * t4
+        t35 = t34 + (-2.0)
+        t36 = t26 * t35
+        t37 = m_1 + m_2
+        t38 = t37 * t11
+        t39 = t34 * t38
+        t40 = t37 + t26
+        t41 = t3 * t40
+        t42 = t3 * t41
+        t43 = t39 + t42
+        t44 = L * t43
+        t45 = L * t44
+        t46 = t36 + t45
+        t47 = t4 * t30
+        t48 = t46 * t47
+        t49 = t33 + t48
+        t50 = t4 * t49
+        t51 = t31 + t50
         t52 = t4 * t51
-        t53 = t4 * t52
-        t54 = t14 * t53
-        t55 = t47 / t54
+        t53 = t29 + t52
+        t54 = t4 * t13
+        t55 = t6 * t54
+        t56 = t6 * t55
+        t57 = t6 * t56
+        t58 = t15 * t57
+        t59 = t53 / t58
         entries = (
-            t55,
+            t59,
             0.0,
             0.0,
             0.0,
@@ -1616,17 +1624,17 @@ def minimal_control_matrix(q, p=PARAMETERS):
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
         t3, t4 = _sincos(theta)
         t5, t6 = _sincos(phi)
-        t7 = L * t6
-        t8 = t4 * t7
-        t9 = t8 * t8
-        t10 = t7 * t7
-        t11 = 1.0 + t10
-        t12 = t11 * 7.888609052210118e-31
-        status = _first(status, ~np.asarray(t9 > t12), 2)
-        t13 = t4 * t6
-        t14 = 1.0 / t13
+        t7 = L * t4
+        t8 = np.abs(t7)
+        t9 = np.abs(L)
+        t10 = t9 * 3.552713678800501e-15
+        status = _first(status, ~np.asarray(t8 > t10), 2)
+        t11 = np.abs(t6)
+        status = _first(status, ~np.asarray(t11 > 3.552713678800501e-15), 2)
+        t12 = t4 * t6
+        t13 = 1.0 / t12
         entries = (
-            t14,
+            t13,
             0.0,
             0.0,
             1.0,

@@ -33,16 +33,16 @@
  * control_matrix                        0      0      0      0      0      0
  * projected_control_matrix            101    177      1      0      6      0
  * projected_control_pseudoinverse      55    124      1      0      6      0
- * orthogonal_complement                39     97      3      0      6      0
+ * orthogonal_complement                17     38      3      0      9      0
  * projected_mass_matrix               282    419      9      4      6      0
  * projected_coriolis_matrix           714    987     14      4      6      0
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
- * minimal_mass_matrix                  75    134      1      0      6      0
- * minimal_coriolis_matrix             330    566      2      0      6      0
+ * minimal_mass_matrix                  63    114      1      0      6      0
+ * minimal_coriolis_matrix             330    568      2      0      6      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
- * minimal_control_matrix               27     61      1      0      6      0
+ * minimal_control_matrix                8     15      1      0      6      0
  * admissible_velocity                 109    162      9      4      6      0
  * admissible_acceleration             192    271     13      4      6      0
  * projected_configuration             276    322     29     11     12      0

@@ -558,7 +558,7 @@ void eva_projected_control_pseudoinverse(void) {
 
 void eva_orthogonal_complement(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t134, t116. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t51, t69. */
 void eva_orthogonal_complement(void) {
     float q[6];
     rapkm_2rrr_rr_params_f p;
@@ -730,7 +730,7 @@ void eva_projected_applied_force(void) {
 
 void eva_minimal_mass_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t38. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t78. */
 void eva_minimal_mass_matrix(void) {
     float q[6];
     rapkm_2rrr_rr_params_f p;
@@ -762,7 +762,7 @@ void eva_minimal_mass_matrix(void) {
 
 void eva_minimal_coriolis_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t211, t175. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t227, t175. */
 void eva_minimal_coriolis_matrix(void) {
     float q[6];
     float qd[6];
@@ -870,7 +870,7 @@ void eva_minimal_applied_force(void) {
 
 void eva_minimal_control_matrix(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t37. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t35. */
 void eva_minimal_control_matrix(void) {
     float q[6];
     rapkm_2rrr_rr_params_f p;
