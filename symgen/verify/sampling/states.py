@@ -15,6 +15,7 @@ from symgen.runtime.activity import working
 from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.quantities import RATES
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
+from symgen.verify.sampling.inertias import Inertias
 from symgen.verify.sampling.regular import (
     FEWEST_STATES,
     REGULAR_SHARE,
@@ -79,18 +80,19 @@ def sample_states(
         inside: list[Sample] = []
         outside: list[Regular] = []
         search = RegularStateSearch(reference, count, seed, modes)
+        inertias = Inertias(reference, quantities)
         with working("", count) as work:
             for found_state, in_range in search.candidates():
                 if not in_range:
                     outside.append(found_state)
-                elif (sample := _sample(reference, quantities, found_state)) is not None:
+                elif (sample := _sample(reference, quantities, found_state, inertias)) is not None:
                     inside.append(sample)
                 else:
                     search.has_no_value()
                 if len(inside) == count:
                     break
                 work.done, work.part = len(inside), f"{len(inside)} of {count} found"
-        others = (_sample(reference, quantities, found_state) for found_state in outside)
+        others = (_sample(reference, quantities, found_state, inertias) for found_state in outside)
         found = [*inside, *islice((sample for sample in others if sample is not None), count - len(inside))]
     if len(found) < FEWEST_STATES:
         raise VerificationError(
@@ -114,8 +116,13 @@ def _single(value: Any) -> float:
     return float(struct.unpack("f", struct.pack("f", value))[0])
 
 
-def _sample(reference: Reference, quantities: Sequence[str], regular: Regular) -> Sample | None:
-    """A regular state with its inputs, rates and accelerations, or None outside the domain of a quantity."""
+def _sample(
+    reference: Reference, quantities: Sequence[str], regular: Regular, inertias: Inertias
+) -> Sample | None:
+    """A regular state with its inputs, rates and accelerations, or None outside the domain of a quantity.
+
+    States all but without an inertia of some direction are none, where quantities divide by inertias.
+    """
     state, values = regular.state, regular.values
     try:
         if missing := [name for name in measured(reference) if name not in values]:
@@ -128,12 +135,14 @@ def _sample(reference: Reference, quantities: Sequence[str], regular: Regular) -
         if regular.shares:
             scale = 2 * max(1.0, *(abs(x) for x in values["inverse_dynamics"]))
             state = replace(state, u=tuple(scale * share for share in regular.shares))
-        everything = reference.matrices(state, quantities, SAMPLING_BITS)
+        everything = reference.matrices(state, (*quantities, *inertias.names), SAMPLING_BITS)
     except ReferenceValueError:
         return None
     if not all(isfinite(x) for matrix in everything.values() for x in floats(matrix)):
         return None
     if any(ROWS[name].needs == PARTITION for name in quantities) and not _is_free(reference, state):
+        return None
+    if not inertias.is_regular(inertias.share(everything)):
         return None
     first, second = values["singularity"]
     return Sample(state, regular.admissible, (first, second))
