@@ -286,6 +286,11 @@ class ActuationForms:
         inverse = 1 / denominator
         return tuple(numerator * inverse for numerator in numerators)
 
+    @property
+    def rank_measures(self) -> list[Scalar]:
+        """None: what is divided by is the denominator."""
+        return []
+
     def internal_force(self) -> tuple[Vector, Scalar]:
         """Of one input more than directions: (-1)^k det[omega, M without column k], and their squared weighted norm."""
         (family,) = self.products

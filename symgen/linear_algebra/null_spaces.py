@@ -44,6 +44,10 @@ class InputEquations(Protocol):
     def weighted(self, weights: Sequence[Scalar]) -> InputEquations:
         """The same with weights of the inputs."""
 
+    @property
+    def rank_measures(self) -> list[Scalar]:
+        """Squared lengths that are divided by, none of which vanishes where the inputs have their rank."""
+
     def solve(self, force: Vector) -> Vector:
         """The inputs of least norm."""
 
@@ -251,6 +255,11 @@ class HouseholderSpace:
     def square(self) -> Scalar:
         """det(B B^T)."""
         return self.graph.product(self.reflections.pivots)
+
+    @property
+    def rank_measures(self) -> list[Scalar]:
+        """Squared lengths that are divided by: of what rows before leave of each, 0 only where the rank drops."""
+        return self.reflections.pivots
 
     @cached_property
     def basis(self) -> Matrix:

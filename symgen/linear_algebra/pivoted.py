@@ -130,6 +130,11 @@ class PivotedSpace(HouseholderSpace):
         """det L^T L, on V the sum of det(B_I B_I^T) over the row subsets I of size rho."""
         return self.graph.product(self._inner.pivots)
 
+    @property
+    def rank_measures(self) -> list[Scalar]:
+        """Those of the rows chosen, and those of L."""
+        return [*self.reflections.pivots, *self._inner.pivots]
+
     @cached_property
     def pseudoinverse(self) -> Matrix:
         """B^+ = Q_1 L^+, n x r."""

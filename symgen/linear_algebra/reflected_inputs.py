@@ -90,3 +90,8 @@ class ReflectedInputs:
     def pivots(self) -> list[Scalar]:
         """Their product is the square, or one of the squared minors where A is short of rank both ways."""
         return self._space.reflections.pivots
+
+    @property
+    def rank_measures(self) -> list[Scalar]:
+        """All pivots, of a second factorisation too: none is 0 where A has the rank `degree`."""
+        return self._space.rank_measures

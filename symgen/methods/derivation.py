@@ -117,6 +117,12 @@ class Derivation:
         forms, _ = self._actuation
         return self._solvable(forms, self.mechanics.inputs, Status.ACTUATION_RANK)
 
+    @property
+    def input_measures(self) -> list[Scalar]:
+        """What the input equations divide by otherwise, which is 0 only where inputs lose a direction."""
+        forms = [self._actuation[0], *(() if self._allocation is None else (self._allocation.forms,))]
+        return [measure for one in forms for measure in one.rank_measures]
+
     def _solvable(self, forms: InputEquations, columns: Sequence[Vector], status: Status) -> tuple[Guard, ...]:
         return solvable(self.mechanics, self.generic, self.space, forms, columns, status)
 

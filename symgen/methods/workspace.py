@@ -61,4 +61,5 @@ class Workspace:
 
 def denominators(derivation: Derivation) -> list[Scalar]:
     """What u along a derivation divides by, which vanishes by theorem only where a rank drops."""
-    return [guard.denominator for guard in (*derivation.actuation_guards, *derivation.space.guards)]
+    guards = (*derivation.actuation_guards, *derivation.space.guards)
+    return [*(guard.denominator for guard in guards), *derivation.input_measures]

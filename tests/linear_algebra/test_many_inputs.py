@@ -43,6 +43,19 @@ def test_least_norm_and_least_squares(size: int, count: int, degree: int) -> Non
     assert found[-1] == pytest.approx(Evaluator([forms.square()])(values)[0], rel=1e-8)
 
 
+@pytest.mark.parametrize(("size", "count", "degree"), SHAPES)
+def test_what_is_divided_by_vanishes_only_with_the_rank(size: int, count: int, degree: int) -> None:
+    source = np.random.default_rng(7)
+    graph = Graph()
+    equations = ReflectedInputs(graph, [symbols(graph, f"a_{k}", size) for k in range(count)], size, degree, False)
+    evaluate = Evaluator(equations.rank_measures)
+    for rank in (degree, degree - 1):
+        matrix = source.normal(size=(size, rank)) @ source.normal(size=(rank, count))
+        measures = evaluate({f"a_{k}_{i}": matrix[i, k] for k in range(count) for i in range(size)})
+        # what rounding leaves of a direction that is not there is its square; NaN may come of it
+        assert min(measures) > 1e-6 if rank == degree else not min(measures) > 1e-24
+
+
 @pytest.mark.parametrize("place", [0, 3, 5])
 def test_a_component_that_all_but_vanishes_is_not_divided_by(place: int) -> None:
     # what rounding leaves of a component that is 0 at this configuration points anywhere
@@ -72,7 +85,10 @@ def test_a_form_is_found_where_components_of_inputs_vanish_in_turn() -> None:
     methods = Methods(model, genericity(System(model)))
     made = methods.candidate(INPUTS, "minor")
     assert isinstance(made, Candidate)
-    assert methods.validity(made).singular == ()
+    found = methods.validity(made)
+    assert found.singular == ()
+    # pivots are 0 only where the rank drops, by theorem; squares that pivoting compares may be, and are searched
+    assert found.proved > 0
 
 
 def test_the_number_of_products_decides() -> None:

@@ -83,10 +83,8 @@ def nullspace_candidate(system: MethodInput, allowed: Callable[[Scalar], bool]) 
 def _guards(system: MethodInput, forms: ActuationForms, regular: tuple[Guard, ...]) -> Iterator[Guard]:
     """A determinant of blocks is compared block by block: of many the product is small far from where one vanishes."""
     degree = 1 if forms.single else 2
-    factors = (forms.denominator(),)
-    if forms.single:
-        factors = nested_factors(forms.denominator(), system.mechanics.factoring.fixed)
-    for factor in factors:
+    whole = forms.denominator()
+    for factor in nested_factors(whole, system.mechanics.factoring.fixed) if forms.single else (whole,):
         yield Guard(Status.ACTUATION_RANK, factor, degree, regular, directions=forms.degree)
 
 
