@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias
 
 from symgen.ir.kernel import Scalar
+from symgen.laboratory.bench.peers.straight import StraightLines
 
 Third: TypeAlias = Literal["qdd", "u"]
 
@@ -48,11 +49,18 @@ class CCandidate:
     operations: Mapping[str, int] | None = None
     flags: tuple[str, ...] = ()  # beside those of all candidates
     chosen: bool = False  # what symgen generates, up to the sine and cosine
+    straight: StraightLines | None = None  # what its one unit consists of, where that is straight lines
 
     @property
     def label(self) -> str:
         """The name in tables and charts, without the scalar type."""
         return f"{self.generator} {self.form}"
+
+
+def straight_candidate(generator: str, form: str, entry: str, lines: StraightLines) -> CCandidate:
+    """Straight lines as a candidate in float64."""
+    unit = CUnit(lines.function(entry))
+    return CCandidate(generator, form, "float64", entry, (unit,), (entry,), straight=lines)
 
 
 @dataclass(frozen=True, slots=True)

@@ -78,7 +78,8 @@ def generated(name: str, arrays: Sequence[Any], value: Any) -> tuple[str, tuple[
     function = casadi.Function(name, list(arrays), [casadi.cse(casadi.densify(value))])
     generator = casadi.CodeGenerator(f"{name}_file", {"with_header": False})
     generator.add(function)
-    helpers = ("casadi_f0", *(f"{name}_file_{helper}" for helper in ("sq", "sign", "fmin", "fmax")))
+    # the name of the file stands before all of them: f0 does the work, and is a function of its own where it is long
+    helpers = (f"{name}_file_{helper}" for helper in ("f0", "sq", "sign", "fmin", "fmax"))
     return generator.dump(), (name, *helpers)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any, ClassVar, Protocol, TypeAlias
 
+from symgen.laboratory.bench.peers.straight import StraightLines
 from symgen.model.expressions.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
 from symgen.model.model import Model
 
@@ -64,6 +65,10 @@ class Engine(Protocol):
     def name(self, value: Symbol) -> Symbol:
         """The value as an intermediate of its own, where the tool needs to be told."""
         ...
+
+    def straight(self, inputs: Inputs, outputs: Sequence[Symbol]) -> StraightLines | None:  # noqa: ARG002 - of some
+        """Straight lines, of a tool whose C is nothing else; None for others."""
+        return None
 
     def c_function(self, name: str, inputs: Inputs, outputs: Sequence[Symbol]) -> tuple[str, tuple[str, ...], bool]:
         """C source, the functions that count, and whether `name` takes CasADi's arg/res arrays instead of pointers."""

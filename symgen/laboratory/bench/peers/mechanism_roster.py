@@ -6,10 +6,11 @@ from collections.abc import Callable
 from importlib.util import find_spec
 from typing import Any, TypeAlias
 
-from symgen.laboratory.bench.candidate import CCandidate, CUnit
+from symgen.laboratory.bench.candidate import CCandidate, CUnit, straight_candidate
 from symgen.laboratory.bench.peers import native
 from symgen.laboratory.bench.peers.algebra import DeadPivotError, ldl_solve
 from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine, adaptor, generated
+from symgen.laboratory.bench.peers.casadi_ssa import CasadiSsaEngine
 from symgen.laboratory.bench.peers.engine import Engine, Symbol
 from symgen.laboratory.bench.peers.expert import free_multipliers, independent_coordinates
 from symgen.laboratory.bench.peers.frames import lagrange_by_frames, mechanics_by_frames
@@ -45,14 +46,14 @@ def mechanism_peers(model: Model, states: Any) -> tuple[tuple[CCandidate, ...], 
     found = _as_written(model)
     left_out: list[tuple[str, str]] = []
     methods = _methods(model, states, left_out)
-    engines: list[type[Engine]] = [CasadiEngine]
+    engines: list[type[Engine]] = [CasadiEngine, CasadiSsaEngine]
     if _depth(model) > DEEPEST_WRITTEN_OUT:
         left_out.append(("SymPy, wrenfold", "written out, the sums of so many links in a row take minutes"))
     else:
         engines += _others(left_out)
     for engine_type in engines:
         routes: dict[str, Route] = {"": mechanics_by_frames}
-        if len(engines) > 1 and model.n <= MOST_WITH_ENERGIES:
+        if len(engines) > 2 and model.n <= MOST_WITH_ENERGIES:
             routes[FROM_ENERGIES] = mechanics
         for route, derive in routes.items():
             for name, build in methods.items():
@@ -147,7 +148,10 @@ def _candidate(engine: Engine, model: Model, method: str, derive: Route, build: 
     entry = f"{engine.tool}_{method}_float64".lower().replace(" ldlᵀ", "_ldl").replace(" ", "_")
     name = f"function_of_{entry}"
     system = derive(engine, model)
-    source, functions, needs_adaptor = engine.c_function(name, system.inputs, build(engine, system))
+    outputs = build(engine, system)
+    if (lines := engine.straight(system.inputs, outputs)) is not None:
+        return straight_candidate(engine.tool, method, entry, lines)
+    source, functions, needs_adaptor = engine.c_function(name, system.inputs, outputs)
     units: tuple[CUnit, ...] = (CUnit(source, renamed={name: entry}),)
     if needs_adaptor:
         units = (CUnit(source), CUnit(adaptor(entry, name), is_adaptor=True))

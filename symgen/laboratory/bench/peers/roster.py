@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from typing import Any, TypeAlias
 
-from symgen.laboratory.bench.candidate import CCandidate, CUnit, PythonCandidate, Task
+from symgen.laboratory.bench.candidate import CCandidate, CUnit, PythonCandidate, Task, straight_candidate
 from symgen.laboratory.bench.peers.engine import Engine, Symbol
 from symgen.laboratory.bench.peers.mechanics import PeerSystem
 from symgen.model.model import Model
@@ -32,11 +32,11 @@ def peers(model: Model, task: Task, states: Any) -> Peers:
     """Peers for full-rank B; `states` (k, 2 n + third + P) are what an expert would look at to choose coordinates."""
     s = differentiate(model)
     if task.quantity != "inverse_dynamics":
-        return Peers((_native(model, s, task),), ())
+        return Peers((_native(model, s, task), _native_in_lines(model, s, task)), ())
     methods, left_out = _methods(model, s, states)
     # What inlining CasADi's exported helpers is worth, which a shared library does not allow.
     inlined = replace(_native(model, s, task, "native_fpie"), form="native -fPIE", flags=("-fPIE",))
-    found = [_native(model, s, task), inlined]
+    found = [_native(model, s, task), inlined, _native_in_lines(model, s, task)]
     for engine_type in _engines():
         for method, build in methods.items():
             if method not in SYMPY_ONLY or engine_type.tool == "SymPy":
@@ -97,9 +97,10 @@ def _methods(model: Model, s: Lagrange, states: Any) -> tuple[dict[str, Build], 
 
 def _engines() -> list[type[Engine]]:
     from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine
+    from symgen.laboratory.bench.peers.casadi_ssa import CasadiSsaEngine
     from symgen.laboratory.bench.peers.sympy_engine import SympyEngine
 
-    found: list[type[Engine]] = [CasadiEngine, SympyEngine]
+    found: list[type[Engine]] = [CasadiEngine, CasadiSsaEngine, SympyEngine]
     if find_spec("wrenfold") is not None:
         from symgen.laboratory.bench.peers.wrenfold_engine import WrenfoldEngine
 
@@ -115,10 +116,13 @@ def _candidate(engine: Engine, model: Model, method: str, build: Build) -> CCand
     from symgen.laboratory.bench.peers.casadi_engine import adaptor
     from symgen.laboratory.bench.peers.mechanics import mechanics
 
-    entry = f"{engine.tool.lower()}_{method}_float64".replace(" LDLᵀ", "_ldl")
+    entry = f"{engine.tool.lower()}_{method}_float64".replace(" LDLᵀ", "_ldl").replace(" ", "_")
     name = f"function_of_{entry}"
     system = mechanics(engine, model)
-    source, functions, needs_adaptor = engine.c_function(name, system.inputs, build(engine, system))
+    outputs = build(engine, system)
+    if (lines := engine.straight(system.inputs, outputs)) is not None:
+        return straight_candidate(engine.tool, method, entry, lines)
+    source, functions, needs_adaptor = engine.c_function(name, system.inputs, outputs)
     if needs_adaptor:
         units: tuple[CUnit, ...] = (CUnit(source), CUnit(adaptor(entry, name), is_adaptor=True))
     else:
@@ -126,18 +130,30 @@ def _candidate(engine: Engine, model: Model, method: str, build: Build) -> CCand
     return CCandidate(engine.tool, method, "float64", entry, units, functions)
 
 
-def _native(model: Model, s: Lagrange, task: Task, name: str = "native") -> CCandidate:
+def _native_value(model: Model, s: Lagrange, task: Task) -> Any:
     from symgen.laboratory.bench.peers import native
-    from symgen.laboratory.bench.peers.casadi_engine import adaptor, generated
 
     if task.quantity == "inverse_dynamics":
-        value = native.inverse_dynamics(model, s)
-    else:
-        value = native.forward_dynamics(model, s)[task.quantity == "multipliers"]
+        return native.inverse_dynamics(model, s)
+    return native.forward_dynamics(model, s)[task.quantity == "multipliers"]
+
+
+def _native_in_lines(model: Model, s: Lagrange, task: Task) -> CCandidate:
+    from symgen.laboratory.bench.peers.casadi_ssa import CasadiSsaEngine, straight_lines
+
+    third = s.qdd if task.third == "qdd" else s.u
+    arrays = {"q": s.q, "qd": s.qd, task.third: third, "p": s.p}
+    lines = straight_lines(arrays, _native_value(model, s, task))
+    return straight_candidate(CasadiSsaEngine.tool, "native", "casadi_ssa_native_float64", lines)
+
+
+def _native(model: Model, s: Lagrange, task: Task, name: str = "native") -> CCandidate:
+    from symgen.laboratory.bench.peers.casadi_engine import adaptor, generated
+
     entry = f"casadi_{name}_float64"
     name = f"casadi_{name}_function_float64"
     third = s.qdd if task.third == "qdd" else s.u
-    source, functions = generated(name, [s.q, s.qd, third, s.p], value)
+    source, functions = generated(name, [s.q, s.qd, third, s.p], _native_value(model, s, task))
     units = (CUnit(source), CUnit(adaptor(entry, name), is_adaptor=True))
     return CCandidate("CasADi", "native", "float64", entry, units, functions)
 

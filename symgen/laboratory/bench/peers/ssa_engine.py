@@ -1,8 +1,4 @@
-"""Straight lines of C, each value a constant of its own: what a compiler sees of a tool that shares equal values.
-
-No tool's habits stand between an algorithm and its count here: there are no helper functions, no work arrays, and no
-names but those of values.
-"""
+"""A tool of its own that shares equal values and folds numbers, and nothing more: it writes straight lines of C."""
 
 from __future__ import annotations
 
@@ -14,6 +10,7 @@ from fractions import Fraction
 from typing import ClassVar
 
 from symgen.laboratory.bench.peers.engine import Engine, Inputs, Symbol
+from symgen.laboratory.bench.peers.straight import StraightLines, loaded, third_of
 
 _FOLDED: Mapping[str, Callable[[float, float], float]] = {
     "+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv,
@@ -29,6 +26,7 @@ class Value:
     operation: str
     operands: tuple[Value, ...] = ()
     number: float | None = None
+    entry: tuple[str, int] | None = None
 
     def __add__(self, other: Value) -> Value:
         return self.engine.sum(self, other)
@@ -52,11 +50,11 @@ class SsaEngine(Engine):
     tool: ClassVar[str] = "SSA"
 
     def __init__(self) -> None:
-        self._known: dict[tuple[str, tuple[int, ...], float | None], Value] = {}
+        self._known: dict[tuple[object, ...], Value] = {}
 
     def symbols(self, array: str, length: int) -> list[Symbol]:
         """The entries of an input array."""
-        return [self._value(f"{array}[{i}]") for i in range(length)]
+        return [self._shared("entry", (), None, (array, i)) for i in range(length)]
 
     def number(self, value: Fraction) -> Symbol:
         """A number, rounded to a float64."""
@@ -100,23 +98,27 @@ class SsaEngine(Engine):
         """The value itself: every one has a name."""
         return value
 
-    def c_function(self, name: str, inputs: Inputs, outputs: Sequence[Symbol]) -> tuple[str, tuple[str, ...], bool]:
+    def straight(self, inputs: Inputs, outputs: Sequence[Symbol]) -> StraightLines:
         """One line for each value, operands first."""
-        third = "qdd" if "qdd" in inputs else "u"
+        entries: dict[tuple[str, int], None] = {}
         names: dict[int, str] = {}
-        lines: list[str] = []
+        values: list[str] = []
         for node in _ordered(outputs):
             operands = [names[operand.place] for operand in node.operands]
             if node.number is not None:
                 names[node.place] = f"(REAL){node.number!r}"
-            elif not operands:
-                names[node.place] = node.operation
+            elif node.entry is not None:
+                entries[node.entry] = None
+                names[node.place] = loaded(*node.entry)
             else:
-                names[node.place] = f"v{len(lines)}"
-                lines.append(f"    const REAL v{len(lines)} = {_written(node.operation, operands)};")
-        lines += [f"    y[{k}] = {names[output.place]};" for k, output in enumerate(outputs)]
-        head = f"int {name}(const REAL *q, const REAL *qd, const REAL *{third}, const REAL *p, REAL *y)"
-        return "\n".join(["#include <math.h>", f"{head};", head, "{", *lines, "    return 0;", "}", ""]), (name,), False
+                names[node.place] = f"v{len(values)}"
+                values.append(_written(node.operation, operands))
+        arrays = ("q", "qd", third_of(list(inputs)), "p")
+        return StraightLines(arrays, tuple(entries), tuple(values), tuple(names[output.place] for output in outputs))
+
+    def c_function(self, name: str, inputs: Inputs, outputs: Sequence[Symbol]) -> tuple[str, tuple[str, ...], bool]:
+        """The lines as a function of one state."""
+        return self.straight(inputs, outputs).function(name), (name,), False
 
     def negative(self, a: Value) -> Value:
         """-a."""
@@ -176,10 +178,12 @@ class SsaEngine(Engine):
     def _value(self, operation: str, *operands: Value) -> Value:
         return self._shared(operation, operands, None)
 
-    def _shared(self, operation: str, operands: tuple[Value, ...], number: float | None) -> Value:
-        key = operation, tuple(map(_place, operands)), number
+    def _shared(
+        self, operation: str, operands: tuple[Value, ...], number: float | None, entry: tuple[str, int] | None = None
+    ) -> Value:
+        key = operation, tuple(map(_place, operands)), number, entry
         if key not in self._known:
-            self._known[key] = Value(self, len(self._known), operation, operands, number)
+            self._known[key] = Value(self, len(self._known), operation, operands, number, entry)
         return self._known[key]
 
     def _slope(self, node: Value, by: Value, slopes: Sequence[Value]) -> Value:
