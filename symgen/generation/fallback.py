@@ -22,7 +22,13 @@ from symgen.ir.kernel import Kernel, Scalar
 from symgen.methods.quantity import scalars
 from symgen.model.quantities import MAIN
 from symgen.quantities.alternatives import TIERS, Alternative, Alternatives, grouped
-from symgen.quantities.everything import most_with_twice_the_digits, too_wide
+from symgen.quantities.everything import (
+    OPERATIONS_TRIED,
+    asked_for,
+    most_with_twice_the_digits,
+    too_many_tried,
+    too_wide,
+)
 from symgen.quantities.select import Rejection
 from symgen.records import dataclass
 from symgen.runtime.garbage import let_go, let_go_and_keep
@@ -89,6 +95,8 @@ class Fallback:
         self._widened: set[str] = set()
         # by quantities that are made because all are: what they count at least by methods that lose digits
         self._too_wide: dict[str, int] = {}
+        # counted cost of methods that were tried for these
+        self._tried_unasked = 0
 
     def other(self, draft: Draft, certificate: Certificate, expected: Expected) -> Draft | None:
         """The draft with other methods for what is rejected or keeps no margin; None where nothing is better."""
@@ -104,7 +112,7 @@ class Fallback:
             for quantity, record in worst.items():
                 searched = self._searched.get(quantity)
                 largest = max(record.largest, searched.largest if searched is not None else 0.0)
-                if largest > MARGIN and quantity not in self._weighed:
+                if largest > MARGIN and quantity not in self._weighed and not self._is_given_up(draft, quantity):
                     before, made = made, self._with_margin(made, quantity, largest, expected)
                     if made is before and largest > NARROW and quantity in MAIN:
                         made = self._with_digits(made, quantity, largest, expected)
@@ -147,9 +155,9 @@ class Fallback:
         }
 
     def _all_replaced(self, draft: Draft, rejected: Mapping[str, Sequence[Fault]], expected: Expected) -> Draft:
-        """The draft without the methods that are rejected."""
-        for quantity, faults in rejected.items():
-            draft = self._replaced(draft, quantity, faults, expected)
+        """The draft without the methods that are rejected, those of short quantities first."""
+        for quantity in sorted(rejected, key=lambda name: cost(scalars(draft.taken(name).derived)).weight):
+            draft = self._replaced(draft, quantity, rejected[quantity], expected)
             let_go()
         return draft
 
@@ -168,9 +176,11 @@ class Fallback:
             self._inaccurate[quantity].append(draft.taken(quantity))
         if all(fault.scalar == "float32" for fault in faults):
             passing.append(_Passing(0.0, ("float64",), draft.taken(quantity), kernels))
-        found = self._next(draft, quantity, expected)
         # one type may have been left out before
         others = tuple(one for one in draft.left_out if one.quantity != quantity)
+        if self._is_given_up(draft, quantity):
+            return replace(draft.without(quantity, tuple(kernels), too_many_tried()), left_out=others)
+        found = self._next(draft, quantity, expected)
         if found is None and quantity in self._too_wide:
             why = too_wide(self._too_wide[quantity])
             return replace(draft.without(quantity, tuple(kernels), why), left_out=others)
@@ -185,6 +195,13 @@ class Fallback:
         every = (*tried, *((name, TOO_LONG) for name in given_up))
         left_out = LeftOut(quantity, without, every, self._remedy(quantity, without))
         return replace(draft.without(quantity, without, REJECTED), left_out=(*others, left_out))
+
+    def _is_given_up(self, draft: Draft, quantity: str) -> bool:
+        """Whether enough was tried for quantities that are made because all are."""
+        return self._tried_unasked > OPERATIONS_TRIED and not self._is_asked_for(draft, quantity)
+
+    def _is_asked_for(self, draft: Draft, quantity: str) -> bool:
+        return quantity in asked_for(self._options.outputs or draft.model.outputs, self._options.methods)
 
     def _next(self, draft: Draft, quantity: str, expected: Expected) -> _Passing | None:
         """The next method that passes with a margin, or else the best of those that pass; others are noted."""
@@ -311,6 +328,8 @@ class Fallback:
         """The scalar types in which kernels pass by interpretation, and the largest error there; the rest is noted."""
         passed: dict[Scalar, Kernel] = {}
         worst = 0.0
+        if not self._is_asked_for(draft, one.choice.quantity):
+            self._tried_unasked += one.cost
         for scalar, kernel in kernels.items():
             if scalar in expected.scalars:
                 record, fault = self.measurements.of(kernel, draft.programs[scalar].sincos, scalar, expected)

@@ -20,6 +20,8 @@ OPERATIONS_OF_ALL = 50_000
 WIDE_OPERATIONS = 2_000
 # The same for accelerations and multipliers, which may take more of that than the others.
 WIDE_MAIN_OPERATIONS = 10_000
+# Counted cost of all methods together that are tried for quantities which verification rejects and nobody asked for.
+OPERATIONS_TRIED = 40_000
 # Scalars that are made by one method for one quantity before the others are tried.
 SCALARS_OF_A_METHOD = 150_000
 # Scalars that are made by all methods for all quantities together.
@@ -92,6 +94,11 @@ def too_wide(operations: int) -> str:
     """Why `all` leaves out a quantity whose digits every short method loses."""
     takes = f"{operations} operations at least, which twice the digits make some twenty times as many"
     return f"{OF_ALL}, as it loses digits and takes {takes}; {REMEDY}"
+
+
+def too_many_tried() -> str:
+    """Why `all` leaves out a quantity that loses digits, after others that do."""
+    return f"{OF_ALL}, as it loses digits, and methods of {OPERATIONS_TRIED} operations were tried for shorter ones; {REMEDY}"
 
 
 def too_long(operations: int = 0) -> str:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from shipped import ROOT
 
 from symgen.backends.c import backend
 from symgen.cli import main as cli
@@ -514,6 +515,20 @@ def test_twice_the_digits_of_what_is_long_are_for_those_who_ask(
     assert ("multipliers" in derived(result)["kernels"]) is asked
     told = [one for one in result.notices if "`all` leaves it out, as it loses digits" in one.message]
     assert bool(told) is not asked
+
+
+@pytest.mark.parametrize("asked", [True, False])
+def test_methods_of_what_nobody_asked_for_are_tried_so_many_times(
+    asked: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """C~ of the car loses digits by the method that counts least, which verification finds."""
+    name = "projected_coriolis_matrix"
+    monkeypatch.setattr(fallback, "OPERATIONS_TRIED", -1)
+    result = made(ROOT / "models" / "front_car.yaml", replace(FAST, outputs=(name,) if asked else ("all",)))
+    assert result.left_out == ()
+    assert (name in derived(result)["kernels"]) is asked
+    told = [one.message for one in result.notices if "methods of 40000 operations were tried" in one.message]
+    assert [name in message for message in told] == ([] if asked else [True])
 
 
 def test_what_all_leaves_out_is_no_longer_left_out_of_one_type(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
