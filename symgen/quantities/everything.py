@@ -98,7 +98,8 @@ def too_wide(operations: int) -> str:
 
 def too_many_tried() -> str:
     """Why `all` leaves out a quantity that loses digits, after others that do."""
-    return f"{OF_ALL}, as it loses digits, and methods of {OPERATIONS_TRIED} operations were tried for shorter ones; {REMEDY}"
+    tried = f"methods of {OPERATIONS_TRIED} operations were tried for shorter ones"
+    return f"{OF_ALL}, as it loses digits, and {tried}; {REMEDY}"
 
 
 def too_long(operations: int = 0) -> str:

@@ -19,6 +19,7 @@ from symgen.backends.render import render
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.laboratory.bench.build import compile_candidate, gcc
 from symgen.laboratory.bench.candidate import CCandidate, Task
+from symgen.laboratory.bench.peers.straight import LOOP_FLAGS
 from symgen.laboratory.bench.workload import Workload
 from symgen.model.model import Model
 from symgen.verify.running.python_module import PythonModule
@@ -28,6 +29,7 @@ FLAGS = ("-std=c99", "-O3", "-march=native", "-mprefer-vector-width=512", "-ffp-
 STREAMED, CACHED = 2**17, 2**10  # states: components of the first come from memory
 NUMPY_BLOCK = 4096
 PASSES = 9
+LOOP, LANES = ", in a loop", ", in lanes"
 BEST_PEERS = 3  # of each quantity, by the time of one call
 
 
@@ -75,7 +77,8 @@ def many_states(
     loops: Sequence[CCandidate],
     load: Workload,
 ) -> tuple[Many, ...]:
-    """Times of the quantity's batch kernels and NumPy module, and of `loops`: float64 C called state by state.
+    """Times of the quantity's batch kernels and NumPy module, and of `loops`: float64 C called state by state, and,
+    where that is straight lines, in lanes.
 
     All take the parameters of the first state, and turns in every pass.
     """
@@ -87,6 +90,8 @@ def many_states(
     parameters = load.states[0, end:]
     ways = [*_batches(folder, model, programs, parts, parameters), *_numpy(folder, model, programs, parts, parameters)]
     ways += _loops(folder, model, task, loops, parts, parameters)
+    straight = [candidate for candidate in loops if candidate.straight is not None]
+    ways += _in_lanes(folder, task, straight, parts, parameters)
     streamed, cached = (_times(ways, count) for count in (STREAMED, CACHED))
     return tuple(
         Many(way.generator, way.form, way.language, way.scalar, streamed[k], cached[k]) for k, way in enumerate(ways)
@@ -177,6 +182,28 @@ def _numpy(
     return [_BatchCandidate("symgen", form, "Python", "float64", run) for form, run in named.items()]
 
 
+def _in_lanes(
+    folder: Path, task: Task, candidates: Sequence[CCandidate], parts: Sequence[Any], parameters: Any
+) -> list[_BatchCandidate]:
+    """Straight lines of peers as a loop over components that stand side by side, as the batch kernels' do."""
+    import numpy as np
+
+    inside = folder / "lanes"
+    inside.mkdir()
+    rows = [np.ascontiguousarray(part.T) for part in parts]
+    result = np.empty((task.size, STREAMED))
+    ways = []
+    for candidate in candidates:
+        assert candidate.straight is not None
+        source, target = inside / f"{candidate.entry}.c", inside / f"{candidate.entry}.so"
+        source.write_text(candidate.straight.loop(candidate.entry), encoding="utf-8")
+        gcc([*FLAGS, *LOOP_FLAGS, "-shared", "-fPIC", "-o", str(target), str(source), "-lm"], candidate.label)
+        function = ctypes.CDLL(str(target))[candidate.entry]
+        run = _call(function, [*rows, np.array([*parameters, 0.0]), result], (STREAMED,))
+        ways.append(_BatchCandidate(candidate.generator, candidate.form + LANES, "C", "float64", run))
+    return ways
+
+
 def _loops(
     folder: Path, model: Model, task: Task, loops: Sequence[CCandidate], parts: Sequence[Any], parameters: Any
 ) -> list[_BatchCandidate]:
@@ -198,6 +225,6 @@ def _loops(
     result = np.empty((STREAMED, task.size))
     given = [*parts, np.array([*parameters, 0.0]), result]
     return [
-        _BatchCandidate(c.generator, f"{c.form}, in a loop", "C", "float64", _call(library[f"{c.entry}_loop"], given))
+        _BatchCandidate(c.generator, c.form + LOOP, "C", "float64", _call(library[f"{c.entry}_loop"], given))
         for c in loops
     ]

@@ -183,11 +183,16 @@ def _compare(
 
 
 def _loops(candidates: Sequence[CCandidate], measured: Sequence[MeasuredCandidate]) -> list[CCandidate]:
-    """symgen's kernel and the fastest peers, to be called state by state; a library holds no -fPIE."""
+    """symgen's kernel and the fastest peers, to be called state by state; a library holds no -fPIE.
+
+    Among them is the fastest one that is straight lines, which a compiler makes lanes of.
+    """
     timed = [(m.nanoseconds, c) for c, m in zip(candidates, measured, strict=True) if c.scalar == "float64"]
     own = [c for _, c in timed if c.chosen][:1]
     peers = sorted((t for t in timed if t[1].generator != "symgen" and "-fPIE" not in t[1].flags), key=lambda t: t[0])
-    return own + [c for _, c in peers[:BEST_PEERS]]
+    best = [c for _, c in peers[:BEST_PEERS]]
+    straight = [c for _, c in peers if c.straight is not None][:1]
+    return own + best + [c for c in straight if c not in best]
 
 
 def _measure(

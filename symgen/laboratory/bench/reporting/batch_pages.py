@@ -5,18 +5,23 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, TypeAlias
 
-from symgen.laboratory.bench.batch import CACHED, FLAGS, STREAMED, Many
+from symgen.laboratory.bench.batch import CACHED, FLAGS, LANES, LOOP, STREAMED, Many
+from symgen.laboratory.bench.peers.straight import LOOP_FLAGS
 from symgen.terminal import columns
 
 Row: TypeAlias = Mapping[str, Any]
 # (against the fastest peer's C in a loop, against NumPy on the same closed form), by model.
 GOALS = {"rapkm_2rrr_rr": (5.0, 6.0)}
+# Against the fastest peer in lanes, of every model.
+GOAL_IN_LANES = 1.25
 TEXT = f"""## Many states
 
 u of many states with one set of parameters, one core, float64 unless said otherwise; medians of passes in turns, in
 million states a second. **batch** is the C over arrays of components, **compile()** the same from Python over arrays
-of states; NumPy runs the same closed form on the same arrays of states. All C, the peers' too, is compiled with
-`{" ".join(FLAGS)}`.
+of states; NumPy runs the same closed form on the same arrays of states. **In a loop** a peer's C is called state by
+state; **in lanes** its operations, as straight lines, stand in a loop over the same arrays of components that the
+compiler makes vectors of (`{" ".join(LOOP_FLAGS)}`, sine and cosine of libmvec). All C, the peers' too, is compiled
+with `{" ".join(FLAGS)}`.
 The first number is for {STREAMED} states, which come from memory, the one in brackets for {CACHED}, which stay in the
 cache. The last columns are the ratios of times at {STREAMED} states; in brackets the goal, bold if missed.
 
@@ -42,8 +47,8 @@ def many_section(results: Sequence[Row]) -> str:
             lines.append(f"| {' | '.join([result['model'], *_cells(result['model'], rows)])} |\n")
     if not lines:
         return ""
-    head = ["", "batch", "batch, float32", "compile()", "symgen in a loop", "fastest peer in a loop", "NumPy"]
-    head += ["batch against the peer", "batch against NumPy"]
+    head = ["", "batch", "batch, float32", "compile()", "symgen in a loop", "fastest peer in a loop"]
+    head += ["fastest peer in lanes", "NumPy", "batch against the loop", "against the lanes", "against NumPy"]
     return TEXT + f"| {' | '.join(head)} |\n|{'---|' * len(head)}\n" + "".join(lines)
 
 
@@ -52,17 +57,25 @@ def _cells(model: str, rows: Sequence[Row]) -> list[str]:
     batch = next(row for row in double if row["form"] == "batch")
     single = next(row for row in rows if row["scalar"] == "float32")
     compiled = next(row for row in double if row["form"] == "compile()")
-    own = next((row for row in double if row["generator"] == "symgen" and row["form"].endswith("in a loop")), None)
-    peer = min((row for row in double if row["generator"] != "symgen"), key=_time, default=None)
+    own = next((row for row in double if row["generator"] == "symgen" and row["form"].endswith(LOOP)), None)
+    peers = [row for row in double if row["generator"] != "symgen"]
+    loop, lanes = (
+        min((row for row in peers if row["form"].endswith(way)), key=_time, default=None) for way in (LOOP, LANES)
+    )
     numpy = min((row for row in double if row["form"].startswith("NumPy")), key=_time)
     wanted = GOALS.get(model, (None, None))
     return [
         *map(_speed, (batch, single, compiled, own)),
-        "" if peer is None else f"{_speed(peer)} {peer['generator']} {peer['form'].removesuffix(', in a loop')}",
+        *(f"{_speed(row)} {_named(row)}".strip() for row in (loop, lanes)),
         _speed(numpy),
-        _ratio(peer, batch, wanted[0]),
+        _ratio(loop, batch, wanted[0]),
+        _ratio(lanes, batch, GOAL_IN_LANES),
         _ratio(numpy, batch, wanted[1]),
     ]
+
+
+def _named(row: Row | None) -> str:
+    return "" if row is None else f"{row['generator']} {row['form'].removesuffix(LOOP).removesuffix(LANES)}"
 
 
 def _time(row: Row) -> float:
@@ -79,4 +92,5 @@ def _ratio(other: Row | None, batch: Row, wanted: float | None) -> str:
     ratio = _time(other) / _time(batch)
     if wanted is None:
         return f"{ratio:.1f}"
-    return f"{ratio:.1f} ({wanted:.0f})" if ratio >= wanted else f"**{ratio:.1f}** ({wanted:.0f})"
+    told = f"{ratio:.1f}" if wanted == round(wanted) else f"{ratio:.2f}"
+    return f"{told} ({wanted:g})" if ratio >= wanted else f"**{told}** ({wanted:g})"

@@ -44,7 +44,8 @@ stays away from singularities. All start from the energies in the model file. Ti
 in one call.
 
 CasADi exports its helper functions, so they cannot be inlined into position-independent code, which is what a loaded
-library consists of; **native -fPIE** shows what inlining them is worth.
+library consists of; **native -fPIE** shows what inlining them is worth. **CasADi SSA** has CasADi's operations written
+out as straight lines of C: no helper functions, no array of work, no null pointers.
 """
 
 
