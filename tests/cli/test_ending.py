@@ -190,7 +190,8 @@ def test_an_odd_compiler_is_an_error_with_a_remedy(
     # each of several files is waited for
     monkeypatch.setattr(compiling, "LONGEST_COMPILATION", 0.2 if case == "hangs" else 1.0)
     out = tmp_path / "out"
-    assert main([str(model(tmp_path, "cart")), "--only", "c", "--out", str(out), "--quiet"]) == code
+    given = ["--only", "c", "--scalar", "float64", "--out", str(out), "--quiet"]
+    assert main([str(model(tmp_path, "cart")), *given]) == code
     told = capsys.readouterr().err
     assert expected in told
     assert compiling.REMEDY in told
