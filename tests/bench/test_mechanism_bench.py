@@ -16,6 +16,7 @@ from shipped import ROOT, model
 from symgen.laboratory.bench import build as build_module
 from symgen.laboratory.bench import mechanisms
 from symgen.laboratory.bench.mechanisms import drawn_states, mechanism_benchmark
+from symgen.laboratory.bench.peers.articulated import forward_dynamics
 from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine
 from symgen.laboratory.bench.peers.frames import lagrange_by_frames, mechanics_by_frames
 from symgen.laboratory.bench.peers.mechanics import PeerSystem, mechanics
@@ -95,6 +96,22 @@ def test_a_recursion_gives_the_same_equations(name: str) -> None:
     parts = state[:n], state[n : 2 * n], state[2 * n : 3 * n], state[3 * n :]
     found = [balance_and_inputs(d, described)(*parts).full() for d in (mechanics_by_frames, mechanics_by_recursion)]
     assert found[0] == pytest.approx(found[1], rel=1e-10, abs=1e-10)
+
+
+@pytest.mark.parametrize("name", ["arm7", "scara", "crane"])
+def test_articulated_bodies_solve_the_equations(name: str) -> None:
+    # two coordinates of one joint
+    cylinder = "cylindrical, parent: cart, at: [0, -0.2, 0], axis: [1, 0, 2], coordinates: [h, e]"
+    text = TREE.replace("spherical, parent: cart, at: [0, -0.2, 0], coordinates: [e0, e1, e2, e3]", cylinder)
+    described = load_text(text, "crane.yaml") if name == "crane" else model(name)
+    inputs, accelerations = forward_dynamics(CasadiEngine(), described)
+    columns = [casadi.vertcat(*inputs[array]) for array in inputs]
+    solved = casadi.Function("f", columns, [casadi.vertcat(*accelerations)])
+    n, source = described.n, np.random.default_rng(6)
+    q, qd, u, p = (source.uniform(0.2, 1.1, k) for k in (n, n, described.m, len(described.parameters)))
+    qdd = solved(q, qd, u, p).full()[:, 0]
+    found = balance_and_inputs(mechanics_by_frames, described)(q, qd, qdd, p).full()[:, 0]
+    assert found[:n] == pytest.approx(found[n:].reshape(n, -1) @ u, rel=1e-9, abs=1e-9)
 
 
 @pytest.mark.toolchain

@@ -86,6 +86,17 @@ def test_forward_dynamics_and_multipliers(name: str, quantity: str, tmp_path: Pa
     assert errors_of(load, run_python(described, python, load)[0]).largest < ACCURATE
 
 
+def test_accelerations_of_an_arm_by_articulated_bodies(tmp_path: Path) -> None:
+    described = model("scara")
+    reference, task = Reference(described), Task("forward_dynamics", "u", described.n)
+    load = workload(reference, admissible_samples(reference, STATES, (task.quantity,)), task, "float64", quiet)
+    candidates = peers(described, task, load.states).candidates
+    results = results_of(build(tmp_path, described, task, candidates, {"float64": load}), tmp_path, candidates, task)
+    errors = {c.label: errors_of(load, results[c.entry]).largest for c in candidates}
+    assert {"CasADi SSA articulated bodies", "SSA articulated bodies"} <= errors.keys()
+    assert {label: error for label, error in errors.items() if not error < ACCURATE} == {}
+
+
 def test_a_wrong_kernel_has_a_large_error() -> None:
     described = model("skate")
     reference = Reference(described)

@@ -10,6 +10,7 @@ from typing import Any, TypeAlias
 from symgen.laboratory.bench.candidate import CCandidate, CUnit, PythonCandidate, Task, straight_candidate
 from symgen.laboratory.bench.peers.engine import Engine, Symbol
 from symgen.laboratory.bench.peers.mechanics import PeerSystem
+from symgen.laboratory.bench.peers.recursion import is_recursive
 from symgen.model.model import Model
 from symgen.witness.lagrange import Lagrange, differentiate
 
@@ -32,7 +33,10 @@ def peers(model: Model, task: Task, states: Any) -> Peers:
     """Peers for full-rank B; `states` (k, 2 n + third + P) are what an expert would look at to choose coordinates."""
     s = differentiate(model)
     if task.quantity != "inverse_dynamics":
-        return Peers((_native(model, s, task), _native_in_lines(model, s, task)), ())
+        found = [_native(model, s, task), _native_in_lines(model, s, task)]
+        if task.quantity == "forward_dynamics" and is_recursive(model):
+            found += _articulated(model)
+        return Peers(tuple(found), ())
     methods, left_out = _methods(model, s, states)
     # What inlining CasADi's exported helpers is worth, which a shared library does not allow.
     inlined = replace(_native(model, s, task, "native_fpie"), form="native -fPIE", flags=("-fPIE",))
@@ -44,6 +48,19 @@ def peers(model: Model, task: Task, states: Any) -> Peers:
     found.append(_householder(model, s))
     absent = [(tool, "not installed") for tool, module in OPTIONAL.items() if find_spec(module) is None]
     return Peers(tuple(found), (*left_out, *absent))
+
+
+def _articulated(model: Model) -> list[CCandidate]:
+    from symgen.laboratory.bench.peers.articulated import forward_dynamics
+    from symgen.laboratory.bench.peers.casadi_ssa import CasadiSsaEngine
+    from symgen.laboratory.bench.peers.ssa_engine import SsaEngine
+
+    found = []
+    for engine in (CasadiSsaEngine(), SsaEngine()):
+        lines = engine.straight(*forward_dynamics(engine, model))
+        entry = f"{engine.tool.lower()}_articulated_float64".replace(" ", "_")
+        found.append(straight_candidate(engine.tool, "articulated bodies", entry, lines))
+    return found
 
 
 def python_peers(model: Model, task: Task) -> list[PythonCandidate]:
