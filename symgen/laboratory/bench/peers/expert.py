@@ -18,6 +18,7 @@ from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine
 from symgen.laboratory.bench.peers.engine import Symbol
 from symgen.laboratory.bench.peers.mechanics import PeerSystem, mechanics
 from symgen.laboratory.bench.peers.methods import elimination, part, selected_rows
+from symgen.laboratory.bench.peers.motions import along_null_space, motion_system
 from symgen.model.model import Model
 from symgen.witness.lagrange import Lagrange
 
@@ -36,7 +37,25 @@ def independent_coordinates(model: Model, s: Lagrange, states: Any, derive: Rout
     jacobians = _jacobians(model, s, states)
     choices = list(combinations(range(n), n - r))
     dependent = [[i for i in range(n) if i not in choice] for choice in choices]
-    return _best(choices, [jacobians[:, :, rows] for rows in dependent], lambda e, m, c: part(e, m, c), model, derive)
+    squares = [jacobians[:, :, rows] for rows in dependent]
+    return _best(choices, squares, lambda choice: part(*_fresh(derive, model), choice))
+
+
+def independent_of_motion(model: Model, s: Lagrange, states: Any) -> Choice | None:
+    """The delta coordinates that a null space of accelerations is made from; None where choices are too many."""
+    n, r = model.n, model.r
+    if not r or comb(n, r) > MOST_CHOICES:
+        return None
+    jacobians = _jacobians(model, s, states)
+    choices = list(combinations(range(n), n - r))
+    dependent = [[i for i in range(n) if i not in choice] for choice in choices]
+
+    def outputs(choice: Choice) -> list[Symbol]:
+        engine = CasadiEngine()
+        accelerations, multipliers = along_null_space(engine, motion_system(engine, model), choice)
+        return [*accelerations, *multipliers]
+
+    return _best(choices, [jacobians[:, :, rows] for rows in dependent], outputs)
 
 
 def free_multipliers(model: Model, s: Lagrange, states: Any, derive: Route = mechanics) -> Choice | None:
@@ -50,7 +69,13 @@ def free_multipliers(model: Model, s: Lagrange, states: Any, derive: Route = mec
     jacobians = _jacobians(model, s, states)[:, :, passive]
     choices = list(combinations(range(model.r), free))
     bound = [[k for k in range(model.r) if k not in choice] for choice in choices]
-    return _best(choices, [jacobians[:, rows, :] for rows in bound], elimination, model, derive)
+    squares = [jacobians[:, rows, :] for rows in bound]
+    return _best(choices, squares, lambda choice: elimination(*_fresh(derive, model), choice))
+
+
+def _fresh(derive: Route, model: Model) -> tuple[CasadiEngine, PeerSystem]:
+    engine = CasadiEngine()
+    return engine, derive(engine, model)
 
 
 def _jacobians(model: Model, s: Lagrange, states: Any) -> Any:
@@ -63,11 +88,7 @@ def _jacobians(model: Model, s: Lagrange, states: Any) -> Any:
 
 
 def _best(
-    choices: list[Choice],
-    squares: Iterable[Any],
-    method: Callable[[CasadiEngine, PeerSystem, Choice], list[Symbol]],
-    model: Model,
-    derive: Route,
+    choices: list[Choice], squares: Iterable[Any], outputs: Callable[[Choice], list[Symbol]]
 ) -> Choice | None:
     import numpy as np
 
@@ -78,10 +99,8 @@ def _best(
     far = [k for k in order if distances[k] >= FAR_ENOUGH][:MOST_COUNTED] or order[:1]
     costs: dict[int, int] = {}
     for k in far:
-        engine = CasadiEngine()
-        s = derive(engine, model)
         try:
-            costs[k] = casadi.n_nodes(casadi.cse(casadi.vertcat(*method(engine, s, choices[k]))))
+            costs[k] = casadi.n_nodes(casadi.cse(casadi.vertcat(*outputs(choices[k]))))
         except DeadPivotError:
             continue
     return choices[min(costs, key=lambda k: costs[k])] if costs else None

@@ -33,7 +33,7 @@ def peers(model: Model, task: Task, states: Any) -> Peers:
     """Peers for full-rank B; `states` (k, 2 n + third + P) are what an expert would look at to choose coordinates."""
     s = differentiate(model)
     if task.quantity != "inverse_dynamics":
-        found = [_native(model, s, task), _native_in_lines(model, s, task)]
+        found = [_native(model, s, task), _native_in_lines(model, s, task), *_motions(model, s, states, task)]
         if task.quantity == "forward_dynamics" and is_recursive(model):
             found += _articulated(model)
         return Peers(tuple(found), ())
@@ -48,6 +48,26 @@ def peers(model: Model, task: Task, states: Any) -> Peers:
     found.append(_householder(model, s))
     absent = [(tool, "not installed") for tool, module in OPTIONAL.items() if find_spec(module) is None]
     return Peers(tuple(found), (*left_out, *absent))
+
+
+def _motions(model: Model, s: Lagrange, states: Any, task: Task) -> list[CCandidate]:
+    """q_ddot or lambda by an expert's methods."""
+    from symgen.laboratory.bench.peers.casadi_ssa import CasadiSsaEngine
+    from symgen.laboratory.bench.peers.expert import independent_of_motion
+    from symgen.laboratory.bench.peers.motions import MotionSystem, along_null_space, motion_system, schur
+
+    methods: dict[str, Callable[[Engine, MotionSystem], tuple[list[Symbol], list[Symbol]]]] = {"Schur": schur}
+    independent = independent_of_motion(model, s, states)
+    if independent is not None:
+        methods["null space"] = lambda engine, system: along_null_space(engine, system, independent)
+    found = []
+    for name, method in methods.items():
+        engine = CasadiSsaEngine()
+        system = motion_system(engine, model)
+        outputs = method(engine, system)[task.quantity == "multipliers"]
+        entry = f"casadi_ssa_{name}_float64".lower().replace(" ", "_")
+        found.append(straight_candidate(engine.tool, name, entry, engine.straight(system.inputs, outputs)))
+    return found
 
 
 def _articulated(model: Model) -> list[CCandidate]:
