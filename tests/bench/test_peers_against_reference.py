@@ -87,6 +87,30 @@ def test_forward_dynamics_and_multipliers(name: str, quantity: str, tmp_path: Pa
     assert errors_of(load, run_python(described, python, load)[0]).largest < ACCURATE
 
 
+SIZES: dict[str, Callable[[Model], int]] = {
+    "mass_matrix": lambda m: m.n**2,
+    "coriolis_matrix": lambda m: m.n**2,
+    "coriolis_force": lambda m: m.n,
+    "constraint_jacobian": lambda m: m.r * m.n,
+    "nullspace_projector": lambda m: m.n**2,
+    "nullspace_projector_dot": lambda m: m.n**2,
+    "projected_control_pseudoinverse": lambda m: m.m * m.n,
+}
+
+
+@pytest.mark.parametrize("quantity", SIZES)
+def test_matrices(quantity: str, tmp_path: Path) -> None:
+    described = model("front_car")
+    reference, task = Reference(described), Task(quantity, "qdd", SIZES[quantity](described))
+    load = workload(reference, admissible_samples(reference, STATES, (quantity,)), task, "float64", quiet)
+    (peer,) = peers(described, task, load.states).candidates
+    own = [c for c in symgen_candidates(described, programs_of(described, task, ("float64",)), "float64") if c.chosen]
+    candidates = [*own, peer]
+    results = results_of(build(tmp_path, described, task, candidates, {"float64": load}), tmp_path, candidates, task)
+    errors = {c.label: errors_of(load, results[c.entry]).largest for c in candidates}
+    assert {label: error for label, error in errors.items() if not error < ACCURATE} == {}
+
+
 def test_accelerations_of_an_arm_by_articulated_bodies(tmp_path: Path) -> None:
     described = model("scara")
     reference, task = Reference(described), Task("forward_dynamics", "u", described.n)

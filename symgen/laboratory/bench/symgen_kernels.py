@@ -123,14 +123,18 @@ def _candidate(model: Model, program: Program, method: str, trig: str) -> CCandi
     defaults = global_name(model.c_name, program.scalar, "default_params")  # every variant brings its own
     headers = {f"{stem}.h": str(files[f"c/{stem}.h"])}
     source = str(files[f"c/{stem}.c"])
-    if any(a.name in ("qdd", "u") and a.length for a in kernel.arguments):
+    places = {"q": "q", "qd": "qd", "qdd": "x", "u": "x"}
+    given = [places[argument.name] for argument in kernel.arguments if argument.length]
+    if given == ["q", "qd", "x"]:
         units: tuple[CUnit, ...] = (CUnit(source, headers, {function: entry, defaults: f"{entry}_defaults"}),)
     else:
+        # what the kernel does not depend on is left out of its signature
         own = f"{entry}_function"
         arguments = "const REAL *q, const REAL *qd, const REAL *x, const REAL *p, REAL *y"
+        unused = "".join(f"    (void){name};\n" for name in ("q", "qd", "x") if name not in given)
         adaptor = (
-            f"int {own}(const REAL *, const REAL *, const REAL *, REAL *);\nint {entry}({arguments});\n"
-            f"int {entry}({arguments})\n{{\n    (void)x;\n    return {own}(q, qd, p, y);\n}}\n"
+            f"int {own}({'const REAL *, ' * len(given)}const REAL *, REAL *);\nint {entry}({arguments});\n"
+            f"int {entry}({arguments})\n{{\n{unused}    return {own}({', '.join(given)}, p, y);\n}}\n"
         )
         kept = CUnit(source, headers, {function: own, defaults: f"{entry}_defaults"})
         units = (kept, CUnit(adaptor, is_adaptor=True))

@@ -32,6 +32,8 @@ class Peers:
 def peers(model: Model, task: Task, states: Any) -> Peers:
     """Peers for full-rank B; `states` (k, 2 n + third + P) are what an expert would look at to choose coordinates."""
     s = differentiate(model)
+    if task.quantity not in ("inverse_dynamics", "forward_dynamics", "multipliers"):
+        return _of_matrix(model, s, states, task)
     if task.quantity != "inverse_dynamics":
         found = [_native(model, s, task), _native_in_lines(model, s, task), *_motions(model, s, states, task)]
         if task.quantity == "forward_dynamics" and is_recursive(model):
@@ -48,6 +50,21 @@ def peers(model: Model, task: Task, states: Any) -> Peers:
     found.append(_householder(model, s))
     absent = [(tool, "not installed") for tool, module in OPTIONAL.items() if find_spec(module) is None]
     return Peers(tuple(found), (*left_out, *absent))
+
+
+def _of_matrix(model: Model, s: Lagrange, states: Any, task: Task) -> Peers:
+    from symgen.laboratory.bench.peers.casadi_ssa import CasadiSsaEngine
+    from symgen.laboratory.bench.peers.expert import independent_of_motion
+    from symgen.laboratory.bench.peers.matrices import BY_BASIS, matrix_of
+
+    independent = independent_of_motion(model, s, states) if task.quantity in BY_BASIS else ()
+    made = None if independent is None else matrix_of(task.quantity, independent)
+    if made is None:
+        return Peers((), (("peers", f"none is written for {task.quantity}"),))
+    engine = CasadiSsaEngine()
+    lines = engine.straight(*made(engine, model))
+    form = task.quantity.replace("_", " ")
+    return Peers((straight_candidate(engine.tool, form, f"casadi_ssa_{task.quantity}_float64", lines),), ())
 
 
 def _motions(model: Model, s: Lagrange, states: Any, task: Task) -> list[CCandidate]:
