@@ -39,6 +39,7 @@ def test_files_and_table(
 ) -> None:
     monkeypatch.setattr(run, "PASSES", 3)
     monkeypatch.setattr(run, "MAIN", ("inverse_dynamics",))
+    monkeypatch.setattr(run, "MATRICES", ("nullspace_projector",))
     monkeypatch.setattr(run, "SCALARS", ("float64",))
     monkeypatch.setattr(charts, "SCALARS", ("float64",))
     monkeypatch.setattr(roster, "_engines", lambda: [CasadiEngine])
@@ -47,8 +48,10 @@ def test_files_and_table(
     assert "CasADi native" in told.out
     assert (tmp_path / "skate" / "bench.svg").read_text(encoding="utf-8").startswith("<?xml")
     data = json.loads((tmp_path / "skate" / "bench.json").read_text(encoding="utf-8"))
-    (comparison,) = data["comparisons"]
+    comparison, projector = data["comparisons"]
     assert comparison["states"] == 8
+    assert {row["generator"] for row in projector["measured"]} == {"symgen", "CasADi SSA"}
+    assert projector["many_states"] == []
     rows = {(row["generator"], row["form"], row["scalar"]): row for row in comparison["measured"]}
     assert {row["form"] for row in comparison["many_states"]} > {"batch", "compile()"}
     chosen = next(row for row in comparison["measured"] if row["chosen"] and row["scalar"] == "float64")
@@ -80,6 +83,7 @@ def test_without_valgrind_instructions_are_left_out(
     monkeypatch.setattr(run, "find_valgrind", lambda: None)
     monkeypatch.setattr(run, "PASSES", 3)
     monkeypatch.setattr(run, "MAIN", ("multipliers",))
+    monkeypatch.setattr(run, "MATRICES", ())
     monkeypatch.setattr(build, "FLAGS", ("-O0", *build.FLAGS[1:]))
     monkeypatch.setattr(command, "time_against_error", lambda _: "")
     assert main(["bench", SKATE, "--states", "8", "--quiet", "--out", str(tmp_path)]) == 0

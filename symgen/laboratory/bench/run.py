@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
@@ -25,14 +26,24 @@ from symgen.laboratory.bench.workload import Errors, Workload, admissible_sample
 from symgen.model.blocks.allocation import without_allocation
 from symgen.model.load import load_model
 from symgen.model.model import Model
-from symgen.model.quantities import MAIN
+from symgen.model.quantities import MAIN, ROWS
 from symgen.verify.reference.reference import Reference
 from symgen.verify.sampling.states import Sample
 
 SCALARS: tuple[Scalar, ...] = ("float64", "float32")
 USUAL_STATES = 1000
-OTHER_STATES = 250  # of forward dynamics and multipliers, for which there are no goals
+OTHER_STATES = 250  # of all but inverse dynamics
 COUNTED_STATES = 64
+# Measured beside what the equations of motion are solved for: one state at a time, in C.
+MATRICES = (
+    "mass_matrix",
+    "coriolis_matrix",
+    "coriolis_force",
+    "constraint_jacobian",
+    "nullspace_projector",
+    "nullspace_projector_dot",
+    "projected_control_pseudoinverse",
+)
 PASSES = 301
 Progress = Callable[[str], None]
 
@@ -115,8 +126,8 @@ def benchmark(path: Path, states: int, progress: Progress, out: Path | None = No
         raise WrongUseError("symgen bench compiles everything with gcc, and there is no gcc on this machine")
     model = without_allocation(load_model(path))
     reference = Reference(model)
-    tasks = [_task(model, name) for name in MAIN if name in reference.quantities()]
-    if not tasks:
+    tasks = [_task(model, name) for name in (*MAIN, *MATRICES) if name in reference.quantities()]
+    if not any(task.quantity in MAIN for task in tasks):
         raise WrongUseError(f"{path}: nothing to measure, the model has none of {', '.join(MAIN)}")
     progress("looking for admissible states")
     samples = admissible_samples(reference, states, [task.quantity for task in tasks])
@@ -133,8 +144,9 @@ def benchmark(path: Path, states: int, progress: Progress, out: Path | None = No
 
 
 def _task(model: Model, quantity: str) -> Task:
-    sizes = {"inverse_dynamics": model.m, "forward_dynamics": model.n, "multipliers": model.r}
-    return Task(quantity, "qdd" if quantity == "inverse_dynamics" else "u", sizes[quantity])
+    sizes = {"n": model.n, "m": model.m, "r": model.r}
+    size = math.prod(sizes[extent] for extent in ROWS[quantity].shape)
+    return Task(quantity, "u" if "u" in ROWS[quantity].arguments else "qdd", size)
 
 
 def _compare(
@@ -161,8 +173,11 @@ def _compare(
         )
         progress(f"running {task.quantity} on many states")
         chosen = next(iter(programs.values()))
-        many = many_states(Path(folder), model, task, chosen, _loops(candidates, measured), loads["float64"])
-    for candidate in _python(model, task, programs, full_rank):
+        many: tuple[Many, ...] = ()
+        if task.quantity in MAIN:
+            loops = _loops(candidates, measured)
+            many = many_states(Path(folder), model, task, chosen, loops, loads["float64"])
+    for candidate in _python(model, task, programs, full_rank) if task.quantity in MAIN else ():
         results, together, alone = run_python(model, candidate, loads["float64"])
         errors = errors_of(loads["float64"], results)
         row = MeasuredCandidate(

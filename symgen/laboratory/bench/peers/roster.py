@@ -17,6 +17,8 @@ from symgen.witness.lagrange import Lagrange, differentiate
 Build: TypeAlias = Callable[[Engine, PeerSystem], list[Symbol]]
 # Tools that the extra `bench` installs, by module.
 OPTIONAL = {"wrenfold": "wrenfold", "SymForce": "symforce", "JAX": "jax"}
+# Lines of a matrix that compilers take in a minute.
+LONGEST_LINES = 30_000
 # Cheaper than Cholesky factors with roots, by about the same for every tool; the one that is cheapest takes them.
 SYMPY_ONLY = ("lean LDLᵀ", "part LDLᵀ")
 
@@ -63,6 +65,8 @@ def _of_matrix(model: Model, s: Lagrange, states: Any, task: Task) -> Peers:
         return Peers((), (("peers", f"none is written for {task.quantity}"),))
     engine = CasadiSsaEngine()
     lines = engine.straight(*made(engine, model))
+    if len(lines.values) > LONGEST_LINES:
+        return Peers((), (("peers", f"{len(lines.values)} operations, which take minutes to compile"),))
     form = task.quantity.replace("_", " ")
     return Peers((straight_candidate(engine.tool, form, f"casadi_ssa_{task.quantity}_float64", lines),), ())
 

@@ -21,6 +21,7 @@ from symgen.laboratory.bench.reporting.goals import (
     VALID_METHODS,
     Goal,
 )
+from symgen.laboratory.bench.reporting.quantity_pages import quantity_section
 
 Row: TypeAlias = Mapping[str, Any]
 Results: TypeAlias = Mapping[str, Sequence[Row]]  # what was measured of u, by model
@@ -55,7 +56,7 @@ def page(results: Sequence[Mapping[str, Any]], charts: Mapping[str, Sequence[str
     parts = [HEAD]
     if _counted(measured):
         parts += [_goals(measured), _footprints(measured), _reproduced(measured)]
-    parts += [accuracy_section(results), many_section(results)]
+    parts += [quantity_section(results), accuracy_section(results), many_section(results)]
     for result in results:
         parts += _model(result, charts.get(result["model"], ()))
     return "\n".join(parts)
