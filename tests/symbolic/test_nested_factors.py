@@ -38,3 +38,12 @@ def test_what_is_no_product_stays_whole() -> None:
     a, b, c, d, e, *_ = map(graph.symbol, LETTERS)
     for scalar in (a * b - c * d, e * (a - b), (a * b) / (c - d), a):
         assert nested_factors(scalar, _fixed) == (scalar,)
+
+
+def test_long_sums_are_no_deep_recursion() -> None:
+    graph = Graph()
+    a, b, *_ = map(graph.symbol, LETTERS)
+    total = a * graph.symbol("x")
+    for k in range(3000):
+        total = graph.raw("add", (total, graph.raw("mul", (a, graph.symbol(f"x_{k}")))))
+    assert nested_factors(b * total, _fixed)[:2] == (b, a)

@@ -38,7 +38,7 @@ def _content(graph: Graph, factor: Scalar) -> tuple[list[Scalar], Scalar | None]
     """What all terms of a sum have as a factor, and the sum without it; None where there is nothing."""
     if factor.op not in ("add", "sub"):
         return [], None
-    terms = list(_terms(factor, 1))
+    terms = list(_terms(factor))
     monomials = [graph.products.monomial(term)[1] for _, term in terms]
     first, *others = monomials
     shared = {x: min(power, *(other.get(x, 0) for other in others)) for x, power in first.items()}
@@ -49,12 +49,15 @@ def _content(graph: Graph, factor: Scalar) -> tuple[list[Scalar], Scalar | None]
     return list(common), rest
 
 
-def _terms(scalar: Scalar, sign: int) -> Iterator[tuple[int, Scalar]]:
-    match scalar.op:
-        case "add" | "sub":
-            yield from _terms(scalar.args[0], sign)
-            yield from _terms(scalar.args[1], sign if scalar.op == "add" else -sign)
-        case "neg":
-            yield from _terms(scalar.args[0], -sign)
-        case _:
-            yield sign, scalar
+def _terms(scalar: Scalar) -> Iterator[tuple[int, Scalar]]:
+    """What a sum consists of, however deep sums stand in it, with their signs."""
+    stack = [(1, scalar)]
+    while stack:
+        sign, part = stack.pop()
+        if part.op in ("add", "sub"):
+            left, right = part.args
+            stack += [(-sign if part.op == "sub" else sign, right), (sign, left)]
+        elif part.op == "neg":
+            stack.append((-sign, part.args[0]))
+        else:
+            yield sign, part
