@@ -57,6 +57,17 @@ class CCandidate:
         return f"{self.generator} {self.form}"
 
 
+def adaptor(entry: str, own: str, given: Sequence[str]) -> CUnit:
+    """The signature of all kernels for a function `own` of some of the arrays q, qd and x, and of the parameters."""
+    arguments = "const REAL *q, const REAL *qd, const REAL *x, const REAL *p, REAL *y"
+    unused = "".join(f"    (void){name};\n" for name in ("q", "qd", "x") if name not in given)
+    text = (
+        f"int {own}({'const REAL *, ' * len(given)}const REAL *, REAL *);\nint {entry}({arguments});\n"
+        f"int {entry}({arguments})\n{{\n{unused}    return {own}({', '.join([*given, 'p'])}, y);\n}}\n"
+    )
+    return CUnit(text, is_adaptor=True)
+
+
 def straight_candidate(generator: str, form: str, entry: str, lines: StraightLines) -> CCandidate:
     """Straight lines as a candidate in float64."""
     unit = CUnit(lines.function(entry))

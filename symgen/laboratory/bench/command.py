@@ -12,6 +12,7 @@ from symgen.laboratory.bench.reporting.charts import time_against_error
 from symgen.laboratory.bench.reporting.mechanism_pages import table_of
 from symgen.laboratory.bench.reporting.tables import bench_tables
 from symgen.laboratory.bench.run import Progress, benchmark
+from symgen.model.quantities import MAIN
 from symgen.output.write import write_files
 from symgen.verify.reference.reference import ReferenceValueError
 from symgen.verify.sampling.states import VerificationError
@@ -20,7 +21,7 @@ SHORT = {"inverse_dynamics": "bench.svg"}
 
 
 def run_bench(path: Path, out: Path, states: int, quiet: bool, progress: Progress) -> int:
-    """Writes bench.json, bench.svg (inverse dynamics) and bench.<quantity>.svg into OUT/<model>/.
+    """Writes bench.json, bench.svg (inverse dynamics), and one each of accelerations and multipliers into OUT/<model>/.
 
     Returns 0, or 1 where no states are found or a candidate does not compile.  Raises ModelError for mistakes in the
     file and WrongUseError without gcc.
@@ -35,7 +36,8 @@ def run_bench(path: Path, out: Path, states: int, quiet: bool, progress: Progres
     files = {"bench.json": json.dumps(result.to_json(), indent=1, ensure_ascii=False) + "\n"}
     for comparison in result.comparisons:
         quantity = comparison.task.quantity
-        files[SHORT.get(quantity, f"bench.{quantity}.svg")] = time_against_error(comparison)
+        if quantity in MAIN:
+            files[SHORT.get(quantity, f"bench.{quantity}.svg")] = time_against_error(comparison)
     progress("")
     written = write_files(out / result.model, files)
     if not quiet:

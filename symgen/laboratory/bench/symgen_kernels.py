@@ -21,7 +21,7 @@ from symgen.generation.recorded import as_recorded
 from symgen.generation.results import Options
 from symgen.ir.kernel import Kernel, Literal, Program, Scalar
 from symgen.ir.library_trig import with_library_trig
-from symgen.laboratory.bench.candidate import CCandidate, CUnit, PythonCandidate, Task
+from symgen.laboratory.bench.candidate import CCandidate, CUnit, PythonCandidate, Task, adaptor
 from symgen.lowering.schedule import schedule
 from symgen.mechanics.system import System
 from symgen.methods.quantity import Quantity
@@ -130,14 +130,8 @@ def _candidate(model: Model, program: Program, method: str, trig: str) -> CCandi
     else:
         # what the kernel does not depend on is left out of its signature
         own = f"{entry}_function"
-        arguments = "const REAL *q, const REAL *qd, const REAL *x, const REAL *p, REAL *y"
-        unused = "".join(f"    (void){name};\n" for name in ("q", "qd", "x") if name not in given)
-        adaptor = (
-            f"int {own}({'const REAL *, ' * len(given)}const REAL *, REAL *);\nint {entry}({arguments});\n"
-            f"int {entry}({arguments})\n{{\n{unused}    return {own}({', '.join(given)}, p, y);\n}}\n"
-        )
         kept = CUnit(source, headers, {function: own, defaults: f"{entry}_defaults"})
-        units = (kept, CUnit(adaptor, is_adaptor=True))
+        units = (kept, adaptor(entry, own, given))
     helpers = pair_names(model.c_name, suffix) | step_names(model.c_name, suffix) | {TABLE}
     functions = (function, *cause_names(kernel, function), *sorted(helpers))
     operations = {kind: count for kind, count in asdict(count_operations(kernel.statements)).items() if count}

@@ -83,7 +83,7 @@ def generated(name: str, arrays: Sequence[Any], value: Any) -> tuple[str, tuple[
     return generator.dump(), (name, *helpers)
 
 
-def adaptor(entry: str, name: str) -> str:
+def array_adaptor(entry: str, name: str) -> str:
     """C that gives a CasADi function the signature of all kernels."""
     arrays = "const REAL *q, const REAL *qd, const REAL *x, const REAL *p, REAL *y"
     return (

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 from symgen.laboratory.bench.candidate import CCandidate, CUnit, straight_candidate
 from symgen.laboratory.bench.peers import native
 from symgen.laboratory.bench.peers.algebra import DeadPivotError, ldl_solve
-from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine, adaptor, generated
+from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine, array_adaptor, generated
 from symgen.laboratory.bench.peers.casadi_ssa import CasadiSsaEngine
 from symgen.laboratory.bench.peers.engine import Engine, Symbol
 from symgen.laboratory.bench.peers.expert import free_multipliers, independent_coordinates
@@ -140,7 +140,7 @@ def _matrix_candidate(model: Model, s: Lagrange, method: str, balance: Callable[
     name = f"function_of_{entry}"
     value = native.inverse_dynamics(model, s, balance)
     source, functions = generated(name, [s.q, s.qd, s.qdd, s.p], value)
-    units = (CUnit(source), CUnit(adaptor(entry, name), is_adaptor=True))
+    units = (CUnit(source), CUnit(array_adaptor(entry, name), is_adaptor=True))
     return CCandidate("CasADi", method, "float64", entry, units, functions)
 
 
@@ -154,5 +154,5 @@ def _candidate(engine: Engine, model: Model, method: str, derive: Route, build: 
     source, functions, needs_adaptor = engine.c_function(name, system.inputs, outputs)
     units: tuple[CUnit, ...] = (CUnit(source, renamed={name: entry}),)
     if needs_adaptor:
-        units = (CUnit(source), CUnit(adaptor(entry, name), is_adaptor=True))
+        units = (CUnit(source), CUnit(array_adaptor(entry, name), is_adaptor=True))
     return CCandidate(engine.tool, method, "float64", entry, units, functions)

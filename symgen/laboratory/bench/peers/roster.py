@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from typing import Any, TypeAlias
 
-from symgen.laboratory.bench.candidate import CCandidate, CUnit, PythonCandidate, Task, straight_candidate
+from symgen.laboratory.bench.candidate import CCandidate, CUnit, PythonCandidate, Task, adaptor, straight_candidate
 from symgen.laboratory.bench.peers.engine import Engine, Symbol
 from symgen.laboratory.bench.peers.mechanics import PeerSystem
 from symgen.laboratory.bench.peers.recursion import is_recursive
 from symgen.model.model import Model
+from symgen.model.quantities import ROWS
 from symgen.witness.lagrange import Lagrange, differentiate
 
 Build: TypeAlias = Callable[[Engine, PeerSystem], list[Symbol]]
@@ -67,8 +68,12 @@ def _of_matrix(model: Model, s: Lagrange, states: Any, task: Task) -> Peers:
     lines = engine.straight(*made(engine, model))
     if len(lines.values) > LONGEST_LINES:
         return Peers((), (("peers", f"{len(lines.values)} operations, which take minutes to compile"),))
-    form = task.quantity.replace("_", " ")
-    return Peers((straight_candidate(engine.tool, form, f"casadi_ssa_{task.quantity}_float64", lines),), ())
+    entry, form = f"casadi_ssa_{task.quantity}_float64", task.quantity.replace("_", " ")
+    # with the arguments that the matrix has, as symgen's kernel
+    given = [array for array in lines.arrays if array in ROWS[task.quantity].arguments]
+    own = replace(lines, arrays=(*given, "p")).function(f"{entry}_function")
+    units = CUnit(own), adaptor(entry, f"{entry}_function", given)
+    return Peers((CCandidate(engine.tool, form, "float64", entry, units, (f"{entry}_function",)),), ())
 
 
 def _motions(model: Model, s: Lagrange, states: Any, task: Task) -> list[CCandidate]:
@@ -171,7 +176,7 @@ def _engines() -> list[type[Engine]]:
 
 
 def _candidate(engine: Engine, model: Model, method: str, build: Build) -> CCandidate:
-    from symgen.laboratory.bench.peers.casadi_engine import adaptor
+    from symgen.laboratory.bench.peers.casadi_engine import array_adaptor
     from symgen.laboratory.bench.peers.mechanics import mechanics
 
     entry = f"{engine.tool.lower()}_{method}_float64".replace(" LDLᵀ", "_ldl").replace(" ", "_")
@@ -182,7 +187,7 @@ def _candidate(engine: Engine, model: Model, method: str, build: Build) -> CCand
         return straight_candidate(engine.tool, method, entry, lines)
     source, functions, needs_adaptor = engine.c_function(name, system.inputs, outputs)
     if needs_adaptor:
-        units: tuple[CUnit, ...] = (CUnit(source), CUnit(adaptor(entry, name), is_adaptor=True))
+        units: tuple[CUnit, ...] = (CUnit(source), CUnit(array_adaptor(entry, name), is_adaptor=True))
     else:
         units = (CUnit(source, renamed={name: entry}),)
     return CCandidate(engine.tool, method, "float64", entry, units, functions)
@@ -206,13 +211,13 @@ def _native_in_lines(model: Model, s: Lagrange, task: Task) -> CCandidate:
 
 
 def _native(model: Model, s: Lagrange, task: Task, name: str = "native") -> CCandidate:
-    from symgen.laboratory.bench.peers.casadi_engine import adaptor, generated
+    from symgen.laboratory.bench.peers.casadi_engine import array_adaptor, generated
 
     entry = f"casadi_{name}_float64"
     name = f"casadi_{name}_function_float64"
     third = s.qdd if task.third == "qdd" else s.u
     source, functions = generated(name, [s.q, s.qd, third, s.p], _native_value(model, s, task))
-    units = (CUnit(source), CUnit(adaptor(entry, name), is_adaptor=True))
+    units = (CUnit(source), CUnit(array_adaptor(entry, name), is_adaptor=True))
     return CCandidate("CasADi", "native", "float64", entry, units, functions)
 
 
