@@ -23,7 +23,7 @@ Vector = list[Symbol]
 
 
 @dataclass(frozen=True, slots=True)
-class _Link:
+class _JointedFrame:
     """A frame: rotation to its parent's axes, place there, columns by coordinate, what velocities add, its rates."""
 
     rotation: Matrix
@@ -52,7 +52,7 @@ class _Sweeps:
         self._at = walk(engine, model)
         self._space = self._at.kinematics.space
         self._zero = engine.number(Fraction(0))
-        self._links: dict[str, _Link] = {}
+        self._links: dict[str, _JointedFrame] = {}
         inputs = engine.symbols("u", len(model.inputs))
         control, applied = control_matrix(engine, model, self._at), applied_forces(engine, model, self._at)
         self._forces = [dot(engine, row, inputs) + own for row, own in zip(control, applied, strict=True)]
@@ -82,7 +82,7 @@ class _Sweeps:
             motions[frame.name] = [engine.name(x) for x in motion]
         return self.inputs, found
 
-    def _link(self, frame: Frame) -> _Link:
+    def _link(self, frame: Frame) -> _JointedFrame:
         engine, space, joint = self._engine, self._space, self._at.kinematics.joint(frame.name)
         above = self._links[frame.parent].angular if frame.parent != WORLD else space.still
         back = turned_back(joint.axes)
@@ -102,7 +102,7 @@ class _Sweeps:
             if not all(map(engine.is_zero, column)):
                 columns[place] = [engine.name(x) for x in column]
         bias = [engine.name(x) for x in (*turning, *linear)]
-        return _Link([list(row) for row in joint.axes], list(joint.place), columns, bias, angular)
+        return _JointedFrame([list(row) for row in joint.axes], list(joint.place), columns, bias, angular)
 
     def _add_body(self, carried: _Carried, body: Body) -> None:
         engine, space = self._engine, self._space
@@ -163,21 +163,21 @@ class _Sweeps:
         inverse = engine.name(engine.number(Fraction(1)) / square[0][0])
         return [[x * inverse if not engine.is_zero(x) else x for x in column] for column in columns]
 
-    def _to_child(self, link: _Link, motion: Vector) -> Vector:
+    def _to_child(self, link: _JointedFrame, motion: Vector) -> Vector:
         """A spatial acceleration of the parent at the origin and in the axes of the frame."""
         engine, angular, linear = self._engine, motion[:3], motion[3:]
         moved = self._sum(linear, list(self._space.crossed(triple(angular), triple(link.place))))
         back = transposed(link.rotation)
         return [engine.name(dot(engine, row, part)) for part in (angular, moved) for row in back]
 
-    def _force_above(self, link: _Link, force: Vector) -> Vector:
+    def _force_above(self, link: _JointedFrame, force: Vector) -> Vector:
         engine = self._engine
         parts = force[:3], force[3:]
         torque, push = ([engine.name(dot(engine, row, part)) for row in link.rotation] for part in parts)
         arm = self._space.crossed(triple(link.place), triple(push))
         return [*self._sum(torque, list(arm)), *push]
 
-    def _inertia_above(self, link: _Link, inertia: Matrix) -> Matrix:
+    def _inertia_above(self, link: _JointedFrame, inertia: Matrix) -> Matrix:
         """Turned block by block, then moved along the place: N = N' + p x F, a' = a - p x alpha."""
         engine, turn = self._engine, link.rotation
         blocks = [[[row[3 * j : 3 * j + 3] for row in inertia[3 * i : 3 * i + 3]] for j in (0, 1)] for i in (0, 1)]
