@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 from shipped import NAMES, ROOT, model
 
@@ -109,6 +110,15 @@ def test_matrices(quantity: str, tmp_path: Path) -> None:
     results = results_of(build(tmp_path, described, task, candidates, {"float64": load}), tmp_path, candidates, task)
     errors = {c.label: errors_of(load, results[c.entry]).largest for c in candidates}
     assert {label: error for label, error in errors.items() if not error < ACCURATE} == {}
+
+
+@pytest.mark.parametrize("quantity", ["nullspace_projector", "projected_control_pseudoinverse"])
+def test_matrices_of_rows_have_no_peer_where_there_are_none(quantity: str) -> None:
+    described = model("double_pendulum")
+    states = np.ones((1, 3 * described.n + len(described.parameters)))
+    found = peers(described, Task(quantity, "qdd", described.n**2), states)
+    assert found.candidates == ()
+    assert [name for name, _ in found.left_out] == ["peers"]
 
 
 def test_accelerations_of_an_arm_by_articulated_bodies(tmp_path: Path) -> None:

@@ -527,7 +527,7 @@ def test_methods_of_what_nobody_asked_for_are_tried_so_many_times(
     result = made(ROOT / "models" / "front_car.yaml", replace(FAST, outputs=(name,) if asked else ("all",)))
     assert result.left_out == ()
     assert (name in derived(result)["kernels"]) is asked
-    told = [one.message for one in result.notices if "methods of 40000 operations were tried" in one.message]
+    told = [one.message for one in result.notices if "methods of 25000 operations were tried" in one.message]
     assert [name in message for message in told] == ([] if asked else [True])
 
 

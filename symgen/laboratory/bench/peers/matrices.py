@@ -12,6 +12,8 @@ from symgen.laboratory.bench.peers.frames import Written, written
 from symgen.model.model import Model
 
 Outputs: TypeAlias = list[Symbol]
+# What is made of rows.
+BY_ROWS = ("constraint_jacobian", "nullspace_projector", "nullspace_projector_dot")
 # What takes a basis of ker B from chosen coordinates.
 BY_BASIS = ("projected_control_pseudoinverse",)
 

@@ -58,8 +58,10 @@ def peers(model: Model, task: Task, states: Any) -> Peers:
 def _of_matrix(model: Model, s: Lagrange, states: Any, task: Task) -> Peers:
     from symgen.laboratory.bench.peers.casadi_ssa import CasadiSsaEngine
     from symgen.laboratory.bench.peers.expert import independent_of_motion
-    from symgen.laboratory.bench.peers.matrices import BY_BASIS, matrix_of
+    from symgen.laboratory.bench.peers.matrices import BY_BASIS, BY_ROWS, matrix_of
 
+    if not model.r and task.quantity in BY_ROWS:
+        return Peers((), (("peers", "there are no constraints"),))
     independent = independent_of_motion(model, s, states) if task.quantity in BY_BASIS else ()
     made = None if independent is None else matrix_of(task.quantity, independent)
     if made is None:
