@@ -11,7 +11,7 @@ Row = Sequence[Symbol]
 
 
 class DeadPivotError(Exception):
-    """An elimination met a column of zeros: this choice of columns does not work."""
+    """A method divides by what is 0 at every state: a fixed choice of columns, or a mass matrix without some mass."""
 
 
 def zero(engine: Engine) -> Symbol:

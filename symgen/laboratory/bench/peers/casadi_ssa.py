@@ -7,10 +7,12 @@ instructions writes the operations out.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import isfinite
 from typing import Any, ClassVar
 
 import casadi
 
+from symgen.laboratory.bench.peers.algebra import DeadPivotError
 from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine
 from symgen.laboratory.bench.peers.engine import Inputs, Symbol
 from symgen.laboratory.bench.peers.straight import StraightLines, loaded, third_of
@@ -62,7 +64,8 @@ class CasadiSsaEngine(CasadiEngine):
 def straight_lines(arrays: Mapping[str, Any], value: Any) -> StraightLines:
     """`value` (after `cse`) as a function of q, q_dot, the third array and the parameters, by their names.
 
-    Raises NotImplementedError for an operation that scalars of mechanics do not have.
+    Raises DeadPivotError where it divides by what is 0 at every state, which CasADi turns into an infinite constant,
+    and NotImplementedError for an operation that scalars of mechanics do not have.
     """
     function = casadi.Function("lines", list(arrays.values()), [casadi.cse(casadi.densify(value))])
     places, values = list(arrays), list[str]()
@@ -78,7 +81,10 @@ def straight_lines(arrays: Mapping[str, Any], value: Any) -> StraightLines:
             entries[entry] = None
             known[made[0]] = loaded(*entry)
         elif operation == casadi.OP_CONST:
-            known[made[0]] = f"(REAL){float(function.instruction_constant(k))!r}"
+            constant = float(function.instruction_constant(k))
+            if not isfinite(constant):
+                raise DeadPivotError
+            known[made[0]] = f"(REAL){constant!r}"
         elif operation == casadi.OP_OUTPUT:
             outputs[made[1]] = known[given[0]]
         elif operation not in _WRITTEN:

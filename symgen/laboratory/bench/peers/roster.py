@@ -20,6 +20,8 @@ Build: TypeAlias = Callable[[Engine, PeerSystem], list[Symbol]]
 OPTIONAL = {"wrenfold": "wrenfold", "SymForce": "symforce", "JAX": "jax"}
 # Lines of a matrix that compilers take in a minute.
 LONGEST_LINES = 30_000
+# Why a method that inverts G is no peer of a model with coordinates that move no mass.
+LACKS_A_MASS = "it divides by a mass that is 0 at every state"
 # Cheaper than Cholesky factors with roots, by about the same for every tool; the one that is cheapest takes them.
 SYMPY_ONLY = ("lean LDLᵀ", "part LDLᵀ")
 
@@ -38,10 +40,10 @@ def peers(model: Model, task: Task, states: Any) -> Peers:
     if task.quantity not in ("inverse_dynamics", "forward_dynamics", "multipliers"):
         return _of_matrix(model, s, states, task)
     if task.quantity != "inverse_dynamics":
-        found = [_native(model, s, task), _native_in_lines(model, s, task), *_motions(model, s, states, task)]
+        found, left_out = _motions(model, s, states, task)
         if task.quantity == "forward_dynamics" and is_recursive(model):
             found += _articulated(model)
-        return Peers(tuple(found), ())
+        return Peers(tuple(found), tuple(left_out))
     methods, left_out = _methods(model, s, states)
     # What inlining CasADi's exported helpers is worth, which a shared library does not allow.
     inlined = replace(_native(model, s, task, "native_fpie"), form="native -fPIE", flags=("-fPIE",))
@@ -78,24 +80,40 @@ def _of_matrix(model: Model, s: Lagrange, states: Any, task: Task) -> Peers:
     return Peers((CCandidate(engine.tool, form, "float64", entry, units, (f"{entry}_function",)),), ())
 
 
-def _motions(model: Model, s: Lagrange, states: Any, task: Task) -> list[CCandidate]:
-    """q_ddot or lambda by an expert's methods."""
+def _motions(
+    model: Model, s: Lagrange, states: Any, task: Task
+) -> tuple[list[CCandidate], list[tuple[str, str]]]:
+    """q_ddot or lambda by an expert's methods, without those that divide by a mass that is not there."""
+    from symgen.laboratory.bench.peers.algebra import DeadPivotError
     from symgen.laboratory.bench.peers.casadi_ssa import CasadiSsaEngine
     from symgen.laboratory.bench.peers.expert import independent_of_motion
     from symgen.laboratory.bench.peers.motions import MotionSystem, along_null_space, motion_system, schur
 
-    methods: dict[str, Callable[[Engine, MotionSystem], tuple[list[Symbol], list[Symbol]]]] = {"Schur": schur}
-    independent = independent_of_motion(model, s, states)
-    if independent is not None:
-        methods["null space"] = lambda engine, system: along_null_space(engine, system, independent)
-    found = []
-    for name, method in methods.items():
+    def in_lines(
+        name: str, method: Callable[[Engine, MotionSystem], tuple[list[Symbol], list[Symbol]]]
+    ) -> list[CCandidate]:
         engine = CasadiSsaEngine()
         system = motion_system(engine, model)
         outputs = method(engine, system)[task.quantity == "multipliers"]
         entry = f"casadi_ssa_{name}_float64".lower().replace(" ", "_")
-        found.append(straight_candidate(engine.tool, name, entry, engine.straight(system.inputs, outputs)))
-    return found
+        return [straight_candidate(engine.tool, name, entry, engine.straight(system.inputs, outputs))]
+
+    ways: dict[str, Callable[[], list[CCandidate]]] = {
+        "native": lambda: [_native(model, s, task), _native_in_lines(model, s, task)],
+        "Schur": lambda: in_lines("Schur", schur),
+    }
+    independent = independent_of_motion(model, s, states)
+    if independent is not None:
+        ways["null space"] = lambda: in_lines(
+            "null space", lambda engine, system: along_null_space(engine, system, independent)
+        )
+    found, left_out = list[CCandidate](), list[tuple[str, str]]()
+    for name, way in ways.items():
+        try:
+            found += way()
+        except DeadPivotError:
+            left_out.append((f"CasADi {name}", LACKS_A_MASS))
+    return found, left_out
 
 
 def _articulated(model: Model) -> list[CCandidate]:
