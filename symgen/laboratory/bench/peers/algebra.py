@@ -127,3 +127,20 @@ def eliminate(engine: Engine, A: Matrix, columns: Matrix) -> Matrix:
 
 def _reduced(engine: Engine, row: Row, factor: Symbol, by: Row) -> list[Symbol]:
     return [x if engine.is_zero(y) else engine.name(x - factor * y) for x, y in zip(row, by, strict=True)]
+
+
+def null_space_basis(
+    engine: Engine, B: Matrix, n: int, independent: Sequence[int], further: Matrix | None = None
+) -> tuple[Matrix, Matrix]:
+    """Rows of n entries that span ker B, the unit of each independent coordinate with what the others follow by.
+
+    Beside them what the dependent columns of B solve each of `further` to.
+    """
+    dependent = [i for i in range(n) if i not in independent]
+    sides = [[row[i] for row in B] for i in independent]
+    solved = eliminate(engine, [[row[i] for i in dependent] for row in B], [*sides, *(further or [])])
+    basis = []
+    for i, column in zip(independent, solved, strict=False):
+        entries = {k: -x for k, x in zip(dependent, column, strict=True)} | {i: engine.number(Fraction(1))}
+        basis.append([entries.get(k, zero(engine)) for k in range(n)])
+    return basis, solved[len(basis) :]

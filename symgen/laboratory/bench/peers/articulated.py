@@ -225,4 +225,3 @@ def triple(values: Sequence[Symbol]) -> Triple[Symbol]:
     """Three values."""
     x, y, z = values
     return x, y, z
-

@@ -6,7 +6,16 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import TypeAlias
 
-from symgen.laboratory.bench.peers.algebra import dot, eliminate, ldl_solve, named, product, total, transposed
+from symgen.laboratory.bench.peers.algebra import (
+    dot,
+    eliminate,
+    ldl_solve,
+    named,
+    null_space_basis,
+    product,
+    total,
+    transposed,
+)
 from symgen.laboratory.bench.peers.engine import Engine, Inputs, Matrix, Symbol
 from symgen.laboratory.bench.peers.frames import Written, written
 from symgen.model.model import Model
@@ -89,15 +98,7 @@ def _projector_dot(engine: Engine, s: Written, _: Sequence[int]) -> Matrix:
 
 def _control_inverse(engine: Engine, s: Written, independent: Sequence[int]) -> Matrix:
     """A+ W' with A = W' M for a basis W of ker B, where the inputs span all motions."""
-    n, B = len(s.inputs["q"]), _jacobian(engine, s, ())
-    one, zero = engine.number(Fraction(1)), engine.number(Fraction(0))
-    dependent = [i for i in range(n) if i not in independent]
-    sides = [[row[i] for row in B] for i in independent]
-    basis = []
-    solved = eliminate(engine, [[row[j] for j in dependent] for row in B], sides)
-    for i, column in zip(independent, solved, strict=True):
-        entries = {k: -x for k, x in zip(dependent, column, strict=True)} | {i: one}
-        basis.append([entries.get(k, zero) for k in range(n)])
+    basis, _ = null_space_basis(engine, _jacobian(engine, s, ()), len(s.control), independent)
     A = named(engine, product(engine, basis, s.control))
     columns = transposed(basis)
     if len(A) == len(A[0]):

@@ -15,9 +15,9 @@ from symgen.laboratory.bench.peers.algebra import (
     eliminate,
     ldl_solve,
     named,
+    null_space_basis,
     product,
     transposed,
-    zero,
 )
 from symgen.laboratory.bench.peers.engine import Engine, Matrix, Symbol
 from symgen.laboratory.bench.peers.mechanics import PeerSystem
@@ -56,15 +56,8 @@ def part(
     engine: Engine, s: PeerSystem, independent: Sequence[int], solve: Solver = cholesky_solve, direct: bool = False
 ) -> list[Symbol]:
     """F from the independent coordinates, A = FᵀM, u = Aᵀ(A Aᵀ)⁻¹Fᵀτ; `direct`: A u = Fᵀτ where m = δ."""
-    n, m = len(s.M), len(s.M[0])
-    dependent = [i for i in range(n) if i not in independent]
-    B = named(engine, s.B)
-    square, right_sides = [[row[i] for i in dependent] for row in B], [[row[i] for row in B] for i in independent]
-    solved = eliminate(engine, square, right_sides)
-    basis: Matrix = []  # the columns of F
-    for i, column in zip(independent, solved, strict=True):
-        entries = {k: -x for k, x in zip(dependent, column, strict=True)} | {i: engine.number(Fraction(1))}
-        basis.append([entries.get(k, zero(engine)) for k in range(n)])
+    m = len(s.M[0])
+    basis, _ = null_space_basis(engine, named(engine, s.B), len(s.M), independent)  # the columns of F
     A = named(engine, product(engine, basis, s.M))
     right = [engine.name(dot(engine, f, s.balance)) for f in basis]
     if direct and m == len(basis):

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 
 from symgen.laboratory.bench.peers.algebra import (
     dot,
     eliminate,
     ldl_solve,
     named,
+    null_space_basis,
     product,
     total,
     transposed,
@@ -76,13 +76,7 @@ def along_null_space(
     """q_ddot = W y + a with B W = 0, B a = -drift, and lambda from the rows of the dependent coordinates."""
     n = len(s.G)
     dependent = [i for i in range(n) if i not in independent]
-    square = [[row[i] for i in dependent] for row in s.B]
-    sides = [[row[i] for row in s.B] for i in independent]
-    *solved, held = eliminate(engine, square, [*sides, s.drift])
-    basis = []
-    for i, column in zip(independent, solved, strict=True):
-        entries = {k: -x for k, x in zip(dependent, column, strict=True)} | {i: engine.number(Fraction(1))}
-        basis.append([entries.get(k, zero(engine)) for k in range(n)])
+    basis, (held,) = null_space_basis(engine, s.B, n, independent, [s.drift])
     beside = dict(zip(dependent, held, strict=True))
     particular = [-beside[k] if k in beside else zero(engine) for k in range(n)]
     rest = [engine.name(f - dot(engine, row, particular)) for f, row in zip(s.force, s.G, strict=True)]
@@ -92,5 +86,5 @@ def along_null_space(
     moving = [dot(engine, [w[k] for w in basis], y) for k in range(n)]
     accelerations = [engine.name(total(engine, pair)) for pair in zip(moving, particular, strict=True)]
     left = [engine.name(s.force[i] - dot(engine, s.G[i], accelerations)) for i in dependent]
-    (multipliers,) = eliminate(engine, transposed(square), [left])
+    (multipliers,) = eliminate(engine, [[row[i] for row in s.B] for i in dependent], [left])
     return accelerations, multipliers
