@@ -5,7 +5,6 @@ As for scalars, values in the field of fingerprints are compared first, and exac
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import lru_cache
@@ -13,6 +12,7 @@ from typing import Generic, TypeAlias, TypeVar
 
 from symgen.diagnostics import SymgenBug
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Operand, Statement, Status
+from symgen.ir.last_kernels import LastKernels
 from symgen.ir.wide_functions import is_wide, plain_operation
 from symgen.records import dataclass
 from symgen.symbolic.fingerprint import PRIME, angle_pair, combine, leaf_pair, opaque, residue
@@ -71,16 +71,12 @@ def same_kernel(
 
 def _residues(lifted: Lifted) -> Meant[int]:
     """What a kernel computes and tests; several passes begin with one kernel."""
-    for kernel, found in _read:
-        if kernel is lifted.kernel and not lifted.prepared:
-            return found
-    found = _ResidueReader().meant(lifted)
-    if not lifted.prepared:
-        _read.append((lifted.kernel, found))
-    return found
+    if lifted.prepared:
+        return _ResidueReader().meant(lifted)
+    return _READ.of(lifted.kernel, lambda: _ResidueReader().meant(lifted))
 
 
-_read: deque[tuple[Kernel, Meant[int]]] = deque(maxlen=8)
+_READ = LastKernels[Meant[int]](8)
 
 
 def _values(meant: Meant[Node]) -> Meant[int]:

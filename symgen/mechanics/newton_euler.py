@@ -120,7 +120,7 @@ class _Recursion:
             lumps, rotors = lumped_bodies(self.bodies, [frame.name for frame in frames])
             wrenches = {name: self._inertial_about_origin(lump, working[name]) for name, lump in lumps.items()}
         else:
-            wrenches = self._handed_wrenches(frames, working, twists)
+            wrenches = self.wrenches(frames, working, twists)
         totals = [self.graph.zero] * len(self.bodies.q)
         for frame in reversed(frames):
             wrench, joint = wrenches[frame.name], self.kinematics.joint(frame.name)
@@ -153,28 +153,21 @@ class _Recursion:
             self.motions[frame.name] = self.step(frame.name)
         return frames
 
-    def wrenches(self, frames: Sequence[Frame], motions: Mapping[str, FrameMotion]) -> dict[str, Wrench]:
-        """What the bodies of each frame take, about its origin."""
-        found = {frame.name: Wrench(self.none, self.none) for frame in frames}
-        for body in self.bodies.mechanism.bodies:
-            if body.frame != WORLD:
-                found[body.frame] = _sum(found[body.frame], self._inertial(body, motions[body.frame]))
-        return found
-
-    def _handed_wrenches(
-        self, frames: Sequence[Frame], motions: Mapping[str, FrameMotion], twists: Collection[str]
+    def wrenches(
+        self, frames: Sequence[Frame], motions: Mapping[str, FrameMotion], keeping: Collection[str] | None = None
     ) -> dict[str, Wrench]:
-        """The same, but the force on a mass that stands still on a frame further in is that frame's from the start.
+        """What the bodies of each frame take, about its origin.
 
-        Turned into the axes of a wheel and back, a weight would leave a rounding of itself, which is all there is where
-        the wheel hardly moves.
+        But for frames that are `keeping` theirs, if these are told, the force on a mass that stands still on a frame
+        further in is that frame's from the start.  Turned into the axes of a wheel and back, a weight would leave a
+        rounding of itself, which is all there is where the wheel hardly moves.
         """
         found = {frame.name: Wrench(self.none, self.none) for frame in frames}
         for body in self.bodies.mechanism.bodies:
             if body.frame == WORLD:
                 continue
-            name, com = self._carrier(body, twists)
-            if name == body.frame:
+            name, com = (body.frame, None) if keeping is None else self._carrier(body, keeping)
+            if com is None or name == body.frame:
                 found[name] = _sum(found[name], self._inertial(body, motions[name]))
                 continue
             turning = _turning_moment(self.bodies.inertia(body.name), motions[body.frame])
@@ -184,13 +177,13 @@ class _Recursion:
                 found[name] = _sum(found[name], self._on_point(name, mass, com, motions[name]))
         return found
 
-    def _carrier(self, body: Body, twists: Collection[str]) -> tuple[str, Vector3]:
+    def _carrier(self, body: Body, keeping: Collection[str]) -> tuple[str, Vector3]:
         """The innermost frame on which the centre of mass stands still, and where: balanced wheels stand on their axle.
 
         A frame that hands nothing on keeps what it has.
         """
         name, com = body.frame, self.kinematics.space.values(body.com)
-        while name != WORLD and name not in twists:
+        while name != WORLD and name not in keeping:
             joint = self.kinematics.joint(name)
             if not all(rate.is_zero for rate in (*joint.place_rate, *cross(joint.turning, com))):
                 break

@@ -6,7 +6,6 @@ statements has a few hundred such groups.
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
@@ -26,6 +25,7 @@ from symgen.ir.kernel import (
     Statement,
     Status,
 )
+from symgen.ir.last_kernels import LastKernels
 from symgen.verify.lane_arithmetic import TYPES, LaneArithmetic, Lanes, number
 
 _Places: TypeAlias = Any
@@ -48,7 +48,7 @@ class _KernelRun:
         self, kernel: Kernel, sincos: Function | None, scalar: Scalar, given: Sequence[Mapping[str, Sequence[float]]]
     ) -> None:
         self._arithmetic, self._count = LaneArithmetic(scalar, sincos), len(given)
-        self._plan = plan = _plan_of(kernel)
+        self._plan = plan = _PLANS.of(kernel, lambda: _Plan(kernel))
         self._values = np.empty((plan.rows, len(given)), TYPES[scalar])
         for load in kernel.loads:
             self._values[plan.loaded[load.local]] = [one[load.argument][load.index] for one in given]
@@ -183,14 +183,4 @@ class _Plan:
         return _CheckPlan(check.status, check.inclusive, value, limit, first)
 
 
-def _plan_of(kernel: Kernel) -> _Plan:
-    """The plan of a kernel; one after another runs are of the same few."""
-    for known, plan in _planned:
-        if known is kernel:
-            return plan
-    plan = _Plan(kernel)
-    _planned.append((kernel, plan))
-    return plan
-
-
-_planned: deque[tuple[Kernel, _Plan]] = deque(maxlen=4)
+_PLANS = LastKernels[_Plan](4)
