@@ -1,8 +1,9 @@
 """Dimensions inferred through the expressions of a model: only contradictions in what the user wrote are mistakes.
 
 Names without a unit are free and fit everywhere.  So are literals (0.25 may be a length), save those that are plainly
-counts: 1/2, 1, 2, 4, integers that something is divided by, and quotients of integers (`m/2*x_dot**2` has a unit).
-Before a term of an energy that names nothing but coordinates every number is free: a mass or stiffness, even 1 or 1/2.
+counts: 1/2, 1, 2, 4, and integers that something is divided by (`m/2*x_dot**2` has a unit).  Before a term that names
+nothing but coordinates, or is a pure number beside it, every number is free, even 1 or 1/2: a mass, a stiffness, a
+torque, the radius in `x - 2*cos(a)`.
 """
 
 from __future__ import annotations
@@ -48,8 +49,8 @@ def check_units(tree: MappingNode, model: Model, fits: tuple[Fit, ...] = ()) -> 
     for parameter in model.parameters:
         what = f"the value of `{parameter.name}`"
         inference.agrees(parameter.value, units.get(parameter.name), what, "its unit")
-    kinetic = inference.of_energy(model.kinetic_energy)
-    potential = inference.of_energy(model.potential_energy)
+    kinetic = inference.of_term(model.kinetic_energy)
+    potential = inference.of_term(model.potential_energy)
     if kinetic is not None and potential is not None and kinetic != potential:
         mistakes.append(
             _clash("the potential energy", potential, "the kinetic energy", kinetic, model.potential_energy)
@@ -158,25 +159,15 @@ class _Inference:
             if self._is_measured(definition.value):
                 self._measured.add(definition.name)
         for definition in model.definitions:
-            found = self.of(definition.value)
+            found = self.of_term(definition.value)
             if found is not None:
                 self._units[definition.name] = found
 
     def agrees(self, expression: Expression, declared: Dimension, what: str, other: str) -> None:
         """Records a mistake where `what`, the expression, has another dimension than `other`, which is `declared`."""
-        found = self._of_term(expression)
+        found = self.of_term(expression)
         if declared is not None and found is not None and found != declared:
             self._mistakes.append(_clash(what, found, other, declared, expression))
-
-    def of_energy(self, expression: Expression) -> Dimension:
-        """The dimension of an energy, free where its terms are made of coordinates and numbers."""
-        match expression:
-            case Negation(operand=operand):
-                return self.of_energy(operand)
-            case Binary(operator="+" | "-", left=left, right=right):
-                return self._same(self.of_energy(left), self.of_energy(right), right)
-        found = self.of(expression)
-        return found if self._is_measured(expression) or not _has_number(expression) else None
 
     def _is_measured(self, expression: Expression) -> bool:
         return any(is_component(name.name) or name.name in self._measured for name in names_in(expression))
@@ -212,12 +203,16 @@ class _Inference:
         self._counts = counts
         self._mistakes[before:] = [replace(one, span=one.span or span) for one in self._mistakes[before:]]
 
-    def _of_term(self, expression: Expression) -> Dimension:
-        """As `of`, but a number that stands for itself has the unit its place demands, even 1 or 2."""
-        return self.of(expression) if any(names_in(expression)) else None
+    def of_term(self, expression: Expression) -> Dimension:
+        """As `of`, but a number by itself, or before coordinates or a pure number, has the unit its place demands."""
+        found = self.of(expression)
+        if not any(names_in(expression)):
+            return None
+        fits = _has_number(expression) and (found == NUMBER or not self._is_measured(expression))
+        return None if fits else found
 
     def _sum(self, left: Expression, right: Expression) -> Dimension:
-        return self._same(self._of_term(left), self._of_term(right), right)
+        return self._same(self.of_term(left), self.of_term(right), right)
 
     def _same(self, a: Dimension, b: Dimension, right: Expression) -> Dimension:
         """The dimension of a sum of two terms."""
@@ -228,8 +223,7 @@ class _Inference:
 
     def _product(self, operator: str, left: Expression, right: Expression) -> Dimension:
         if operator == "/" and isinstance(right, Number) and right.value.denominator == 1:
-            whole = isinstance(left, Number) and left.value.denominator == 1
-            return NUMBER if whole and self._counts else self.of(left)
+            return self.of(left)
         a, b = self.of(left), self.of(right)
         return None if a is None or b is None else a.times(b, 1 if operator == "*" else -1)
 
