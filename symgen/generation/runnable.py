@@ -18,7 +18,7 @@ from symgen.quantities.catalogue import CATALOGUE
 from symgen.verify.reference.reference import State
 from symgen.verify.running.compile import CFunction, Compilation, Outcome, c_array, find_compiler
 from symgen.verify.running.sources import generated_sources
-from symgen.verify.sampling.states import Sample, rounded
+from symgen.verify.sampling.states import in_scalar
 
 SCALARS: tuple[Scalar, ...] = ("float64", "float32")
 # What the formulas of the paper are computed from.
@@ -122,4 +122,4 @@ def rounded_state(state: State, scalar: Scalar) -> State:
     """The state with every number rounded to the scalar type."""
     parts = (state.q, state.qd, state.qdd, state.u, state.parameters)
     doubles = State(*(tuple(float(x) for x in part) for part in parts))
-    return rounded(Sample(doubles, True, (1.0, 1.0)), scalar).state
+    return in_scalar(doubles, scalar)

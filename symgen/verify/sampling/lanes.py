@@ -53,8 +53,10 @@ class RoundingErrors:
 
         `given` holds the arguments and the parameters `p`, a row for each state.  d is that of the kernel itself for
         arguments and parameters; what literals of the model add is left out, so that this is more than there is rather
-        than less.  With `tangents` (n x n, onto those of V) configurations move along V alone, and parameters do not:
-        beside V, where rows depend on each other, a kernel is another function than what it stands for.
+        than less.  With `tangents` (n x n, onto those of V) it is what they do that move along V alone, parameters
+        staying as they are, where that is less: beside V, where rows depend on each other, a kernel may be another
+        function than what it stands for.  Along V coordinates move together, and one that all but vanishes by more than
+        a share of itself.
         """
         own, unit = self.with_units(given, tangents)
         return own / unit
@@ -66,10 +68,9 @@ class RoundingErrors:
             values, regular = self._values(given, count)
             outputs = [values[place] for place in self._outputs]
             own, slopes = self._shares(values, count)
-            if tangents is None:
-                inputs = self._of_inputs(values, slopes, count)
-            else:
-                inputs = self._along(values, slopes, tangents)
+            inputs = self._of_inputs(values, slopes, count)
+            if tangents is not None:
+                inputs = np.fmin(inputs, self._along(values, slopes, tangents))
             unit = np.sqrt(sum(x * x for x in outputs)) + LARGEST_OF_EIGHT * np.sqrt(inputs)
             regular &= np.isfinite(unit) & (unit > 0) & np.isfinite(own)
         return np.sqrt(np.where(regular, own, 0.0)), np.where(regular, unit, np.inf)

@@ -105,11 +105,15 @@ def sample_states(
 
 def rounded(sample: Sample, scalar: Scalar) -> Sample:
     """The sample with every number rounded to the scalar type."""
+    return replace(sample, state=in_scalar(sample.state, scalar))
+
+
+def in_scalar(state: State, scalar: Scalar) -> State:
+    """The state with every number rounded to the scalar type."""
     if scalar == "float64":
-        return sample
-    state = sample.state
+        return state
     parts = (state.q, state.qd, state.qdd, state.u, state.parameters)
-    return replace(sample, state=State(*(tuple(_single(x) for x in part) for part in parts)))
+    return State(*(tuple(_single(x) for x in part) for part in parts))
 
 
 def _single(value: Any) -> float:

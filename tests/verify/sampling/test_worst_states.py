@@ -97,6 +97,17 @@ def test_where_rows_depend_configurations_move_along_v_alone() -> None:
     assert smaller == pytest.approx(0.7 + 1.5 * 0.7 * np.hypot(0.5, 0.5))
 
 
+def test_what_all_but_vanishes_is_given_to_a_share_of_itself() -> None:
+    """Along V it moves by a share of what is tied to it: d would be that of 0.7 where it is that of 1e-6."""
+    kernel = straight(
+        Statement(("turned",), "add", (X, A)),
+        Statement(("bend",), "sub", (Local("turned"), X)),
+    )
+    own, unit = RoundingErrors(kernel).with_units({"q": np.array([[0.7, 1e-6]])}, np.full((1, 2, 2), 0.5))
+    assert unit == pytest.approx([2.5e-6])
+    assert own == pytest.approx([0.7], rel=1e-5)
+
+
 def test_tangents_are_what_rows_leave_free(reference: Reference) -> None:
     around = Surroundings(reference, sample_states(reference, ["inverse_dynamics"], 8))
     q, p = around.samples.parts["q"], around.samples.parts["p"]
@@ -277,3 +288,42 @@ def test_u_is_judged_nearer_to_singular_states_than_samples_are() -> None:
     search.look(kernel)
     assert search.largest(kernel, program.sincos, "float64") > FACTOR
     assert search.largest(widened(kernel, "float64"), program.sincos, "float64") < 1
+
+
+# Two slides in a row that lead a tip, whose place a rod holds once more; where the slides are parallel nothing drives
+# one against the other.
+SLIDES = """
+model: slides
+gravity: [0, -9.81, 0]
+joints:
+  arm: {type: revolute, axis: z, coordinate: a}
+  first: {type: prismatic, parent: arm, at: [0.25, 0, 0], axis: y, coordinate: s}
+  bend: {type: revolute, axis: z, parent: first, at: [0, 1.1, 0], coordinate: b}
+  second: {type: prismatic, parent: bend, at: [0, 0.25, 0], axis: y, coordinate: p}
+bodies:
+  arm: {mass: 6, inertia: {zz: 0.04}}
+  first: {mass: 1, com: [0, 0.55, 0], inertia: {zz: 0.14}}
+  bend: {mass: 7, com: [0, 0.12, 0], inertia: {zz: 0.2}}
+  second: {mass: 4.5, com: [0.55, 0, 0], inertia: {zz: 0.26}}
+points:
+  tip: {frame: second, at: [1.1, 0, 0]}
+  anchor: {at: [-0.74398812542616, -1.637479237644137, 0]}
+  far: {at: [-0.7905584888983138, -1.094236089731962, 0]}
+loops:
+  place: {type: point, between: [tip, anchor]}
+  rod: {type: distance, between: [tip, far], length: 0.5452356522710686}
+inputs: {elbow: {joint: b}, shoulder: {joint: a}}
+configuration: {a: -2.64, s: 0.43, b: -0.89, p: 0.39}
+outputs: [inverse_dynamics]
+"""
+
+
+def test_surplus_rows_hide_no_loss_of_digits() -> None:
+    """The angle between the slides is given to a share of itself, and worked out of angles that are not small."""
+    model = load_text(SLIDES, "slides.yaml")
+    program = draft_of(model, model.outputs, Options()).programs["float64"]
+    expected = Expected(model, model.outputs, 16, lambda _: None)
+    assert expected.reference.ranks.constraints < expected.reference.system.r
+    search, (kernel,) = WorstStateSearch(expected), program.kernels
+    search.look(kernel)
+    assert search.largest(kernel, program.sincos, "float64") > FACTOR
