@@ -7,7 +7,7 @@ from statistics import median
 from typing import Any
 
 from symgen.verify.reference.reference import Reference
-from symgen.verify.sampling.regular import SAMPLING_BITS
+from symgen.verify.sampling.plain_values import SAMPLING_BITS
 from symgen.verify.sampling.states import Sample
 
 

@@ -27,7 +27,7 @@ from symgen.verify.far_parameters import FarParameters
 from symgen.verify.interpreted import outcomes
 from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.reference.reference import State
-from symgen.verify.sampling.regular import values_at
+from symgen.verify.sampling.plain_values import values_at
 from symgen.verify.tolerance import FACTOR, expectations
 
 # Three links whose end is stayed to a wall: of two directions the last link takes both where it is heavy.

@@ -9,7 +9,7 @@ from typing import Any
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
 from symgen.laboratory.bench.candidate import Task
 from symgen.verify.reference.reference import Reference, State
-from symgen.verify.sampling.regular import SAMPLING_BITS
+from symgen.verify.sampling.plain_values import SAMPLING_BITS
 from symgen.verify.sampling.states import Sample, rounded, sample_states
 from symgen.verify.tolerance import FACTOR, expectations
 

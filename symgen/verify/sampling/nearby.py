@@ -19,9 +19,9 @@ from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference.system import default_parameters
 from symgen.verify.sampling.loops_in_lanes import DEPENDENT, LoopsInLanes, lengths_of
+from symgen.verify.sampling.plain_values import values_at
 from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, measures, ranked_parts
 from symgen.verify.sampling.rates_in_lanes import RatesInLanes
-from symgen.verify.sampling.regular import values_at
 from symgen.verify.sampling.states import Sample
 
 # Shares of the ranges of coordinates: how far states are drawn from samples, and moved from where they are.

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import random
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import inf, isfinite, pi, sqrt
 from typing import Any
@@ -22,22 +22,18 @@ from symgen.verify.reference.manifold import exceeds, starts
 from symgen.verify.reference.parts import Part
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.reference.system import ParameterValues, default_parameters
+from symgen.verify.sampling.plain_values import SAMPLING_BITS, floats, in_floats, measured, settled
 
 # Regular states that a verification needs.
 FEWEST_STATES = 8
 # Of usual lengths of rows, and of the largest singular value: with less a state is near singular ones.
 REGULAR_SHARE = 1e-3
-# Binary digits that sampling needs; results are not judged in them.
-SAMPLING_BITS = 128
 # Of a coordinate, by which every fourth state is moved off V at most.
 DRIFT = 1e-3
-# Of the width of a range: less than this is what searches and projections leave of 0.
-SETTLED_REST = 1e-25
 # How far angles may lie outside of their ranges in states.
 TURNS = 2
 # Configurations that tell how large measures and rows usually are.
 MEASURED_POINTS = 8
-PROJECTED = ("admissible_velocity", "admissible_acceleration")
 # Steps along V, in widths of the ranges.
 LONGEST_STEP, SHORTEST_STEP = 0.2, 1e-5
 # Of so many starts one is drawn where loops have to be closed; others lie beside the state before.
@@ -327,7 +323,7 @@ class RegularStateSearch:
         except ReferenceValueError:
             self._ends[VALUE] += 1
             return None
-        values = _values(found)
+        values = in_floats(found)
         sizes = _Sizes([float(x) for x in measures], _lengths(values["constraint_jacobian"], model.n))
         if sizes.finite:
             self._met.append(sizes)
@@ -361,36 +357,6 @@ class RegularStateSearch:
             for j, (x, c) in enumerate(zip(q, self._reference.model.coordinates, strict=True))
             if c.is_angle and not float(c.range[0]) - TURNS * 2 * pi <= x <= float(c.range[1]) + TURNS * 2 * pi
         ]
-
-
-def measured(reference: Reference) -> tuple[str, ...]:
-    """What makes a sample of a regular state."""
-    return *PROJECTED, *(("inverse_dynamics",) if reference.model.m else ())
-
-
-def values_at(reference: Reference, state: State, names: Sequence[str]) -> dict[str, tuple[float, ...]]:
-    """Row-major entries of quantities, to the digits that sampling needs."""
-    return _values(reference.matrices(state, names, SAMPLING_BITS))
-
-
-def _values(matrices: Mapping[str, Any]) -> dict[str, tuple[float, ...]]:
-    return {name: (_rates if name in PROJECTED else floats)(matrix) for name, matrix in matrices.items()}
-
-
-def settled(values: Sequence[Any], ranges: Sequence[tuple[Any, Any]]) -> list[float]:
-    """Floats, with 0 for what searches and projections leave of it: squares of such rests underflow in float32."""
-    pairs = zip(map(float, values), ranges, strict=True)
-    return [0.0 if abs(x) < SETTLED_REST * float(high - low) else x for x, (low, high) in pairs]
-
-
-def floats(matrix: Any) -> tuple[float, ...]:
-    """The entries of a matrix."""
-    return tuple(map(float, matrix.entries()))
-
-
-def _rates(matrix: Any) -> tuple[float, ...]:
-    """Entries rounded to float64; what cannot be told from 0 is 0, such as the rate of a joint that cannot move."""
-    return tuple(0.0 if x.is_finite() and x.contains(0) else float(x) for x in matrix.entries())
 
 
 def _at_rest(reference: Reference, q: Sequence[float], parameters: Sequence[float]) -> State:

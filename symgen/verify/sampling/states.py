@@ -16,17 +16,8 @@ from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.quantities import RATES
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.sampling.inertias import Inertias
-from symgen.verify.sampling.regular import (
-    FEWEST_STATES,
-    REGULAR_SHARE,
-    SAMPLING_BITS,
-    Regular,
-    RegularStateSearch,
-    floats,
-    measured,
-    settled,
-    values_at,
-)
+from symgen.verify.sampling.plain_values import SAMPLING_BITS, floats, measured, settled, values_at
+from symgen.verify.sampling.regular import FEWEST_STATES, REGULAR_SHARE, Regular, RegularStateSearch
 
 # States of a verification, unless told otherwise.
 USUAL_STATES = 64
@@ -105,7 +96,8 @@ def sample_states(
 
 def rounded(sample: Sample, scalar: Scalar) -> Sample:
     """The sample with every number rounded to the scalar type."""
-    return replace(sample, state=in_scalar(sample.state, scalar))
+    state = in_scalar(sample.state, scalar)
+    return sample if state is sample.state else replace(sample, state=state)
 
 
 def in_scalar(state: State, scalar: Scalar) -> State:

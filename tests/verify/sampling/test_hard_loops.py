@@ -10,7 +10,8 @@ from symgen.model.load import load_text
 from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.reference import Reference
 from symgen.verify.reference.system import ReferenceSystem
-from symgen.verify.sampling.regular import FEWEST_STATES, SAMPLING_BITS, RegularStateSearch
+from symgen.verify.sampling.plain_values import SAMPLING_BITS
+from symgen.verify.sampling.regular import FEWEST_STATES, RegularStateSearch
 
 # Eight joints in space, held at a ball and at a pin, of which one may turn little; a ninth turns freely beside them.
 ARM = """model: arm

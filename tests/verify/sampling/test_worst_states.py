@@ -20,9 +20,9 @@ from symgen.verify.reference.reference import Reference
 from symgen.verify.sampling.lanes import RoundingErrors
 from symgen.verify.sampling.loops_in_lanes import LoopsInLanes
 from symgen.verify.sampling.nearby import Surroundings
+from symgen.verify.sampling.plain_values import values_at
 from symgen.verify.sampling.ranks_in_lanes import ranked_parts
 from symgen.verify.sampling.rates_in_lanes import RatesInLanes
-from symgen.verify.sampling.regular import values_at
 from symgen.verify.sampling.searched import WorstStateSearch
 from symgen.verify.sampling.states import Sample, rounded, sample_states
 from symgen.verify.tolerance import FACTOR
