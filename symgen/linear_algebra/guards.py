@@ -105,6 +105,16 @@ def _roots(total: Scalar) -> list[Scalar]:
     return roots
 
 
+def is_own_scale(denominator: Scalar, scale: Scalar) -> bool:
+    """Whether a denominator is as large as its scale wherever it is: what is multiplied alone is so."""
+    if scale is denominator:
+        return True
+    if any(node.op in ("add", "sub", "sin", "cos") for node in topological([denominator])):
+        return False
+    (largest,) = magnitude(denominator.graph, [denominator])
+    return scale.value == largest.value
+
+
 def magnitude(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:
     """Upper bounds of |output| for every angle: sums of absolute terms with sines and cosines set to 1."""
     bound: dict[Scalar, Scalar] = {}

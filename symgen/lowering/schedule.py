@@ -27,7 +27,7 @@ from symgen.ir.kernel import (
 from symgen.ir.lifted import Kind, Lifted, Meant, same_kernel
 from symgen.ir.order import REGISTERS, relaxed, waits
 from symgen.ir.sincos import angle_limit, sincos
-from symgen.linear_algebra.guards import Guard, magnitude, where_negligible
+from symgen.linear_algebra.guards import Guard, is_own_scale, magnitude, where_negligible
 from symgen.lowering.writer import ANGLE, ScalarWriter, Test, angles_among, angles_of
 from symgen.mechanics.system import System
 from symgen.methods.quantity import Quantity
@@ -87,8 +87,9 @@ class _GuardTests:
             first = tuple(self.tests(guard.first))
             if all(cause.status is guard.status and not cause.first for cause in first):
                 first = ()  # nothing to tell apart
-            # a denominator that is its own scale, such as a length, is negligible only where it is 0
-            limit = graph.zero if scale in (size, guard.denominator) else self._limit(guard, scale)
+            # what is its own scale, such as a length or a product of masses, is negligible only where it is 0
+            whole = scale is size or is_own_scale(guard.denominator, scale)
+            limit = graph.zero if whole else self._limit(guard, scale)
             # a model's own tolerance may be far above rounding
             vanishes = guard.degree == 2 and _own_tolerance(self._mechanics, guard) is None
             self._known[guard] = Test(guard.status, size, limit, first, vanishes)

@@ -15,6 +15,7 @@ from typing import TypeAlias
 from symgen.mechanics.genericity import Genericity, genericity
 from symgen.mechanics.system import System
 from symgen.methods.admission import FAILS, Validity
+from symgen.methods.driven_blocks import where_inputs_act
 from symgen.methods.forward_dynamics.minor_motion import CANCELLATION_WORTH
 from symgen.methods.graphs import derived_on
 from symgen.methods.method import INPUTS, Candidate, solved_for_u
@@ -68,13 +69,24 @@ class Methods:
         """A quantity by the method of a name, or why this system does not have it."""
         key = quantity, name
         if key not in self._candidates:
-            made = method(quantity, name).build(self.workspace, quantity)
+            made = method(quantity, name).build(self._workspace(quantity, name), quantity)
             self._candidates[key] = made if isinstance(made, str) else replace(made, method=name)
         return self._candidates[key]
 
     def validity(self, candidate: Candidate, first_only: bool = False) -> Validity:
         """Whether a candidate may be chosen by itself."""
-        return method(candidate.derived.name, candidate.method).validity(self.workspace, candidate, first_only)
+        quantity, name = candidate.derived.name, candidate.method
+        return method(quantity, name).validity(self._workspace(quantity, name), candidate, first_only)
+
+    @cached_property
+    def _of_inputs(self) -> Workspace:
+        driven = where_inputs_act(self.workspace.model, self.workspace.generic)
+        return self.workspace if driven is None else Workspace(*driven)
+
+    def _workspace(self, quantity: str, name: str) -> Workspace:
+        """Of u without the rows that it does not depend on; what is compared with it has all of them."""
+        compared = any(row.name == name and row.use is Use.COMPARISON for row in methods(quantity))
+        return self._of_inputs if quantity == INPUTS and not compared else self.workspace
 
     def choose(self, quantity: str, name: str = AUTO) -> tuple[Candidate, MethodChoice] | str:
         """The method asked for, or the cheapest valid one; why there is none by that name."""
@@ -173,10 +185,10 @@ class Methods:
         Minors of rows that depend on each other become small together: multiplied out, their squares would cancel.
         The other methods have nothing to cancel that their steps have left.
         """
-        generic, minor = self.workspace.generic, self.candidate(INPUTS, "minor")
+        generic, minor = self._of_inputs.generic, self.candidate(INPUTS, "minor")
         if generic.rank < generic.r or isinstance(minor, str) or not 0 < minor.weight <= _factoring_limit(best):
             return None
-        along = self.workspace.minor
+        along = self._of_inputs.minor
         kept = frozenset[Scalar]() if isinstance(along, str) else along.whole_for_inputs
         outputs = minor.system.mechanics.factoring.shorten(minor.derived.outputs, kept)
         return replace(solved_for_u(minor.system, outputs, minor.derived.guards), method="minor", along=FACTORED)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from symgen.cli.main import main
-from symgen.ir.kernel import UNIT_ROUNDOFF, Status
+from symgen.ir.kernel import UNIT_ROUNDOFF, Literal, Status
 from symgen.linear_algebra.constrained_inverse import diagonal_sizes
 from symgen.linear_algebra.guards import Guard, magnitude, multiplied
 from symgen.linear_algebra.null_spaces import HouseholderSpace, MinorSpace
@@ -72,6 +72,16 @@ inputs:
 outputs: [inverse_dynamics]
 """
 
+
+SLEDGE = """
+model: sledge
+parameters: {m: {value: 2}, J: {value: 0.3}}
+coordinates: {heading: {unit: rad}, x: {unit: m}, y: {unit: m}}
+kinetic_energy: J/2*heading_dot**2 + m/2*(x_dot**2 + y_dot**2)
+constraints: {nonholonomic: {edge: sin(heading)*x_dot - cos(heading)*y_dot}}
+inputs: {push: {unit: N, acts_on: {x: cos(heading), y: sin(heading)}}}
+outputs: [forward_dynamics]
+"""
 
 # coupled by a parameter: beyond the root of the product of both inertias no energy is positive
 COUPLED = """
@@ -190,6 +200,20 @@ def test_inertias_are_measured_by_themselves() -> None:
     (size,) = diagonal_sizes(mechanics.graph, ((nothing * nothing,),))
     tiny = Evaluator([nothing * nothing / size])({"m_tool": 1.0, "a": 1e-12})
     assert tiny[0] < 8 * float(SINGLE)
+
+
+def test_a_product_of_masses_is_lost_only_where_one_is_0() -> None:
+    """It is as large as its factors are, so that there is no sum to hold it against."""
+    asked = "forward_dynamics"
+    selection = derive_quantities(load_text(SLEDGE, "sledge.yaml"), [asked], {asked: "minor"})
+    program = schedule(selection.mechanics, selection.quantities, ("float64",))["float64"]
+    (kernel,) = (one for one in program.kernels if one.name == asked)
+    checks = [check for block in kernel.blocks for check in block.checks if check.status is Status.MASS_RANK]
+    assert [check.limit for check in checks] == [Literal(Fraction(0))]
+    masses = [(2.0, 0.3), (1e-9, 1e9), (-2.0, 0.3), (0.0, 0.3), (2.0, 0.0)]
+    states = [State((0.1, 0.7, 0.2), (0.3, 0.2, 0.1), (), (1.0,), given) for given in masses]
+    found = [one.status for one in outcomes(kernel, program.sincos, "float64", states)]
+    assert found == [Status.OK] * 3 + [Status.MASS_RANK] * 2
 
 
 def test_pivots_of_a_mass_matrix_below_0_are_lost() -> None:

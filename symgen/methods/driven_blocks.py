@@ -1,0 +1,47 @@
+"""The part of a system that u depends on where inputs span less than the motions: blocks of rows in which one acts.
+
+N_B is made of a projector for each block of rows that share no coordinate.  Where no input acts on the coordinates of a
+block, the rows of M~ = N_B M there are 0, and u = M~^+ tau neither sees its forces nor depends on its rank.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from symgen.linear_algebra.blocks import components
+from symgen.mechanics.genericity import Genericity, configurations, rank
+from symgen.mechanics.system import System
+from symgen.model.model import Model
+from symgen.symbolic.evaluate import Evaluator
+
+
+def where_inputs_act(model: Model, generic: Genericity) -> tuple[Model, Genericity] | None:
+    """The system without the rows of other blocks; None where there are none, or its ranks there are in doubt.
+
+    Inputs that span all motions leave no direction open: their methods need the rows.
+    """
+    if generic.full_actuation or not generic.r:
+        return None
+    mechanics = System(model)
+    b = mechanics.constraint_jacobian
+    acted_on = {j for column in mechanics.inputs for j, entry in enumerate(column) if not entry.is_zero}
+    kept = sorted(i for part in components(b) if not acted_on.isdisjoint(part.columns) for i in part.rows)
+    if len(kept) == generic.r:
+        return None
+    rows = [model.constraints[i] for i in kept]
+    geometric = sum(row.kind == "geometric" for row in rows)  # the first ones
+    evaluate, n = Evaluator([entry for i in kept for entry in b[i]]), mechanics.n
+    found = set[tuple[int | None, int | None]]()
+    for point in configurations(mechanics):
+        values = evaluate(point)
+        at = [values[k * n : (k + 1) * n] for k in range(len(kept))]
+        found.add((rank(at), rank(at[:geometric])))
+    if len(found) != 1:
+        return None
+    ((of_all, of_geometric),) = found
+    if of_all is None or of_geometric is None:
+        return None
+    touched = {j for i in kept for j, entry in enumerate(b[i]) if not entry.is_zero}
+    locked = tuple(j for j in generic.locked if j in touched)
+    smaller = replace(generic, r=len(kept), rank=of_all, geometric_rank=of_geometric, locked=locked)
+    return replace(model, constraints=tuple(rows), row_units=()), smaller
