@@ -491,3 +491,33 @@ outputs: [forward_dynamics]
     assert c == 0.0
     assert abs(a - b) < 1e-22
     assert 2e-9 < a < 8e-9
+
+
+def test_rows_that_all_but_vanish_are_a_reason_for_a_status() -> None:
+    """1e-7 off a flat pose rows are 1e-7 as long as elsewhere: float32 may refuse them, float64 may not at 0.01."""
+    text = """model: cranks
+coordinates: {a: {}, b: {}, c: {}}
+kinetic_energy: (a_dot**2 + b_dot**2 + c_dot**2)/2
+constraints:
+  geometric:
+    along: 0.67*cos(a) + cos(c) - 1 - 0.67*cos(b)
+    across: 0.67*sin(a) + sin(c) - 0.67*sin(b)
+inputs: {u: {acts_on: {a: 1}}}
+outputs: [forward_dynamics]
+"""
+    witness = Witness(text, {"a": -0.61, "b": -0.61, "c": 0.0})
+    walker, defaults = witness.walker(), witness.defaults()
+    _, ranks = walker.states(defaults, 6)
+    assert ranks.lengths[0] > 0.1
+
+    def refused(a: float, scalar: str) -> bool:
+        """Whether a status there is false."""
+        target = Target("made up", scalar, ("forward_dynamics",), (), lambda *_: Answer(2, ()))
+        state = walker.state(walker.refined(np.array([a, a, 0.0]), defaults), defaults)
+        judged = witness.compare(target, "forward_dynamics", state, ranks)
+        assert judged is not None
+        assert judged.clear > 0.1
+        return judged.certain
+
+    assert [refused(a, "float32") for a in (1e-7, 0.01, 0.5)] == [False, False, True]
+    assert [refused(a, "float64") for a in (1e-7, 0.01, 0.5)] == [False, True, True]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from symgen.laboratory.zoo.dice import Dice
-from symgen.laboratory.zoo.witness.kkt import EquationValues, GenericRanks, distances
+from symgen.laboratory.zoo.witness.kkt import GenericRanks, distances
 from symgen.laboratory.zoo.witness.linear import NOTHING
 from symgen.laboratory.zoo.witness.states import FURTHEST, Walker, null_space
 
@@ -35,7 +35,7 @@ class Approach:
     ) -> None:
         self._walker, self._parameters, self._ranks = walker, parameters, ranks
         self._scattered = scattered
-        self._usual = np.max([self._lengths(walker.numbers(q, parameters)) for q in scattered], axis=0, initial=0.0)
+        self._usual = np.max([walker.lengths(walker.numbers(q, parameters)) for q in scattered], axis=0, initial=0.0)
 
     def distance(self, kind: str, q: Any) -> float | None:
         """How far rows, inputs or masses are from a drop of rank; None where there are none of the kind."""
@@ -43,15 +43,11 @@ class Approach:
             at = self._walker.numbers(q, self._parameters)
             if kind == LENGTHS:
                 held = self._usual > NOTHING
-                return float((self._lengths(at)[held] / self._usual[held]).min()) if held.any() else None
+                return float((self._walker.lengths(at)[held] / self._usual[held]).min()) if held.any() else None
             return distances(at, self._ranks, 1.0).get(kind)
         except (ValueError, OverflowError, ZeroDivisionError):
             # beyond the edge of what the expressions are defined for
             return None
-
-    @staticmethod
-    def _lengths(at: EquationValues) -> Any:
-        return np.linalg.norm(np.array(at.rows, dtype=float).reshape(-1, at.n), axis=1)
 
     def nearest(self, kind: str, count: int) -> list[Any]:
         """Those of the scattered configurations from which the way is shortest."""

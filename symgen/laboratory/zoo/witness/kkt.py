@@ -29,10 +29,11 @@ from symgen.laboratory.zoo.witness.tape import FileNumber, NodeProgram
 
 @dataclass(frozen=True)
 class GenericRanks:
-    """Generic ranks: of the constraints, and of the inputs on what they leave free."""
+    """Generic ranks: of the constraints, and of the inputs on what they leave free; and usual `lengths` of rows."""
 
     constraints: int
     actuation: int
+    lengths: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -112,7 +112,9 @@ class Walker:
     def _regular(self, points: list[Any], parameters: Mapping[str, float]) -> tuple[GenericRanks, list[Any]]:
         """The largest ranks of all, and the configurations that have them by far."""
         values = [self.numbers(q, parameters) for q in points]
-        ranks = GenericRanks(max(map(self._rank, values), default=0), max(map(self._reached, values), default=0))
+        lengths = np.max([self.lengths(at) for at in values], axis=0, initial=0.0) if values else ()
+        of_rows, of_inputs = (max(map(rank, values), default=0) for rank in (self._rank, self._reached))
+        ranks = GenericRanks(of_rows, of_inputs, tuple(map(float, lengths)))
         regular = [
             q
             for q, at in zip(points, values, strict=True)
@@ -286,6 +288,11 @@ class Walker:
     def _free(self, q: Any, parameters: Mapping[str, float]) -> Any:
         at = self.numbers(q, parameters)
         return null_space(at)
+
+    @staticmethod
+    def lengths(at: EquationValues) -> Any:
+        """The length of each row."""
+        return np.linalg.norm(np.array(at.rows, dtype=float).reshape(-1, at.n), axis=1)
 
     @staticmethod
     def _rank(at: EquationValues, threshold: float = SAME) -> int:

@@ -26,6 +26,7 @@ from symgen.laboratory.zoo.witness.kkt import (
     motion,
     split,
 )
+from symgen.laboratory.zoo.witness.linear import NOTHING
 from symgen.laboratory.zoo.witness.mechanics import equations
 from symgen.laboratory.zoo.witness.pinocchio_answers import COMPARED, PinocchioAnswers
 from symgen.laboratory.zoo.witness.pinocchio_trees import SAME, disagreement, tree_of
@@ -266,7 +267,8 @@ class Witness:
             answer = target.call(quantity, self._at_runtime(given), len(truth.value))
             exact = [float(x.mid()) for x in truth.value]
             if answer.status:
-                certain = truth.clear > CERTAIN[scalar] and all(abs(x) < LARGEST[scalar] for x in exact)
+                certain = min(truth.clear, self._shortest_row(given, ranks)) > CERTAIN[scalar]
+                certain = certain and all(abs(x) < LARGEST[scalar] for x in exact)
                 if quantity == "inverse_dynamics" and ranks.actuation < self._spanned:
                     # the branch that was drawn is told to be one on which inputs lose rank
                     certain = answer.status != ACTUATION_RANK
@@ -274,6 +276,15 @@ class Witness:
             units = self._units(answer, truth, quantity, given, ranks, EPS[scalar])
         apart = _norm([a - b for a, b in zip(answer.value, exact, strict=True)])
         return JudgedResult(0, units, apart / (_norm(exact) or 1.0), truth.clear, False)
+
+    def _shortest_row(self, state: FloatState, ranks: GenericRanks) -> float:
+        """The least length of a row beside its usual one: rows that all but vanish are a reason for a status."""
+        names = (*self._system.coordinates, *self._system.rate_names)
+        values = dict(zip(names, (*state.q, *state.qd), strict=True))
+        values |= dict(zip((*self._system.parameters, *self._allocation()), state.parameters, strict=True))
+        rows = self._evaluate(values, Floats()).rows
+        pairs = zip(rows, ranks.lengths, strict=bool(ranks.lengths))
+        return min((_norm(row) / usual for row, usual in pairs if usual > NOTHING), default=1.0)
 
     def unit(self, quantity: str, state: FloatState, ranks: GenericRanks, scalar: str) -> float:
         """The most that roundings of the inputs change a result, as a share of it; infinite where there is none."""
