@@ -17,14 +17,14 @@ ROOT = Path(__file__).parent.parent
 
 @pytest.mark.slow
 def test_the_reference_is_built_without_a_warning(tmp_path: Path) -> None:
-    packages = ["symgen", "symgen.symbolic.matrix", "symgen.laboratory.bench.peers.symforce_engine"]
+    packages = ["symgen", "symgen.symbolic.matrix", "symgen.laboratory.bench.peers.engines.symforce_engine"]
     command = [sys.executable, "tools/api_reference.py", str(tmp_path), *packages]
     result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
     for page, text in (
         ("symgen", "gives a model's quantities as SymPy matrices"),
         ("symgen/symbolic/matrix", "zeros cost nothing because"),
-        ("symgen/laboratory/bench/peers/symforce_engine", "SymForce's exact π."),
+        ("symgen/laboratory/bench/peers/engines/symforce_engine", "SymForce's exact π."),
     ):
         written = (tmp_path / f"{page}.html").read_text(encoding="utf-8")
         assert text in written

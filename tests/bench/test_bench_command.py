@@ -13,7 +13,7 @@ from symgen.cli.main import main
 from symgen.laboratory.bench import batch, build, callgrind, command, run
 from symgen.laboratory.bench.candidate import CCandidate, CUnit
 from symgen.laboratory.bench.peers import roster
-from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine
+from symgen.laboratory.bench.peers.engines.casadi_engine import CasadiEngine
 from symgen.laboratory.bench.reporting import charts
 
 SKATE = str(ROOT / "models" / "skate.yaml")

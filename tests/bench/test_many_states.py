@@ -17,10 +17,10 @@ import shipped
 from symgen.laboratory.bench import batch
 from symgen.laboratory.bench.batch import Many, many_states
 from symgen.laboratory.bench.candidate import CCandidate, Task, straight_candidate
-from symgen.laboratory.bench.peers.casadi_ssa import CasadiSsaEngine
-from symgen.laboratory.bench.peers.mechanics import mechanics
-from symgen.laboratory.bench.peers.methods import lean
-from symgen.laboratory.bench.peers.straight import LOOP_FLAGS
+from symgen.laboratory.bench.peers.engines.casadi_ssa import CasadiSsaEngine
+from symgen.laboratory.bench.peers.engines.straight import LOOP_FLAGS
+from symgen.laboratory.bench.peers.formulas.mechanics import mechanics
+from symgen.laboratory.bench.peers.formulas.methods import lean
 from symgen.laboratory.bench.reporting.batch_pages import many_lines, many_section
 from symgen.laboratory.bench.symgen_kernels import programs_of, symgen_candidates
 from symgen.laboratory.bench.workload import Workload

@@ -16,14 +16,14 @@ from shipped import ROOT, model
 from symgen.laboratory.bench import build as build_module
 from symgen.laboratory.bench import mechanisms
 from symgen.laboratory.bench.mechanisms import drawn_states, mechanism_benchmark
-from symgen.laboratory.bench.peers.articulated import forward_dynamics
-from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine
-from symgen.laboratory.bench.peers.frames import lagrange_by_frames, mechanics_by_frames
-from symgen.laboratory.bench.peers.mechanics import PeerSystem, mechanics
-from symgen.laboratory.bench.peers.native import direct_balance
+from symgen.laboratory.bench.peers.engines.casadi_engine import CasadiEngine
+from symgen.laboratory.bench.peers.engines.ssa_engine import SsaEngine
+from symgen.laboratory.bench.peers.formulas.articulated import forward_dynamics
+from symgen.laboratory.bench.peers.formulas.frames import lagrange_by_frames, mechanics_by_frames
+from symgen.laboratory.bench.peers.formulas.mechanics import PeerSystem, mechanics
+from symgen.laboratory.bench.peers.formulas.native import direct_balance
+from symgen.laboratory.bench.peers.formulas.recursion import mechanics_by_recursion
 from symgen.laboratory.bench.peers.pinocchio_program import pinocchio_time, tree_text
-from symgen.laboratory.bench.peers.recursion import mechanics_by_recursion
-from symgen.laboratory.bench.peers.ssa_engine import SsaEngine
 from symgen.laboratory.bench.reporting import mechanism_pages
 from symgen.laboratory.bench.reporting.goals import AS_WRITTEN, Goal
 from symgen.laboratory.bench.reporting.mechanism_goals import CHEAPEST_WRITTEN, EARLY_COUNTS, GOALS, MECHANISMS

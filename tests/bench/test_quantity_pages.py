@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from symgen.laboratory.bench.peers.matrices import matrix_of
+from symgen.laboratory.bench.peers.formulas.matrices import matrix_of
 from symgen.laboratory.bench.reporting.quantity_pages import quantity_section
 from symgen.laboratory.bench.run import MATRICES
 

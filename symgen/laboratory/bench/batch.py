@@ -19,7 +19,7 @@ from symgen.backends.render import render
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.laboratory.bench.build import compile_candidate, gcc
 from symgen.laboratory.bench.candidate import CCandidate, Task
-from symgen.laboratory.bench.peers.straight import LOOP_FLAGS
+from symgen.laboratory.bench.peers.engines.straight import LOOP_FLAGS
 from symgen.laboratory.bench.workload import Workload
 from symgen.model.model import Model
 from symgen.verify.running.python_module import PythonModule

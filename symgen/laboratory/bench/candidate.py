@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias
 
 from symgen.ir.kernel import Scalar
-from symgen.laboratory.bench.peers.straight import StraightLines
+from symgen.laboratory.bench.peers.engines.straight import StraightLines
 
 Third: TypeAlias = Literal["qdd", "u"]
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 import casadi
 
 from symgen.laboratory.bench.candidate import CUnit
-from symgen.laboratory.bench.peers.casadi_engine import generated
-from symgen.laboratory.bench.peers.native import user_matrices
+from symgen.laboratory.bench.peers.engines.casadi_engine import generated
+from symgen.laboratory.bench.peers.formulas.native import user_matrices
 from symgen.model.model import Model
 from symgen.witness.lagrange import Lagrange
 

@@ -7,18 +7,18 @@ from importlib.util import find_spec
 from typing import Any, TypeAlias
 
 from symgen.laboratory.bench.candidate import CCandidate, CUnit, straight_candidate
-from symgen.laboratory.bench.peers import native
-from symgen.laboratory.bench.peers.algebra import DeadPivotError, ldl_solve
-from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine, array_adaptor, generated
-from symgen.laboratory.bench.peers.casadi_ssa import CasadiSsaEngine
-from symgen.laboratory.bench.peers.engine import Engine, Symbol
-from symgen.laboratory.bench.peers.expert import free_multipliers, independent_coordinates
-from symgen.laboratory.bench.peers.frames import lagrange_by_frames, mechanics_by_frames
+from symgen.laboratory.bench.peers.engines.casadi_engine import CasadiEngine, array_adaptor, generated
+from symgen.laboratory.bench.peers.engines.casadi_ssa import CasadiSsaEngine
+from symgen.laboratory.bench.peers.engines.engine import Engine, Symbol
+from symgen.laboratory.bench.peers.engines.ssa_engine import SsaEngine
+from symgen.laboratory.bench.peers.formulas import native
+from symgen.laboratory.bench.peers.formulas.algebra import DeadPivotError, ldl_solve
+from symgen.laboratory.bench.peers.formulas.expert import free_multipliers, independent_coordinates
+from symgen.laboratory.bench.peers.formulas.frames import lagrange_by_frames, mechanics_by_frames
+from symgen.laboratory.bench.peers.formulas.mechanics import PeerSystem, mechanics
+from symgen.laboratory.bench.peers.formulas.methods import elimination, lean, part, selected_rows
+from symgen.laboratory.bench.peers.formulas.recursion import is_recursive, mechanics_by_recursion
 from symgen.laboratory.bench.peers.householder import householder_units
-from symgen.laboratory.bench.peers.mechanics import PeerSystem, mechanics
-from symgen.laboratory.bench.peers.methods import elimination, lean, part, selected_rows
-from symgen.laboratory.bench.peers.recursion import is_recursive, mechanics_by_recursion
-from symgen.laboratory.bench.peers.ssa_engine import SsaEngine
 from symgen.model.mechanism import WORLD
 from symgen.model.model import Model
 from symgen.witness.lagrange import Lagrange, differentiate
@@ -78,13 +78,13 @@ def _depth(model: Model) -> int:
 
 
 def _others(left_out: list[tuple[str, str]]) -> list[type[Engine]]:
-    from symgen.laboratory.bench.peers.sympy_engine import SympyEngine
+    from symgen.laboratory.bench.peers.engines.sympy_engine import SympyEngine
 
     found: list[type[Engine]] = [SympyEngine]
     if find_spec("wrenfold") is None:
         left_out.append(("wrenfold", "not installed"))
     else:
-        from symgen.laboratory.bench.peers.wrenfold_engine import WrenfoldEngine
+        from symgen.laboratory.bench.peers.engines.wrenfold_engine import WrenfoldEngine
 
         found.append(WrenfoldEngine)
     return found

@@ -8,9 +8,9 @@ from importlib.util import find_spec
 from typing import Any, TypeAlias
 
 from symgen.laboratory.bench.candidate import CCandidate, CUnit, PythonCandidate, Task, adaptor, straight_candidate
-from symgen.laboratory.bench.peers.engine import Engine, Symbol
-from symgen.laboratory.bench.peers.mechanics import PeerSystem
-from symgen.laboratory.bench.peers.recursion import is_recursive
+from symgen.laboratory.bench.peers.engines.engine import Engine, Symbol
+from symgen.laboratory.bench.peers.formulas.mechanics import PeerSystem
+from symgen.laboratory.bench.peers.formulas.recursion import is_recursive
 from symgen.model.model import Model
 from symgen.model.quantities import ROWS
 from symgen.witness.lagrange import Lagrange, differentiate
@@ -58,9 +58,9 @@ def peers(model: Model, task: Task, states: Any) -> Peers:
 
 
 def _of_matrix(model: Model, s: Lagrange, states: Any, task: Task) -> Peers:
-    from symgen.laboratory.bench.peers.casadi_ssa import CasadiSsaEngine
-    from symgen.laboratory.bench.peers.expert import independent_of_motion
-    from symgen.laboratory.bench.peers.matrices import BY_BASIS, BY_ROWS, matrix_of
+    from symgen.laboratory.bench.peers.engines.casadi_ssa import CasadiSsaEngine
+    from symgen.laboratory.bench.peers.formulas.expert import independent_of_motion
+    from symgen.laboratory.bench.peers.formulas.matrices import BY_BASIS, BY_ROWS, matrix_of
 
     if not model.r and task.quantity in BY_ROWS:
         return Peers((), (("peers", "there are no constraints"),))
@@ -84,10 +84,10 @@ def _motions(
     model: Model, s: Lagrange, states: Any, task: Task
 ) -> tuple[list[CCandidate], list[tuple[str, str]]]:
     """q_ddot or lambda by an expert's methods, without those that divide by a mass that is not there."""
-    from symgen.laboratory.bench.peers.algebra import DeadPivotError
-    from symgen.laboratory.bench.peers.casadi_ssa import CasadiSsaEngine
-    from symgen.laboratory.bench.peers.expert import independent_of_motion
-    from symgen.laboratory.bench.peers.motions import MotionSystem, along_null_space, motion_system, schur
+    from symgen.laboratory.bench.peers.engines.casadi_ssa import CasadiSsaEngine
+    from symgen.laboratory.bench.peers.formulas.algebra import DeadPivotError
+    from symgen.laboratory.bench.peers.formulas.expert import independent_of_motion
+    from symgen.laboratory.bench.peers.formulas.motions import MotionSystem, along_null_space, motion_system, schur
 
     def in_lines(
         name: str, method: Callable[[Engine, MotionSystem], tuple[list[Symbol], list[Symbol]]]
@@ -117,9 +117,9 @@ def _motions(
 
 
 def _articulated(model: Model) -> list[CCandidate]:
-    from symgen.laboratory.bench.peers.articulated import forward_dynamics
-    from symgen.laboratory.bench.peers.casadi_ssa import CasadiSsaEngine
-    from symgen.laboratory.bench.peers.ssa_engine import SsaEngine
+    from symgen.laboratory.bench.peers.engines.casadi_ssa import CasadiSsaEngine
+    from symgen.laboratory.bench.peers.engines.ssa_engine import SsaEngine
+    from symgen.laboratory.bench.peers.formulas.articulated import forward_dynamics
 
     found = []
     for engine in (CasadiSsaEngine(), SsaEngine()):
@@ -158,9 +158,9 @@ def in_single(candidate: CCandidate) -> CCandidate:
 
 
 def _methods(model: Model, s: Lagrange, states: Any) -> tuple[dict[str, Build], list[tuple[str, str]]]:
-    from symgen.laboratory.bench.peers.algebra import ldl_solve
-    from symgen.laboratory.bench.peers.expert import free_multipliers, independent_coordinates
-    from symgen.laboratory.bench.peers.methods import elimination, lean, part
+    from symgen.laboratory.bench.peers.formulas.algebra import ldl_solve
+    from symgen.laboratory.bench.peers.formulas.expert import free_multipliers, independent_coordinates
+    from symgen.laboratory.bench.peers.formulas.methods import elimination, lean, part
 
     methods: dict[str, Build] = {"lean": lean, "lean LDLᵀ": lambda engine, system: lean(engine, system, ldl_solve)}
     left_out = []
@@ -179,25 +179,25 @@ def _methods(model: Model, s: Lagrange, states: Any) -> tuple[dict[str, Build], 
 
 
 def _engines() -> list[type[Engine]]:
-    from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine
-    from symgen.laboratory.bench.peers.casadi_ssa import CasadiSsaEngine
-    from symgen.laboratory.bench.peers.sympy_engine import SympyEngine
+    from symgen.laboratory.bench.peers.engines.casadi_engine import CasadiEngine
+    from symgen.laboratory.bench.peers.engines.casadi_ssa import CasadiSsaEngine
+    from symgen.laboratory.bench.peers.engines.sympy_engine import SympyEngine
 
     found: list[type[Engine]] = [CasadiEngine, CasadiSsaEngine, SympyEngine]
     if find_spec("wrenfold") is not None:
-        from symgen.laboratory.bench.peers.wrenfold_engine import WrenfoldEngine
+        from symgen.laboratory.bench.peers.engines.wrenfold_engine import WrenfoldEngine
 
         found.append(WrenfoldEngine)
     if find_spec("symforce") is not None:
-        from symgen.laboratory.bench.peers.symforce_engine import SymforceEngine
+        from symgen.laboratory.bench.peers.engines.symforce_engine import SymforceEngine
 
         found.append(SymforceEngine)
     return found
 
 
 def _candidate(engine: Engine, model: Model, method: str, build: Build) -> CCandidate:
-    from symgen.laboratory.bench.peers.casadi_engine import array_adaptor
-    from symgen.laboratory.bench.peers.mechanics import mechanics
+    from symgen.laboratory.bench.peers.engines.casadi_engine import array_adaptor
+    from symgen.laboratory.bench.peers.formulas.mechanics import mechanics
 
     entry = f"{engine.tool.lower()}_{method}_float64".replace(" LDLᵀ", "_ldl").replace(" ", "_")
     name = f"function_of_{entry}"
@@ -214,7 +214,7 @@ def _candidate(engine: Engine, model: Model, method: str, build: Build) -> CCand
 
 
 def _native_value(model: Model, s: Lagrange, task: Task) -> Any:
-    from symgen.laboratory.bench.peers import native
+    from symgen.laboratory.bench.peers.formulas import native
 
     if task.quantity == "inverse_dynamics":
         return native.inverse_dynamics(model, s)
@@ -222,7 +222,7 @@ def _native_value(model: Model, s: Lagrange, task: Task) -> Any:
 
 
 def _native_in_lines(model: Model, s: Lagrange, task: Task) -> CCandidate:
-    from symgen.laboratory.bench.peers.casadi_ssa import CasadiSsaEngine, straight_lines
+    from symgen.laboratory.bench.peers.engines.casadi_ssa import CasadiSsaEngine, straight_lines
 
     third = s.qdd if task.third == "qdd" else s.u
     arrays = {"q": s.q, "qd": s.qd, task.third: third, "p": s.p}
@@ -231,7 +231,7 @@ def _native_in_lines(model: Model, s: Lagrange, task: Task) -> CCandidate:
 
 
 def _native(model: Model, s: Lagrange, task: Task, name: str = "native") -> CCandidate:
-    from symgen.laboratory.bench.peers.casadi_engine import array_adaptor, generated
+    from symgen.laboratory.bench.peers.engines.casadi_engine import array_adaptor, generated
 
     entry = f"casadi_{name}_float64"
     name = f"casadi_{name}_function_float64"

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, TypeAlias
 
 from symgen.laboratory.bench.batch import CACHED, FLAGS, LANES, LOOP, STREAMED, Many
-from symgen.laboratory.bench.peers.straight import LOOP_FLAGS
+from symgen.laboratory.bench.peers.engines.straight import LOOP_FLAGS
 from symgen.terminal import columns
 
 Row: TypeAlias = Mapping[str, Any]

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 from wrenfold import code_generation, enumerations, sym, type_info
 
-from symgen.laboratory.bench.peers.engine import Engine, Inputs, Symbol
+from symgen.laboratory.bench.peers.engines.engine import Engine, Inputs, Symbol
 
 REAL = enumerations.NumberSet.Real
 _tool: Any = code_generation

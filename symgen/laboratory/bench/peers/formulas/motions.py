@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from symgen.laboratory.bench.peers.algebra import (
+from symgen.laboratory.bench.peers.engines.engine import Engine, Inputs, Matrix, Symbol
+from symgen.laboratory.bench.peers.formulas.algebra import (
     dot,
     eliminate,
     ldl_solve,
@@ -21,8 +22,7 @@ from symgen.laboratory.bench.peers.algebra import (
     transposed,
     zero,
 )
-from symgen.laboratory.bench.peers.engine import Engine, Inputs, Matrix, Symbol
-from symgen.laboratory.bench.peers.frames import written
+from symgen.laboratory.bench.peers.formulas.frames import written
 from symgen.model.model import Model
 
 

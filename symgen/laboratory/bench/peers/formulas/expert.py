@@ -13,12 +13,12 @@ from typing import Any
 
 import casadi
 
-from symgen.laboratory.bench.peers.algebra import DeadPivotError
-from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine
-from symgen.laboratory.bench.peers.engine import Symbol
-from symgen.laboratory.bench.peers.mechanics import PeerSystem, mechanics
-from symgen.laboratory.bench.peers.methods import elimination, part, selected_rows
-from symgen.laboratory.bench.peers.motions import along_null_space, motion_system
+from symgen.laboratory.bench.peers.engines.casadi_engine import CasadiEngine
+from symgen.laboratory.bench.peers.engines.engine import Symbol
+from symgen.laboratory.bench.peers.formulas.algebra import DeadPivotError
+from symgen.laboratory.bench.peers.formulas.mechanics import PeerSystem, mechanics
+from symgen.laboratory.bench.peers.formulas.methods import elimination, part, selected_rows
+from symgen.laboratory.bench.peers.formulas.motions import along_null_space, motion_system
 from symgen.model.model import Model
 from symgen.witness.lagrange import Lagrange
 

@@ -6,7 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import TypeAlias
 
-from symgen.laboratory.bench.peers.algebra import (
+from symgen.laboratory.bench.peers.engines.engine import Engine, Inputs, Matrix, Symbol
+from symgen.laboratory.bench.peers.formulas.algebra import (
     dot,
     eliminate,
     ldl_solve,
@@ -16,8 +17,7 @@ from symgen.laboratory.bench.peers.algebra import (
     total,
     transposed,
 )
-from symgen.laboratory.bench.peers.engine import Engine, Inputs, Matrix, Symbol
-from symgen.laboratory.bench.peers.frames import Written, written
+from symgen.laboratory.bench.peers.formulas.frames import Written, written
 from symgen.model.model import Model
 
 Outputs: TypeAlias = list[Symbol]

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import casadi
 
-from symgen.laboratory.bench.peers.engine import Engine, Inputs, Symbol
+from symgen.laboratory.bench.peers.engines.engine import Engine, Inputs, Symbol
 from symgen.witness.translate import power
 
 

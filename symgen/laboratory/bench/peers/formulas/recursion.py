@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from symgen.laboratory.bench.peers.algebra import total
-from symgen.laboratory.bench.peers.engine import Engine, Inputs, Symbol
-from symgen.laboratory.bench.peers.frames import Walk, applied_forces, control_matrix, walk
-from symgen.laboratory.bench.peers.mechanics import PeerSystem
+from symgen.laboratory.bench.peers.engines.engine import Engine, Inputs, Symbol
+from symgen.laboratory.bench.peers.formulas.algebra import total
+from symgen.laboratory.bench.peers.formulas.frames import Walk, applied_forces, control_matrix, walk
+from symgen.laboratory.bench.peers.formulas.mechanics import PeerSystem
 from symgen.model.expressions.expression import Expression, Number
 from symgen.model.kinematics.triples import Triple, transposed
 from symgen.model.mechanism import WORLD, Body, Frame

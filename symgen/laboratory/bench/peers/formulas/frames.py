@@ -15,10 +15,10 @@ from fractions import Fraction
 
 import casadi
 
-from symgen.laboratory.bench.peers.algebra import total
-from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine
-from symgen.laboratory.bench.peers.engine import Engine, Inputs, Matrix, Symbol, translate
-from symgen.laboratory.bench.peers.mechanics import PeerSystem
+from symgen.laboratory.bench.peers.engines.casadi_engine import CasadiEngine
+from symgen.laboratory.bench.peers.engines.engine import Engine, Inputs, Matrix, Symbol, translate
+from symgen.laboratory.bench.peers.formulas.algebra import total
+from symgen.laboratory.bench.peers.formulas.mechanics import PeerSystem
 from symgen.model.expressions.expression import Expression
 from symgen.model.kinematics.components import components_in, definitions_before_frames
 from symgen.model.kinematics.triples import applied, plus

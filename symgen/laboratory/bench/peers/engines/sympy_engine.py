@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import sympy
 from sympy.printing.c import C99CodePrinter
 
-from symgen.laboratory.bench.peers.engine import Engine, Inputs, Symbol
+from symgen.laboratory.bench.peers.engines.engine import Engine, Inputs, Symbol
 
 LARGEST_PRODUCT = 8
 ARRAY_ENTRY = re.compile(r"\b(qdd|qd|q|u|p)_(\d+)\b")

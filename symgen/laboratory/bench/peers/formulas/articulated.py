@@ -11,9 +11,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from symgen.laboratory.bench.peers.algebra import dot, ldl_solve, named, product, total, transposed
-from symgen.laboratory.bench.peers.engine import Engine, Inputs, Matrix, Symbol
-from symgen.laboratory.bench.peers.frames import applied_forces, control_matrix, walk
+from symgen.laboratory.bench.peers.engines.engine import Engine, Inputs, Matrix, Symbol
+from symgen.laboratory.bench.peers.formulas.algebra import dot, ldl_solve, named, product, total, transposed
+from symgen.laboratory.bench.peers.formulas.frames import applied_forces, control_matrix, walk
 from symgen.model.kinematics.triples import Triple
 from symgen.model.kinematics.triples import transposed as turned_back
 from symgen.model.mechanism import WORLD, Body, Frame

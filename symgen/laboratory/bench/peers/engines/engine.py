@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any, ClassVar, Protocol, TypeAlias
 
-from symgen.laboratory.bench.peers.straight import StraightLines
+from symgen.laboratory.bench.peers.engines.straight import StraightLines
 from symgen.model.expressions.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
 from symgen.model.model import Model
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 
-from symgen.laboratory.bench.peers.algebra import (
+from symgen.laboratory.bench.peers.engines.engine import Engine, Matrix, Symbol
+from symgen.laboratory.bench.peers.formulas.algebra import (
     cholesky_solve,
     dot,
     eliminate,
@@ -19,8 +20,7 @@ from symgen.laboratory.bench.peers.algebra import (
     product,
     transposed,
 )
-from symgen.laboratory.bench.peers.engine import Engine, Matrix, Symbol
-from symgen.laboratory.bench.peers.mechanics import PeerSystem
+from symgen.laboratory.bench.peers.formulas.mechanics import PeerSystem
 
 Solver = Callable[[Engine, Matrix, Matrix], Matrix]
 

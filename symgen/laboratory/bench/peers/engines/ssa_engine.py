@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import ClassVar
 
-from symgen.laboratory.bench.peers.engine import Engine, Inputs, Symbol
-from symgen.laboratory.bench.peers.straight import StraightLines, loaded, third_of
+from symgen.laboratory.bench.peers.engines.engine import Engine, Inputs, Symbol
+from symgen.laboratory.bench.peers.engines.straight import StraightLines, loaded, third_of
 
 _FOLDED: Mapping[str, Callable[[float, float], float]] = {
     "+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv,

@@ -11,7 +11,7 @@ import symforce.symbolic as sf
 from symforce.codegen import CppConfig, codegen_util
 from symforce.values import Values
 
-from symgen.laboratory.bench.peers.engine import Engine, Inputs, Symbol
+from symgen.laboratory.bench.peers.engines.engine import Engine, Inputs, Symbol
 
 ARRAY_ENTRY = re.compile(r"\b(qdd|qd|q|u|p)_(\d+)\b")
 SQUARE = re.compile(r"std::pow\((\w+), Scalar\(2\)\)")

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
-from symgen.laboratory.bench.peers.algebra import total
-from symgen.laboratory.bench.peers.engine import Engine, Inputs, Matrix, Symbol, scope_of, translate
+from symgen.laboratory.bench.peers.engines.engine import Engine, Inputs, Matrix, Symbol, scope_of, translate
+from symgen.laboratory.bench.peers.formulas.algebra import total
 from symgen.model.kinematics.energy_form import energy_form
 from symgen.model.model import Model
 

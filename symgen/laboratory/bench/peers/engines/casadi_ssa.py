@@ -12,10 +12,10 @@ from typing import Any, ClassVar
 
 import casadi
 
-from symgen.laboratory.bench.peers.algebra import DeadPivotError
-from symgen.laboratory.bench.peers.casadi_engine import CasadiEngine
-from symgen.laboratory.bench.peers.engine import Inputs, Symbol
-from symgen.laboratory.bench.peers.straight import StraightLines, loaded, third_of
+from symgen.laboratory.bench.peers.engines.casadi_engine import CasadiEngine
+from symgen.laboratory.bench.peers.engines.engine import Inputs, Symbol
+from symgen.laboratory.bench.peers.engines.straight import StraightLines, loaded, third_of
+from symgen.laboratory.bench.peers.formulas.algebra import DeadPivotError
 
 _WRITTEN: Mapping[int, str] = {
     casadi.OP_ASSIGN: "{0}",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
-from symgen.laboratory.bench.peers.engine import Engine, Matrix, Symbol
+from symgen.laboratory.bench.peers.engines.engine import Engine, Matrix, Symbol
 
 Row = Sequence[Symbol]
 

@@ -1,0 +1,1 @@
+"""What an expert writes down in a tool's scalars: forces, accelerations, multipliers, matrices."""
