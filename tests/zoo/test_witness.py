@@ -377,6 +377,21 @@ configuration: {a_0: 0, a_1: 0, a_2: 0, b: 0}
         assert walker.lack == ("" if expected else states.STUCK)
 
 
+def test_a_walk_whose_every_step_is_lost_at_a_singular_start_compares_nothing() -> None:
+    """The row holds to rounding where its gradient vanishes, and nowhere else, as that of a locked loop may."""
+    text = """model: speck
+coordinates: {a: {}, b: {}}
+kinetic_energy: (a_dot**2 + b_dot**2)/2
+constraints: {geometric: {speck: 1 - cos(a) + 1e-15}}
+outputs: [forward_dynamics]
+"""
+    witness = Witness(text, {"a": 0.0, "b": 0.4})
+    walker, defaults = witness.walker(), witness.defaults()
+    assert not walker.points(defaults, 8)
+    assert walker.states(defaults, 5)[0] == []
+    assert walker.lack == states.STUCK
+
+
 def test_a_number_that_is_0_to_all_digits_of_the_witness_is_right() -> None:
     """A wheel about its own centre of mass never speeds up; what balls leave of that is no truth to be missed."""
     text = """model: flywheel

@@ -141,13 +141,15 @@ class Walker:
         return points
 
     def _stuck(self, points: list[Any], parameters: Mapping[str, float]) -> bool:
-        """Whether the walk began where branches meet, rows all but vanish there, and every step led back.
+        """Whether the walk began where branches meet, rows all but vanish there, and every step led back or nowhere.
 
         Rounding gives such rows a rank, and nothing can be compared.
         """
-        if not points or np.ptp(np.array(points), axis=0).max() > DEPENDENT:
+        if points and np.ptp(np.array(points), axis=0).max() > DEPENDENT:
             return False
-        q = points[0]
+        q = points[0] if points else self.closed(self._start, parameters)
+        if q is None:
+            return False
         here, *beside = (
             np.linalg.norm(np.array(self.numbers(place, parameters).rows, dtype=float).reshape(-1, len(q)), axis=1)
             for place in (q, q + 0.3, q - 0.2)
