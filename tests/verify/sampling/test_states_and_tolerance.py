@@ -6,6 +6,7 @@ import struct
 from fractions import Fraction
 from itertools import pairwise
 from math import pi
+from typing import Any
 
 import pytest
 from flint import arb
@@ -19,7 +20,7 @@ from symgen.verify.reference.arithmetic.linear import column, norm
 from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.reference import Reference, State
 from symgen.verify.sampling.states import VerificationError, affordable_states, rounded, sample_states
-from symgen.verify.tolerance import expectations, perturbed
+from symgen.verify.tolerance import expectations, is_beyond, perturbed
 
 
 def test_states_satisfy_the_constraints_and_half_of_the_rates_do() -> None:
@@ -158,6 +159,33 @@ def test_error_unit_follows_condition_inputs_parameters_and_literals() -> None:
         found = expectations(reference, state, ["potential_force"], scalar, "seed")["potential_force"]
         assert found.size == pytest.approx(0.189, rel=1e-12)
         assert 2 * eps * found.size < found.unit < 6.01 * eps * found.size
+
+
+@pytest.mark.parametrize("units", [0.0, 0.5, 3.0, 15.9, 16.1, 40.0])
+def test_what_is_beyond_needs_no_more_changes_than_it_takes(units: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The verdict is that of all changes; what is right to the roundoff of the value asks for none."""
+    model = build("spring", "x", "x_dot**2/2", "3*k*x**3/3", parameters={"k": "0.7"})
+    reference = Reference(model)
+    state = State((0.3,), (0.1,), (0.2,), (), (0.7,))
+    found = expectations(reference, state, ["potential_force"], "float32", "seed")["potential_force"]
+    entries = [float(found.value[0, 0]) + units * found.unit]
+    evaluated = 0
+    matrices: Any = Reference.matrices
+
+    def counted(*given: Any) -> Any:
+        nonlocal evaluated
+        evaluated += 1
+        return matrices(*given)
+
+    monkeypatch.setattr(Reference, "matrices", counted)
+    assert is_beyond(reference, state, "potential_force", "float32", "seed", entries, 16.0) == (units > 16)
+    # the value itself, and up to eight changes
+    if units < 1:
+        assert evaluated == 1
+    elif units > 16:
+        assert evaluated == 9
+    else:
+        assert 1 <= evaluated <= 9
 
 
 def test_perturbations_move_every_number_by_eps() -> None:
