@@ -105,14 +105,36 @@ def _roots(total: Scalar) -> list[Scalar]:
     return roots
 
 
-def is_own_scale(denominator: Scalar, scale: Scalar) -> bool:
-    """Whether a denominator is as large as its scale wherever it is: what is multiplied alone is so."""
+def is_own_scale(denominator: Scalar, scale: Scalar | None) -> bool:
+    """Whether a denominator is as large as its scale, or D_max, wherever it is: then it is lost only where it is 0."""
     if scale is denominator:
         return True
-    if any(node.op in ("add", "sub", "sin", "cos") for node in topological([denominator])):
+    if not _loses_nothing(denominator):
         return False
-    (largest,) = magnitude(denominator.graph, [denominator])
-    return scale.value == largest.value
+    return scale is None or scale.value == magnitude(denominator.graph, [denominator])[0].value
+
+
+def _loses_nothing(scalar: Scalar) -> bool:
+    """Whether nothing cancels in it: products and quotients, and sums of what is never below 0."""
+    whole: dict[Scalar, bool] = {}
+    positive: dict[Scalar, bool] = {}
+    for node in topological([scalar]):
+        args = node.args
+        match node.op:
+            case "mul":
+                positive[node] = args[0] is args[1] or all(positive[x] for x in args)
+                whole[node] = all(whole[x] for x in args)
+            case "div":
+                positive[node], whole[node] = all(positive[x] for x in args), whole[args[0]]
+            case "add":
+                positive[node] = all(positive[x] for x in args)
+                whole[node] = positive[node] and all(whole[x] for x in args)
+            case "neg" | "abs" | "copysign" | "sqrt" | "rounded" as op:
+                positive[node], whole[node] = op in ("abs", "sqrt"), whole[args[0]]
+            case op:
+                positive[node] = node.constant is not None and node.constant > 0
+                whole[node] = op not in ("sub", "sin", "cos")
+    return whole[scalar]
 
 
 def magnitude(graph: Graph, outputs: Sequence[Scalar]) -> list[Scalar]:

@@ -81,21 +81,21 @@ class _GuardTests:
     def _test(self, guard: Guard) -> Test:
         if guard not in self._known:
             graph = self._mechanics.graph
-            scale = magnitude(graph, [guard.denominator])[0] if guard.scale is None else guard.scale
             signed = guard.degree == 1 and not guard.positive
             size = graph.function("abs", (guard.denominator,)) if signed else guard.denominator
             first = tuple(self.tests(guard.first))
             if all(cause.status is guard.status and not cause.first for cause in first):
                 first = ()  # nothing to tell apart
             # what is its own scale, such as a length or a product of masses, is negligible only where it is 0
-            whole = scale is size or is_own_scale(guard.denominator, scale)
-            limit = graph.zero if whole else self._limit(guard, scale)
+            whole = guard.scale is size or is_own_scale(guard.denominator, guard.scale)
+            limit = graph.zero if whole else self._limit(guard)
             # a model's own tolerance may be far above rounding
             vanishes = guard.degree == 2 and _own_tolerance(self._mechanics, guard) is None
             self._known[guard] = Test(guard.status, size, limit, first, vanishes)
         return self._known[guard]
 
-    def _limit(self, guard: Guard, scale: Node) -> Node:
+    def _limit(self, guard: Guard) -> Node:
+        scale = magnitude(self._mechanics.graph, [guard.denominator])[0] if guard.scale is None else guard.scale
         number = scale.args[0].constant if scale.op == "mul" else None
         if number is not None:
             scale = scale.args[1]

@@ -1,7 +1,8 @@
-"""The part of a system that u depends on where inputs span less than the motions: blocks of rows in which one acts.
+"""The part of a system that u depends on where inputs span less than the motions: blocks of rows that inputs load.
 
-N_B is made of a projector for each block of rows that share no coordinate.  Where no input acts on the coordinates of a
-block, the rows of M~ = N_B M there are 0, and u = M~^+ tau neither sees its forces nor depends on its rank.
+N_B is made of a projector for each block of rows that share no coordinate.  Where B M = 0 in a block, because no input
+acts on its coordinates or all work along its motions alone (torques and the length of a quaternion), N_B M = M there in
+every configuration, and u = M~^+ tau depends neither on the rows nor on their rank.
 """
 
 from __future__ import annotations
@@ -13,10 +14,11 @@ from symgen.mechanics.genericity import Genericity, configurations, rank
 from symgen.mechanics.system import System
 from symgen.model.model import Model
 from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.matrix import dot
 
 
 def where_inputs_act(model: Model, generic: Genericity) -> tuple[Model, Genericity] | None:
-    """The system without the rows of other blocks; None where there are none, or its ranks there are in doubt.
+    """The system without the rows of other blocks, None where there are none, or its ranks there are in doubt.
 
     Inputs that span all motions leave no direction open: their methods need the rows.
     """
@@ -24,8 +26,8 @@ def where_inputs_act(model: Model, generic: Genericity) -> tuple[Model, Generici
         return None
     mechanics = System(model)
     b = mechanics.constraint_jacobian
-    acted_on = {j for column in mechanics.inputs for j, entry in enumerate(column) if not entry.is_zero}
-    kept = sorted(i for part in components(b) if not acted_on.isdisjoint(part.columns) for i in part.rows)
+    loaded = {i for i, row in enumerate(b) if not all(dot(mechanics.graph, row, x).is_zero for x in mechanics.inputs)}
+    kept = sorted(i for part in components(b) if not loaded.isdisjoint(part.rows) for i in part.rows)
     if len(kept) == generic.r:
         return None
     rows = [model.constraints[i] for i in kept]

@@ -1,7 +1,8 @@
-"""u asks nothing of rows in whose coordinates no input acts, where inputs span less than the motions."""
+"""u asks nothing of rows that inputs do not load: of other coordinates, or of the length of a quaternion."""
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from symgen.generation.draft import draft_of
@@ -92,3 +93,64 @@ configuration: {b: 0.5}
 """
     model = load_text(text, "held.yaml")
     assert where_inputs_act(model, genericity(System(model))) is None
+
+
+# A hull that flies, driven along and about its own axes.
+HULL = """
+model: hull
+parameters: {{m: {{value: 2}}, J_x: {{value: 0.02}}, J_y: {{value: 0.03}}, J_z: {{value: 0.05}}}}
+gravity: [0, 0, -9.81]
+joints: {{hull: {{type: floating, coordinates: [x, y, z, e0, e1, e2, e3]}}}}
+bodies: {{hull: {{mass: m, inertia: {{xx: J_x, yy: J_y, zz: J_z}}}}}}
+points: {{c: {{frame: hull}}}}
+inputs:
+{forces}
+  roll: {{torque_on: hull, direction: [1, 0, 0], axes: hull}}
+  pitch: {{torque_on: hull, direction: [0, 1, 0], axes: hull}}
+  yaw: {{torque_on: hull, direction: [0, 0, 1], axes: hull}}
+outputs: [inverse_dynamics]
+"""
+THRUST = "  thrust: {point: c, direction: [0, 0, 1], axes: hull}"
+ALL_FORCES = "\n".join(
+    f"  {name}: {{point: c, direction: {axis}, axes: hull}}"
+    for name, axis in (("surge", [1, 0, 0]), ("sway", [0, 1, 0]), ("heave", [0, 0, 1]))
+)
+
+
+@pytest.mark.parametrize(("forces", "most"), [(THRUST, 150), (ALL_FORCES, 175)])
+def test_torques_on_a_flying_body_are_those_of_euler(forces: str, most: int) -> None:
+    """By Newton's and Euler's equations in body axes, whether the inputs span all motions or not."""
+    model = load_text(HULL.format(forces=forces), "hull.yaml")
+    program = draft_of(model, model.outputs, Options()).programs["float64"]
+    (kernel,) = program.kernels
+    assert len(kernel.statements) < most
+    dice = np.random.default_rng(3)
+    e, spin, turned, place = (dice.uniform(-1, 1, size) for size in (4, 3, 3, 3))
+    e /= np.linalg.norm(e)
+    w, x, y, z = e
+    to_rates = np.array([[-x, w, z, -y], [-y, -z, w, x], [-z, y, -x, w]]).T / 2
+    rates = to_rates @ spin
+    # e'' of a given angular acceleration: half of its product with e, and the length stays 1
+    rates_dot = to_rates @ turned - (spin @ spin) / 4 * e
+    axes = np.array([
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ])
+    inertia = np.array([0.02, 0.03, 0.05])
+    force = 2 * axes.T @ (place + np.array([0, 0, 9.81]))
+    torque = inertia * turned + np.cross(spin, inertia * spin)
+    state = State((0.1, 0.2, 0.3, *e), (0.4, 0.5, 0.6, *rates), (*place, *rates_dot), (), (2.0, *inertia))
+    (found,) = outcomes(kernel, program.sincos, "float64", [state])
+    assert found.status == Status.OK
+    assert found.entries == pytest.approx([*(force if forces == ALL_FORCES else force[2:]), *torque], rel=1e-12)
+
+
+def test_inputs_that_are_one_more_than_they_span_are_shared_by_their_norm() -> None:
+    """Two thrusters in a line: the inputs are not independent, so that the rows stay."""
+    text = HULL.format(forces=f"{THRUST}\n{THRUST.replace('thrust', 'booster')}")
+    model = load_text(text, "hull.yaml")
+    program = draft_of(model, model.outputs, Options()).programs["float64"]
+    state = State((0.0,) * 3 + (1.0,) + (0.0,) * 3, (0.0,) * 7, (0.0,) * 7, (), (2.0, 0.02, 0.03, 0.05))
+    (found,) = outcomes(program.kernels[0], program.sincos, "float64", [state])
+    assert found.entries == pytest.approx([9.81, 9.81, 0, 0, 0], abs=1e-12)

@@ -4,6 +4,9 @@ B q_dot = 0 is first reduced by steps that cannot fail (`rates`).  The small res
 rate.  Where one direction is left in a component, it is the cross product of its rows; where more are, some rates have
 to be solved for by Cramer's rule, and the basis fails where their determinant vanishes although the rest keeps its
 rank: that determinant is one of the method's pivots.
+
+Inputs that load no row, B M = 0 in every configuration, need no basis: N_B M = M, so that u = M^+ tau where they are
+independent of each other.
 """
 
 from __future__ import annotations
@@ -24,7 +27,7 @@ from symgen.methods.method import Candidate, Method, solved_for_u
 from symgen.methods.system import MethodInput
 from symgen.methods.workspace import Workspace
 from symgen.records import dataclass
-from symgen.symbolic.matrix import Matrix, Vector, identity, matmul, transpose
+from symgen.symbolic.matrix import Matrix, Vector, dot, identity, matmul, transpose
 from symgen.symbolic.polynomials.nested_factors import nested_factors
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import cost
@@ -52,15 +55,18 @@ class _NullVectors:
 
 def nullspace_candidate(system: MethodInput, allowed: Callable[[Scalar], bool]) -> Candidate | str:
     """u along the first choice of rates whose determinant is `allowed`, or along the first of all."""
-    reason = system.driven or system.regular
-    if reason is not None:
-        return reason
     graph, mechanics, generic = system.mechanics.graph, system.mechanics, system.generic
-    choices = list(islice(_bases(system), MOST_BASES))
-    if not choices:
-        return "too many constraint rows are left that no safe step solves"
-    basis = next((choice for choice in choices if all(map(allowed, choice.pivots))), choices[0])
-    w = transpose(basis.columns, generic.delta)
+    if _loads_nothing(system):
+        basis = _Basis(identity(graph, mechanics.n), (), ())
+    else:
+        reason = system.driven or system.regular
+        if reason is not None:
+            return reason
+        choices = list(islice(_bases(system), MOST_BASES))
+        if not choices:
+            return "too many constraint rows are left that no safe step solves"
+        basis = next((choice for choice in choices if all(map(allowed, choice.pivots))), choices[0])
+    w = transpose(basis.columns, len(basis.columns[0]))
     inputs = transpose(matmul(graph, w, mechanics.control_matrix, generic.m), generic.m)
     force = tuple(row[0] for row in matmul(graph, w, tuple((f,) for f in mechanics.balance), 1))
     regular = tuple(guard for part in basis.parts for guard in MinorSpace(graph, part, len(part[0]), len(part)).guards)
@@ -68,14 +74,14 @@ def nullspace_candidate(system: MethodInput, allowed: Callable[[Scalar], bool]) 
     guards: list[Guard] = []
     for directions, acting in _decoupled(inputs, system):
         columns = tuple(tuple(inputs[k][i] for i in directions) for k in acting)
-        degree = len(directions) if generic.full_actuation else generic.alpha
+        degree = min(len(directions), len(acting))
         if not small_family([[0]], columns, degree):
             return "the determinants of the inputs are too many"
         forms = ActuationForms(RowForms(graph, (), len(directions), 0), columns, degree)
         guards += _guards(system, forms, regular)
         for k, value in zip(acting, forms.solve(tuple(force[i] for i in directions)), strict=True):
             u[k] = value
-    made = solved_for_u(system, u, guards)
+    made = solved_for_u(system, u, dict.fromkeys(guards))
     pivots = tuple(pivot for pivot in basis.pivots if pivot not in made.divisors and pivot.constant is None)
     return replace(made, divisors=(*made.divisors, *pivots))
 
@@ -88,15 +94,30 @@ def _guards(system: MethodInput, forms: ActuationForms, regular: tuple[Guard, ..
         yield Guard(Status.ACTUATION_RANK, factor, degree, regular, directions=forms.degree)
 
 
+def _loads_nothing(system: MethodInput) -> bool:
+    """Whether inputs that are independent of each other do no work on any row, wherever the system is."""
+    mechanics, generic = system.mechanics, system.generic
+    if mechanics.model.allocation is not None or generic.m > generic.alpha or not generic.m:
+        return False
+    pairs = ((row, column) for row in mechanics.constraint_jacobian for column in mechanics.inputs)
+    return all(dot(mechanics.graph, row, column).is_zero for row, column in pairs)
+
+
 def _decoupled(inputs: Matrix, system: MethodInput) -> list[tuple[Sequence[int], Sequence[int]]]:
     """Directions and the inputs that act on them, in parts that have no input in common.
 
-    Of many independent parts the product of all determinants is small, however far each of them is from 0.
+    Of many independent parts the product of all determinants is small, however far each of them is from 0.  Inputs that
+    are independent of each other fall apart where they are orthogonal, others where they share no direction.
     """
-    generic = system.generic
-    if not generic.full_actuation:
-        return [(range(generic.delta), range(generic.m))]
-    return [(part.columns, part.rows) for part in components(inputs) if part.columns]
+    graph, generic = system.mechanics.graph, system.generic
+    if generic.m > generic.alpha:
+        return [(part.columns, part.rows) for part in components(inputs) if part.columns]
+    products = tuple(tuple(dot(graph, a, b) for b in inputs) for a in inputs)
+    found: list[tuple[Sequence[int], Sequence[int]]] = []
+    for part in components(products):
+        moved = {j for k in part.rows for j, entry in enumerate(inputs[k]) if not entry.is_zero}
+        found.append((sorted(moved), part.rows))
+    return found
 
 
 def _bases(system: MethodInput) -> Iterator[_Basis]:
@@ -176,4 +197,9 @@ def _nullspace(workspace: Workspace) -> Candidate | str:
     return nullspace_candidate(system, proof_for(system, workspace.minor_measures).shown)
 
 
-NULLSPACE: Method = OfInputs(_nullspace, least=least_of_basis)
+def _least(system: MethodInput) -> int:
+    """Nothing is known of what inputs that load no row take: forces along them may be those of bodies as they are."""
+    return 0 if _loads_nothing(system) else least_of_basis(system)
+
+
+NULLSPACE: Method = OfInputs(_nullspace, least=_least)
