@@ -15,6 +15,7 @@ from types import MappingProxyType
 
 from symgen.mechanics.bodies import Bodies, Vector3
 from symgen.mechanics.lumps import Lump, lumped_bodies
+from symgen.mechanics.quaternion_joints import quaternion_parts, turning_rate
 from symgen.model.kinematics.triples import Rows, applied, cross, inner, plus, transposed, triple
 from symgen.model.mechanism import WORLD, Body, Frame
 from symgen.symbolic.calculus import derivative_along, gradient
@@ -206,7 +207,7 @@ class _Recursion:
             linear = plus(linear, self._rates(joint.place_rate))
         acceleration = applied(inward, parent.acceleration)
         if self.moves:
-            acceleration = plus(acceleration, self._rates(joint.turning))
+            acceleration = plus(acceleration, self._turning_rate(name))
         if self.at_rest:
             return FrameMotion(self.none, acceleration, applied(inward, linear), _field(self.none, acceleration))
         linear = plus(linear, self._cross(parent.velocity, plus(joint.place_rate, joint.place_rate)))
@@ -285,6 +286,15 @@ class _Recursion:
         x, y, z = (lump.mass * a for a in motion.linear)
         moment = plus(_turning_moment(lump.tensor, motion), self._cross(lump.first, motion.linear))
         return Wrench(plus(applied(motion.field, lump.first), (x, y, z)), moment)
+
+    def _turning_rate(self, name: str) -> Vector3:
+        """How fast a frame's angular velocity against its parent changes, in its axes."""
+        turning, parts = self.kinematics.joint(name).turning, quaternion_parts(self.bodies, name)
+        if not parts:
+            return self._rates(turning)
+        still, q, qd = self.graph.zero, self.bodies.q, self.bodies.qd
+        rates = [self.direction.get(q[j], still) for j in parts]
+        return turning_rate([q[j] for j in parts], rates, [self.direction[qd[j]] for j in parts], turning)
 
     def _rates(self, rates: Vector3) -> Vector3:
         x, y, z = derivative_along(self.graph, rates, self.direction)

@@ -19,6 +19,7 @@ from symgen.symbolic.matrix import Vector, dot
 from symgen.symbolic.scalar import Graph, Scalar
 
 Six = tuple[Scalar, ...]
+Rates3 = tuple[Scalar, Scalar, Scalar]
 # E by rows: for each entry a part of the quaternion (0: the scalar one) and its sign; the frame's own axes
 TURNS = (((1, -1), (0, 1), (3, 1), (2, -1)), ((2, -1), (3, -1), (0, 1), (1, 1)), ((3, -1), (2, 1), (1, -1), (0, 1)))
 
@@ -95,12 +96,8 @@ class QuaternionJoint:
 
 def quaternion_joint(bodies: Bodies, name: str, own: Mapping[int, Six]) -> QuaternionJoint | None:
     """The joint of a frame that four coordinates turn as a quaternion; `own` are the directions of its coordinates."""
-    frame = next(frame for frame in bodies.mechanism.frames if frame.name == name)
-    if not isinstance(frame.rotation, Quaternion):
-        return None
-    names = [str(symbol.payload) for symbol in bodies.q]
-    parts = [names.index(x.name) for x in frame.rotation.parts if isinstance(x, Name) and x.name in names]
-    if len(set(parts)) < 4:
+    parts = quaternion_parts(bodies, name)
+    if not parts:
         return None
     joint = bodies.kinematics.joint(name)
     slopes = [gradient(bodies.graph, rate, bodies.qd) for rate in joint.place_rate]
@@ -110,4 +107,23 @@ def quaternion_joint(bodies: Bodies, name: str, own: Mapping[int, Six]) -> Quate
     if not set(own) >= set(parts) or any(set(parts) & set(row) for row in moved):
         return None
     values = tuple(bodies.q[j] for j in parts)
-    return QuaternionJoint(tuple(parts), values, places if simple else (), transposed(joint.axes))
+    return QuaternionJoint(parts, values, places if simple else (), transposed(joint.axes))
+
+
+def quaternion_parts(bodies: Bodies, name: str) -> tuple[int, ...]:
+    """The numbers of the four coordinates that turn a frame as a quaternion; none where nothing turns it so."""
+    rotation = bodies.kinematics.frames[name].rotation
+    if not isinstance(rotation, Quaternion):
+        return ()
+    names = [str(symbol.payload) for symbol in bodies.q]
+    parts = [names.index(x.name) for x in rotation.parts if isinstance(x, Name) and x.name in names]
+    return tuple(parts) if len(set(parts)) == 4 else ()
+
+
+def turning_rate(e: Sequence[Scalar], e_dot: Sequence[Scalar], e_ddot: Sequence[Scalar], w: Rates3) -> Rates3:
+    """d/dt of w = 2 E e' / |e|^2: 2 E e'' / |e|^2 - w 2 e.e' / |e|^2, because the rate of E times e' is 0."""
+    graph = e[0].graph
+    two = 2 / dot(graph, e, e)
+    shrinking = two * dot(graph, e, e_dot)
+    grown = [two * dot(graph, [e[k] * sign for k, sign in row], e_ddot) for row in TURNS]
+    return triple([one - shrinking * own for one, own in zip(grown, w, strict=True)])

@@ -10,6 +10,7 @@ from symgen.linear_algebra.constrained_inverse import BasisInertia
 from symgen.linear_algebra.pivoted import reflected
 from symgen.mechanics.articulated_inertias import ArticulatedFactor
 from symgen.mechanics.genericity import genericity, parameter_values
+from symgen.mechanics.quaternion_joints import quaternion_parts, turning_rate
 from symgen.mechanics.system import System
 from symgen.methods.forward_dynamics.along_spaces import nullspace
 from symgen.methods.forward_dynamics.articulated import articulated
@@ -20,7 +21,9 @@ from symgen.methods.selection import Methods
 from symgen.model.load import load_text
 from symgen.model.model import Model
 from symgen.quantities.select import derive_quantities
+from symgen.symbolic.calculus import derivative_along
 from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.traverse import cost
 
 SWING = """model: swing
 parameters: {{m: 1.3, l: 0.4, g: 9.81}}
@@ -190,6 +193,23 @@ def test_a_quaternion_that_moves_more_than_an_attitude_is_no_attitude() -> None:
 def test_chains_of_ball_joints_go_from_body_to_body() -> None:
     choices = derive_quantities(swing(HELD), ["forward_dynamics", "multipliers"]).choices
     assert [choice.title for choice in choices] == ["articulated inertias"] * 2
+
+
+def test_turning_rates_are_those_of_the_angular_velocity() -> None:
+    """Term by term the rate of E times e' would be worked out, which is 0."""
+    bodies = System(load_text(SWING.format(constraints="", inputs=""), "swing.yaml")).bodies
+    graph, names = bodies.graph, [str(x.payload) for x in bodies.q]
+    assert quaternion_parts(bodies, "elbow") == ()
+    for frame, first in (("arm", "a_0"), ("hand", "w_0")):
+        parts = quaternion_parts(bodies, frame)
+        assert parts == tuple(range(names.index(first), names.index(first) + 4))
+        e, e_dot = ([given[j] for j in parts] for given in (bodies.q, bodies.qd))
+        e_ddot = [graph.symbol(f"{names[j]}_ddot") for j in parts]
+        turning = bodies.kinematics.joint(frame).turning
+        moved = derivative_along(graph, turning, dict(zip((*e, *e_dot), (*e_dot, *e_ddot), strict=True)))
+        found = turning_rate(e, e_dot, e_ddot, turning)
+        assert [one.value for one in found] == [other.value for other in moved]
+        assert cost(found).weight < cost(moved).weight
 
 
 def test_a_rotor_resists_a_coordinate_and_no_turn() -> None:
