@@ -92,6 +92,8 @@ class Fallback:
         self._seen: defaultdict[str, set[int]] = defaultdict(set)
         self._weighed: set[str] = set()
         self._inaccurate: defaultdict[str, list[Alternative]] = defaultdict(list)
+        # by quantities and methods: what float64 loses
+        self._lost: defaultdict[str, dict[str, float]] = defaultdict(dict)
         self._widened: set[str] = set()
         # by quantities that are made because all are: what they count at least by methods that lose digits
         self._too_wide: dict[str, int] = {}
@@ -312,7 +314,10 @@ class Fallback:
         for other in inaccurate:
             if other.cost <= LONGEST_WIDENED:
                 shortest.setdefault(other.choice.title, other)
-        for other in islice(shortest.values(), WIDENED):
+        # the shortest of all, then those that lose least: what they divide by keeps more digits in float32, too
+        candidates, lost = list(shortest.values()), self._lost[quantity]
+        candidates[1:] = sorted(candidates[1:], key=lambda one: lost.get(one.choice.title, 0.0))
+        for other in candidates[:WIDENED]:
             yield self._with_pairs(draft, other, scalars, scalars, expected)
 
     def _with_pairs(
@@ -328,11 +333,14 @@ class Fallback:
         """The scalar types in which kernels pass by interpretation, and the largest error there; the rest is noted."""
         passed: dict[Scalar, Kernel] = {}
         worst = 0.0
+        lost = {} if one.choice.wide else self._lost[one.choice.quantity]
         if not self._is_asked_for(draft, one.choice.quantity):
             self._tried_unasked += one.cost
         for scalar, kernel in kernels.items():
             if scalar in expected.scalars:
                 record, fault = self.measurements.of(kernel, draft.programs[scalar].sincos, scalar, expected)
+                if scalar == "float64":
+                    lost[one.choice.title] = record.largest
                 if fault is not None:
                     name = one.choice.title + one.choice.digits
                     self._check_algebra(kernels["float64"], name, record.worst_state)
@@ -344,6 +352,7 @@ class Fallback:
             passed[scalar] = kernel
         judged = {scalar: kernel for scalar, kernel in passed.items() if scalar in expected.scalars}
         errors = self._at_worst(draft, judged, _plain(one, kernels)) if judged else {}
+        lost[one.choice.title] = max(lost.get(one.choice.title, 0.0), errors.get("float64", 0.0))
         for fault in _faults(one.choice.quantity, errors):
             self._note(one, fault, inaccurate=True)
             passed.pop(fault.scalar)

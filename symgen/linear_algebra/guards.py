@@ -105,13 +105,19 @@ def _roots(total: Scalar) -> list[Scalar]:
     return roots
 
 
-def is_own_scale(denominator: Scalar, scale: Scalar | None) -> bool:
-    """Whether a denominator is as large as its scale, or D_max, wherever it is: then it is lost only where it is 0."""
+def lost_only_at_zero(guard: Guard) -> bool:
+    """Whether a denominator is as large as its scale, or D_max, wherever it is.
+
+    A pivot of a definite matrix in which nothing cancels is right to all its digits, however small it is beside what it
+    is left of: a slide of a milligram between two that carry a tonne.
+    """
+    denominator, scale = guard.denominator, guard.scale
     if scale is denominator:
         return True
     if not _loses_nothing(denominator):
         return False
-    return scale is None or scale.value == magnitude(denominator.graph, [denominator])[0].value
+    largest = magnitude(denominator.graph, [denominator])[0]
+    return guard.positive or scale is None or scale.value == largest.value
 
 
 def _loses_nothing(scalar: Scalar) -> bool:

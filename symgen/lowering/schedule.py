@@ -27,7 +27,7 @@ from symgen.ir.kernel import (
 from symgen.ir.lifted import Kind, Lifted, Meant, same_kernel
 from symgen.ir.order import REGISTERS, relaxed, waits
 from symgen.ir.sincos import angle_limit, sincos
-from symgen.linear_algebra.guards import Guard, is_own_scale, magnitude, where_negligible
+from symgen.linear_algebra.guards import Guard, lost_only_at_zero, magnitude, where_negligible
 from symgen.lowering.writer import ANGLE, ScalarWriter, Test, angles_among, angles_of
 from symgen.mechanics.system import System
 from symgen.methods.quantity import Quantity
@@ -87,7 +87,7 @@ class _GuardTests:
             if all(cause.status is guard.status and not cause.first for cause in first):
                 first = ()  # nothing to tell apart
             # what is its own scale, such as a length or a product of masses, is negligible only where it is 0
-            whole = guard.scale is size or is_own_scale(guard.denominator, guard.scale)
+            whole = guard.scale is size or lost_only_at_zero(guard)
             limit = graph.zero if whole else self._limit(guard)
             # a model's own tolerance may be far above rounding
             vanishes = guard.degree == 2 and _own_tolerance(self._mechanics, guard) is None

@@ -73,6 +73,18 @@ outputs: [inverse_dynamics]
 """
 
 
+# a slide of a milligram that carries a tonne, on a tonne: nothing of its inertia comes from the others
+LIGHT = """
+model: light_slide
+joints:
+  base: {type: prismatic, axis: y, coordinate: s}
+  light: {type: prismatic, parent: base, axis: y, coordinate: p}
+  top: {type: prismatic, parent: light, axis: y, coordinate: w}
+bodies: {base: {mass: 1000}, light: {mass: 1e-6}, top: {mass: 1000}}
+inputs: {one: {joint: s}, two: {joint: p}, three: {joint: w}}
+outputs: [forward_dynamics]
+"""
+
 SLEDGE = """
 model: sledge
 parameters: {m: {value: 2}, J: {value: 0.3}}
@@ -214,6 +226,20 @@ def test_a_product_of_masses_is_lost_only_where_one_is_0() -> None:
     states = [State((0.1, 0.7, 0.2), (0.3, 0.2, 0.1), (), (1.0,), given) for given in masses]
     found = [one.status for one in outcomes(kernel, program.sincos, "float64", states)]
     assert found == [Status.OK] * 3 + [Status.MASS_RANK] * 2
+
+
+def test_a_light_body_between_heavy_ones_is_no_lost_direction() -> None:
+    """Its pivot is its mass, to all digits, and with the threshold of float32 it had a status everywhere."""
+    asked = "forward_dynamics"
+    selection = derive_quantities(load_text(LIGHT, "light.yaml"), [asked], {asked: "articulated"})
+    program = schedule(selection.mechanics, selection.quantities, ("float32",))["float32"]
+    (kernel,) = (one for one in program.kernels if one.name == asked)
+    state = State((0.1, 0.2, 0.3), (0.0,) * 3, (), (3.0, 1.0, 5.0), ())
+    (found,) = outcomes(kernel, program.sincos, "float32", [state])
+    # of each body alone: m_1 a_1 = u_1 - u_2, m_2 a_2 = u_2 - u_3, m_3 a_3 = u_3
+    first, second, third = (3 - 1) / 1000, (1 - 5) / 1e-6, 5 / 1000
+    assert found.status == Status.OK
+    assert found.entries == pytest.approx([first, second - first, third - second], rel=4 * float(SINGLE))
 
 
 def test_pivots_of_a_mass_matrix_below_0_are_lost() -> None:
