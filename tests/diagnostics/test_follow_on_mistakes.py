@@ -153,3 +153,14 @@ def test_other_mistakes_are_told_beside_it() -> None:
         "`type` is `revolut`, which is not known",
         "`q` in `configuration` is no coordinate",
     ]
+
+
+def test_a_faulty_declaration_that_hangs_on_nothing_is_two_mistakes() -> None:
+    """The frame that it names is declared elsewhere, or nowhere: that does not follow from its own mistake."""
+    text = GOOD.replace("slide: {type: prismatic, parent: arm,", "slide: {type: prismatik, parent: armm,")
+    with pytest.raises(ModelError) as raised:
+        load_text(text, "model.yaml")
+    told = [mistake.message for mistake in raised.value.mistakes]
+    assert len(told) == 2
+    assert "`prismatik`" in told[0]
+    assert "unknown frame `armm`" in told[1]

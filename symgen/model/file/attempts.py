@@ -14,6 +14,8 @@ from symgen.model.file.source import MappingNode, Node, ScalarNode, SequenceNode
 MEANT = tuple(field.key for field in MODEL.fields)
 DECLARING = frozenset({"coordinates", "parameters", "definitions", "joints", "frames", "points", "inputs"})
 ACTING = frozenset({"springs", "forces"})
+# Keys of declarations that name what stands elsewhere: a mistake there is one of its own.
+REFERRING = frozenset({"parent", "frame", "axes", "reaction"})
 
 
 def attempted_names(tree: MappingNode, mistakes: Sequence[Mistake]) -> set[str]:
@@ -54,4 +56,5 @@ def _texts(node: Node) -> Iterator[str]:
         case MappingNode():
             for key, value in node.entries:
                 yield key.value
-                yield from _texts(value)
+                if key.value not in REFERRING:
+                    yield from _texts(value)
