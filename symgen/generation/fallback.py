@@ -128,6 +128,7 @@ class Fallback:
         """Lets go of what is hardly needed any more, and derived again where it is."""
         if self._alternatives is not None:
             self._alternatives.settle()
+            self._left.clear()
             let_go_and_keep()
 
     def _worst(self, draft: Draft, certificate: Certificate, expected: Expected) -> dict[str, tuple[Fault, ...]]:

@@ -14,6 +14,12 @@ from symgen.symbolic.scalar import Graph, Scalar
 # What counts as arithmetic, as an angle, or not at all; every other operation is a function.
 _NO_FUNCTIONS = frozenset({"add", "sub", "min", "max", "mul", "div", "ratio_or_zero", "sqrt", "sin", "cos"})
 _NO_FUNCTIONS |= {"const", "symbol", "neg", "abs", "copysign", "rounded"}
+# Counted cost of a division or root, of a sine and cosine, of another function; sums and products count 1.
+QUOTIENT_WEIGHT, ANGLE_WEIGHT, FUNCTION_WEIGHT = 6, 30, 60
+_WEIGHTS = dict.fromkeys(("add", "sub", "min", "max", "mul"), 1) | dict.fromkeys(("sin", "cos"), ANGLE_WEIGHT)
+_WEIGHTS |= dict.fromkeys(("div", "ratio_or_zero", "sqrt"), QUOTIENT_WEIGHT)
+# Operations that are looked at together where each of many outputs is counted by itself.
+BITS = 8192
 
 
 def topological(outputs: Iterable[Scalar], known: Container[Scalar] = ()) -> Sequence[Scalar]:
@@ -133,9 +139,9 @@ class Cost:
         return (
             self.additive
             + self.multiplications
-            + 6 * (self.divisions + self.roots)
-            + 30 * self.angles
-            + 60 * self.functions
+            + QUOTIENT_WEIGHT * (self.divisions + self.roots)
+            + ANGLE_WEIGHT * self.angles
+            + FUNCTION_WEIGHT * self.functions
         )
 
 
@@ -153,3 +159,39 @@ def cost(outputs: Iterable[Scalar]) -> Cost:
         angles=len(angles),
         functions=sum(number for op, number in count.items() if op not in _NO_FUNCTIONS),
     )
+
+
+def weights_alone(outputs: Sequence[Scalar]) -> list[int]:
+    """The counted cost of each output by itself, where they share most of what they need.
+
+    What each node reaches is a number with a bit for each operation, so many bits at a time.
+    """
+    order = topological(outputs)
+    places: dict[Scalar, int] = {}
+    angles: dict[Scalar, int] = {}
+    weights: list[int] = []
+    for node in order:
+        # a sine and a cosine of one angle are one operation
+        of_angle = node.op in ("sin", "cos")
+        known_angle = angles.get(node.args[0]) if of_angle else None
+        if weight := _WEIGHTS.get(node.op, 0 if node.op in _NO_FUNCTIONS else FUNCTION_WEIGHT):
+            places[node] = len(weights) if known_angle is None else known_angle
+            if known_angle is None:
+                weights.append(weight)
+        if of_angle:
+            angles[node.args[0]] = places[node]
+    found = [0] * len(outputs)
+    for start in range(0, len(weights), BITS):
+        reach: dict[Scalar, int] = {}
+        for node in order:
+            place = places.get(node, -1) - start
+            bits = 1 << place if 0 <= place < BITS else 0
+            for argument in node.args:
+                bits |= reach[argument]
+            reach[node] = bits
+        masks: dict[int, int] = {}
+        for place, weight in enumerate(weights[start : start + BITS]):
+            masks[weight] = masks.get(weight, 0) | 1 << place
+        for k, output in enumerate(outputs):
+            found[k] += sum(weight * (reach[output] & mask).bit_count() for weight, mask in masks.items())
+    return found

@@ -10,12 +10,13 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from symgen.symbolic import traverse
 from symgen.symbolic.angles.angle_forms import angle_form
 from symgen.symbolic.angles.sharing import share_angles
 from symgen.symbolic.calculus import derivative_along, gradient
 from symgen.symbolic.evaluate import FUNCTIONS, Evaluator
 from symgen.symbolic.scalar import Graph, Scalar
-from symgen.symbolic.traverse import cost, substitute, topological
+from symgen.symbolic.traverse import cost, substitute, topological, weights_alone
 
 NAMES = ("x", "y", "z")
 POINT = {"x": 0.83, "y": -1.37, "z": 0.41}
@@ -286,6 +287,18 @@ def test_cost_counts_shared_operations_once(graph: Graph) -> None:
     division = cost([graph.function("exp", (x,)) / (x + y)])
     assert (division.additive, division.divisions, division.functions) == (1, 1, 1)
     assert division.weight == 1 + 6 + 60
+
+
+@pytest.mark.parametrize("bits", [3, 8192])
+def test_outputs_are_counted_by_themselves(bits: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What they share counts for each; an angle that is a sum counts as one, and its sum."""
+    monkeypatch.setattr(traverse, "BITS", bits)
+    graph = Graph()
+    x, y, z = (graph.symbol(name) for name in "xyz")
+    turned = graph.trig("sin", x + y) * z + graph.trig("cos", x + y)
+    outputs = [turned, turned / (x - z), graph.function("exp", (turned * x,)), x, graph.const(2), -turned, x + y]
+    assert weights_alone(outputs) == [cost([one]).weight for one in outputs] == [33, 40, 94, 0, 0, 33, 1]
+    assert weights_alone([]) == []
 
 
 def test_sums_of_known_angles_are_products(graph: Graph) -> None:

@@ -22,7 +22,7 @@ from symgen.linear_algebra.guards import Guard, magnitude
 from symgen.methods.forward_dynamics.motion import Motion, Problem
 from symgen.symbolic.matrix import Matrix, Vector, dot, identity, matmul, matvec, transpose
 from symgen.symbolic.scalar import Scalar
-from symgen.symbolic.traverse import cost
+from symgen.symbolic.traverse import cost, weights_alone
 
 # Degrees of freedom up to which accelerations are written by minors.
 LARGEST_DELTA = 2
@@ -159,7 +159,11 @@ class MinorMotion:
         shorter = self._problem.multiplied_out([*driven.values()], in_either_sign([self._omega]))
         alone, zero = dict(zip(driven, shorter, strict=True)), self._graph.zero
         apart = {mask: alone.get(mask, zero) + moved.get(mask, zero) for mask in whole}
-        return {mask: min(apart[mask], whole[mask], key=lambda one: cost((one,)).weight) for mask in whole}
+        weights = weights_alone([*apart.values(), *whole.values()])
+        pairs = zip(weights, weights[len(apart) :], strict=False)
+        return {
+            mask: apart[mask] if one <= other else whole[mask] for mask, (one, other) in zip(whole, pairs, strict=True)
+        }
 
 
 def minor_motion(problem: Problem) -> MinorMotion:
