@@ -28,7 +28,6 @@ from symgen.generation.results import LargestError, Options, Result, Summary
 from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.runtime.activity import working
-from symgen.runtime.garbage import let_go_and_keep
 
 if TYPE_CHECKING:
     from symgen.generation.parameter_bounds import ParameterBounds
@@ -39,9 +38,6 @@ if TYPE_CHECKING:
     from symgen.runtime.background import Background, Receive
     from symgen.verify.certificate import Certificate
     from symgen.verify.expected import Expected
-
-# Scalars, at half a kilobyte each: derivations of fewer leave little behind.
-LARGE_GRAPH = 100_000
 
 Progress = Callable[[str], None]
 
@@ -64,8 +60,6 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
             if draft is None:
                 progress("deriving")
                 draft = _derive(model, outputs, options)
-                if len(draft.derivations.mechanics.graph) > LARGE_GRAPH:
-                    let_go_and_keep()
                 if options.verify and verified(options):
                     from symgen.generation.parameter_bounds import ParameterBounds
                     from symgen.generation.trial import Trial

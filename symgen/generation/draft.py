@@ -12,17 +12,22 @@ from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.ir.library_trig import with_library_trig
 from symgen.lowering.schedule import schedule
 from symgen.mechanics.structure import Structure, analyse
+from symgen.mechanics.system import System
+from symgen.methods.graphs import moved
 from symgen.model.checks.signs import nonnegative_parameters, positive_parameters
 from symgen.model.model import Model
 from symgen.quantities.alternatives import Alternative
 from symgen.quantities.select import Choice, NoSuchMethodError, Rejection, Selection, derive_quantities
 from symgen.records import dataclass
 from symgen.runtime.activity import working
+from symgen.runtime.garbage import let_go_and_keep
 
 if TYPE_CHECKING:
     from symgen.verify.certificate import LeftOut
 
 REJECTED = "verification rejects it"
+# Scalars, at half a kilobyte each: derivations of fewer leave little behind.
+LARGE_GRAPH = 100_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,4 +175,15 @@ def draft_of(model: Model, outputs: Sequence[str], options: Options) -> Draft:
     programs = schedule(derivations.mechanics, derivations.quantities, scalars)
     if options.trig == "libm":
         programs = {scalar: with_library_trig(program) for scalar, program in programs.items()}
+    if len(derivations.mechanics.graph) > LARGE_GRAPH:
+        derivations = _on_a_new_graph(derivations)
+        let_go_and_keep()
     return Draft(model, derivations, structure, programs, options.trig)
+
+
+def _on_a_new_graph(derivations: Selection) -> Selection:
+    """The same without what was derived on the way: of a large system ten times what is kept."""
+    mechanics = System(derivations.mechanics.model)
+    return replace(
+        derivations, mechanics=mechanics, quantities=tuple(moved(mechanics.graph, q) for q in derivations.quantities)
+    )

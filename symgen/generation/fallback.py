@@ -31,7 +31,7 @@ from symgen.quantities.everything import (
 )
 from symgen.quantities.select import Rejection
 from symgen.records import dataclass
-from symgen.runtime.garbage import let_go, let_go_and_keep
+from symgen.runtime.garbage import let_go, let_go_and_keep, let_go_of_all
 from symgen.symbolic.traverse import cost
 from symgen.verify.certificate import Certificate, Fault, LeftOut
 from symgen.verify.comparison import INACCURATE, VIOLATES
@@ -129,7 +129,7 @@ class Fallback:
         if self._alternatives is not None:
             self._alternatives.settle()
             self._left.clear()
-            let_go_and_keep()
+            let_go_of_all()
 
     def _worst(self, draft: Draft, certificate: Certificate, expected: Expected) -> dict[str, tuple[Fault, ...]]:
         """What is wrong with quantities that nothing speaks against, at states where they are worst."""

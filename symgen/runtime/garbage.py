@@ -27,6 +27,12 @@ def let_go_and_keep() -> None:
         _give_back()
 
 
+def let_go_of_all() -> None:
+    """Of what was kept before, too: once, when most of it has served its turn and compilers need the memory."""
+    gc.unfreeze()
+    let_go_and_keep()
+
+
 def _give_back() -> None:
     """glibc keeps pages that are free between others until it is told (malloc_trim(3))."""
     import ctypes  # small models start without it
