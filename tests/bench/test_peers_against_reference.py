@@ -16,7 +16,7 @@ from symgen.laboratory.bench.peers.roster import peers, python_peers
 from symgen.laboratory.bench.python_timing import run_python
 from symgen.laboratory.bench.symgen_kernels import programs_of, symgen_candidates, symgen_python
 from symgen.laboratory.bench.workload import admissible_samples, errors_of, workload
-from symgen.model.load import load_model
+from symgen.model.load import load_model, load_text
 from symgen.model.model import Model
 from symgen.verify.reference.reference import Reference
 
@@ -119,6 +119,22 @@ def test_matrices_of_rows_have_no_peer_where_there_are_none(quantity: str) -> No
     found = peers(described, Task(quantity, "qdd", described.n**2), states)
     assert found.candidates == ()
     assert [name for name, _ in found.left_out] == ["peers"]
+
+
+def test_a_formula_that_is_singular_everywhere_is_no_peer() -> None:
+    """M~^+ by a basis of ker B needs inputs that span all motions."""
+    text = """
+model: board
+coordinates: {x: {}, y: {}, a: {}}
+kinetic_energy: (x_dot**2 + y_dot**2 + a_dot**2)/2
+constraints: {nonholonomic: {edge: sin(a)*x_dot - cos(a)*y_dot}}
+inputs: {turn: {acts_on: {a: 1}}}
+"""
+    described = load_text(text, "board.yaml")
+    states = np.ones((2, 3 * described.n))
+    found = peers(described, Task("projected_control_pseudoinverse", "qdd", 3), states)
+    assert found.candidates == ()
+    assert "inputs span less" in dict(found.left_out)["peers"]
 
 
 def test_accelerations_of_an_arm_by_articulated_bodies(tmp_path: Path) -> None:

@@ -127,7 +127,8 @@ def test_three_derivations_agree(name: str) -> None:
     model = load_model(SHIPPED[name]) if name in SHIPPED else load_text(EXTRA[name], name)
     witness = witness_functions(model)
     sympy = SympyWitness(model, derive_closed_forms(model))
-    derivations = derive_quantities(model, model.outputs)
+    # by name: of `all` together the longest are left out
+    derivations = derive_quantities(model, tuple(witness) if name in EXTRA else model.outputs)
     program = schedule(derivations.mechanics, derivations.quantities, ("float64",))["float64"]
     interpreter = Interpreter(program.sincos)
     kernels = {kernel.name: kernel for kernel in program.kernels}

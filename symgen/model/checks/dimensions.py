@@ -49,8 +49,8 @@ def check_units(tree: MappingNode, model: Model, fits: tuple[Fit, ...] = ()) -> 
     for parameter in model.parameters:
         what = f"the value of `{parameter.name}`"
         inference.agrees(parameter.value, units.get(parameter.name), what, "its unit")
-    kinetic = inference.of_term(model.kinetic_energy)
-    potential = inference.of_term(model.potential_energy)
+    kinetic = inference.of_energy(model.kinetic_energy)
+    potential = inference.of_energy(model.potential_energy)
     if kinetic is not None and potential is not None and kinetic != potential:
         mistakes.append(
             _clash("the potential energy", potential, "the kinetic energy", kinetic, model.potential_energy)
@@ -169,6 +169,16 @@ class _Inference:
         if declared is not None and found is not None and found != declared:
             self._mistakes.append(_clash(what, found, other, declared, expression))
 
+    def of_energy(self, expression: Expression) -> Dimension:
+        """The dimension of an energy, free where its terms are made of coordinates and numbers, divisors included."""
+        match expression:
+            case Negation(operand=operand):
+                return self.of_energy(operand)
+            case Binary(operator="+" | "-", left=left, right=right):
+                return self._same(self.of_energy(left), self.of_energy(right), right)
+        found = self.of_term(expression)
+        return found if self._is_measured(expression) or not _has_number(expression) else None
+
     def _is_measured(self, expression: Expression) -> bool:
         return any(is_component(name.name) or name.name in self._measured for name in names_in(expression))
 
@@ -208,7 +218,7 @@ class _Inference:
         found = self.of(expression)
         if not any(names_in(expression)):
             return None
-        fits = _has_number(expression) and (found == NUMBER or not self._is_measured(expression))
+        fits = _has_factor(expression) and (found == NUMBER or not self._is_measured(expression))
         return None if fits else found
 
     def _sum(self, left: Expression, right: Expression) -> Dimension:
@@ -254,6 +264,20 @@ def _has_number(expression: Expression) -> bool:
             return _has_number(operand)
         case Binary(operator="*" | "/", left=left, right=right):
             return _has_number(left) or _has_number(right)
+    return False
+
+
+def _has_factor(expression: Expression) -> bool:
+    """Whether a product has a factor that is a number; what it is divided by is a count."""
+    match expression:
+        case Number():
+            return True
+        case Negation(operand=operand):
+            return _has_factor(operand)
+        case Binary(operator="*", left=left, right=right):
+            return _has_factor(left) or _has_factor(right)
+        case Binary(operator="/", left=left):
+            return _has_factor(left)
     return False
 
 

@@ -59,6 +59,7 @@ def peers(model: Model, task: Task, states: Any) -> Peers:
 
 def _of_matrix(model: Model, s: Lagrange, states: Any, task: Task) -> Peers:
     from symgen.laboratory.bench.peers.engines.casadi_ssa import CasadiSsaEngine
+    from symgen.laboratory.bench.peers.formulas.algebra import DeadPivotError
     from symgen.laboratory.bench.peers.formulas.expert import independent_of_motion
     from symgen.laboratory.bench.peers.formulas.matrices import BY_BASIS, BY_ROWS, matrix_of
 
@@ -69,7 +70,10 @@ def _of_matrix(model: Model, s: Lagrange, states: Any, task: Task) -> Peers:
     if made is None:
         return Peers((), (("peers", f"none is written for {task.quantity}"),))
     engine = CasadiSsaEngine()
-    lines = engine.straight(*made(engine, model))
+    try:
+        lines = engine.straight(*made(engine, model))
+    except DeadPivotError:
+        return Peers((), (("peers", "their formula is singular everywhere: inputs span less than the motions"),))
     if len(lines.values) > LONGEST_LINES:
         return Peers((), (("peers", f"{len(lines.values)} operations, which take minutes to compile"),))
     entry, form = f"casadi_ssa_{task.quantity}_float64", task.quantity.replace("_", " ")

@@ -29,7 +29,7 @@ PACKAGES = (
 NOT_TUNED = {
     "PIVOT_SEED", "SEARCH_SEED", "CONSTANT_BITS", "FIELD_BITS", "GRADIENT_BITS", "POINT_DIGITS", "STEPS", "WHOLE",
     "PRIME", "TWO_OVER_PI", "PI", "UNIT_BASE", "BETWEEN_TYPES", "_HEAD", "TIERS", "TOGETHER", "MOST_NAMES",
-    "LONGEST_FORMULA", "LONGEST_TEXT", "DECIMALS", "WIDEST_TEXT",
+    "LONGEST_FORMULA", "LONGEST_TEXT", "DECIMALS", "WIDEST_TEXT", "BITS",
 }
 # Samples, steps and thresholds of numerical decisions: what they stand for is right or wrong, not long or short.
 NUMERICAL = {
