@@ -121,25 +121,21 @@ def lost_only_at_zero(guard: Guard) -> bool:
 
 
 def _loses_nothing(scalar: Scalar) -> bool:
-    """Whether nothing cancels in it: products and quotients, and sums of what is never below 0."""
+    """Whether nothing cancels in it: products, quotients and functions, and sums of what is never below 0."""
     whole: dict[Scalar, bool] = {}
     positive: dict[Scalar, bool] = {}
     for node in topological([scalar]):
         args = node.args
+        kept = [positive[x] for x in args]
         match node.op:
             case "mul":
-                positive[node] = args[0] is args[1] or all(positive[x] for x in args)
-                whole[node] = all(whole[x] for x in args)
-            case "div":
-                positive[node], whole[node] = all(positive[x] for x in args), whole[args[0]]
-            case "add":
-                positive[node] = all(positive[x] for x in args)
-                whole[node] = positive[node] and all(whole[x] for x in args)
-            case "neg" | "abs" | "copysign" | "sqrt" | "rounded" as op:
-                positive[node], whole[node] = op in ("abs", "sqrt"), whole[args[0]]
+                positive[node] = args[0] is args[1] or all(kept)
+            case "div" | "add":
+                positive[node] = all(kept)
             case op:
-                positive[node] = node.constant is not None and node.constant > 0
-                whole[node] = op not in ("sub", "sin", "cos")
+                positive[node] = op in ("abs", "sqrt") or (node.constant is not None and node.constant > 0)
+        whole[node] = node.op not in ("sub", "sin", "cos") and all(whole[x] for x in args)
+        whole[node] &= node.op != "add" or positive[node]
     return whole[scalar]
 
 

@@ -14,7 +14,7 @@ import pytest
 from symgen.cli.main import main
 from symgen.ir.kernel import UNIT_ROUNDOFF, Literal, Status
 from symgen.linear_algebra.constrained_inverse import diagonal_sizes
-from symgen.linear_algebra.guards import Guard, magnitude, multiplied
+from symgen.linear_algebra.guards import Guard, lost_only_at_zero, magnitude, multiplied
 from symgen.linear_algebra.null_spaces import HouseholderSpace, MinorSpace
 from symgen.linear_algebra.pivoted import reflected
 from symgen.lowering.schedule import schedule
@@ -25,7 +25,7 @@ from symgen.model.load import load_text
 from symgen.quantities.select import derive_quantities
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.matrix import Matrix
-from symgen.symbolic.scalar import Graph
+from symgen.symbolic.scalar import Graph, Scalar
 from symgen.verify.interpreted import outcomes
 from symgen.verify.reference.reference import State
 
@@ -226,6 +226,19 @@ def test_a_product_of_masses_is_lost_only_where_one_is_0() -> None:
     states = [State((0.1, 0.7, 0.2), (0.3, 0.2, 0.1), (), (1.0,), given) for given in masses]
     found = [one.status for one in outcomes(kernel, program.sincos, "float64", states)]
     assert found == [Status.OK] * 3 + [Status.MASS_RANK] * 2
+
+
+def test_what_cancels_somewhere_is_held_against_its_scale() -> None:
+    """A pivot over a small difference, or of a function of one, is not right to all its digits."""
+    graph = Graph()
+    x, y, z = (graph.symbol(name) for name in "xyz")
+
+    def lost_at_zero(pivot: Scalar) -> bool:
+        return lost_only_at_zero(Guard(Status.MASS_RANK, pivot, 1, scale=graph.one, positive=True))
+
+    assert all(map(lost_at_zero, (x, x * y / z, x * x + y * y / (z * z), x / (y * y + z * z))))
+    cancelling = (x - y, x + y, x / (y - z), graph.function("exp", (x - y,)), x * graph.trig("sin", y), x * x * (y + z))
+    assert not any(map(lost_at_zero, cancelling))
 
 
 def test_a_light_body_between_heavy_ones_is_no_lost_direction() -> None:
