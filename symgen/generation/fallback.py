@@ -13,10 +13,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import islice
-from typing import TypeAlias
+from math import inf
 
 from symgen.diagnostics import SymgenBug
 from symgen.generation.draft import REJECTED, Draft
+from symgen.generation.passing import Kernels, Passing, digest, faults_at_worst, plain_kernel
 from symgen.generation.results import AUTO, Options
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.methods.quantity import scalars
@@ -53,18 +54,9 @@ MARGIN_WORTH = Fraction(1, 2)
 WIDENED = 3
 # Counted cost of the longest of them.
 LONGEST_WIDENED = 40_000
-Kernels: TypeAlias = Mapping[Scalar, Kernel]
-
-
-@dataclass(frozen=True, slots=True)
-class _Passing:
-    """An alternative with its kernels and its largest error in `scalars`, where it passes."""
-
-    largest: float
-    scalars: tuple[Scalar, ...]
-    alternative: Alternative
-    kernels: Kernels
-
+# Counted cost of all methods together that are tried for a quantity before twice the digits are: the rest of them may
+# do with fewer, but each of long ones takes a dozen seconds to be told.
+LONG_TRIED = 50_000
 
 @dataclass(frozen=True, slots=True)
 class _Searched:
@@ -86,7 +78,7 @@ class Fallback:
         self.measurements = Measurements()
         self._searched: dict[str, _Searched] = {}
         self._left: dict[tuple[str, int], deque[Alternative]] = {}
-        self._passing: defaultdict[str, list[_Passing]] = defaultdict(list)
+        self._passing: defaultdict[str, list[Passing]] = defaultdict(list)
         self._tried: defaultdict[str, list[tuple[str, str]]] = defaultdict(list)
         # by their hashes: kernels that were rejected need not stay
         self._seen: defaultdict[str, set[int]] = defaultdict(set)
@@ -97,8 +89,9 @@ class Fallback:
         self._widened: set[str] = set()
         # by quantities that are made because all are: what they count at least by methods that lose digits
         self._too_wide: dict[str, int] = {}
-        # counted cost of methods that were tried for these
+        # counted cost of methods that were tried for these, and for each quantity
         self._tried_unasked = 0
+        self._operations: defaultdict[str, int] = defaultdict(int)
 
     def other(self, draft: Draft, certificate: Certificate, expected: Expected) -> Draft | None:
         """The draft with other methods for what is rejected or keeps no margin; None where nothing is better."""
@@ -141,9 +134,9 @@ class Fallback:
                 continue
             self._progress(f"verifying: where {quantity} is worst")
             judged = {scalar: kernel for scalar, kernel in kernels.items() if scalar in expected.scalars}
-            errors = self._at_worst(draft, judged, _plain(draft.taken(quantity), kernels)) if judged else {}
+            errors = self._at_worst(draft, judged, plain_kernel(draft.taken(quantity), kernels)) if judged else {}
             self._searched[quantity] = _Searched(kernels, max(errors.values(), default=0.0))
-            if faults := _faults(quantity, errors):
+            if faults := faults_at_worst(quantity, errors):
                 found[quantity] = faults
         return found
 
@@ -171,14 +164,15 @@ class Fallback:
         self._weighed.add(quantity)
         self._check_algebra(kernels["float64"], draft.method(quantity), faults[0].state)
         tried.append((draft.method(quantity), f"{faults[0].what} ({faults[0].target})"))
-        self._seen[quantity].add(_digest(kernels))
+        self._operations[quantity] += cost(scalars(draft.taken(quantity).derived)).weight
+        self._seen[quantity].add(digest(kernels))
         # laws that a number with few digits violates beside are no reason of their own: its algebra is right; nor is a
         # status of float32, whose thresholds twice the digits bring down
         judged = [fault for fault in faults if fault.scalar == "float64"] or faults
         if known == 0 and all(fault.what.startswith((INACCURATE, VIOLATES)) for fault in judged):
             self._inaccurate[quantity].append(draft.taken(quantity))
         if all(fault.scalar == "float32" for fault in faults):
-            passing.append(_Passing(0.0, ("float64",), draft.taken(quantity), kernels))
+            passing.append(Passing(0.0, ("float64",), draft.taken(quantity), kernels))
         # one type may have been left out before
         others = tuple(one for one in draft.left_out if one.quantity != quantity)
         if self._is_given_up(draft, quantity):
@@ -206,15 +200,14 @@ class Fallback:
     def _is_asked_for(self, draft: Draft, quantity: str) -> bool:
         return quantity in asked_for(self._options.outputs or draft.model.outputs, self._options.methods)
 
-    def _next(self, draft: Draft, quantity: str, expected: Expected) -> _Passing | None:
+    def _next(self, draft: Draft, quantity: str, expected: Expected) -> Passing | None:
         """The next method that passes with a margin, or else the best of those that pass; others are noted."""
         passing, needed = self._passing[quantity], tuple(draft.kernels(quantity))
-        for tier in range(TIERS):
-            for one in self._candidates(draft, quantity, tier, expected, MARGIN):
-                if one.scalars == needed and one.largest <= MARGIN:
-                    return one
-                if "float64" in one.scalars:
-                    passing.append(one)
+        for one in self._of_all_tiers(draft, quantity, expected, LONG_TRIED):
+            if one.scalars == needed and one.largest <= MARGIN:
+                return one
+            if "float64" in one.scalars:
+                passing.append(one)
         for one in self._with_more_digits(draft, quantity, expected):
             # more digits in float64, too, are worth a margin only where next to none is left
             most = MARGIN if one.alternative.choice.wide == needed else NARROW
@@ -222,6 +215,9 @@ class Fallback:
                 return one
             if "float64" in one.scalars:
                 passing.append(one)
+        if not passing:
+            rest = self._of_all_tiers(draft, quantity, expected, inf)
+            passing.extend(one for one in rest if "float64" in one.scalars)
         while passing:
             best = min(passing, key=lambda one: (-len(one.scalars), one.largest))
             passing.remove(best)
@@ -236,8 +232,8 @@ class Fallback:
         """The draft with a quantity that passes narrowly by a method with half of its error, where that is not long."""
         self._weighed.add(quantity)
         taken, kernels = draft.taken(quantity), draft.kernels(quantity)
-        here = _Passing(largest, tuple(kernels), taken, kernels)
-        self._seen[quantity].add(_digest(kernels))
+        here = Passing(largest, tuple(kernels), taken, kernels)
+        self._seen[quantity].add(digest(kernels))
         most = cost(scalars(taken.derived)).weight * (1 + MARGIN_WORTH)
         for one in self._candidates(draft, quantity, 0, expected, largest / 2):
             if one.scalars == here.scalars and 2 * one.largest <= here.largest and one.alternative.cost <= most:
@@ -251,7 +247,7 @@ class Fallback:
         taken, kernels = draft.taken(quantity), draft.kernels(quantity)
         if taken.choice.wide:
             return draft
-        here = _Passing(largest, tuple(kernels), taken, kernels)
+        here = Passing(largest, tuple(kernels), taken, kernels)
         self._inaccurate[quantity].append(taken)
         for one in self._with_more_digits(draft, quantity, expected):
             if one.scalars == here.scalars and one.largest <= MARGIN:
@@ -260,7 +256,7 @@ class Fallback:
                 self._passing[quantity].append(one)
         return draft
 
-    def _in_place_of(self, draft: Draft, here: _Passing, one: _Passing) -> Draft:
+    def _in_place_of(self, draft: Draft, here: Passing, one: Passing) -> Draft:
         """The draft with a method that keeps a margin in place of one that does not, which stays at hand."""
         quantity = here.alternative.choice.quantity
         self._passing[quantity].append(here)
@@ -268,9 +264,14 @@ class Fallback:
         self._tried[quantity].append((draft.method(quantity), why))
         return draft.along(one.alternative, one.kernels).rejecting((Rejection(quantity, draft.method(quantity), why),))
 
-    def _candidates(
-        self, draft: Draft, quantity: str, tier: int, expected: Expected, most: float
-    ) -> Iterator[_Passing]:
+    def _of_all_tiers(self, draft: Draft, quantity: str, expected: Expected, operations: float) -> Iterator[Passing]:
+        """One tier after the other, until what was tried counts so many operations."""
+        for tier in range(TIERS):
+            candidates = self._candidates(draft, quantity, tier, expected, MARGIN)
+            while self._operations[quantity] <= operations and (one := next(candidates, None)) is not None:
+                yield one
+
+    def _candidates(self, draft: Draft, quantity: str, tier: int, expected: Expected, most: float) -> Iterator[Passing]:
         """Those of a tier that are left, measured; what fails is noted.  Up to an error of `most` they are taken."""
         if self._options.methods.get(quantity, AUTO) != AUTO or self._alternatives is None:
             return
@@ -282,20 +283,25 @@ class Fallback:
             other = left.popleft()
             self._progress(f"another method of {quantity}, {other.choice.title}")
             kernels = draft.kernels_along(other, tuple(draft.kernels(quantity)))
-            if (digest := _digest(kernels)) not in self._seen[quantity]:
-                self._seen[quantity].add(digest)
+            if (known := digest(kernels)) not in self._seen[quantity]:
+                self._seen[quantity].add(known)
                 one = self._measured(draft, other, kernels, expected)
                 # long ones are grouped where that may be what is taken: it takes longer than measuring
                 yield self._grouped(draft, one, expected) if one.largest <= most else one
 
-    def _grouped(self, draft: Draft, one: _Passing, expected: Expected) -> _Passing:
-        """What passes, with its numbers grouped and measured anew."""
+    def _grouped(self, draft: Draft, one: Passing, expected: Expected) -> Passing:
+        """What passes where it is worst, too, with its numbers grouped and measured anew."""
         if one.alternative.grouped or "float64" not in one.scalars:
+            return one
+        before = one.scalars
+        # of long ones grouping takes longer than looking for their worst states
+        one = self._at_its_worst(draft, one, plain_kernel(one.alternative, one.kernels), expected)
+        if one.scalars != before:
             return one
         whole = grouped(one.alternative)
         return self._measured(draft, whole, draft.kernels_along(whole, tuple(one.kernels)), expected)
 
-    def _with_more_digits(self, draft: Draft, quantity: str, expected: Expected) -> Iterator[_Passing]:
+    def _with_more_digits(self, draft: Draft, quantity: str, expected: Expected) -> Iterator[Passing]:
         """What loses digits in float32 alone with twice as many there, then the shortest with more in both."""
         if quantity in self._widened or self._options.methods.get(quantity, AUTO) != AUTO:
             return
@@ -323,18 +329,20 @@ class Fallback:
 
     def _with_pairs(
         self, draft: Draft, one: Alternative, scalars: tuple[Scalar, ...], wide: tuple[Scalar, ...], expected: Expected
-    ) -> _Passing:
+    ) -> Passing:
         """An alternative with twice the digits in some types, measured."""
         self._progress(f"twice the digits for {one.choice.quantity}, {one.choice.title}")
         one = grouped(one)
         one = replace(one, choice=replace(one.choice, wide=wide))
         return self._measured(draft, one, draft.kernels_along(one, scalars), expected)
 
-    def _measured(self, draft: Draft, one: Alternative, kernels: Kernels, expected: Expected) -> _Passing:
+    def _measured(self, draft: Draft, one: Alternative, kernels: Kernels, expected: Expected) -> Passing:
         """The scalar types in which kernels pass by interpretation, and the largest error there; the rest is noted."""
         passed: dict[Scalar, Kernel] = {}
         worst = 0.0
         lost = {} if one.choice.wide else self._lost[one.choice.quantity]
+        if not one.choice.wide and not one.grouped:
+            self._operations[one.choice.quantity] += one.cost
         if not self._is_asked_for(draft, one.choice.quantity):
             self._tried_unasked += one.cost
         for scalar, kernel in kernels.items():
@@ -351,17 +359,25 @@ class Fallback:
                     continue
                 worst = max(worst, record.largest)
             passed[scalar] = kernel
-        judged = {scalar: kernel for scalar, kernel in passed.items() if scalar in expected.scalars}
-        errors = self._at_worst(draft, judged, _plain(one, kernels)) if judged else {}
-        lost[one.choice.title] = max(lost.get(one.choice.title, 0.0), errors.get("float64", 0.0))
-        for fault in _faults(one.choice.quantity, errors):
-            self._note(one, fault, inaccurate=True)
-            passed.pop(fault.scalar)
+        plain = plain_kernel(one, kernels) if one.grouped else None
+        return self._at_its_worst(draft, Passing(worst, tuple(passed), one, kernels), plain, expected)
+
+    def _at_its_worst(self, draft: Draft, one: Passing, plain: Kernel | None, expected: Expected) -> Passing:
+        """What passes at the states that were searched for, too, those of its `plain` kernel among them."""
+        passed, quantity, title = list(one.scalars), one.alternative.choice.quantity, one.alternative.choice.title
+        judged = {scalar: one.kernels[scalar] for scalar in passed if scalar in expected.scalars}
+        errors = self._at_worst(draft, judged, plain) if judged else {}
+        if not one.alternative.choice.wide:
+            lost = self._lost[quantity]
+            lost[title] = max(lost.get(title, 0.0), errors.get("float64", 0.0))
+        for fault in faults_at_worst(quantity, errors):
+            self._note(one.alternative, fault, inaccurate=True)
+            passed.remove(fault.scalar)
         scalars = tuple(passed) if "float64" in passed else ()
-        worst = max((worst, *(error for scalar, error in errors.items() if scalar in scalars)))
-        if scalars and one.grouped:
-            self._searched[one.choice.quantity] = _Searched(kernels, worst)
-        return _Passing(worst, scalars, one, kernels)
+        worst = max((one.largest, *(error for scalar, error in errors.items() if scalar in scalars)))
+        if scalars and one.alternative.grouped:
+            self._searched[quantity] = _Searched(one.kernels, worst)
+        return Passing(worst, scalars, one.alternative, one.kernels)
 
     def _note(self, one: Alternative, fault: Fault, inaccurate: bool) -> None:
         """What speaks against an alternative; one that is inaccurate may work with more digits."""
@@ -383,18 +399,3 @@ class Fallback:
         if "float64" not in without:
             return f"float64 has {quantity}; `--scalar float64` asks for that type alone"
         return "give narrower `ranges` if states near a singularity are never met; `--no-verify` writes it as it is"
-
-
-def _digest(kernels: Kernels) -> int:
-    return hash(tuple(kernels.items()))
-
-
-def _faults(quantity: str, errors: Mapping[Scalar, float]) -> tuple[Fault, ...]:
-    """What is wrong at the states that were searched for."""
-    what = f"{INACCURATE} {{:.3g}} times d + eps |y*| at a state searched for, {FACTOR:g} is allowed"
-    return tuple(Fault(what.format(error), quantity, scalar) for scalar, error in errors.items() if error > FACTOR)
-
-
-def _plain(one: Alternative, kernels: Kernels) -> Kernel | None:
-    """The kernel of plain numbers among those of an alternative that may be taken: where it is worst is looked for."""
-    return kernels["float64"] if one.grouped and "float64" not in one.choice.wide else None

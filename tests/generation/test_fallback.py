@@ -503,6 +503,22 @@ def test_kernels_that_are_too_long_stay_as_they_are(yoke: Path, monkeypatch: pyt
     assert [one.quantity for one in made(yoke).left_out] == ["multipliers"]
 
 
+@pytest.mark.parametrize("digits_help", [True, False])
+def test_after_long_methods_twice_the_digits_are_tried_before_the_rest(
+    digits_help: bool, yoke: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The rest of them comes where more digits are of no help."""
+    spoil_choice(monkeypatch, losing_digits)
+    usual = derived(made(yoke))["kernels"]["multipliers"]
+    monkeypatch.setattr(fallback, "LONG_TRIED", -1)
+    if not digits_help:
+        monkeypatch.setattr(fallback, "WIDENED", 0)
+    kernel = derived(made(yoke))["kernels"]["multipliers"]
+    assert "twice_the_digits" not in usual
+    assert ("twice_the_digits" in kernel) is digits_help
+    assert digits_help or kernel == usual
+
+
 @pytest.mark.parametrize("asked", [True, False])
 def test_twice_the_digits_of_what_is_long_are_for_those_who_ask(
     asked: bool, yoke: Path, monkeypatch: pytest.MonkeyPatch

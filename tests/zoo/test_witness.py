@@ -536,3 +536,23 @@ outputs: [forward_dynamics]
 
     assert [refused(a, "float32") for a in (1e-7, 0.01, 0.5)] == [False, False, True]
     assert [refused(a, "float64") for a in (1e-7, 0.01, 0.5)] == [False, True, True]
+
+
+def test_lengths_far_apart_are_no_singular_configuration() -> None:
+    """A rod of 1e-4 between long ones: rows are less than a thousandth apart at all configurations, so at regular ones.
+
+    Beside one of them where they are ten times nearer nothing is compared.
+    """
+    text = """model: rod
+coordinates: {x: {unit: m}, y: {unit: m}, a: {}}
+kinetic_energy: (x_dot**2 + y_dot**2 + a_dot**2)/2
+constraints: {geometric: {one: x + y - 1, two: x + y + 1e-4*sin(a) - 1}}
+inputs: {f: {acts_on: {x: 1}}}
+"""
+    walker = Witness(text, {"x": 1.0, "y": 0.0, "a": 0.0}).walker()
+    found, ranks = walker.states({}, 20)
+    assert (len(found), ranks.constraints, ranks.actuation) == (20, 2, 1)
+    turned = Witness(text.replace("sin(a)", "a**2"), {"x": 1.0, "y": 0.0, "a": 0.0}).walker()
+    points = [np.array([1.0, 0.0, a]) for a in (1.0, 0.5, 0.09)]
+    _, regular = turned._regular(points, {})
+    assert [q[2] for q in regular] == [1.0, 0.5]

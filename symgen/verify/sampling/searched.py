@@ -121,9 +121,10 @@ class WorstStateSearch:
             states = states.only(np.append(np.arange(samples), others))
         errors, least = RoundingErrors(kernel), self._settling(kernel.name).measures
         units = self._units(errors, states, least)
+        going = min(self._affordable(KEPT * DIRECTIONS), max(count, DIRECTIONS))
         for step in range(STEPS_FURTHER if units.max() > DOUBTFUL else 0):
             worst = states.only(_worst(units, KEPT))
-            starts = worst.only(np.arange(len(worst)).repeat(DIRECTIONS)[: self._affordable(KEPT * DIRECTIONS)])
+            starts = worst.only(np.arange(len(worst)).repeat(DIRECTIONS)[:going])
             further = self._surroundings.moved(starts, f"{kernel.name} {step}")
             if len(further):
                 states, units = joined(states, further), np.append(units, self._units(errors, further, least))

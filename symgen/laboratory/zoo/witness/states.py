@@ -29,8 +29,9 @@ ELSEWHERE = 1e-6
 SHORT, STRAY = 1e-4, 1e3
 # rows whose gradients vanish on V do so to the root of what rounding leaves of their values
 DEPENDENT = 1e-6
-# how far rows, inputs and masses are apart at states that are compared, unless the model has none of the kind
-REGULAR = 1e-3
+# how far rows, inputs and masses are apart at states that are compared, and how far of what they are at best where that
+# is less at all states: lengths of a mechanism may be a hundred times apart
+REGULAR, OF_BEST = 1e-3, 0.1
 # places beside the start, further for each coordinate, where functions that are 0 there are 0 everywhere
 ASIDE = Fraction(1, 70), Fraction(-1, 90)
 # a walk stays about as near as the ranges that the documentation takes for granted
@@ -113,13 +114,12 @@ class Walker:
         """The largest ranks of all, and the configurations that have them by far."""
         values = [self.numbers(q, parameters) for q in points]
         lengths = np.max([self.lengths(at) for at in values], axis=0, initial=0.0) if values else ()
-        of_rows, of_inputs = (max(map(rank, values), default=0) for rank in (self._rank, self._reached))
-        ranks = GenericRanks(of_rows, of_inputs, tuple(map(float, lengths)))
-        regular = [
-            q
-            for q, at in zip(points, values, strict=True)
-            if self._rank(at, REGULAR) == ranks.constraints and self._reached(at, REGULAR) == ranks.actuation
-        ]
+        apart = [(self._apart(at), self._driven(at)) for at in values]
+        rank = [max((int((both[of] > SAME).sum()) for both in apart), default=0) for of in (0, 1)]
+        ranks = GenericRanks(rank[0], rank[1], tuple(map(float, lengths)))
+        least = [[_value(one, of) for one, of in zip(both, rank, strict=True)] for both in apart]
+        enough = np.minimum(REGULAR, OF_BEST * np.max(least, axis=0, initial=0.0))
+        regular = [q for q, at in zip(points, least, strict=True) if (at > enough).all()]
         return ranks, regular
 
     def points(self, parameters: Mapping[str, float], count: int, stride: float = STRIDE) -> list[Any]:
@@ -297,19 +297,20 @@ class Walker:
         return np.linalg.norm(np.array(at.rows, dtype=float).reshape(-1, at.n), axis=1)
 
     @staticmethod
-    def _rank(at: EquationValues, threshold: float = SAME) -> int:
-        return rank_of(normalized(np.array(at.rows, dtype=float).reshape(-1, at.n)), threshold)
+    def _apart(at: EquationValues) -> Any:
+        """Singular values of the rows, each in its length, relative to the largest."""
+        values = np.linalg.svd(normalized(np.array(at.rows, dtype=float).reshape(-1, at.n)), compute_uv=False)
+        return values / values.max(initial=NOTHING)
 
     @staticmethod
-    def _reached(at: EquationValues, threshold: float = SAME) -> int:
+    def _driven(at: EquationValues) -> Any:
+        """Singular values of the inputs, each in its length, along V."""
         control = np.array(at.control, dtype=float).reshape(at.n, -1)
-        if not control.size:
-            return 0
         lengths = np.linalg.norm(control, axis=0)
         # what rounding leaves of an input that moves nothing has no direction
         idle = lengths <= NOTHING * lengths.max(initial=0.0)
         control[:, idle], lengths[idle] = 0, 1
-        return rank_of((null_space(at).T @ (control / lengths)).T, threshold, absolute=True)
+        return np.linalg.svd(null_space(at).T @ (control / lengths), compute_uv=False)
 
     def state(
         self, q: Any, parameters: Mapping[str, float], rank: int | None = None, pace: float = 1.0
@@ -335,6 +336,13 @@ class Walker:
             return np.linalg.pinv(np.array(rows), rcond=SAME)
         left, values, right = np.linalg.svd(np.array(rows), full_matrices=False)
         return right[:rank].T @ (left[:, :rank] / values[:rank]).T
+
+
+def _value(values: Any, count: int) -> float:
+    """The last of so many singular values: 0 where there are fewer, 1 where none is asked for."""
+    if not count:
+        return 1.0
+    return float(values[count - 1]) if len(values) >= count else 0.0
 
 
 def _is_nothing(ball: Any) -> bool:
