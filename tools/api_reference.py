@@ -40,7 +40,8 @@ def shown(docstring: str) -> Markup:
 def write(folder: Path, names: Sequence[str]) -> None:
     """HTML of packages and all below them: a page a module, an index and a search, with nothing from elsewhere."""
     missing = [name for name in PEERS if find_spec(name.partition(".")[0]) is None]
-    vars(symgen)["derive"] = symgen.derive  # which is imported when first asked for
+    for name in symgen.__all__:
+        vars(symgen)[name] = getattr(symgen, name)  # which is imported when first asked for
     pdoc.render.configure(docformat="markdown", show_source=False)
     pdoc.render.env.filters["to_html"] = shown
     with mock.patch.dict(sys.modules, {name: mock.MagicMock() for name in missing}):

@@ -99,7 +99,8 @@ def simulate(arguments: list[str]) -> int:
     given = parser.parse_args(arguments)
 
     def one(path: Path, progress: Progress) -> int:
-        from symgen.simulate.command import Request, run_simulate
+        from symgen.simulate.command import run_simulate
+        from symgen.simulate.simulation import Request
 
         request = Request(given.duration, max(1, given.frames), given.start, given.inputs)
         return run_simulate(path, given.out, request, given.quiet, progress)

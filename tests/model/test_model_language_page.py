@@ -10,6 +10,7 @@ import pytest
 from symgen.model.expressions.expression import FUNCTION_ARITY
 from symgen.model.file.schema import MODEL
 from symgen.model.load import load_text
+from symgen.quantities.everything import OPERATIONS_OF_ALL
 
 PAGE = (Path(__file__).parents[2] / "docs" / "model-language.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
@@ -33,3 +34,7 @@ def test_every_block_is_described() -> None:
 
 def test_every_function_is_listed() -> None:
     assert f"`{' '.join(FUNCTION_ARITY)}`" in PAGE
+
+
+def test_what_all_takes_is_the_limit_of_the_code() -> None:
+    assert f"more than {OPERATIONS_OF_ALL:,} operations".replace(",", " ") in PAGE

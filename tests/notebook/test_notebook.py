@@ -12,7 +12,7 @@ import sympy
 
 from symgen.diagnostics import ModelError
 from symgen.model.load import load_model
-from symgen.notebook import NotebookModel, derive
+from symgen.notebook.quantities import NotebookModel, derive
 
 MODELS = Path(__file__).parents[2] / "models"
 
@@ -71,7 +71,7 @@ def test_mistakes_of_the_file(tmp_path: Path) -> None:
 
 def test_heavy_libraries_are_imported_when_used() -> None:
     code = (
-        "import sys; from symgen.notebook import derive; derive(sys.argv[1]); "
+        "import sys; from symgen.notebook.quantities import derive; derive(sys.argv[1]); "
         "print([name for name in ('sympy', 'casadi', 'numpy') if name in sys.modules])"
     )
     root = Path(__file__).parents[2]

@@ -22,7 +22,7 @@ from symgen.cli.main import main
 from symgen.generation.results import Options
 from symgen.ir.kernel import Program
 from symgen.model.model import Model
-from symgen.simulate import command
+from symgen.simulate import simulation
 from symgen.simulate.animation import animation
 from symgen.simulate.scene import Scene
 from symgen.verify.running import compile as compiling
@@ -44,7 +44,7 @@ def out(tmp_path: Path, tool: Callable[[str], str], monkeypatch: pytest.MonkeyPa
     """A folder; what is simulated is verified at few states, compiled as it stands: the bits are the same."""
     tool("gcc")
     monkeypatch.setattr(compiling, "FLAGS", (*compiling.FLAGS, *compiling.PLAIN))
-    monkeypatch.setattr(command, "Options", partial(Options, states=8))
+    monkeypatch.setattr(simulation, "Options", partial(Options, states=8))
     return tmp_path
 
 

@@ -1,0 +1,1 @@
+"""symgen from Python and in notebooks: models built, derived, generated, compiled and simulated."""
