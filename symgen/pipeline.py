@@ -3,7 +3,7 @@
     load -> derive -> schedule -> emit (C, Python) -> verify -> report
 
 What a run does not need is not imported: the way from model to C uses the standard library, PyYAML, Jinja and
-python-flint only.
+python-flint only, its verification NumPy as well.
 """
 
 from __future__ import annotations
@@ -17,14 +17,15 @@ from typing import TYPE_CHECKING
 
 from symgen.backends.literals import LiteralRangeError, check_literals
 from symgen.backends.operations import count_operations
-from symgen.diagnostics import ModelError
+from symgen.diagnostics import ModelError, Notice
 from symgen.generation.draft import Draft, draft_of
 from symgen.generation.facts import facts, invalid_methods
 from symgen.generation.files import backend_of, files_of, sources_of, verified
 from symgen.generation.notices import notices
+from symgen.generation.packages import lacking_for_report, to_install
 from symgen.generation.refusals import beyond_range
 from symgen.generation.requested import requested_outputs
-from symgen.generation.results import LargestError, Options, Result, Summary
+from symgen.generation.results import LargestError, Options, Result, Summary, WrongUseError
 from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.runtime.activity import working
@@ -51,6 +52,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
     """
     progress("reading the model")
     model = load_model(path)
+    options, told = _without_report(model, options)
     outputs = requested_outputs(model, options)
     draft: Draft | None = None
     trial: Trial | None = None
@@ -87,7 +89,8 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
             if other is None or certificate is None:
                 with _literals_in_range(path):
                     files = files_of(draft, options, sources)
-                return _finished(path, draft, options, files, certificate, reporting, progress)
+                result = _finished(path, draft, options, files, certificate, reporting, progress)
+                return replace(result, notices=(*result.notices, *told))
         # again: by other methods for what was rejected, or in the end without these quantities
         draft = other
         if not draft.program.kernels:
@@ -115,7 +118,20 @@ def _finished(
         report = reporting.answer()
     if report.mistakes:
         raise ModelError(str(path), path.read_text(encoding="utf-8"), report.mistakes)
-    return replace(result, files={**result.files, **report.files}, notices=(*result.notices, *report.notices))
+    notices = [*result.notices, *report.notices]
+    if report.files and not options.verify and not options.as_recorded:
+        notices.append(Notice("the report has no PDF: that is made of what verification measures, too"))
+    return replace(result, files={**result.files, **report.files}, notices=tuple(notices))
+
+
+def _without_report(model: Model, options: Options) -> tuple[Options, tuple[Notice, ...]]:
+    """The options without a report that lacks packages, and what is told of it; WrongUseError where it is asked for."""
+    if "report" not in options.parts or not (lacks := lacking_for_report(model)):
+        return options, ()
+    if not options.usual:
+        raise WrongUseError(to_install(lacks, "the report"))
+    parts = tuple(part for part in options.parts if part != "report")
+    return replace(options, parts=parts), (Notice(f"the report is left out: {to_install(lacks, 'it')}"),)
 
 
 def _derive(model: Model, outputs: tuple[str, ...], options: Options) -> Draft:

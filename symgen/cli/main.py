@@ -75,7 +75,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         if given and not command:
             _check_command(given[0])
-        with signals_end_the_run():
+        with signals_end_the_run(process_ends=arguments is None):
             code = _COMMANDS[command](rest) if command else _generate(rest)
             sys.stdout.flush()
         if arguments is None:
@@ -139,7 +139,7 @@ def _generate(arguments: list[str]) -> int:
         "--scalar", choices=tuple(_SCALARS), default="both", help="scalar types of the C (default: both)"
     )
     known = f"of {','.join(ALL_PARTS)} (default: {','.join(PARTS)})"
-    parser.add_argument("--only", metavar="PARTS", type=parts, default=PARTS, help=known)
+    parser.add_argument("--only", metavar="PARTS", type=parts, help=known)
     parser.add_argument("--no-verify", dest="verify", action="store_false", help="write without verification")
     parser.add_argument(
         "--recorded",
@@ -157,7 +157,8 @@ def _generate(arguments: list[str]) -> int:
     options = Options(
         outputs=given.outputs,
         scalars=_SCALARS[given.scalar],
-        parts=given.only,
+        parts=given.only or PARTS,
+        usual=given.only is None,
         verify=given.verify and not given.check and given.recorded is None,
         states=given.states,
         methods=chosen_methods(given.methods),

@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 
 from symgen.diagnostics import ModelError, SymgenBug
+from symgen.generation.packages import EXTRA_OF, to_install
 from symgen.generation.results import WrongUseError
 from symgen.runtime.processes import ToolError
 from symgen.terminal import Progress
@@ -66,6 +67,11 @@ def guarded(work: Callable[[], int]) -> int:
         print(f"symgen: {error}", file=sys.stderr)
     except SymgenBug as error:
         print(f"symgen: internal error: {error}\nThis is a fault of symgen, not of the model.", file=sys.stderr)
+    except ModuleNotFoundError as error:
+        module = (error.name or "").partition(".")[0]
+        if module not in EXTRA_OF:
+            raise
+        raise WrongUseError(to_install((module,), "this")) from error
     except Exception:
         traceback.print_exc()
         print("symgen: internal error: this is a fault of symgen, not of the model.", file=sys.stderr)

@@ -26,19 +26,24 @@ class EndedError(SystemExit):
 
 
 @contextmanager
-def signals_end_the_run() -> Iterator[None]:
-    """A signal becomes an EndedError, unless it is ignored already, as under nohup; outside the main thread nothing."""
+def signals_end_the_run(process_ends: bool = False) -> Iterator[None]:
+    """A signal becomes an EndedError, unless it is ignored already, as under nohup; outside the main thread nothing.
+
+    Where the process ends with the run, signals stay as they are here once one came: the same signal is often sent
+    twice, and the second would kill a process that is about to say what became of its files.
+    """
     processes.begin()
     before = {}
+    ended = _Ending()
     if threading.current_thread() is threading.main_thread():
         numbers = [getattr(signal, name) for name in _MEANINGS if hasattr(signal, name)]
-        ended = _Ending()
         before = {n: signal.signal(n, ended) for n in numbers if signal.getsignal(n) not in (signal.SIG_IGN, None)}
     try:
         yield
     finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+        if not (process_ends and ended.came):
+            for number, handler in before.items():
+                signal.signal(number, handler)
 
 
 class _Ending:
@@ -46,6 +51,11 @@ class _Ending:
 
     def __init__(self) -> None:
         self._last = float("-inf")
+
+    @property
+    def came(self) -> bool:
+        """Whether it was called."""
+        return self._last > float("-inf")
 
     def __call__(self, number: int, _frame: FrameType | None) -> None:
         now = time.monotonic()

@@ -22,8 +22,9 @@ if TYPE_CHECKING:
     from symgen.ir.kernel import Scalar
     from symgen.model.model import Model
     from symgen.notebook.compiled import CompiledModel
+    from symgen.notebook.motions import SimulatedModel
     from symgen.notebook.quantities import NotebookModel
-    from symgen.notebook.results import GeneratedModel, SimulatedModel
+    from symgen.notebook.results import GeneratedModel
 
 _WORDS = block_words()
 Source: TypeAlias = "str | Path | Mapping[str, Any]"
@@ -147,7 +148,7 @@ class ModelFile:
         `duration` in seconds and `frames` a second; coordinates and rates at the `start` and `inputs` by name.  Raises
         ModelError, WrongUseError for unknown names, NotSimulatedError where there is no motion.
         """
-        from symgen.notebook.results import simulated_model
+        from symgen.notebook.motions import simulated_model
 
         with self._file() as path:
             return simulated_model(path, duration, frames, start or {}, inputs or {})

@@ -1,4 +1,4 @@
-"""What is made of a model from Python: the files of a run, and motions."""
+"""The files that are made of a model from Python."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from symgen.diagnostics import Notice
 from symgen.generation.results import ALL_PARTS, PARTS, Options, Result, Summary, Trig, WrongUseError
@@ -15,12 +15,8 @@ from symgen.methods.table import methods as methods_of
 from symgen.model.expressions.names import did_you_mean
 from symgen.output.write import recover_folders, write_files
 from symgen.pipeline import generate
-from symgen.simulate.simulation import DURATION, FRAMES, Request, Simulation, simulated
 from symgen.terminal import summary_table
 from symgen.verify.certificate import LeftOut
-
-if TYPE_CHECKING:
-    import numpy as np
 
 
 class RejectedError(Exception):
@@ -67,7 +63,7 @@ def made(path: Path, options: Options) -> Result:
         known = [row.name for row in methods_of(quantity)]
         if method not in known:
             raise WrongUseError(f"methods: {quantity} by {method!r}; {did_you_mean(method, known, ', '.join(known))}")
-    result = generate(path, options, _unheard)
+    result = generate(path, options, unheard)
     if result.failures:
         raise RejectedError("\n".join(result.failures))
     return result
@@ -89,7 +85,8 @@ def generated_model(
     options = Options(
         outputs=wanted,
         scalars=tuple(scalars),
-        parts=tuple(part for part in ALL_PARTS if part in (parts or PARTS)) if parts is None else tuple(parts),
+        parts=PARTS if parts is None else tuple(parts),
+        usual=parts is None,
         methods=dict(methods),
         trig=trig,
         verify=verify,
@@ -109,58 +106,5 @@ def generated_model(
     )
 
 
-class SimulatedModel:
-    """A motion: `times` (s), `q` and `rates` (frames x n), `energy` (frames x 2: T, U), `residual` (the constraints').
-
-    `stopped` says why it ended early, or is None.
-    """
-
-    def __init__(self, simulation: Simulation) -> None:
-        import numpy as np
-
-        motion = simulation.motion
-        self._simulation = simulation
-        self.names = tuple(coordinate.name for coordinate in simulation.model.coordinates)
-        self.times: np.ndarray = np.array(motion.times)
-        self.q: np.ndarray = np.array(motion.q)
-        self.rates: np.ndarray = np.array(motion.qd)
-        self.energy: np.ndarray = np.array(motion.energy)
-        self.residual: np.ndarray = np.array(motion.residual)
-        self.stopped = motion.stopped
-
-    def __getitem__(self, coordinate: str) -> np.ndarray:
-        """The course of a coordinate (frames)."""
-        if coordinate not in self.names:
-            raise KeyError(f"{coordinate!r} is none of {', '.join(self.names)}")
-        course: np.ndarray = self.q[:, self.names.index(coordinate)]
-        return course
-
-    def chart(self) -> str:
-        """SVG: coordinates by unit, energies, violation of the constraints."""
-        return self._simulation.chart()
-
-    def animation(self) -> str | None:
-        """A page of HTML that plays the motion; None for a model without frames."""
-        return self._simulation.animation()
-
-    def __repr__(self) -> str:
-        ended = f", stopped {self.stopped}" if self.stopped else ""
-        return f"<motion of {self._simulation.model.name}: {self.times[-1]:g} s in {len(self.times)} frames{ended}>"
-
-    def _repr_html_(self) -> str:
-        page = self.animation()
-        played = f'<iframe srcdoc="{escape(page, quote=True)}" width="100%" height="480"></iframe>' if page else ""
-        return f"<div>{self.chart()[self.chart().index('<svg'):]}{played}</div>"
-
-
-def simulated_model(
-    path: Path, duration: float | None, frames: int | None, start: Mapping[str, float], inputs: Mapping[str, float]
-) -> SimulatedModel:
-    """The motion of a model."""
-    seconds = DURATION if duration is None else duration
-    request = Request(seconds, FRAMES if frames is None else frames, dict(start), dict(inputs))
-    return SimulatedModel(simulated(path, request, _unheard))
-
-
-def _unheard(_message: str) -> None:
-    return
+def unheard(_message: str) -> None:
+    """Progress that nobody watches."""

@@ -55,7 +55,7 @@ def code(*arguments: str) -> int:
 
 def test_generates_into_generated(asked: list[Options], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert code(SKATE) == 0
-    assert asked == [Options(measured=Path("generated"))]
+    assert asked == [Options(measured=Path("generated"), usual=True)]
     assert (tmp_path / "generated/skate/c/skate.c").read_text() == "source\n"
     out, err = capsys.readouterr()
     assert "n = 3, r = 1, δ = 2, m = 2" in out
@@ -69,12 +69,12 @@ def test_generates_into_generated(asked: list[Options], tmp_path: Path, capsys: 
 @pytest.mark.parametrize(
     ("arguments", "options"),
     [
-        (["--outputs", "energy, mass_matrix"], Options(outputs=("energy", "mass_matrix"))),
-        (["--scalar", "float32"], Options(scalars=("float32",))),
-        (["--trig", "libm"], Options(trig="libm")),
+        (["--outputs", "energy, mass_matrix"], Options(outputs=("energy", "mass_matrix"), usual=True)),
+        (["--scalar", "float32"], Options(scalars=("float32",), usual=True)),
+        (["--trig", "libm"], Options(trig="libm", usual=True)),
         (["--only", "python,c"], Options(parts=("c", "python"))),
         (["--only", "report,array_api,c"], Options(parts=("c", "array_api", "report"))),
-        (["--no-verify", "--states", "200"], Options(verify=False, states=200)),
+        (["--no-verify", "--states", "200"], Options(verify=False, states=200, usual=True)),
     ],
 )
 def test_options(asked: list[Options], arguments: list[str], options: Options) -> None:

@@ -220,3 +220,20 @@ def test_a_tool_that_is_missing_or_late_is_a_tool_error(tmp_path: Path) -> None:
         run(["no-such-tool"], 1.0)
     with pytest.raises(ToolError, match=r"sleep did not end within 0\.2 s"):
         run(["sleep", "20"], 0.2, tmp_path)
+
+
+def test_the_same_signal_once_more_does_not_kill_a_process_that_ends() -> None:
+    """It may come when the run is over and what became of its files is not told yet."""
+    code = (
+        "import os, signal, sys\nfrom symgen.cli.signals import EndedError, signals_end_the_run\n"
+        "def send():\n    os.kill(os.getpid(), signal.SIGHUP)\n"
+        "try:\n    with signals_end_the_run(process_ends=True):\n        send()\n"
+        "except EndedError as ending:\n    send()\n    print('told')\n    sys.exit(ending.number)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (129, "told\n")
+    # where the process goes on, signals are the caller's again
+    done = subprocess.run(
+        [sys.executable, "-c", code.replace("process_ends=True", "")], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stdout) == (-signal.SIGHUP, "")
