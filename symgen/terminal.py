@@ -11,6 +11,7 @@ import time
 import unicodedata
 from collections.abc import Sequence
 from itertools import zip_longest
+from pathlib import Path
 from typing import TextIO
 
 from symgen.diagnostics import Notice
@@ -122,6 +123,20 @@ def _folded(rows: Sequence[tuple[str, str]], width: int) -> list[tuple[str, str]
         reasons = textwrap.wrap(why, width - left, break_long_words=False)
         found += zip_longest(parts, reasons, fillvalue="")
     return found
+
+
+def written_table(folder: Path, files: Sequence[Path]) -> str:
+    """The files that were written below a folder, a line for those of each kind: how many, and the first of them."""
+    kinds: dict[str, list[str]] = {}
+    for file in files:
+        kinds.setdefault(f"{file.parts[0]}/" if len(file.parts) > 1 else "", []).append(file.name)
+    width = max(map(len, kinds), default=0)
+    lines = [f"written to {folder}/:"]
+    for kind, names in sorted(kinds.items(), key=lambda item: not item[0]):
+        start = f"  {kind:{width}}  {len(names):3d}  "
+        shown = textwrap.shorten(", ".join(names), USUAL_WIDTH - len(start), placeholder=" ...")
+        lines.append(start + shown)
+    return "\n".join([*lines, ""])
 
 
 def terminal_width(stream: TextIO) -> int | None:

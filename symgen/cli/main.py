@@ -31,7 +31,7 @@ from symgen.model.expressions.names import did_you_mean
 from symgen.output.write import begin_writing, changed_folders, compare, recover_folders, write_files
 from symgen.registered import USUAL
 from symgen.runtime.processes import ToolError
-from symgen.terminal import SPELLED, Progress, notice_line, summary_table, terminal_width
+from symgen.terminal import SPELLED, Progress, notice_line, summary_table, terminal_width, written_table
 
 # Exit codes, as a shell reports these signals.
 INTERRUPTED, READER_GONE = 130, 141
@@ -287,7 +287,8 @@ def _write_files(result: Result, out: Path, quiet: bool) -> int:
     written = write_files(out / result.model.name, result.files, notify)
     if not quiet:
         print(summary_table(result.model.name, result.summary, terminal_width(sys.stdout)))
-        print("written:", *(f"  {path}" for path in written), "", sep="\n")
+        folder = out / result.model.name
+        print(written_table(folder, [path.relative_to(folder) for path in written]))
     return DONE
 
 

@@ -29,8 +29,8 @@ class EndedError(SystemExit):
 def signals_end_the_run(process_ends: bool = False) -> Iterator[None]:
     """A signal becomes an EndedError, unless it is ignored already, as under nohup; outside the main thread nothing.
 
-    Where the process ends with the run, signals stay as they are here once one came: the same signal is often sent
-    twice, and the second would kill a process that is about to say what became of its files.
+    Where the process ends with the run, more of them are ignored once one came: the same signal is often sent twice,
+    and the second would kill a process that is about to say what became of its files.
     """
     processes.begin()
     before = {}
@@ -41,9 +41,8 @@ def signals_end_the_run(process_ends: bool = False) -> Iterator[None]:
     try:
         yield
     finally:
-        if not (process_ends and ended.came):
-            for number, handler in before.items():
-                signal.signal(number, handler)
+        for number, handler in before.items():
+            signal.signal(number, signal.SIG_IGN if process_ends and ended.came else handler)
 
 
 class _Ending:

@@ -61,7 +61,7 @@ def test_generates_into_generated(asked: list[Options], tmp_path: Path, capsys: 
     assert "n = 3, r = 1, δ = 2, m = 2" in out
     assert "C float32          2.3        16   inverse_dynamics" in out
     assert "potential forces   the potential energy is constant" in out
-    assert "generated/skate/c/skate.c" in out
+    assert "written to generated/skate/:\n  c/    1  skate.c\n" in out
     assert "skate: deriving ..." in err
     assert "notice: a notice" in err
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import io
+from pathlib import Path
 
 import pytest
 
 from symgen.generation.results import Summary
-from symgen.terminal import SPELLED, Progress, summary_table
+from symgen.terminal import SPELLED, Progress, summary_table, written_table
 
 
 class Terminal(io.StringIO):
@@ -71,3 +72,13 @@ def test_sentences_fit_the_terminal_and_lose_no_word() -> None:
     narrow, wide = summary_table("digger", summary, 60), summary_table("digger", summary)
     assert max(map(len, narrow.splitlines())) <= 60 < max(map(len, wide.splitlines()))
     assert sorted(narrow.replace("─", "").split()) == sorted(wide.replace("─", "").split())
+
+
+def test_what_was_written_takes_a_line_a_kind() -> None:
+    files = [Path("derivation.json"), *(Path(f"c/robot_{name}.c") for name in range(20)), Path("report/robot.pdf")]
+    lines = written_table(Path("out/robot"), files).splitlines()
+    assert lines[0] == "written to out/robot/:"
+    assert [line.split()[:2] for line in lines[1:3]] == [["c/", "20"], ["report/", "1"]]
+    assert lines[1].endswith("robot_4.c, ...")
+    assert lines[3].split() == ["1", "derivation.json"]
+    assert max(map(len, lines)) <= 80
