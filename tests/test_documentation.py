@@ -22,6 +22,12 @@ def test_the_architecture_is_that_of_the_code() -> None:
     assert result.returncode == 0, result.stdout + result.stderr
 
 
+def test_the_gallery_is_that_of_the_models() -> None:
+    command = [sys.executable, "tools/gallery_page.py", "--check"]
+    result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stdout + result.stderr
+
+
 PAGES = [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")]
 
 

@@ -11,7 +11,7 @@ import yaml
 # Texts in lists and mappings: what a model file holds.
 Block: TypeAlias = "str | list[Block] | dict[str, Block]"
 # Columns of the file.
-WIDTH = 110
+FILE_COLUMNS = 110
 # What the rates and accelerations of x are called, by the order of the derivative.
 _RATES = {1: "_dot", 2: "_ddot"}
 
@@ -44,7 +44,7 @@ def as_yaml(blocks: Mapping[str, Block]) -> str:
         for name, block in blocks.items()
     }
     return yaml.dump(
-        laid_out, Dumper=_TextDumper, sort_keys=False, allow_unicode=True, width=WIDTH, default_flow_style=False
+        laid_out, Dumper=_TextDumper, sort_keys=False, allow_unicode=True, width=FILE_COLUMNS, default_flow_style=False
     )
 
 
@@ -66,7 +66,7 @@ def _on_a_line(block: Block) -> Block:
     """The mapping or list marked where it fits on a line, or else as much of it as does."""
     if isinstance(block, str):
         return block
-    if len(str(block)) < WIDTH:
+    if len(str(block)) < FILE_COLUMNS:
         return _MappingOnALine(block) if isinstance(block, dict) else _ListOnALine(block)
     if isinstance(block, dict):
         return {key: _on_a_line(entry) for key, entry in block.items()}

@@ -99,6 +99,12 @@ class ModelFile:
         with self._file() as path:
             return load_model(path)
 
+    def drawing(self) -> str | None:
+        """SVG: the machine where its start leads; None for a model without frames."""
+        from symgen.drawing.svg import drawing
+
+        return drawing(self.resolved)
+
     def derive(self) -> NotebookModel:
         """Its quantities as SymPy matrices and CasADi functions; ModelError with every mistake."""
         from symgen.notebook.quantities import NotebookModel
@@ -184,7 +190,11 @@ class ModelFile:
         return f"<model {self.name}: {', '.join(counts)}>"
 
     def _repr_html_(self) -> str:
-        return f"<pre>{escape(self.text)}</pre>"
+        text = f"<pre>{escape(self.text)}</pre>"
+        try:
+            return f"{self.drawing() or ''}{text}"
+        except ModelError as error:  # a model that is being built
+            return f"{text}<pre>{escape(str(error))}</pre>"
 
 
 def _method(word: BlockWord) -> Callable[..., ModelFile]:

@@ -49,6 +49,7 @@ class ReportInput:
 
     Without `verification`, `charts`, `targets`, `proof` a function of model and symgen alone.
 
+    `drawing` is the machine as SVG.
     `operation_counts`: quantity -> kind of operation (add, mul, div, sqrt, sincos, other) -> number.
     `skipped`: decisions with their reasons, and quantities that do not exist with theirs.
     """
@@ -63,6 +64,7 @@ class ReportInput:
     operation_counts: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
     verdicts: tuple[Verdict, ...] = ()
     notices: tuple[str, ...] = ()
+    drawing: str | None = None
     verification: Verification | None = None
     charts: tuple[Chart, ...] = ()
     targets: tuple[TargetCore, ...] = ()

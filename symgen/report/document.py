@@ -80,10 +80,11 @@ class Table:
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A drawing as SVG text, with its caption."""
+    """A drawing as SVG text, with its caption; at its own size, or as wide as the page (`wide`)."""
 
     svg: str
     caption: Text
+    wide: bool = True
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ from dataclasses import asdict, replace
 from symgen import __version__
 from symgen.closedform.forms import derive_closed_forms
 from symgen.closedform.published import decide_published
+from symgen.drawing.svg import drawing
 from symgen.model.model import Model
 from symgen.report.content import Chart, ErrorRow, ReportInput, Verification
 from symgen.report.facts import Facts
@@ -31,6 +32,7 @@ def gather(model: Model, facts: Facts) -> ReportInput:
         operation_counts={name: asdict(count) for name, count in counts.items()},
         verdicts=decide_published(model, forms),
         notices=tuple(notice.message for notice in model.notices),
+        drawing=drawing(model),
     )
 
 

@@ -70,7 +70,8 @@ class _TypstView(Markup):
         return f"#block(raw({quoted(text)}))"
 
     def figure(self, figure: Figure) -> str:
-        return f"#chart(bytes({quoted(svg_element(figure.svg))}), [{self.text(figure.caption)}])"
+        width = "92%" if figure.wide else "auto"
+        return f"#chart(bytes({quoted(svg_element(figure.svg))}), [{self.text(figure.caption)}], width: {width})"
 
     def _cell(self, cell: Text) -> str:
         """A cell of a table, with more room where it holds a fraction."""

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from symgen.drawing.scene import scene
 from symgen.generation.results import Options, Result, WrongUseError
 from symgen.generation.runnable import Runner
 from symgen.mechanics.genericity import configurations, parameter_values
@@ -18,7 +19,6 @@ from symgen.pipeline import generate
 from symgen.simulate.animation import animation
 from symgen.simulate.integrate import SimulatedMotion, consistent_start, integrate
 from symgen.simulate.plant import QUANTITIES, Plant, PlantError
-from symgen.simulate.scene import scene
 from symgen.simulate.tables import motion_chart
 from symgen.verify.running.compile import find_compiler
 

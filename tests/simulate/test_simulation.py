@@ -19,12 +19,12 @@ from symgen.backends.backend import Variant
 from symgen.backends.c import backend
 from symgen.backends.c.plain import emit_c
 from symgen.cli.main import main
+from symgen.drawing.scene import Scene
 from symgen.generation.results import Options
 from symgen.ir.kernel import Program
 from symgen.model.model import Model
 from symgen.simulate import simulation
 from symgen.simulate.animation import animation
-from symgen.simulate.scene import Scene
 from symgen.verify.running import compile as compiling
 
 MODELS = ROOT / "models"

@@ -10,6 +10,7 @@ from symgen.model.model import Input, Model, Range
 from symgen.report.context import Context, text_of
 from symgen.report.document import (
     Block,
+    Figure,
     InlineCode,
     InlineMath,
     Section,
@@ -56,10 +57,19 @@ from symgen.report.sections.bodies import mechanism
 SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
+def _drawing(context: Context) -> tuple[Figure, ...]:
+    """The machine, where it has frames."""
+    if context.input.drawing is None:
+        return ()
+    caption = say("The mechanism where its start leads, with its coordinates; driven joints are filled.")
+    return (Figure(context.input.drawing, caption, wide=False),)
+
+
 def system(context: Context) -> Section:
     """Everything the model file says, with units, descriptions and defaults."""
     model = context.model
     blocks: list[Block] = [
+        *_drawing(context),
         paragraph(
             "The coordinates, {}, are the entries of {} in this order. A dot denotes the time derivative; states for "
             "verification are drawn from the ranges.",

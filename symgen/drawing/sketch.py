@@ -1,0 +1,291 @@
+"""What is drawn of a machine: strokes, discs and labels in the plane of the picture, the far ones first.
+
+A link is a bar between its two places, or the hull of more; driven joints are filled.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from symgen.drawing.pose import DrawnJoint, MachinePose, Place
+from symgen.drawing.view import Flat, View, view_of
+from symgen.model.expressions.walk import evaluate
+from symgen.model.mechanism import WORLD
+
+Role: TypeAlias = Literal["link", "base", "tie", "spring", "cable", "rail", "wheel", "axis"]
+Mark: TypeAlias = Literal["joint", "driven", "slider", "driven slider", "ball", "pin", "point"]
+# Sides of the polygon that stands for a circle.
+ROUND = 48
+# Directions of links that add up to less are balanced.
+BALANCED = 0.3
+# Of the machine's size: axes of the world, and how far a spring's zigzags reach; how many these are.
+AXIS_LENGTH, ZIGZAG, ZIGZAGS = 0.16, 0.025, 9
+# Joints and points that have their names beside them, at most.
+NAMED_JOINTS, NAMED_POINTS = 12, 10
+
+
+@dataclass(frozen=True, slots=True)
+class Stroke:
+    """A line through places, closed or not."""
+
+    role: Role
+    places: tuple[Flat, ...]
+    closed: bool = False
+    name: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Symbol:
+    """A mark at a place; `along` is the direction of a slider."""
+
+    mark: Mark
+    place: Flat
+    along: Flat = (1.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Ground:
+    """Where a joint stands on the world."""
+
+    place: Flat
+
+
+@dataclass(frozen=True, slots=True)
+class MachineLabel:
+    """Names at a place, away from what is there: coordinates, inputs, or a point."""
+
+    place: Flat
+    away: Flat
+    coordinates: tuple[str, ...] = ()
+    inputs: tuple[str, ...] = ()
+    point: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class MachineSketch:
+    """All of a picture, in metres, y upwards."""
+
+    strokes: tuple[Stroke, ...]
+    grounds: tuple[Ground, ...]
+    symbols: tuple[Symbol, ...]
+    labels: tuple[MachineLabel, ...]
+    planar: bool
+
+
+def sketch(pose: MachinePose) -> MachineSketch:
+    """The picture of a machine."""
+    view = view_of(pose)
+    links = _Links(pose, view)
+    return MachineSketch(
+        (*_world(pose, view), *links.base(), *_wheels(pose, view), *links.strokes(), *_ties(pose, view)),
+        tuple(links.grounds()),
+        (*links.symbols(), *links.pins()),
+        tuple(links.labels()),
+        view.planar,
+    )
+
+
+class _Links:
+    """Frames as links: the places of each, and the joints between them."""
+
+    def __init__(self, pose: MachinePose, view: View) -> None:
+        self._pose, self._view = pose, view
+        self._joints = {joint.frame: joint for joint in pose.joints}
+        # of frames that are fixed to others the places count as those of the first one
+        self._root: dict[str, str] = {WORLD: WORLD}
+        for frame in pose.mechanism.frames:
+            fixed = self._joints[frame.name].kind == "fixed"
+            self._root[frame.name] = self._root[frame.parent] if fixed else frame.name
+        self._places: dict[str, list[Place]] = {}
+        for frame in pose.mechanism.frames:
+            joint = self._joints[frame.name]
+            if joint.kind not in ("fixed", "free"):
+                self._add(self._root[frame.parent], joint.foot)
+                self._add(self._root[frame.name], joint.place)
+            elif joint.kind == "fixed" and self._root[frame.name] != WORLD:
+                self._add(self._root[frame.name], joint.place)
+        ends = {end for tie in pose.mechanism.ties for end in tie.ends}
+        for point in pose.mechanism.points:
+            if point.frame == point.carrier or point.name in ends:
+                self._add(self._root[point.frame], pose.place(point.name))
+        for frame in pose.mechanism.frames:
+            if frame.name in ends:
+                self._add(self._root[frame.name], pose.place(frame.name))
+        for body in pose.mechanism.bodies:
+            root = self._root[body.frame]
+            if root != WORLD and len(self._places.get(root, [])) < 2:
+                self._add(root, self._centre(body.frame, [evaluate(entry, pose.parameters) for entry in body.com]))
+
+    def _centre(self, frame: str, com: Sequence[float]) -> Place:
+        here = self._pose.place(frame)
+        axes = [self._pose.axis(frame, k) for k in range(3)]
+        x, y, z = (here[i] + sum(com[k] * axes[k][i] for k in range(3)) for i in range(3))
+        return x, y, z
+
+    def _add(self, frame: str, place: Place) -> None:
+        known = self._places.setdefault(frame, [])
+        if not self._is_among(place, known):
+            known.append(place)
+
+    def _is_among(self, place: Place, others: Iterable[Place]) -> bool:
+        return any(self._pose.is_same(place, other) for other in others)
+
+    def strokes(self) -> Iterator[Stroke]:
+        """Bars and hulls, the far ones first; rails of sliders."""
+        found = []
+        for frame, places in self._places.items():
+            if frame == WORLD or len(places) < 2:
+                continue
+            hull = _hull([self._view.flat(place) for place in places])
+            depth = sum(map(self._view.depth, places)) / len(places)
+            found.append((depth, Stroke("link", tuple(hull), closed=len(hull) > 2)))
+        for joint in self._joints.values():
+            if joint.kind == "sliding" and not self._pose.is_same(joint.place, joint.foot):
+                ends = self._view.flat(joint.foot), self._view.flat(joint.place)
+                found.append((self._view.depth(joint.foot), Stroke("rail", ends)))
+        return (stroke for _, stroke in sorted(found, key=lambda pair: pair[0]))
+
+    def base(self) -> Iterator[Stroke]:
+        """What carries an arm that stands above the origin of the world."""
+        places = self._places.get(WORLD, [])
+        if len(places) == 1 and not self._view.planar:
+            yield Stroke("base", (self._view.flat((0.0, 0.0, 0.0)), self._view.flat(places[0])))
+
+    def grounds(self) -> Iterator[Ground]:
+        """Where joints stand on the world, and points of loops."""
+        return (Ground(self._view.flat(place)) for place in self._places.get(WORLD, []))
+
+    def _moving(self) -> Iterator[DrawnJoint]:
+        return (joint for joint in self._joints.values() if joint.kind not in ("fixed", "free"))
+
+    def symbols(self) -> Iterator[Symbol]:
+        """Of joints and points."""
+        for point in self._pose.mechanism.points:
+            if self._is_shown(point.name):
+                yield Symbol("point", self._view.flat(self._pose.place(point.name)))
+        for joint in self._moving():
+            place, driven = self._view.flat(joint.place), bool(joint.inputs)
+            if joint.kind == "sliding":
+                tip = tuple(a + b for a, b in zip(joint.place, joint.axis, strict=True))
+                end = self._view.flat((tip[0], tip[1], tip[2]))
+                yield Symbol("driven slider" if driven else "slider", place, (end[0] - place[0], end[1] - place[1]))
+            elif joint.kind == "ball":
+                yield Symbol("ball", place)
+            else:
+                yield Symbol("driven" if driven else "joint", place)
+
+    def pins(self) -> Iterator[Symbol]:
+        """Where loops close: places that two links share without a joint."""
+        joints = [joint.place for joint in self._moving()]
+        seen: list[Place] = []
+        roots = list(self._places)
+        for k, frame in enumerate(roots):
+            others = [place for other in roots[k + 1 :] for place in self._places[other]]
+            for place in self._places[frame]:
+                if self._is_among(place, others) and not self._is_among(place, (*joints, *seen)):
+                    seen.append(place)
+                    yield Symbol("pin", self._view.flat(place))
+
+    def _is_shown(self, point: str) -> bool:
+        """Whether a point is none of the places of joints."""
+        place = self._pose.place(point)
+        return not self._is_among(place, (joint.place for joint in self._moving()))
+
+    def labels(self) -> Iterator[MachineLabel]:
+        """Coordinates and inputs at joints, and the names of a few points."""
+        named = [joint for joint in self._joints.values() if joint.coordinates]
+        # of a long chain those at even distances, the first and the last
+        chosen = named[:: math.ceil(len(named) / NAMED_JOINTS) or 1]
+        for joint in dict.fromkeys((*chosen, *named[-1:])):
+            place = joint.place
+            yield MachineLabel(self._view.flat(place), self._away(place), joint.coordinates, joint.inputs)
+        shown = [point.name for point in self._pose.mechanism.points if self._is_shown(point.name)]
+        places: list[Place] = []
+        for name in shown[:NAMED_POINTS]:
+            place = self._pose.place(name)
+            if not self._is_among(place, places):
+                places.append(place)
+                yield MachineLabel(self._view.flat(place), self._away(place), point=name)
+
+    def _away(self, place: Place) -> Flat:
+        """From the links that meet there; up where they are balanced."""
+        here = self._view.flat(place)
+        x = y = 0.0
+        for places in self._places.values():
+            if self._is_among(place, places):
+                for other in places:
+                    there = self._view.flat(other)
+                    length = math.dist(here, there)
+                    if length > 0:
+                        x, y = x - (there[0] - here[0]) / length, y - (there[1] - here[1]) / length
+        size = math.hypot(x, y)
+        x, y = (x / size, y / size) if size > BALANCED else (0.0, 1.0)
+        if y < 0 and self._is_among(place, self._places.get(WORLD, [])):
+            return (1.0 if x > 0 else -1.0), 0.0  # the ground is below
+        return x, y
+
+
+def _world(pose: MachinePose, view: View) -> Iterator[Stroke]:
+    """Axes of the world and the direction of gravity, at the origin."""
+    length = AXIS_LENGTH * pose.size
+    origin = view.flat((0.0, 0.0, 0.0))
+    for k in range(3):
+        tip = view.flat((length * (k == 0), length * (k == 1), length * (k == 2)))
+        if math.dist(origin, tip) > 0.1 * length:
+            yield Stroke("axis", (origin, tip), name="xyz"[k])
+
+
+def _wheels(pose: MachinePose, view: View) -> Iterator[Stroke]:
+    for wheel in pose.mechanism.wheels:
+        centre, radius = pose.place(wheel.frame), evaluate(wheel.radius, pose.parameters)
+        one, other = (pose.axis(wheel.frame, (wheel.axle + k) % 3) for k in (1, 2))
+        rim = []
+        for step in range(ROUND):
+            angle = 2 * math.pi * step / ROUND
+            c, s = radius * math.cos(angle), radius * math.sin(angle)
+            x, y, z = (centre[i] + c * one[i] + s * other[i] for i in range(3))
+            rim.append(view.flat((x, y, z)))
+        yield Stroke("wheel", tuple(rim), closed=True)
+
+
+def _ties(pose: MachinePose, view: View) -> Iterator[Stroke]:
+    for tie in pose.mechanism.ties:
+        start, end = (view.flat(pose.place(name)) for name in tie.ends)
+        if tie.kind == "rod":
+            yield Stroke("tie", (start, end))
+        elif tie.kind == "cable":
+            yield Stroke("cable", (start, end))
+        else:
+            yield Stroke("spring", tuple(_zigzag(start, end, ZIGZAG * pose.size)))
+
+
+def _zigzag(start: Flat, end: Flat, width: float) -> Iterator[Flat]:
+    length = math.dist(start, end) or 1.0
+    across = -(end[1] - start[1]) / length * width, (end[0] - start[0]) / length * width
+    yield start
+    for k in range(1, ZIGZAGS + 1):
+        share, side = 0.2 + 0.6 * k / (ZIGZAGS + 1), 1 if k % 2 else -1
+        x, y = (start[i] + share * (end[i] - start[i]) + side * across[i] for i in (0, 1))
+        yield x, y
+    yield end
+
+
+def _hull(places: Sequence[Flat]) -> list[Flat]:
+    """The convex hull by Andrew's monotone chain (de Berg et al., Computational Geometry, ch. 1)."""
+    ordered = sorted(set(places))
+    halves = []
+    for half in (ordered, ordered[::-1]):
+        chain: list[Flat] = []
+        for place in half:
+            while len(chain) > 1 and _turn(chain[-2], chain[-1], place) <= 0:
+                chain.pop()
+            chain.append(place)
+        halves.append(chain[:-1])
+    return halves[0] + halves[1]
+
+
+def _turn(a: Flat, b: Flat, c: Flat) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
