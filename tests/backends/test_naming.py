@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import keyword
+import re
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -10,7 +12,10 @@ from hypothesis import strategies as st
 
 from symgen.backends.c.reserved import is_taken
 from symgen.backends.python.reserved import KEYWORDS
+from symgen.model.quantities import QUANTITIES
 from symgen.naming import c_name, identifiers, macro_name
+
+ROOT = Path(__file__).parents[2]
 
 
 def words(text: str) -> list[str]:
@@ -92,3 +97,16 @@ def test_models_share_no_file_and_no_macro(names: list[str]) -> None:
 def test_macros_of_small_letters_are_in_capitals() -> None:
     assert macro_name("front_car_sc_f") == "FRONT_CAR_SC_F"
     assert [macro_name(name) for name in ("Rob", "ROB", "ROB_f")] == ["Rob", "rob", "rob_F"]
+
+
+def test_a_result_is_called_like_no_argument_of_its_function() -> None:
+    """Beside states, functions take parameters, sines, and how many states there are and their statuses."""
+    own = {"p", "sc", "count", "stride", "status"}
+    clashing = [row.name for row in QUANTITIES if row.result in own.union(row.arguments)]
+    assert clashing == []
+    # the names are those that are printed
+    header = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "generated/front_car/c").glob("front_car*.h"))
+    calls = re.findall(r"front_car_\w+\(([^;]*)\);", header)
+    printed = {word for call in calls for word in re.findall(r"(\w+)(?:\[|,|$)", call)}
+    assert own | {"q", "qd", "qdd", "u"} <= printed
+    assert printed - own - {"q", "qd", "qdd", "u"} <= {row.result for row in QUANTITIES} | {"prepared", "void"}
