@@ -40,8 +40,9 @@ class CompiledModel:
     def __repr__(self) -> str:
         import inspect
 
-        lines = [f"{name}{inspect.signature(getattr(self._module, name))}" for name in self.quantities]
-        return "\n  ".join([f"{self._name}, compiled:", *lines]).replace(f"={self._module.PARAMETERS!r}", "=PARAMETERS")
+        arguments = {name: inspect.signature(getattr(self._module, name)).parameters for name in self.quantities}
+        lines = [f"{name}({', '.join(given)}=PARAMETERS)" for name, given in arguments.items()]
+        return "\n  ".join([f"{self._name}, compiled:", *lines])
 
 
 def compiled_model(path: Path, outputs: Sequence[str] | None, methods: Mapping[str, str]) -> CompiledModel:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -117,12 +118,14 @@ def _remark(symbol: Layout, note: str, printed: bool) -> Block:
 
 
 def sentence(text: str) -> str:
-    """The text with a capital and a full stop."""
+    """The text with a capital and a full stop; a symbol that it begins with, such as δ or m_1, stays as it is."""
     stripped = text.strip()
     if not stripped:
         return ""
     ended = stripped if stripped[-1] in ".!?:" else stripped + "."
-    return ended[0].upper() + ended[1:]
+    first = re.split(r"[\s,;:.]", ended, maxsplit=1)[0]
+    is_word = first.isascii() and (len(first) > 1 or first == "a") and "_" not in first
+    return ended[0].upper() + ended[1:] if is_word else ended
 
 
 def _intermediate_names(forms: Mapping[str, ClosedForm]) -> frozenset[str]:

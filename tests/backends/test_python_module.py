@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import inspect
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
@@ -11,11 +13,19 @@ import numpy as np
 import pytest
 from generated_python import load_generated
 
+import symgen
 from symgen.backends.c.batch import emit_c_batch
 from symgen.backends.c.plain import emit_c
 from symgen.backends.python.module import emit_python
 from symgen.ir.kernel import Program
 from symgen.model.model import Model
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def car() -> ModuleType:
+    return load_generated(ROOT / "generated/front_car/python/front_car.py")
 
 
 @pytest.fixture(scope="module")
@@ -159,3 +169,19 @@ def test_compiled_functions_are_those_of_the_module(toy: ModuleType, tool: Calla
 def test_library_sine_and_cosine(tmp_path: Path) -> None:
     module = load(tmp_path, handmade.model(), handmade.program(own_sincos=False))
     assert module.mass_matrix([0.0, 0.5])[0, 1] == 2.6 * np.sin(0.5)
+
+
+def test_a_module_says_what_it_is_made_of(car: ModuleType) -> None:
+    text = (ROOT / "models/front_car.yaml").read_bytes()
+    assert hashlib.sha256(text).hexdigest() == car.MODEL_SHA256
+    assert car.__version__ == symgen.__version__
+    signature = inspect.signature(car.inverse_dynamics)
+    assert [parameter.annotation for parameter in signature.parameters.values()] == [*["ArrayLike"] * 3, "Parameters"]
+    assert car.inverse_dynamics.__doc__.startswith("u: the smallest inputs")
+
+
+def test_parameters_are_numbers_or_arrays_of_them(car: ModuleType) -> None:
+    assert car.Parameters(L=3, m_1=np.float32(2), m_2=[1.0, 2.0], Theta_1=np.ones(2)).L == 3
+    for wrong in ("2", None, 1j, [None]):
+        with pytest.raises(TypeError, match=r"the parameter m_1 is .*, neither a number nor an array of numbers"):
+            car.Parameters(m_1=wrong)

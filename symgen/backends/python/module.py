@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from symgen import __version__
 from symgen.backends.about import STATUS_MEANING, module_lines, parameter_text
 from symgen.backends.c.endings import BATCH
 from symgen.backends.c.reserved import is_taken as is_taken_in_c
@@ -58,6 +59,8 @@ class PythonView:
     model: str
     stem: str
     about: tuple[str, ...]
+    version: str
+    model_hash: str
     statuses: tuple[tuple[str, int, str], ...]
     fields: tuple[FieldView, ...]
     functions: tuple[NumpyFunctionView, ...]
@@ -70,7 +73,7 @@ class PythonView:
 
 def emit_python(model: Model, program: Program) -> dict[str, str]:
     """`python/<model>.py` from the float64 program; it needs NumPy only."""
-    own = {kernel.name for kernel in program.kernels} | {"Parameters", "compile"}
+    own = {kernel.name for kernel in program.kernels} | {"Parameters", "ArrayLike", "NDArray", "compile"}
     names = names_of(model, program, _is_taken, own, _INSIDE)
     statements = [statement for kernel in program.kernels for statement in all_statements(kernel)]
     operations = {statement.operation for statement in with_bodies(statements)}
@@ -80,6 +83,8 @@ def emit_python(model: Model, program: Program) -> dict[str, str]:
         model=model.c_name,
         stem=model.c_name,
         about=module_lines(model, program),
+        version=__version__,
+        model_hash=model.text_hash,
         statuses=tuple((status.name, int(status), STATUS_MEANING[status]) for status in Status),
         fields=_fields(model, names),
         functions=tuple(_kernel(kernel, names, None if pair is None else _SINCOS) for kernel in program.kernels),
@@ -122,11 +127,11 @@ def _kernel(kernel: Kernel, names: Names, sincos: str | None) -> NumpyFunctionVi
     arguments = tuple((argument.name, argument.length) for argument in array_arguments(kernel))
     given = ", ".join(f"{name} (..., {length})" for name, length in arguments)
     result = ", ".join(str(extent) for extent in kernel.shape)
-    about = f"{meaning(kernel)[:1].upper()}{meaning(kernel)[1:]}: {given} -> (..., {result})."
+    about = f"{meaning(kernel)}: {given} -> (..., {result})."
     return NumpyFunctionView(
         name=kernel.name,
         arguments=arguments,
-        signature=", ".join([*(name for name, _ in arguments), "p=PARAMETERS"]),
+        signature=", ".join([*(f"{name}: ArrayLike" for name, _ in arguments), "p: Parameters = PARAMETERS"]),
         unpacked=", ".join([*(name for name, _ in arguments), "batch"]),
         lengths=tuple(length for _, length in arguments),
         docstring=docstring_lines(about),
