@@ -199,9 +199,18 @@ class _Links:
         named = [joint for joint in self._joints.values() if joint.coordinates]
         # of a long chain those at even distances, the first and the last
         chosen = named[:: math.ceil(len(named) / NAMED_JOINTS) or 1]
+        together: list[list[DrawnJoint]] = []
         for joint in dict.fromkeys((*chosen, *named[-1:])):
-            place = joint.place
-            yield MachineLabel(self._view.flat(place), self._away(place), joint.coordinates, joint.inputs)
+            there = next((one for one in together if self._pose.is_same(one[0].place, joint.place)), None)
+            if there is None:
+                together.append([joint])
+            else:
+                there.append(joint)
+        for joints in together:
+            place = joints[0].place
+            coordinates = tuple(name for joint in joints for name in joint.coordinates)
+            inputs = tuple(name for joint in joints for name in joint.inputs)
+            yield MachineLabel(self._view.flat(place), self._away(place), coordinates, inputs)
         shown = [point.name for point in self._pose.mechanism.points if self._is_shown(point.name)]
         places: list[Place] = []
         for name in shown[:NAMED_POINTS]:

@@ -17,7 +17,7 @@ from math import inf
 
 from symgen.diagnostics import SymgenBug
 from symgen.generation.draft import REJECTED, Draft
-from symgen.generation.passing import Kernels, Passing, digest, faults_at_worst, plain_kernel
+from symgen.generation.passing import Kernels, Passing, Searched, digest, faults_at_worst, plain_kernel
 from symgen.generation.results import AUTO, Options
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.methods.quantity import scalars
@@ -31,7 +31,6 @@ from symgen.quantities.everything import (
     too_wide,
 )
 from symgen.quantities.select import Rejection
-from symgen.records import dataclass
 from symgen.runtime.garbage import let_go, let_go_and_keep, let_go_of_all
 from symgen.symbolic.traverse import cost
 from symgen.verify.certificate import Certificate, Fault, LeftOut
@@ -58,14 +57,6 @@ LONGEST_WIDENED = 40_000
 # do with fewer, but each of long ones takes a dozen seconds to be told.
 LONG_TRIED = 50_000
 
-@dataclass(frozen=True, slots=True)
-class _Searched:
-    """Kernels whose worst states were looked for, and their largest error there."""
-
-    kernels: Kernels
-    largest: float
-
-
 class Fallback:
     """The methods of one model that are left, through all rounds of its verification."""
 
@@ -76,7 +67,7 @@ class Fallback:
         self._search: WorstStateSearch | None = None
         self._exactly: ExactStates | None = None
         self.measurements = Measurements()
-        self._searched: dict[str, _Searched] = {}
+        self._searched: dict[str, Searched] = {}
         self._left: dict[tuple[str, int], deque[Alternative]] = {}
         self._passing: defaultdict[str, list[Passing]] = defaultdict(list)
         self._tried: defaultdict[str, list[tuple[str, str]]] = defaultdict(list)
@@ -135,7 +126,7 @@ class Fallback:
             self._progress(f"verifying: where {quantity} is worst")
             judged = {scalar: kernel for scalar, kernel in kernels.items() if scalar in expected.scalars}
             errors = self._at_worst(draft, judged, plain_kernel(draft.taken(quantity), kernels)) if judged else {}
-            self._searched[quantity] = _Searched(kernels, max(errors.values(), default=0.0))
+            self._searched[quantity] = Searched(kernels, max(errors.values(), default=0.0))
             if faults := faults_at_worst(quantity, errors):
                 found[quantity] = faults
         return found
@@ -376,7 +367,7 @@ class Fallback:
         scalars = tuple(passed) if "float64" in passed else ()
         worst = max((one.largest, *(error for scalar, error in errors.items() if scalar in scalars)))
         if scalars and one.alternative.grouped:
-            self._searched[quantity] = _Searched(one.kernels, worst)
+            self._searched[quantity] = Searched(one.kernels, worst)
         return Passing(worst, scalars, one.alternative, one.kernels)
 
     def _note(self, one: Alternative, fault: Fault, inaccurate: bool) -> None:

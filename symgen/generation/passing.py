@@ -25,6 +25,14 @@ class Passing:
     kernels: Kernels
 
 
+@dataclass(frozen=True, slots=True)
+class Searched:
+    """Kernels whose worst states were looked for, and their largest error there."""
+
+    kernels: Kernels
+    largest: float
+
+
 def digest(kernels: Kernels) -> int:
     """A number for kernels that were looked at: they themselves need not stay."""
     return hash(tuple(kernels.items()))

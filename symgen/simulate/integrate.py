@@ -13,8 +13,12 @@ from symgen.simulate.plant import Plant, PlantError
 
 # Errors that a step of the integrator may make: of the size of its numbers, and in their units.
 RELATIVE_ERROR, ABSOLUTE_ERROR = 1e-10, 1e-12
+# Accelerations worked out for one frame at most: where a motion runs into a singularity, or springs and friction
+# are stiff, steps become so short that it would never end.
+MOST_EVALUATIONS = 50_000
 # Times that a start is projected onto the constraints, by two Newton steps each.
 NEWTON_ROUNDS = 25
+TOO_SHORT = "a singular configuration is near, or forces change within less than a step"
 # What is left of the constraints of a start that satisfies them.
 CLOSED_START = 1e-12
 
@@ -53,8 +57,13 @@ def integrate(
 ) -> SimulatedMotion:
     """The motion at `times`; where a kernel has no result any more it ends there."""
     n = plant.model.n
+    evaluations = 0
 
-    def derivative(_: float, state: np.ndarray) -> np.ndarray:
+    def derivative(time: float, state: np.ndarray) -> np.ndarray:
+        nonlocal evaluations
+        evaluations += 1
+        if evaluations > MOST_EVALUATIONS:
+            raise PlantError(f"{MOST_EVALUATIONS} steps lead no further than t = {time:.9g} s: {TOO_SHORT}")
         q, qd = state[:n].tolist(), state[n:].tolist()
         return np.array([*qd, *plant.accelerations(q, qd, u)])
 
@@ -63,6 +72,7 @@ def integrate(
     stopped = None
     step: float | None = None
     for begin, end in pairwise(times):
+        evaluations = 0
         first = None if step is None else min(step, end - begin)
         try:
             solved = solve_ivp(

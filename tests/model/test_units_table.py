@@ -8,9 +8,10 @@ from fractions import Fraction
 import pint
 import pytest
 
-from symgen.diagnostics import Mistake, Span
+from symgen.diagnostics import Mistake, ModelError, Span
 from symgen.model.expressions.units import BASE, UNITS, Unit, parse_unit
 from symgen.model.file.source import ScalarNode
+from symgen.model.load import load_text
 
 PINT_NAMES = {
     "kg": "kilogram",
@@ -67,3 +68,20 @@ def test_shown_in_base_units() -> None:
 @pytest.mark.parametrize("text", ["deg", "rpm", "furlong", "2*m", "m + s", "m^2", "sin(m)"])
 def test_refused(text: str) -> None:
     assert isinstance(by_symgen(text), Mistake)
+
+
+@pytest.mark.parametrize(
+    ("written", "remedy"),
+    [
+        ("Nm", "write `N*m`"),
+        ("kgm2", "write `kg*m**2`"),
+        ("m2", "write `m**2`"),
+        ("Ns", "write `N*s`"),
+        ("newton", "use SI units"),
+    ],
+)
+def test_what_was_run_together_is_taken_apart(written: str, remedy: str) -> None:
+    text = f"model: m\ncoordinates: {{x: {{unit: {written}}}}}\nkinetic_energy: x_dot**2\n"
+    with pytest.raises(ModelError) as told:
+        load_text(text, "m.yaml")
+    assert told.value.mistakes[0].remedy.startswith(remedy)

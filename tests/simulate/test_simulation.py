@@ -234,3 +234,17 @@ def test_new_leaves_a_file_as_it_is(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     (tmp_path / "kept.yaml").write_text("mine", encoding="utf-8")
     assert main(["new", "kept"]) == 2
     assert (tmp_path / "kept.yaml").read_text(encoding="utf-8") == "mine"
+
+
+def test_a_motion_of_endless_steps_stops(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A spring that swings ten thousand times in a frame: each frame would take minutes."""
+    text = """model: stiff
+coordinates: {x: {unit: m}}
+kinetic_energy: x_dot**2/2
+potential_energy: 1e13*x**2/2
+outputs: [forward_dynamics]
+"""
+    (out / "stiff.yaml").write_text(text, encoding="utf-8")
+    assert run(str(out / "stiff.yaml"), "--start", "x=1", "--duration", "0.1", "--out", str(out)) == 1
+    assert "50000 steps lead no further than t = " in capsys.readouterr().err
+    assert len((out / "stiff/simulation.csv").read_text().splitlines()) == 2

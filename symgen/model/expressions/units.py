@@ -129,5 +129,20 @@ def _remedy(name: str) -> str:
         return "write angles in rad"
     if name in _SPEEDS:
         return "write angular rates in rad/s"
+    common = ["kg", *_PREFIXABLE]
+    in_other_capitals = name.lower() in map(str.lower, common)
+    if not in_other_capitals and (product := _as_product(name)):
+        return f"write `{product}`"
     # Case matters in units, so that the nearest name is looked for among the common ones only.
-    return did_you_mean(name, ["kg", *_PREFIXABLE], "use SI units: kg, m, s, A, K, rad, N, J, W, Pa, Hz, with prefixes")
+    return did_you_mean(name, common, "use SI units: kg, m, s, A, K, rad, N, J, W, Pa, Hz, with prefixes")
+
+
+def _as_product(name: str) -> str:
+    """What was run together: N*m of Nm, kg*m**2 of kgm2; empty where it is nothing of the kind."""
+    letters = name.rstrip("0123456789")
+    power = f"**{name[len(letters) :]}" if len(letters) < len(name) else ""
+    common = ("kg", "rad", *_PREFIXABLE)
+    if power and letters in common:
+        return letters + power
+    splits = ((letters[:k], letters[k:]) for k in range(1, len(letters)))
+    return next((f"{left}*{right}{power}" for left, right in splits if left in common and right in common), "")
