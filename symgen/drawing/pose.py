@@ -38,7 +38,7 @@ class DrawnJoint:
 
 
 class MachinePose:
-    """One configuration of a model."""
+    """One configuration of a model; ArithmeticError or ValueError where expressions have no value there."""
 
     def __init__(self, model: Model) -> None:
         self.model, self.mechanism = model, model.mechanism
@@ -137,8 +137,17 @@ class MachinePose:
         for name in names_in(expression):
             if name.name in self._index:
                 yield name.name
-            elif name.name in self._definitions:
-                yield from self._coordinates(self._definitions[name.name])
+            yield from self._named.get(name.name, ())
+
+    @cached_property
+    def _named(self) -> Mapping[str, tuple[str, ...]]:
+        """Those that each definition depends on: it is made of earlier ones."""
+        found: dict[str, tuple[str, ...]] = {}
+        for name, value in self._definitions.items():
+            words = dict.fromkeys(one.name for one in names_in(value))
+            inner = [word for word in words for word in ((word,) if word in self._index else found.get(word, ()))]
+            found[name] = tuple(dict.fromkeys(inner))
+        return found
 
 
 def _place(kinematics: FloatKinematics, name: str) -> Place:

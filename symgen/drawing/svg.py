@@ -10,6 +10,7 @@ from html import escape
 from symgen.drawing.pose import MachinePose
 from symgen.drawing.sketch import MachineLabel, MachineSketch, Role, Symbol, sketch
 from symgen.drawing.view import Flat
+from symgen.mechanics.genericity import assembly_of
 from symgen.model.model import Model
 from symgen.naming import GREEK
 
@@ -37,10 +38,16 @@ LOOKS: dict[Role, tuple[str, float, str, str]] = {
 
 
 def drawing(model: Model) -> str | None:
-    """The picture of a model's machine where its start leads; None for a model without frames."""
-    if not model.mechanism.frames:
+    """The picture of a model's machine where its start leads; None for a model without frames, or without places."""
+    if not model.mechanism.frames or not assembly_of(model).places:
         return None
-    return _Paper(sketch(MachinePose(model))).svg()
+    try:
+        shown = sketch(MachinePose(model))
+        if not all(math.isfinite(x) for stroke in shown.strokes for place in stroke.places for x in place):
+            return None
+        return _Paper(shown).svg()
+    except (ArithmeticError, ValueError):  # a slide at 0 may be none
+        return None
 
 
 class _Paper:

@@ -123,3 +123,34 @@ def test_names_are_letters_with_indices_and_point_names_stay() -> None:
 
 def test_energies_alone_have_no_picture() -> None:
     assert drawing(load_model(MODELS / "front_car.yaml")) is None
+
+
+def test_definitions_that_nest_are_looked_through_once() -> None:
+    """Sixty definitions that use the one before twice would be looked through 1e18 times."""
+    definitions = "\n".join(["  d_0: theta", *(f"  d_{k}: (d_{k - 1} + d_{k - 1})/2" for k in range(1, 60))])
+    model = load_text(
+        f"""model: nested
+coordinates: {{theta: {{unit: rad}}}}
+definitions:
+{definitions}
+frames: {{arm: {{rotation: [[y, d_59]]}}}}
+bodies: {{arm: {{mass: 1, com: [1, 0, 0]}}}}
+""",
+        "nested.yaml",
+    )
+    (arm,) = MachinePose(model).joints
+    assert (arm.kind, arm.coordinates) == ("turning", ("theta",))
+
+
+def test_a_picture_that_has_no_places_is_none() -> None:
+    """A slide whose place has the reciprocal of its coordinate in it has none at 0."""
+    model = load_text(
+        """model: hyperbola
+coordinates: {y: {unit: m, range: [1, 2]}}
+frames: {slide: {translation: [0, 0, 1/y]}}
+bodies: {slide: {mass: 1}}
+configuration: {y: 1.5}
+""",
+        "hyperbola.yaml",
+    )
+    assert drawing(model) is None

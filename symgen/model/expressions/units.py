@@ -138,7 +138,7 @@ def _remedy(name: str) -> str:
 
 
 def _as_product(name: str) -> str:
-    """What was run together: N*m of Nm, kg*m**2 of kgm2; empty where it is nothing of the kind."""
+    """What was run together: `N*m` of Nm, `kg*m**2` of kgm2; empty where it is nothing of the kind."""
     letters = name.rstrip("0123456789")
     power = f"**{name[len(letters) :]}" if len(letters) < len(name) else ""
     common = ("kg", "rad", *_PREFIXABLE)
