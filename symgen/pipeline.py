@@ -22,10 +22,10 @@ from symgen.generation.draft import Draft, draft_of
 from symgen.generation.facts import facts, invalid_methods
 from symgen.generation.files import backend_of, files_of, sources_of, verified
 from symgen.generation.notices import notices
-from symgen.generation.packages import lacking_for_report, to_install
+from symgen.generation.packages import without_report
 from symgen.generation.refusals import beyond_range
 from symgen.generation.requested import requested_outputs
-from symgen.generation.results import LargestError, Options, Result, Summary, WrongUseError
+from symgen.generation.results import LargestError, Options, Result, Summary
 from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.runtime.activity import working
@@ -52,7 +52,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
     """
     progress("reading the model")
     model = load_model(path)
-    options, told = _without_report(model, options)
+    options, told = without_report(model, options)
     outputs = requested_outputs(model, options)
     draft: Draft | None = None
     trial: Trial | None = None
@@ -122,16 +122,6 @@ def _finished(
     if report.files and not options.verify and not options.as_recorded:
         notices.append(Notice("the report has no PDF: that is made of what verification measures, too"))
     return replace(result, files={**result.files, **report.files}, notices=tuple(notices))
-
-
-def _without_report(model: Model, options: Options) -> tuple[Options, tuple[Notice, ...]]:
-    """The options without a report that lacks packages, and what is told of it; WrongUseError where it is asked for."""
-    if "report" not in options.parts or not (lacks := lacking_for_report(model)):
-        return options, ()
-    if not options.usual:
-        raise WrongUseError(to_install(lacks, "the report"))
-    parts = tuple(part for part in options.parts if part != "report")
-    return replace(options, parts=parts), (Notice(f"the report is left out: {to_install(lacks, 'it')}"),)
 
 
 def _derive(model: Model, outputs: tuple[str, ...], options: Options) -> Draft:

@@ -67,12 +67,10 @@ def guarded(work: Callable[[], int]) -> int:
         print(f"symgen: {error}", file=sys.stderr)
     except SymgenBug as error:
         print(f"symgen: internal error: {error}\nThis is a fault of symgen, not of the model.", file=sys.stderr)
-    except ModuleNotFoundError as error:
-        module = (error.name or "").partition(".")[0]
-        if module not in EXTRA_OF:
-            raise
-        raise WrongUseError(to_install((module,), "this")) from error
-    except Exception:
+    except Exception as error:
+        module = (error.name or "").partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
+        if module in EXTRA_OF:
+            raise WrongUseError(to_install((module,), "this")) from error
         traceback.print_exc()
         print("symgen: internal error: this is a fault of symgen, not of the model.", file=sys.stderr)
     return WRONG_USE

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, TypeAlias
@@ -10,31 +11,41 @@ from typing import Literal, TypeAlias
 from symgen.mechanics.genericity import assembly_of, parameter_values
 from symgen.mechanics.system import System
 from symgen.model.configurations.gradient import Gradients
-from symgen.model.expressions.expression import Expression
-from symgen.model.expressions.walk import names_in
-from symgen.model.kinematics.float_kinematics import FloatKinematics
-from symgen.model.mechanism import Frame, Quaternion
+from symgen.model.kinematics.float_kinematics import FloatArithmetic, Form
+from symgen.model.kinematics.triples import Rates, Triple, applied, cross
+from symgen.model.kinematics.walk import Kinematics
+from symgen.model.mechanism import Frame
 from symgen.model.model import Model
 
-Place: TypeAlias = tuple[float, float, float]
+Place: TypeAlias = Triple[float]
 Kind: TypeAlias = Literal["fixed", "turning", "sliding", "ball", "free"]
-# Of the world; also the axis of what has none.
-ORIGIN: Place = (0.0, 0.0, 0.0)
-# Of the size of the machine: what is nearer is one place.
-SAME_PLACE = 1e-6
+# Of the size of the machine, or of a direction: what is less is none.
+NEXT_TO_NOTHING = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
 class DrawnJoint:
-    """What a frame's joint lets move, where it is, the point of its parent that it stands on, and its axis."""
+    """What a frame's joint lets move, where it is, and the point of its parent that it stands on.
+
+    `slides` and `turns` are the directions along and about which it moves, in the axes of the world.  `coordinates` are
+    those that no frame before it has.
+    """
 
     frame: str
     kind: Kind
     place: Place
     foot: Place
-    axis: Place
+    slides: tuple[Place, ...]
+    turns: tuple[Place, ...]
     coordinates: tuple[str, ...]
     inputs: tuple[str, ...]
+
+
+def kinematics_at(model: Model, values: Mapping[str, float]) -> Kinematics[float, Form]:
+    """The frames and points of a model at these values of coordinates and parameters."""
+    index = {coordinate.name: i for i, coordinate in enumerate(model.coordinates)}
+    definitions = {definition.name: definition.value for definition in model.definitions}
+    return Kinematics(model.mechanism, FloatArithmetic(Gradients(values, index, definitions)), False)
 
 
 class MachinePose:
@@ -44,117 +55,72 @@ class MachinePose:
         self.model, self.mechanism = model, model.mechanism
         self.parameters = parameter_values(System(model))
         q = assembly_of(model).places[0].q
-        self._index = {coordinate.name: i for i, coordinate in enumerate(model.coordinates)}
-        self._definitions = {definition.name: definition.value for definition in model.definitions}
-        self._values = self.parameters | {name: float(q[i]) for name, i in self._index.items()}
-        self._kinematics = self._at(self._values)
+        self._names = [coordinate.name for coordinate in model.coordinates]
+        self._values = self.parameters | dict(zip(self._names, map(float, q), strict=True))
+        self._kinematics = kinematics_at(model, self._values)
+        self.places = {name: self._kinematics.position(name) for name in self._owners()}
+        extents = (max(axis) - min(axis) for axis in zip(*self.places.values(), strict=True))
+        self.size = max(extents, default=0.0) or 1.0
 
-    def _at(self, values: Mapping[str, float]) -> FloatKinematics:
-        return FloatKinematics(self.mechanism, Gradients(dict(values), self._index, self._definitions))
-
-    def place(self, name: str) -> Place:
-        """Of a point, or of the origin of a frame (m)."""
-        return _place(self._kinematics, name)
+    def _owners(self) -> list[str]:
+        return [one.name for group in (self.mechanism.frames, self.mechanism.points) for one in group]
 
     def axis(self, frame: str, number: int) -> Place:
         """An axis of a frame, in those of the world."""
-        x, y, z = (self._kinematics.value(f"{frame}.r{row}{number + 1}") for row in "123")
+        x, y, z = (row[number] for row in self._kinematics.axes(frame))
         return x, y, z
 
-    @cached_property
-    def joints(self) -> tuple[DrawnJoint, ...]:
-        """One for each frame."""
-        return tuple(map(self._joint, self.mechanism.frames))
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Of frames, then of points."""
-        frames, points = self.mechanism.frames, self.mechanism.points
-        return (*(frame.name for frame in frames), *(point.name for point in points))
-
-    @cached_property
-    def size(self) -> float:
-        """The longest extent of all places."""
-        places = [self.place(name) for name in self.names] or [ORIGIN]
-        return max(max(p[k] for p in places) - min(p[k] for p in places) for k in range(3)) or 1.0
+    def in_world(self, frame: str, at: Place) -> Place:
+        """The place in the world of one in a frame."""
+        return self._kinematics.place(frame, at)
 
     def is_same(self, one: Place, other: Place) -> bool:
         """Whether two places are one."""
-        return max(abs(a - b) for a, b in zip(one, other, strict=True)) < SAME_PLACE * self.size
-
-    def _joint(self, frame: Frame) -> DrawnJoint:
-        slides = [name for entry in frame.translation for name in self._coordinates(entry)]
-        if isinstance(frame.rotation, Quaternion):
-            turns = [name for part in frame.rotation.parts for name in self._coordinates(part)]
-        else:
-            turns = [name for turn in frame.rotation for name in self._coordinates(turn.angle)]
-        slides, turns = list(dict.fromkeys(slides)), list(dict.fromkeys(turns))
-        kind: Kind = "fixed"
-        if len(slides) > 1:
-            kind = "free"
-        elif slides:
-            kind = "sliding"
-        elif len(turns) > 1:
-            kind = "ball"
-        elif turns:
-            kind = "turning"
-        names = (*slides, *turns)
-        acting = {one.name: {name for name, _ in one.acts_on} for one in self.model.inputs}
-        driven = [name for name, coordinates in acting.items() if coordinates and coordinates <= {*names}]
-        place, foot = self.place(frame.name), self._foot(frame, slides)
-        return DrawnJoint(frame.name, kind, place, foot, self._axis(frame, slides, turns), names, tuple(driven))
-
-    def _foot(self, frame: Frame, slides: list[str]) -> Place:
-        """Where the frame is with its slide at 0."""
-        if not slides:
-            return self.place(frame.name)
-        return _place(self._at(self._values | dict.fromkeys(slides, 0.0)), frame.name)
-
-    def _axis(self, frame: Frame, slides: list[str], turns: list[str]) -> Place:
-        """What the joint slides along or turns about, by a small step of its coordinate."""
-        if len(slides) == 1:
-            moved = _place(self._at(self._values | {slides[0]: self._values[slides[0]] + self.size}), frame.name)
-            here = self.place(frame.name)
-            return _unit((moved[0] - here[0], moved[1] - here[1], moved[2] - here[2]))
-        if len(turns) == 1:
-            step = 1e-4
-            turned = self._at(self._values | {turns[0]: self._values[turns[0]] + step})
-            axes = [
-                (self.axis(frame.name, k), [turned.value(f"{frame.name}.r{row}{k + 1}") for row in "123"])
-                for k in range(3)
-            ]
-            # half the sum of e_k x e_k' is the axis times the sine of the step
-            whole = [0.0, 0.0, 0.0]
-            for before, after in axes:
-                for i in range(3):
-                    j, k = (i + 1) % 3, (i + 2) % 3
-                    whole[i] += before[j] * after[k] - before[k] * after[j]
-            return _unit((whole[0], whole[1], whole[2]))
-        return ORIGIN
-
-    def _coordinates(self, expression: Expression) -> Iterator[str]:
-        """Those that an expression depends on, through definitions."""
-        for name in names_in(expression):
-            if name.name in self._index:
-                yield name.name
-            yield from self._named.get(name.name, ())
+        return math.dist(one, other) < NEXT_TO_NOTHING * self.size
 
     @cached_property
-    def _named(self) -> Mapping[str, tuple[str, ...]]:
-        """Those that each definition depends on: it is made of earlier ones."""
-        found: dict[str, tuple[str, ...]] = {}
-        for name, value in self._definitions.items():
-            words = dict.fromkeys(one.name for one in names_in(value))
-            inner = [word for word in words for word in ((word,) if word in self._index else found.get(word, ()))]
-            found[name] = tuple(dict.fromkeys(inner))
-        return found
+    def joints(self) -> tuple[DrawnJoint, ...]:
+        """One for each frame, parents first."""
+        told: set[int] = set()
+        found = []
+        for frame in self.mechanism.frames:
+            joint = self._joint(frame, told)
+            told.update(self._names.index(name) for name in joint.coordinates)
+            found.append(joint)
+        return tuple(found)
+
+    def _joint(self, frame: Frame, told: set[int]) -> DrawnJoint:
+        own = self._kinematics.joint(frame.name)
+        slides, turns = (self._directions(frame.parent, rates) for rates in (own.place_rate, own.turning_before))
+        kind: Kind = "fixed"
+        if slides:
+            kind = "sliding" if len(slides) == 1 else "free"
+        elif turns:
+            kind = "turning" if len(turns) == 1 else "ball"
+        moving = _coordinates(own.place_rate), _coordinates(own.turning_before)
+        names = tuple(self._names[i] for i in dict.fromkeys(i for part in moving for i in part) if i not in told)
+        acting = {one.name: {name for name, _ in one.acts_on} for one in self.model.inputs}
+        driven = tuple(name for name, coordinates in acting.items() if coordinates and coordinates <= {*names})
+        place = foot = self.places[frame.name]
+        if kind == "sliding":
+            foot = kinematics_at(
+                self.model, self._values | {self._names[i]: 0.0 for i in moving[0]}
+            ).position(frame.name)
+        return DrawnJoint(frame.name, kind, place, foot, slides, turns, names, driven)
+
+    def _directions(self, parent: str, rates: Rates[Form]) -> tuple[Place, ...]:
+        """Those of a rate that is given in the parent's axes, each once, in the axes of the world."""
+        found: list[Place] = []
+        for i in _coordinates(rates):
+            x, y, z = (form.get(i, 0.0) for form in rates)
+            vector = applied(self._kinematics.axes(parent), (x, y, z))
+            if (length := math.hypot(*vector)) > NEXT_TO_NOTHING:
+                one = vector[0] / length, vector[1] / length, vector[2] / length
+                if all(math.hypot(*cross(one, other)) > NEXT_TO_NOTHING for other in found):
+                    found.append(one)
+        return tuple(found)
 
 
-def _place(kinematics: FloatKinematics, name: str) -> Place:
-    x, y, z = (kinematics.value(f"{name}.{axis}") for axis in "xyz")
-    return x, y, z
-
-
-def _unit(vector: Place) -> Place:
-    length = sum(x * x for x in vector) ** 0.5
-    return (vector[0] / length, vector[1] / length, vector[2] / length) if length else ORIGIN
+def _coordinates(rates: Rates[Form]) -> list[int]:
+    """Those that move something, by their numbers."""
+    return sorted({i for form in rates for i, value in form.items() if value})

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
+from itertools import chain
 
-from symgen.model.configurations.gradient import Gradients
+from symgen.drawing.pose import Place, kinematics_at
 from symgen.model.expressions.walk import evaluate
-from symgen.model.kinematics.float_kinematics import FloatKinematics
 from symgen.model.mechanism import WORLD, Mechanism
 from symgen.model.model import Model
-
-Place = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,14 +59,12 @@ def scene(model: Model, parameters: Mapping[str, float], motion: Sequence[Sequen
     number = {name: k for k, name in enumerate(names)}
     carriers = {body.frame for body in mechanism.bodies} | {wheel.frame for wheel in mechanism.wheels}
     turned = tuple(k for k, frame in enumerate(mechanism.frames) if frame.name in carriers)
-    index = {coordinate.name: i for i, coordinate in enumerate(model.coordinates)}
-    definitions = {definition.name: definition.value for definition in model.definitions}
     places, axes = [], []
     for q in motion:
-        values = {**parameters, **{name: q[i] for name, i in index.items()}}
-        kinematics = FloatKinematics(mechanism, Gradients(values, index, definitions))
-        places.append(tuple(_place(kinematics, name) for name in names))
-        axes.append(tuple(_axes(kinematics, names[k]) for k in turned))
+        at = dict(zip((coordinate.name for coordinate in model.coordinates), q, strict=True))
+        kinematics = kinematics_at(model, {**parameters, **at})
+        places.append(tuple(map(kinematics.position, names)))
+        axes.append(tuple(tuple(chain(*kinematics.axes(names[k]))) for k in turned))
     return Scene(
         names,
         tuple((number[f.parent], number[f.name]) for f in mechanism.frames if f.parent != WORLD),
@@ -92,12 +87,3 @@ def _balls(mechanism: Mechanism, parameters: Mapping[str, float], number: Mappin
         x, y, z = (evaluate(entry, parameters) for entry in body.com)
         balls.append(Ball(number[body.frame], (x, y, z), evaluate(body.mass, parameters) / largest))
     return tuple(balls)
-
-
-def _place(kinematics: FloatKinematics, name: str) -> Place:
-    x, y, z = (kinematics.value(f"{name}.{axis}") for axis in "xyz")
-    return x, y, z
-
-
-def _axes(kinematics: FloatKinematics, name: str) -> tuple[float, ...]:
-    return tuple(kinematics.value(f"{name}.r{row}{column}") for row, column in product("123", "123"))

@@ -16,7 +16,7 @@ from symgen.model.expressions.walk import evaluate
 from symgen.model.mechanism import WORLD
 
 Role: TypeAlias = Literal["link", "base", "tie", "spring", "cable", "rail", "wheel", "axis"]
-Mark: TypeAlias = Literal["joint", "driven", "slider", "driven slider", "ball", "pin", "point"]
+Mark: TypeAlias = Literal["ground", "joint", "driven", "slider", "driven slider", "ball", "pin", "point"]
 # Sides of the polygon that stands for a circle.
 ROUND = 48
 # Directions of links that add up to less are balanced.
@@ -47,13 +47,6 @@ class Symbol:
 
 
 @dataclass(frozen=True, slots=True)
-class Ground:
-    """Where a joint stands on the world."""
-
-    place: Flat
-
-
-@dataclass(frozen=True, slots=True)
 class MachineLabel:
     """Names at a place, away from what is there: coordinates, inputs, or a point."""
 
@@ -69,7 +62,6 @@ class MachineSketch:
     """All of a picture, in metres, y upwards."""
 
     strokes: tuple[Stroke, ...]
-    grounds: tuple[Ground, ...]
     symbols: tuple[Symbol, ...]
     labels: tuple[MachineLabel, ...]
     planar: bool
@@ -81,8 +73,7 @@ def sketch(pose: MachinePose) -> MachineSketch:
     links = _Links(pose, view)
     return MachineSketch(
         (*_world(pose, view), *links.base(), *_wheels(pose, view), *links.strokes(), *_ties(pose, view)),
-        tuple(links.grounds()),
-        (*links.symbols(), *links.pins()),
+        (*links.grounds(), *links.symbols(), *links.pins()),
         tuple(links.labels()),
         view.planar,
     )
@@ -110,20 +101,15 @@ class _Links:
         ends = {end for tie in pose.mechanism.ties for end in tie.ends}
         for point in pose.mechanism.points:
             if point.frame == point.carrier or point.name in ends:
-                self._add(self._root[point.frame], pose.place(point.name))
+                self._add(self._root[point.frame], pose.places[point.name])
         for frame in pose.mechanism.frames:
             if frame.name in ends:
-                self._add(self._root[frame.name], pose.place(frame.name))
+                self._add(self._root[frame.name], pose.places[frame.name])
         for body in pose.mechanism.bodies:
             root = self._root[body.frame]
             if root != WORLD and len(self._places.get(root, [])) < 2:
-                self._add(root, self._centre(body.frame, [evaluate(entry, pose.parameters) for entry in body.com]))
-
-    def _centre(self, frame: str, com: Sequence[float]) -> Place:
-        here = self._pose.place(frame)
-        axes = [self._pose.axis(frame, k) for k in range(3)]
-        x, y, z = (here[i] + sum(com[k] * axes[k][i] for k in range(3)) for i in range(3))
-        return x, y, z
+                x, y, z = (evaluate(entry, pose.parameters) for entry in body.com)
+                self._add(root, pose.in_world(body.frame, (x, y, z)))
 
     def _add(self, frame: str, place: Place) -> None:
         known = self._places.setdefault(frame, [])
@@ -154,9 +140,9 @@ class _Links:
         if len(places) == 1 and not self._view.planar:
             yield Stroke("base", (self._view.flat((0.0, 0.0, 0.0)), self._view.flat(places[0])))
 
-    def grounds(self) -> Iterator[Ground]:
+    def grounds(self) -> Iterator[Symbol]:
         """Where joints stand on the world, and points of loops."""
-        return (Ground(self._view.flat(place)) for place in self._places.get(WORLD, []))
+        return (Symbol("ground", self._view.flat(place)) for place in self._places.get(WORLD, []))
 
     def _moving(self) -> Iterator[DrawnJoint]:
         return (joint for joint in self._joints.values() if joint.kind not in ("fixed", "free"))
@@ -165,13 +151,11 @@ class _Links:
         """Of joints and points."""
         for point in self._pose.mechanism.points:
             if self._is_shown(point.name):
-                yield Symbol("point", self._view.flat(self._pose.place(point.name)))
+                yield Symbol("point", self._view.flat(self._pose.places[point.name]))
         for joint in self._moving():
             place, driven = self._view.flat(joint.place), bool(joint.inputs)
             if joint.kind == "sliding":
-                tip = tuple(a + b for a, b in zip(joint.place, joint.axis, strict=True))
-                end = self._view.flat((tip[0], tip[1], tip[2]))
-                yield Symbol("driven slider" if driven else "slider", place, (end[0] - place[0], end[1] - place[1]))
+                yield Symbol("driven slider" if driven else "slider", place, self._view.flat(joint.slides[0]))
             elif joint.kind == "ball":
                 yield Symbol("ball", place)
             else:
@@ -191,7 +175,7 @@ class _Links:
 
     def _is_shown(self, point: str) -> bool:
         """Whether a point is none of the places of joints."""
-        place = self._pose.place(point)
+        place = self._pose.places[point]
         return not self._is_among(place, (joint.place for joint in self._moving()))
 
     def labels(self) -> Iterator[MachineLabel]:
@@ -214,7 +198,7 @@ class _Links:
         shown = [point.name for point in self._pose.mechanism.points if self._is_shown(point.name)]
         places: list[Place] = []
         for name in shown[:NAMED_POINTS]:
-            place = self._pose.place(name)
+            place = self._pose.places[name]
             if not self._is_among(place, places):
                 places.append(place)
                 yield MachineLabel(self._view.flat(place), self._away(place), point=name)
@@ -238,7 +222,7 @@ class _Links:
 
 
 def _world(pose: MachinePose, view: View) -> Iterator[Stroke]:
-    """Axes of the world and the direction of gravity, at the origin."""
+    """Axes of the world, at its origin; one that points at the eye is left out."""
     length = AXIS_LENGTH * pose.size
     origin = view.flat((0.0, 0.0, 0.0))
     for k in range(3):
@@ -249,7 +233,7 @@ def _world(pose: MachinePose, view: View) -> Iterator[Stroke]:
 
 def _wheels(pose: MachinePose, view: View) -> Iterator[Stroke]:
     for wheel in pose.mechanism.wheels:
-        centre, radius = pose.place(wheel.frame), evaluate(wheel.radius, pose.parameters)
+        centre, radius = pose.places[wheel.frame], evaluate(wheel.radius, pose.parameters)
         one, other = (pose.axis(wheel.frame, (wheel.axle + k) % 3) for k in (1, 2))
         rim = []
         for step in range(ROUND):
@@ -262,7 +246,7 @@ def _wheels(pose: MachinePose, view: View) -> Iterator[Stroke]:
 
 def _ties(pose: MachinePose, view: View) -> Iterator[Stroke]:
     for tie in pose.mechanism.ties:
-        start, end = (view.flat(pose.place(name)) for name in tie.ends)
+        start, end = (view.flat(pose.places[name]) for name in tie.ends)
         if tie.kind == "rod":
             yield Stroke("tie", (start, end))
         elif tie.kind == "cable":

@@ -42,12 +42,12 @@ def drawing(model: Model) -> str | None:
     if not model.mechanism.frames or not assembly_of(model).places:
         return None
     try:
-        shown = sketch(MachinePose(model))
-        if not all(math.isfinite(x) for stroke in shown.strokes for place in stroke.places for x in place):
-            return None
-        return _Paper(shown).svg()
-    except (ArithmeticError, ValueError):  # a slide at 0 may be none
+        pose = MachinePose(model)
+        joints = pose.joints
+    except (ArithmeticError, ValueError):  # a slide at 0 may have no place
         return None
+    places = [*pose.places.values(), *(joint.foot for joint in joints)]
+    return _Paper(sketch(pose)).svg() if all(math.isfinite(x) for place in places for x in place) else None
 
 
 class _Paper:
@@ -56,7 +56,7 @@ class _Paper:
     def __init__(self, shown: MachineSketch) -> None:
         self._sketch = shown
         places = [place for stroke in shown.strokes for place in stroke.places]
-        places += [symbol.place for symbol in shown.symbols] + [ground.place for ground in shown.grounds]
+        places += [symbol.place for symbol in shown.symbols]
         self._left, self._top = min(x for x, _ in places), max(y for _, y in places)
         wide, high = max(x for x, _ in places) - self._left, self._top - min(y for _, y in places)
         across, down = PICTURE_WIDTH - 2 * BORDER, PICTURE_HEIGHT - 2 * BORDER
@@ -67,7 +67,7 @@ class _Paper:
     def svg(self) -> str:
         """The text of the file, as wide as names beside the machine ask for."""
         labels = [*self._labels()]
-        parts = [*self._strokes(), *self._grounds(), *map(self._symbol, self._sketch.symbols)]
+        parts = [*self._strokes(), *map(self._symbol, self._sketch.symbols)]
         left = min([0.0, *(label.left - EDGE for label in labels)])
         width = max([float(PICTURE_WIDTH), *(label.left + label.wide + EDGE for label in labels)]) - left
         size = f'width="{width:.0f}" height="{self._height}" viewBox="{left:.0f} 0 {width:.0f} {self._height}"'
@@ -103,22 +103,23 @@ class _Paper:
                 far = math.hypot(u - x, v - y)
                 yield _text(u + 8 * (u - x) / far, v + 8 * (v - y) / far + 3, _name(stroke.name, PALE), 11)
 
-    def _grounds(self) -> Iterator[str]:
-        for ground in self._sketch.grounds:
-            x, y = self._at(ground.place)
-            if not self._sketch.planar:
-                yield f'<ellipse cx="{x:.1f}" cy="{y:.1f}" rx="12" ry="5" fill="{PALE}" fill-opacity="0.35"/>'
-                continue
-            base = y + 15
-            yield f'<path d="M{x:.1f} {y:.1f} L{x - 9:.1f} {base:.1f} H{x + 9:.1f} Z" fill="white" stroke="{INK}"/>'
-            ticks = " ".join(f"M{x + step:.1f} {base:.1f} l-5 5" for step in range(-8, 13, 5))
-            yield f'<path d="M{x - 13:.1f} {base:.1f} H{x + 13:.1f} {ticks}" fill="none" stroke="{INK}"/>'
+    def _ground(self, x: float, y: float) -> str:
+        if not self._sketch.planar:
+            return f'<ellipse cx="{x:.1f}" cy="{y:.1f}" rx="12" ry="5" fill="{PALE}" fill-opacity="0.35"/>'
+        base = y + 15
+        ticks = " ".join(f"M{x + step:.1f} {base:.1f} l-5 5" for step in range(-8, 13, 5))
+        return (
+            f'<path d="M{x:.1f} {y:.1f} L{x - 9:.1f} {base:.1f} H{x + 9:.1f} Z" fill="white" stroke="{INK}"/>\n'
+            f'<path d="M{x - 13:.1f} {base:.1f} H{x + 13:.1f} {ticks}" fill="none" stroke="{INK}"/>'
+        )
 
     def _symbol(self, symbol: Symbol) -> str:
         x, y = self._at(symbol.place)
         circle = f'<circle cx="{x:.1f}" cy="{y:.1f}"'
         outlined = f'stroke="{INK}" stroke-width="1.5"'
         match symbol.mark:
+            case "ground":
+                return self._ground(x, y)
             case "slider" | "driven slider":
                 angle = -math.degrees(math.atan2(symbol.along[1], symbol.along[0]))
                 fill = DRIVEN if symbol.mark == "driven slider" else "white"

@@ -53,9 +53,10 @@ MARGIN_WORTH = Fraction(1, 2)
 WIDENED = 3
 # Counted cost of the longest of them.
 LONGEST_WIDENED = 40_000
-# Counted cost of all methods together that are tried for a quantity before twice the digits are: the rest of them may
-# do with fewer, but each of long ones takes a dozen seconds to be told.
+# Counted cost of all long methods together that are tried for a quantity before twice the digits are: the rest may do
+# with fewer digits, but each takes a dozen seconds to be derived and measured.
 LONG_TRIED = 50_000
+
 
 class Fallback:
     """The methods of one model that are left, through all rounds of its verification."""

@@ -6,8 +6,11 @@ The way from model to verified C and Python needs none of them.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from importlib.util import find_spec
 
+from symgen.diagnostics import Notice
+from symgen.generation.results import Options, WrongUseError
 from symgen.model.model import Model
 
 # The extra of symgen that brings each.
@@ -18,17 +21,19 @@ EXTRA_OF = {
     "casadi": "casadi",
     "scipy": "simulate",
 }
+# What the report needs, and charts along `paths` beside it.
 _OF_THE_REPORT, _OF_CHARTS = ("sympy", "typst"), ("casadi", "scipy", "matplotlib")
 
 
-def lacking(modules: Iterable[str]) -> tuple[str, ...]:
-    """Those that are not installed."""
-    return tuple(module for module in modules if find_spec(module) is None)
-
-
-def lacking_for_report(model: Model) -> tuple[str, ...]:
-    """What the report of a model needs and is not installed; charts along `paths` need more."""
-    return lacking((*_OF_THE_REPORT, *(_OF_CHARTS if model.paths else ())))
+def without_report(model: Model, options: Options) -> tuple[Options, tuple[Notice, ...]]:
+    """The options without a report that lacks packages, and what is told of it; WrongUseError where it is asked for."""
+    needed = (*_OF_THE_REPORT, *(_OF_CHARTS if model.paths else ()))
+    if "report" not in options.parts or not (lacks := [one for one in needed if find_spec(one) is None]):
+        return options, ()
+    if not options.usual:
+        raise WrongUseError(to_install(lacks, "the report"))
+    parts = tuple(part for part in options.parts if part != "report")
+    return replace(options, parts=parts), (Notice(f"the report is left out: {to_install(lacks, 'it')}"),)
 
 
 def to_install(modules: Iterable[str], purpose: str) -> str:

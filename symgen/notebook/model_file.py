@@ -127,10 +127,21 @@ class ModelFile:
         command makes), `methods` by quantity.  Raises ModelError for mistakes in the model, WrongUseError for names of
         nothing, RejectedError where verification fails: nothing is written then.
         """
+        from symgen.generation.results import PARTS, Options
         from symgen.notebook.results import generated_model
 
+        options = Options(
+            outputs=None if outputs is None else tuple(outputs),
+            scalars=tuple(scalars),
+            parts=PARTS if parts is None else tuple(parts),
+            usual=parts is None,
+            methods=dict(methods or {}),
+            trig=trig,
+            verify=verify,
+            measured=Path(out),
+        )
         with self._file() as path:
-            return generated_model(path, Path(out), outputs, parts, scalars, methods or {}, trig, verify)
+            return generated_model(path, Path(out), options)
 
     def compile(self, outputs: Sequence[str] | None = None, methods: Mapping[str, str] | None = None) -> CompiledModel:
         """Functions of its quantities, for states and arrays of them: verified, compiled C, or else NumPy.
@@ -161,10 +172,8 @@ class ModelFile:
 
     @contextmanager
     def _file(self) -> Iterator[Path]:
-        """The path of a file with this text, and of what lies beside it; mistakes name the model."""
-        if self._text is not None and self._path is not None and self._path.is_file():
-            yield self._path
-            return
+        """The path of a file with this text, and of what lies beside it; mistakes name the file that was read, or the
+        model."""
         with tempfile.TemporaryDirectory(prefix="symgen-") as folder:
             path = Path(folder) / "model.yaml"
             path.write_text(self.text, encoding="utf-8")
@@ -172,7 +181,7 @@ class ModelFile:
             try:
                 yield path
             except ModelError as error:
-                raise ModelError(self.name, error.text, error.mistakes, error.texts) from None
+                raise ModelError(str(self._path or self.name), error.text, error.mistakes, error.texts) from None
 
     def _bring_robot(self, folder: Path) -> None:
         """The robot description lies beside the file, as it does beside the one that was read."""

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from symgen.notebook.results import unheard
+from symgen.report.html import svg_element
 from symgen.simulate.simulation import DURATION, FRAMES, Request, Simulation, simulated
 
 
@@ -51,7 +52,7 @@ class SimulatedModel:
     def _repr_html_(self) -> str:
         page = self.animation()
         played = f'<iframe srcdoc="{escape(page, quote=True)}" width="100%" height="480"></iframe>' if page else ""
-        return f"<div>{self.chart()[self.chart().index('<svg'):]}{played}</div>"
+        return f"<div>{svg_element(self.chart())}{played}</div>"
 
 
 def simulated_model(

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 from typing import Any
 
 from symgen.diagnostics import Notice
-from symgen.generation.results import ALL_PARTS, PARTS, Options, Result, Summary, Trig, WrongUseError
-from symgen.ir.kernel import Scalar
-from symgen.methods.table import methods as methods_of
+from symgen.generation.results import ALL_PARTS, Options, Result, Summary, WrongUseError
 from symgen.model.expressions.names import did_you_mean
 from symgen.output.write import recover_folders, write_files
 from symgen.pipeline import generate
@@ -55,55 +53,24 @@ class GeneratedModel:
 
 
 def made(path: Path, options: Options) -> Result:
-    """The files in memory, verified; RejectedError, WrongUseError for parts and methods that there are not."""
+    """The files in memory, verified; RejectedError where they are wrong, WrongUseError for parts of nothing."""
     for part in options.parts:
         if part not in ALL_PARTS:
             raise WrongUseError(f"parts: {part!r}; {did_you_mean(part, ALL_PARTS, ', '.join(ALL_PARTS))}")
-    for quantity, method in options.methods.items():
-        known = [row.name for row in methods_of(quantity)]
-        if method not in known:
-            raise WrongUseError(f"methods: {quantity} by {method!r}; {did_you_mean(method, known, ', '.join(known))}")
     result = generate(path, options, unheard)
     if result.failures:
         raise RejectedError("\n".join(result.failures))
     return result
 
 
-def generated_model(
-    path: Path,
-    out: Path,
-    outputs: Sequence[str] | None,
-    parts: Sequence[str] | None,
-    scalars: Sequence[Scalar],
-    methods: Mapping[str, str],
-    trig: Trig,
-    verify: bool,
-) -> GeneratedModel:
+def generated_model(path: Path, out: Path, options: Options) -> GeneratedModel:
     """Makes the files of a model and writes them into `out`/<name>/."""
     recover_folders(out)
-    wanted = None if outputs is None else tuple(outputs)
-    options = Options(
-        outputs=wanted,
-        scalars=tuple(scalars),
-        parts=PARTS if parts is None else tuple(parts),
-        usual=parts is None,
-        methods=dict(methods),
-        trig=trig,
-        verify=verify,
-        measured=out,
-    )
     result = made(path, options)
-    notices = list(result.notices)
-    files = write_files(out / result.model.name, result.files, lambda message: notices.append(Notice(message)))
-    return GeneratedModel(
-        result.model.name,
-        out / result.model.name,
-        files,
-        result.summary,
-        tuple(notices),
-        result.left_out,
-        result.certificate,
-    )
+    folder, notices = out / result.model.name, list(result.notices)
+    files = write_files(folder, result.files, lambda message: notices.append(Notice(message)))
+    told = tuple(notices), result.left_out, result.certificate
+    return GeneratedModel(result.model.name, folder, files, result.summary, *told)
 
 
 def unheard(_message: str) -> None:

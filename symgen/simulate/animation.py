@@ -10,7 +10,8 @@ from html import escape
 from typing import TypeAlias
 
 from symgen.backends.render import render
-from symgen.drawing.scene import Place, Scene
+from symgen.drawing.pose import Place
+from symgen.drawing.scene import Scene
 
 # Lengths up to which a machine is a point, and a motion stays in a plane.
 SMALLEST_RADIUS = 1e-6

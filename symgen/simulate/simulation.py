@@ -72,8 +72,8 @@ def simulated(path: Path, request: Request, progress: Progress) -> Simulation:
     coordinates = {c.name: i for i, c in enumerate(model.coordinates)}
     rates = {c.rate: i for i, c in enumerate(model.coordinates)}
     given = {i.name: k for k, i in enumerate(model.inputs)}
-    _known(path, "start", request.start, [*coordinates, *rates])
-    _known(path, "inputs", request.inputs, [*given])
+    _known(model, "start", request.start, [*coordinates, *rates])
+    _known(model, "inputs", request.inputs, [*given])
     declared = {name: float(value) for name, value in model.configuration}
     q = [request.start.get(c.name, declared.get(c.name, float(sum(c.range)) / 2)) for c in model.coordinates]
     qd = [request.start.get(c.rate, 0.0) for c in model.coordinates]
@@ -130,8 +130,8 @@ def _start(
         return consistent_start(plant, [found[0][c.name] for c in plant.model.coordinates], qd)
 
 
-def _known(path: Path, option: str, values: Mapping[str, float], names: list[str]) -> None:
+def _known(model: Model, option: str, values: Mapping[str, float], names: list[str]) -> None:
     for name in values:
         if name not in names:
             remedy = did_you_mean(name, names, f"the model has {', '.join(names) or 'none'}")
-            raise WrongUseError(f"{path}: --{option}: unknown name {name!r}; {remedy}")
+            raise WrongUseError(f"{model.name}: {option}: unknown name {name!r}; {remedy}")

@@ -12,6 +12,7 @@ from symgen.drawing.pose import MachinePose
 from symgen.drawing.sketch import NAMED_JOINTS, sketch
 from symgen.drawing.svg import DRIVEN, drawing
 from symgen.drawing.view import view_of
+from symgen.model.kinematics.triples import cross
 from symgen.model.load import load_model, load_text
 from symgen.model.model import Model
 
@@ -45,13 +46,43 @@ def crane(**changed: str) -> Model:
 def test_joints_are_where_they_are_and_move_as_they_do() -> None:
     rail, carriage, hook = MachinePose(crane()).joints
     assert (rail.kind, carriage.kind, hook.kind) == ("fixed", "sliding", "turning")
-    assert carriage.axis == pytest.approx((1, 0, 0))
-    assert hook.axis == pytest.approx((0, 1, 0), abs=1e-12)
+    assert (carriage.slides, carriage.turns) == (((1, 0, 0),), ())
+    assert (hook.slides, hook.turns) == ((), ((0, 1, 0),))
     assert (carriage.foot, carriage.place) == ((0, 0, 3), pytest.approx((0.8, 0, 3)))
     assert (carriage.inputs, hook.inputs) == (("F",), ())
     four = "coordinates: [e0, e1, e2, e3]"
     ball = crane(**{"type: revolute": "type: spherical", "axis: y, coordinate: theta": four, ", theta: 0.5": ""})
     assert [joint.kind for joint in MachinePose(ball).joints] == ["fixed", "sliding", "ball"]
+
+
+def test_a_joint_between_absolute_angles_turns_about_one_axis() -> None:
+    """The angle of the second link against the first is b - a: it has b for its own."""
+    text = """model: absolute
+coordinates: {a: {unit: rad}, b: {unit: rad}}
+frames:
+  one: {rotation: [[[1, 1, 0], a]]}
+  two: {parent: one, translation: [0, 0, 1], rotation: [[[1, 1, 0], b - a]]}
+bodies: {one: {mass: 1, com: [0, 0, 1]}, two: {mass: 1, com: [0, 0, 1]}}
+inputs: {u: {joint: b}}
+configuration: {a: 0.3, b: 1.1}
+"""
+    one, two = MachinePose(load_text(text, "absolute.yaml")).joints
+    assert (one.kind, two.kind) == ("turning", "turning")
+    assert (one.coordinates, two.coordinates, two.inputs) == (("a",), ("b",), ("u",))
+    assert [abs(x) for x in two.turns[0]] == pytest.approx((0.5**0.5, 0.5**0.5, 0))
+
+
+@pytest.mark.parametrize(("gravity", "up"), [("[0, 0, 9.81]", -1), ("[0, 0, -9.81]", 1), ("[0, 9.81, 0]", 1)])
+def test_gravity_says_what_is_up(gravity: str, up: int) -> None:
+    """In a plane and in space; gravity that is square to a plane says nothing."""
+    flat = view_of(MachinePose(crane(**{"[0, 0, -9.81]": gravity})))
+    assert flat.planar
+    assert flat.up == (0, 0, up)
+    assert cross(flat.right, flat.up) == flat.near
+    aside = view_of(MachinePose(crane(**{"[0, 0, -9.81]": gravity, "axis: y": "axis: z"})))
+    assert not aside.planar
+    assert aside.depth((0, 0, up)) > 0 or gravity == "[0, 9.81, 0]"
+    assert cross(aside.right, aside.up) == pytest.approx(aside.near)
 
 
 def test_a_machine_in_a_plane_is_looked_at_straight_on() -> None:
@@ -103,7 +134,7 @@ def test_loops_close_in_a_pin() -> None:
     """The three legs of the RA-PKM meet in one point, which is drawn once."""
     shown = sketch(MachinePose(load_model(MODELS / "rapkm_bodies.yaml")))
     assert [symbol.mark for symbol in shown.symbols].count("pin") == 1
-    assert len(shown.grounds) == 3
+    assert [symbol.mark for symbol in shown.symbols].count("ground") == 3
     assert sum(stroke.role == "link" for stroke in shown.strokes) == 6
 
 

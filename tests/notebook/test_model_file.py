@@ -154,6 +154,15 @@ def test_a_model_is_loaded_from_path_text_and_blocks(tmp_path: Path) -> None:
         load(tmp_path / "none.yaml")
 
 
+def test_a_model_stays_as_it_was_read(tmp_path: Path) -> None:
+    """What happens to its file afterwards is another model."""
+    path = cart().save(tmp_path / "cart.yaml")
+    model = load(path)
+    path.write_text("model: broken\n")
+    assert model.resolved.name == "cart"
+    assert model.drawing() is None
+
+
 def test_a_copy_may_be_changed() -> None:
     first = cart()
     other = first.copy().parameter("m_c", 4)
@@ -216,7 +225,7 @@ def test_a_motion_has_arrays_a_chart_and_an_animation() -> None:
     assert motion._repr_html_().startswith("<div><svg")
     with pytest.raises(KeyError, match="'b' is none of x, a"):
         motion["b"]
-    with pytest.raises(WrongUseError, match="unknown name"):
+    with pytest.raises(WrongUseError, match="cart: start: unknown name 'b'"):
         cart().simulate(start={"b": 1.0})
 
 
@@ -235,8 +244,10 @@ def test_verification_that_fails_is_an_exception(monkeypatch: pytest.MonkeyPatch
 def test_parts_and_methods_that_there_are_not(tmp_path: Path) -> None:
     with pytest.raises(WrongUseError, match="did you mean `python`"):
         cart().generate(tmp_path, parts=("pythn",))
-    with pytest.raises(WrongUseError, match="inverse_dynamics by 'minr'"):
+    with pytest.raises(WrongUseError, match="no method 'minr' of inverse_dynamics; did you mean `minor`"):
         cart().generate(tmp_path, methods={"inverse_dynamics": "minr"})
+    with pytest.raises(WrongUseError, match="no method 'minor' of energy; it has no methods"):
+        cart().compile(methods={"energy": "minor"})
 
 
 @pytest.mark.slow

@@ -145,7 +145,7 @@ def test_unknown_names_have_a_remedy(out: Path, capsys: pytest.CaptureFixture[st
     assert run(str(MODELS / "double_pendulum.yaml"), "--start", "q1=1", "--out", str(out)) == 2
     assert "unknown name 'q1'; did you mean `q_1`?" in capsys.readouterr().err
     assert run(str(MODELS / "double_pendulum.yaml"), "--inputs", "motor=1", "--out", str(out)) == 2
-    assert "--inputs: unknown name 'motor'" in capsys.readouterr().err
+    assert "double_pendulum: inputs: unknown name 'motor'" in capsys.readouterr().err
     assert list(out.iterdir()) == []
 
 
