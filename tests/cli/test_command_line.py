@@ -212,7 +212,7 @@ def failing(error: BaseException) -> Callable[..., Result]:
         (SymgenBug("schedule: a cycle"), 2, "internal error: schedule: a cycle"),
         (ZeroDivisionError("oops"), 2, "fault of symgen"),
         (ModuleNotFoundError("no module", name="symgen.lost"), 2, "fault of symgen"),
-        (ModuleNotFoundError("no module", name="scipy.integrate"), 2, "symgen: this needs scipy, which is not installed"),
+        (ModuleNotFoundError("no module", name="scipy.integrate"), 2, "this needs scipy, which is not installed"),
         (PermissionError(13, "Permission denied", "m.yaml"), 2, "symgen: m.yaml: Permission denied"),
         (KeyboardInterrupt(), 130, "earlier output is unchanged"),
     ],

@@ -21,8 +21,9 @@ from symgen.laboratory.zoo.sweep_campaign import one_sweep, record_of, table, wr
 from symgen.laboratory.zoo.sweeps import ANSWERED, BEYOND, UNEXPLAINED, LedState, compared, sweep
 from symgen.laboratory.zoo.witness.generated import Answer, Target
 from symgen.laboratory.zoo.witness.kkt import GenericRanks
+from symgen.laboratory.zoo.witness.results import JudgedResult
 from symgen.laboratory.zoo.witness.states import FloatState, rounded
-from symgen.laboratory.zoo.witness.witness import JudgedResult, Witness
+from symgen.laboratory.zoo.witness.witness import Witness
 from symgen.model.load import load_text
 from symgen.verify.interpreted import outcomes
 from symgen.verify.reference.reference import Reference, State

@@ -16,8 +16,9 @@ from symgen.laboratory.zoo.draws.describe import Description
 from symgen.laboratory.zoo.witness.expressions import NotReadError
 from symgen.laboratory.zoo.witness.generated import targets
 from symgen.laboratory.zoo.witness.kkt import GenericRanks
+from symgen.laboratory.zoo.witness.results import JudgedResult
 from symgen.laboratory.zoo.witness.states import FloatState, Walker
-from symgen.laboratory.zoo.witness.witness import ALLOWED, CERTAIN, JudgedResult, Witness
+from symgen.laboratory.zoo.witness.witness import ALLOWED, CERTAIN, Witness
 
 # regular states that are led on, and how many of them are looked at in a decade
 STARTS, PER_DECADE = 3, 2

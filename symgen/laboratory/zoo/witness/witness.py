@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ import yaml
 from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.draws.describe import Description
 from symgen.laboratory.zoo.witness.allocation import directed, members, preloads
-from symgen.laboratory.zoo.witness.coverage import Coverage, Tally
+from symgen.laboratory.zoo.witness.coverage import Tally
 from symgen.laboratory.zoo.witness.fields import Balls, Floats, precision
 from symgen.laboratory.zoo.witness.generated import ARGUMENTS, Answer, Target, targets
 from symgen.laboratory.zoo.witness.kkt import (
@@ -31,6 +31,7 @@ from symgen.laboratory.zoo.witness.mechanics import equations
 from symgen.laboratory.zoo.witness.pinocchio_answers import COMPARED, PinocchioAnswers
 from symgen.laboratory.zoo.witness.pinocchio_trees import SAME, disagreement, tree_of
 from symgen.laboratory.zoo.witness.reader import SystemReader
+from symgen.laboratory.zoo.witness.results import CheckResult, Finding, JudgedResult, Truth
 from symgen.laboratory.zoo.witness.states import FloatState, Walker, rounded
 from symgen.laboratory.zoo.witness.tape import FileNumber, NodeProgram
 from symgen.laboratory.zoo.witness.urdf_file import expanded
@@ -48,50 +49,6 @@ LARGEST = {"float64": 1e280, "float32": 1e30}
 RESULTS = {"inverse_dynamics": "u", "forward_dynamics": "qdd"}
 # The status of u where inputs span less than they do on the branch that the files are made for.
 ACTUATION_RANK = 3
-
-
-@dataclass(frozen=True)
-class Finding:
-    """A number that is wrong, or a status that is not honest."""
-
-    kind: str
-    text: str
-
-
-@dataclass(frozen=True)
-class CheckResult:
-    """What was compared, the largest error in units of what is allowed, and what is wrong."""
-
-    coverage: Coverage
-    largest: float
-    findings: tuple[Finding, ...]
-
-    @property
-    def states(self) -> int:
-        """At how many states."""
-        return self.coverage.states
-
-
-@dataclass(frozen=True)
-class Truth:
-    """A quantity at a state, and how well the state determines it, 0 to 1."""
-
-    value: list[Any]
-    clear: float
-
-
-@dataclass(frozen=True)
-class JudgedResult:
-    """One result beside the truth: a status, or the error in units of what is allowed and relative to the truth.
-
-    `clear` is how well the state determines the result; where that is `certain` there is no reason for the status.
-    """
-
-    status: int
-    units: float
-    relative: float
-    clear: float
-    certain: bool
 
 
 class Witness:
@@ -400,9 +357,3 @@ def check(description: Description, folder: Path) -> CheckResult:
     """What the witness says of the files in a folder; it must read all that is drawn."""
     text = description.text
     return Witness(text, description.start, text, description.files).check(folder)
-
-
-def findings_by_kind(checked: CheckResult) -> Iterator[tuple[str, str]]:
-    """Kind and text of what is wrong."""
-    for finding in checked.findings:
-        yield finding.kind, finding.text
