@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any, TypeAlias
 
@@ -12,6 +12,11 @@ import yaml
 Block: TypeAlias = "str | list[Block] | dict[str, Block]"
 # Columns of the file.
 FILE_COLUMNS = 110
+_TAGS: dict[type[yaml.Node], str] = {
+    yaml.ScalarNode: "tag:yaml.org,2002:str",
+    yaml.SequenceNode: "tag:yaml.org,2002:seq",
+    yaml.MappingNode: "tag:yaml.org,2002:map",
+}
 # What the rates and accelerations of x are called, by the order of the derivative.
 _RATES = {1: "_dot", 2: "_ddot"}
 
@@ -76,15 +81,17 @@ def _on_a_line(block: Block) -> Block:
 class _TextDumper(yaml.SafeDumper):
     """Writes texts as they are: nobody takes `0.5`, `no` or `1e-3` for anything else in a model file."""
 
-    yaml_implicit_resolvers: dict[str, Sequence[Any]] = {}  # noqa: RUF012
+    def resolve(self, kind: type[yaml.Node], _value: Any, _implicit: Any) -> str:
+        """Every scalar is a text, whatever it looks like."""
+        return _TAGS[kind]
 
 
 def _mapping(dumper: _TextDumper, line: _MappingOnALine) -> yaml.Node:
-    return dumper.represent_mapping("tag:yaml.org,2002:map", line, flow_style=True)
+    return dumper.represent_mapping(_TAGS[yaml.MappingNode], line, flow_style=True)
 
 
 def _list(dumper: _TextDumper, line: _ListOnALine) -> yaml.Node:
-    return dumper.represent_sequence("tag:yaml.org,2002:seq", line, flow_style=True)
+    return dumper.represent_sequence(_TAGS[yaml.SequenceNode], line, flow_style=True)
 
 
 _TextDumper.add_representer(_MappingOnALine, _mapping)
@@ -100,7 +107,7 @@ def _of_sympy(value: Any) -> Block:
     from sympy.core.function import AppliedUndef
     from sympy.printing.str import StrPrinter
 
-    class LanguagePrinter(StrPrinter):  # type: ignore[misc]
+    class LanguagePrinter(StrPrinter):  # type: ignore[misc]  # SymPy has no types
         """The spelling of the language."""
 
         def _print_Float(self, number: Any) -> str:
