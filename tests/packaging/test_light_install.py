@@ -45,11 +45,12 @@ def run(light: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_the_main_way_needs_no_more(light: Path, tmp_path: Path) -> None:
-    made = run(light, "-m", "symgen", str(ROOT / "models/skate.yaml"), "--out", str(tmp_path))
+    made = run(light, "-m", "symgen", str(ROOT / "models/front_car.yaml"), "--out", str(tmp_path))
     assert made.returncode == 0, made.stderr
     assert "notice: the report is left out: it needs sympy and typst, which are not installed: pip" in made.stderr
-    assert (tmp_path / "skate" / "c" / "skate.c").read_bytes() == (ROOT / "generated/skate/c/skate.c").read_bytes()
-    assert not (tmp_path / "skate" / "report").exists()
+    source = Path("front_car", "c", "front_car.c")
+    assert (tmp_path / source).read_bytes() == (ROOT / "generated" / source).read_bytes()
+    assert not (tmp_path / "front_car" / "report").exists()
 
 
 def test_what_is_asked_for_says_what_it_needs(light: Path, tmp_path: Path) -> None:

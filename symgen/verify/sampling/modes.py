@@ -22,6 +22,7 @@ from symgen.verify.reference.reference import Reference
 from symgen.verify.reference.system import default_parameters
 from symgen.verify.sampling.loops_in_lanes import DAMPED_STEPS, LoopsInLanes
 from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, ranked_parts
+from symgen.verify.sampling.reach import reachable
 
 # Binary digits in which parameters and literals are worked out before they are floats.
 MODE_BITS = 128
@@ -33,8 +34,6 @@ MODES_KEPT = 64
 MODE_OPERATIONS = 400_000
 # Steps towards V from each start, at least.
 FEWEST_STEPS = 6
-# How far lengths without a range reach, in the ranges taken for granted.
-LENGTH_REACH = 3.2
 # Shares of the widths of ranges: how near configurations are the same, and to which digits they are told apart.
 SAME_MODE, MODE_DIGITS = 1e-3, 6
 # Of a row of length 1: what is left of a loop that is closed.
@@ -66,9 +65,7 @@ class _Modes:
         self._dice = random.Random("modes")
         self._parameters = np.array(parameters)
         self._angles = np.array([c.is_angle for c in coordinates])
-        reach = [1.0 if c.has_range or c.is_angle else LENGTH_REACH for c in coordinates]
-        self._low = np.array([float(c.range[0]) * r for c, r in zip(coordinates, reach, strict=True)])
-        self._high = np.array([float(c.range[1]) * r for c, r in zip(coordinates, reach, strict=True)])
+        self._low, self._high = reachable(coordinates)
         self._has_range = np.array([c.has_range for c in coordinates])
         self._widths = np.where(self._angles, 1.0, (self._high - self._low) / 2)
         operations = (1 + ROUNDS) * (system.geometry_replay.operations + 1)

@@ -22,6 +22,7 @@ from symgen.verify.sampling.loops_in_lanes import DEPENDENT, LoopsInLanes, lengt
 from symgen.verify.sampling.plain_values import values_at
 from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, measures, ranked_parts
 from symgen.verify.sampling.rates_in_lanes import RatesInLanes
+from symgen.verify.sampling.reach import reachable, unstated_lengths
 from symgen.verify.sampling.states import Sample
 
 # Shares of the ranges of coordinates: how far states are drawn from samples, and moved from where they are.
@@ -96,9 +97,10 @@ class Surroundings:
         self._modes = np.array([list(q) for q in modes]).reshape(len(modes), reference.model.n)
         self._defaults = np.array([float(x) for x in default_parameters(reference.model)])
         coordinates = self._coordinates = reference.model.coordinates
-        low, high = (np.array([float(c.range[side]) for c in coordinates]) for side in (0, 1))
-        self._widths = high - low
+        self._widths = np.array([float(c.range[1] - c.range[0]) for c in coordinates])
+        self._unstated = unstated_lengths(coordinates)
         # ranges that nobody told may be left by every configuration there is
+        low, high = reachable(coordinates)
         met = [parts["q"], self._modes]
         self._low = np.minimum(low, np.concatenate(met).min(axis=0, initial=np.inf))
         self._high = np.maximum(high, np.concatenate(met).max(axis=0, initial=-np.inf))
@@ -123,6 +125,15 @@ class Surroundings:
         p = np.where((turn % 4 != 3)[:, None], self._defaults, p)
         start = Nearby({**start.parts, "q": q, "p": p}, start.admissible, start.origins)
         return self._stepped(start, REACH, 1.0, random.Random("modes"), afresh=True)
+
+    def further_out(self, count: int) -> Nearby:
+        """So many where lengths without a range are anywhere that they may reach; none where every length has one."""
+        start = self.samples.only(np.arange(count) % len(self.samples))
+        if not self._unstated.any():
+            return start.only(slice(0))
+        shares = (1 + _shifts(random.Random("further out"), start.parts["q"])) / 2
+        q = np.where(self._unstated, self._low + shares * (self._high - self._low), start.parts["q"])
+        return self._led(start, q, 1.0, random.Random("out"), afresh=True)
 
     def aligned(self, count: int) -> Nearby:
         """About so many with an angle near a multiple of a quarter turn, where a sine or cosine vanishes.
@@ -201,10 +212,13 @@ class Surroundings:
         return self._stepped(states, FURTHER, 2 * FURTHER, random.Random(f"nearby {seed}"), afresh=False)
 
     def _stepped(self, start: Nearby, reach: float, share: float, dice: random.Random, afresh: bool) -> Nearby:
+        q = start.parts["q"] + reach * _shifts(dice, start.parts["q"]) * self._widths
+        return self._led(start, np.clip(q, self._low, self._high), share, dice, afresh)
+
+    def _led(self, start: Nearby, q: Lanes, share: float, dice: random.Random, afresh: bool) -> Nearby:
+        """At other configurations, with rates, accelerations and inputs drawn afresh or changed by a share."""
         count, kept = len(start), 0.0 if afresh else 1.0
-        parts = dict(start.parts)
-        q = parts["q"] + reach * _shifts(dice, parts["q"]) * self._widths
-        parts["q"] = np.clip(q, self._low, self._high)
+        parts = {**start.parts, "q": q}
         widths = {"qd": self._rates, "qdd": self._accelerations, "u": self._inputs_of(start, afresh)}
         for name, width in widths.items():
             parts[name] = kept * parts[name] + share * _shifts(dice, parts[name]) * width

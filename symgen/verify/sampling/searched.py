@@ -32,7 +32,7 @@ from symgen.verify.sampling.states import Sample, rounded
 from symgen.verify.tolerance import FACTOR, Expectation, expectations
 
 # States drawn; fewer of long kernels, so that no more numbers are held at a time.
-DRAWN, ALIGNED, IN_MODES, RESTING, TOWARDS = 512, 256, 256, 128, 256
+DRAWN, ALIGNED, IN_MODES, RESTING, FURTHER_OUT, TOWARDS = 512, 256, 256, 128, 256, 256
 # Numbers that are held at a time; of long kernels fewer states are looked at together.
 NUMBERS = 4_000_000
 # Of each kind also fewer where decompositions of large parts would take longest: the cube of their coordinates counts.
@@ -151,6 +151,7 @@ class WorstStateSearch:
         found = joined(around.samples, around.aligned(self._affordable(ALIGNED)))
         found = joined(found, around.in_modes(self._affordable(IN_MODES)))
         found = joined(found, around.resting(self._affordable(RESTING)))
+        found = joined(found, around.further_out(self._affordable(FURTHER_OUT)))
         return joined(found, around.drawn(self._affordable(DRAWN)))
 
     @cached_property

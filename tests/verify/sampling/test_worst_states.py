@@ -182,6 +182,49 @@ def test_ranges_that_configurations_leave_are_no_bounds(tmp_path: Path) -> None:
     assert len(Surroundings(far, samples).drawn(64)) > 32
 
 
+CART = """
+model: cart
+coordinates: {x: {unit: m}, a: {unit: rad}}
+kinetic_energy: 2*x_dot**2 + a_dot**2
+inputs: {push: {acts_on: {x: 1}}, turn: {acts_on: {a: 1}}}
+outputs: [inverse_dynamics]
+"""
+# x + 10 x^8 - 10 x^8, in which nothing is lost before x is large
+FAR_DETOUR = straight(
+    Statement(("x2",), "mul", (X, X)),
+    Statement(("x4",), "mul", (Local("x2"), Local("x2"))),
+    Statement(("x8",), "mul", (Local("x4"), Local("x4"))),
+    Statement(("far",), "mul", (Literal(Fraction(10)), Local("x8"))),
+    Statement(("near",), "add", (X, Local("far"))),
+    Statement(("sum",), "sub", (Local("near"), Local("far"))),
+)
+
+
+def test_lengths_without_a_range_are_looked_at_further_out() -> None:
+    """[-1, 1] is taken for granted there, which nobody said; a range that is given is kept."""
+    worst = {}
+    for bounds in ("", ", range: [-1, 1]"):
+        model = load_text(CART.replace("x: {unit: m", "x: {unit: m" + bounds), "cart.yaml")
+        expected = Expected(model, ["inverse_dynamics"], 16, lambda _: None)
+        states, units = WorstStateSearch(expected)._estimated(FAR_DETOUR)
+        worst[bounds] = states.parts["q"][:, 0], units.max()
+    near, found = worst[", range: [-1, 1]"]
+    assert np.abs(near).max() < 1.02
+    assert found < FACTOR
+    far, found = worst[""]
+    assert far.min() < -3 < 3 < far.max() < 3.3
+    assert found > FACTOR
+
+
+def test_lengths_that_loops_hold_stay_where_these_lead(reference: Reference) -> None:
+    """A start far out is brought back to V: the feet of a ladder are no further than it is long."""
+    found = Surroundings(reference, sample_states(reference, ["inverse_dynamics"], 16)).further_out(128)
+    q, p = found.parts["q"], found.parts["p"]
+    assert len(found) > 16
+    assert np.abs(q[:, 0] - p[:, 0] * np.cos(q[:, 2])).max() < 1e-9
+    assert np.abs(q[:, 1] - p[:, 0] * np.sin(q[:, 2])).max() < 1e-9
+
+
 @pytest.mark.parametrize(("weight", "least"), [("9.81*m*y/2", 1e-4), ("0.001*m*y", 0.1)])
 def test_inputs_are_small_too_where_weights_move_the_machine(tmp_path: Path, weight: str, least: float) -> None:
     """Else they would be small beside what rates do alone, as where everything is small."""
