@@ -7,13 +7,14 @@ geometric constraints.  No input, spring, friction, rotor or energy that is writ
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import replace
 
 from symgen.mechanics.bodies import Vector3
+from symgen.mechanics.places import with_leaves
 from symgen.mechanics.system import System
 from symgen.model.expressions.expression import Expression
-from symgen.model.kinematics.components import components_in, without_components
+from symgen.model.kinematics.components import components_in
 from symgen.model.mechanism import WORLD, component
 from symgen.records import dataclass
 from symgen.symbolic.calculus import gradient
@@ -134,18 +135,3 @@ def _only_held(mechanics: System, body: FreeBody) -> bool:
         and not any(depends_on(expression, whole) for expression in works)
         and not any(depends_on(expression, coordinates) for expression in held)
     )
-
-
-def with_leaves(mechanics: System, owners: Sequence[str]) -> tuple[dict[str, Scalar], dict[str, Vector3]]:
-    """The names of formulas with symbols in place of the components of points, and these symbols."""
-    graph, model = mechanics.graph, mechanics.model
-    names, leaves = dict(mechanics.names), dict[str, Vector3]()
-    for owner in owners:
-        x, y, z = (graph.stand_in(f"{owner}.{axis} held") for axis in "xyz")
-        leaves[owner] = (x, y, z)
-        names |= {f"{owner}.{axis}": leaf for axis, leaf in zip("xyz", (x, y, z), strict=True)}
-    apart = without_components(model.definitions)
-    for definition in model.definitions:
-        if definition not in apart:
-            names[definition.name] = translate(graph, definition.value, names)
-    return names, leaves

@@ -12,6 +12,7 @@ from functools import cached_property
 from symgen.mechanics.absolute_angles import AbsoluteAngles
 from symgen.mechanics.bodies import Bodies, Vector3
 from symgen.mechanics.joint_axes import along_joints
+from symgen.mechanics.places import acceleration_bias
 from symgen.model.checks.signs import nonnegative_parameters, positive_parameters
 from symgen.model.expressions.expression import Expression
 from symgen.model.kinematics.components import components_in, definitions_before_frames
@@ -326,12 +327,16 @@ class System:
         return tuple(tuple(next(rates) for _ in range(self.n)) for _ in range(self.r))
 
     def constraint_acceleration_bias(self, velocity: Vector) -> Vector:
-        """B_dot v along v: differentiating B v is cheaper than forming B_dot."""
+        """B_dot v along v: differentiating B v is cheaper than forming B_dot, and places where a frame has many."""
         graph = self.graph
+        by_places = acceleration_bias(self, velocity)
         frozen = tuple(graph.stand_in(f"{c.name}_frozen rate") for c in self.model.coordinates)
-        products = matvec(graph, self.constraint_jacobian, frozen)
+        left = [i for i in range(self.r) if i not in by_places]
+        products = matvec(graph, tuple(self.constraint_jacobian[i] for i in left), frozen)
         rates = derivative_along(graph, products, dict(zip(self.q, velocity, strict=True)))
-        return tuple(substitute(graph, rates, dict(zip(frozen, velocity, strict=True))))
+        others = substitute(graph, rates, dict(zip(frozen, velocity, strict=True)))
+        found = {**by_places, **dict(zip(left, others, strict=True))}
+        return tuple(found[i] for i in range(self.r))
 
     @cached_property
     def control_matrix(self) -> Matrix:

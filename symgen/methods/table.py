@@ -75,6 +75,7 @@ METHODS: tuple[MethodRow, ...] = (
     _method("nullspace", _MOTION, "forward_dynamics.along_spaces", "NULLSPACE"),
     _method("shifted", _MOTION, "forward_dynamics.shifted", "SHIFTED", Use.LAST),
     _method("kkt", _MOTION, "comparisons.motions", "KKT", Use.LAST),
+    _method("partitioned", _MOTION, "forward_dynamics.partitioned", "PARTITIONED"),
     _method("articulated", _MOTION, "forward_dynamics.articulated", "ARTICULATED"),
     _method("articulated_refined", _MOTION, "forward_dynamics.articulated", "REFINED", Use.SPARE),
     _method("minor", _PROJECTOR, "projector", "MINOR", Use.ASKED),

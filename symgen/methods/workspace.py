@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from symgen.mechanics.genericity import Genericity, configurations
 from symgen.mechanics.system import System
 from symgen.methods.derivation import Derivation
-from symgen.methods.quantity import Quantity
 from symgen.methods.spaces import along_minors
 from symgen.methods.system import MethodInput
 from symgen.model.model import Model
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost
+
+if TYPE_CHECKING:
+    from symgen.methods.method import Candidate
 
 # Share of operations that regrouping parameters has to take off: they are computed at each call.
 LUMPING_GAIN = Fraction(1, 20)
@@ -28,7 +31,7 @@ class Workspace:
         self.model = model
         self.generic = generic
         # q_ddot and lambda come together: what was solved for one of them, by method
-        self.motions: dict[object, tuple[MethodInput, dict[str, Quantity]] | str] = {}
+        self.motions: dict[object, dict[str, Candidate] | str] = {}
 
     def fresh(self) -> MethodInput:
         """The system on a new graph."""

@@ -47,6 +47,7 @@ def motion_brought_back(graph: Graph, mechanics: System | None, motion: Motion) 
         accelerations=there.scalars(accelerations),
         multipliers=there.scalars(motion.multipliers),
         guards=there.guards(motion.guards),
+        divisors=there.scalars(motion.divisors),
     )
 
 

@@ -20,11 +20,15 @@ from symgen.symbolic.scalar import Graph, Scalar
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """q_ddot (n) and lambda (r) with the denominators they depend on."""
+    """q_ddot (n) and lambda (r) with the denominators they depend on.
+
+    Of `divisors` no theorem says that they vanish nowhere.
+    """
 
     accelerations: Vector
     multipliers: Vector
     guards: tuple[Guard, ...]
+    divisors: Vector = ()
 
     def part(self, quantity: str) -> Vector:
         """The one of both that a quantity is."""

@@ -21,7 +21,7 @@ from symgen.methods.derivation import Derivation
 from symgen.methods.forward_dynamics.motion import Motion
 from symgen.methods.graphs import forget_others
 from symgen.methods.method import MOTIONS, Candidate
-from symgen.methods.quantity import Quantity, resting_on
+from symgen.methods.quantity import resting_on
 from symgen.methods.spaces import along_minors, along_reflections
 from symgen.methods.system import MethodInput
 from symgen.methods.table import Use, methods
@@ -137,14 +137,15 @@ def _shared(
         found = solved(workspace)
         workspace.motions[key] = found if isinstance(found, str) else _kept(workspace.generic, *found)
     kept = workspace.motions[key]
-    return kept if isinstance(kept, str) else Candidate(kept[0], kept[1][quantity])
+    return kept if isinstance(kept, str) else kept[quantity]
 
 
-def _kept(generic: Genericity, mechanics: System, made: Motion) -> tuple[MethodInput, dict[str, Quantity]]:
+def _kept(generic: Genericity, mechanics: System, made: Motion) -> dict[str, Candidate]:
     """q_ddot, and lambda where there are constraints, and nothing else on their graph."""
     both = {name: resting_on(made.guards, name, made.part(name)) for name in MOTIONS[: 1 + bool(generic.r)]}
     forget_others(mechanics, both.values())
-    return MethodInput(mechanics, generic), both
+    system = MethodInput(mechanics, generic)
+    return {name: Candidate(system, quantity, made.divisors) for name, quantity in both.items()}
 
 
 def failing_motions(mechanics: System) -> tuple[tuple[str, str], ...]:
