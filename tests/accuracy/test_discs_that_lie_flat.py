@@ -13,6 +13,10 @@ import pytest
 
 from symgen.generation.draft import Draft, draft_of
 from symgen.generation.results import Options
+from symgen.mechanics.genericity import genericity
+from symgen.mechanics.system import System
+from symgen.methods.method import MOTIONS, Candidate
+from symgen.methods.selection import Methods
 from symgen.model.load import load_text
 from symgen.validity.definiteness import definite_beside_rows, indefinite_model
 from symgen.verify.interpreted import outcomes
@@ -48,7 +52,7 @@ PARAMETERS = (0.21, 1.7, 0.12)
 @cache
 def coin() -> tuple[Draft, Reference]:
     model = load_text(COIN, "coin.yaml")
-    return draft_of(model, OUTPUTS, Options()), Reference(model)
+    return draft_of(model, OUTPUTS, Options(methods=dict.fromkeys(MOTIONS, "articulated"))), Reference(model)
 
 
 def leaning(off: float) -> State:
@@ -72,12 +76,15 @@ def test_digits_stay_beside_the_ground(quantity: str, decade: int) -> None:
     assert truth.in_units(truth.distance(found.entries)) <= FACTOR
 
 
-def test_articulated_inertias_are_taken_where_nothing_holds_what_has_no_mass() -> None:
+def test_articulated_inertias_are_valid_where_nothing_holds_what_has_no_mass() -> None:
     model = load_text(COIN, "coin.yaml")
     assert indefinite_model(model) is not None
     assert definite_beside_rows(model)
-    methods = {choice.quantity: choice.method for choice in coin()[0].derivations.choices}
-    assert methods["forward_dynamics"] == methods["multipliers"] == "articulated"
+    methods = Methods(model, genericity(System(model)))
+    for quantity in MOTIONS:
+        found = methods.candidate(quantity, "articulated")
+        assert isinstance(found, Candidate)
+        assert methods.validity(found).admitted
 
 
 # A ring about a rod that turns: where it stands on the axis its own turn has no inertia, and a gear may hold it.

@@ -37,7 +37,7 @@ outputs: [forward_dynamics, multipliers]
 def test_light_bodies_between_heavy_ones_keep_their_digits(quantity: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Problem, "rows_in_line", True)
     model = load_text(BETWEEN, "between.yaml")
-    selection = derive_quantities(model, [quantity], {quantity: "schur_qr"})
+    selection = derive_quantities(model, [quantity], {quantity: "schur_qr_refined"})
     program = schedule(selection.mechanics, selection.quantities, ("float32",))["float32"]
     (kernel,) = (one for one in program.kernels if one.name == quantity)
     reference, source = Reference(model), random.Random(5)

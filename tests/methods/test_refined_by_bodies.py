@@ -142,7 +142,7 @@ def points(model: Model) -> list[dict[str, float]]:
     return found
 
 
-@pytest.mark.parametrize("method", ["articulated", "articulated_refined"])
+@pytest.mark.parametrize("method", ["articulated", "articulated_by_bodies"])
 @pytest.mark.parametrize("text", [PLANE, SPACE], ids=["plane", "space"])
 def test_rows_that_depend_on_each_other(text: str, method: str) -> None:
     """As along an orthonormal basis: the same accelerations, the same smallest multipliers."""
@@ -153,7 +153,7 @@ def test_rows_that_depend_on_each_other(text: str, method: str) -> None:
         assert one(point) == pytest.approx(other(point), rel=1e-9, abs=1e-8)
 
 
-@pytest.mark.parametrize("method", ["articulated", "articulated_refined"])
+@pytest.mark.parametrize("method", ["articulated", "articulated_by_bodies"])
 @pytest.mark.parametrize("text", [HUNG, ALWAYS], ids=["hung", "always"])
 def test_rows_of_loops_beside_quaternions(text: str, method: str) -> None:
     """As verification asks for, at its states."""
@@ -185,6 +185,6 @@ def test_heavy_bodies_at_the_end_of_light_links() -> None:
         program = schedule(made.mechanics, [made.derived], ("float64",))["float64"]
         return measured(program.kernels[0], program.sincos, "float64", states)[0].largest
 
-    assert largest(motion, "articulated_refined") < 8
+    assert largest(motion, "articulated_by_bodies") < 8
     assert largest(motion, BY_FRAMES) > 100
     assert largest(QUANTITIES[0], BY_FRAMES) < 8

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 from symgen.linear_algebra.constrained_inverse import ConstrainedInertia
 from symgen.linear_algebra.guards import Guard
@@ -84,7 +85,7 @@ def _minor(derivation: Derivation) -> Motion:
     return _solved_apart(derivation, lambda problem: minor_motion(problem).motion)
 
 
-def _schur_qr(derivation: Derivation) -> Motion:
+def _schur_qr(derivation: Derivation, refining: bool = False) -> Motion:
     rank = derivation.generic.rank
     # it measures ranks itself where rows are many, or depend on each other
     measured = derivation.r > min(rank, LONGEST_PRODUCT)
@@ -92,8 +93,8 @@ def _schur_qr(derivation: Derivation) -> Motion:
     def solved(problem: Problem) -> Motion:
         found = apart(problem)
         if found is None:
-            return schur_qr(problem, rank)
-        return found.brought_back(schur_qr(found, rank, found.factor))
+            return schur_qr(problem, rank, refining=refining)
+        return found.brought_back(schur_qr(found, rank, found.factor, refining))
 
     return _solved_apart(derivation, solved, measured)
 
@@ -150,6 +151,7 @@ MINOR: Method = AlongNullSpace(
     _minor, "its denominator is the determinant of the equations of motion", _many_directions, _by_minors, grows=True
 )
 SCHUR_QR: Method = AlongNullSpace(_schur_qr, POSITIVE, offered=_by_elimination, free=True)
+SCHUR_QR_REFINED: Method = AlongNullSpace(partial(_schur_qr, refining=True), POSITIVE, constraints, free=True)
 NULLSPACE: Method = AlongNullSpace(
     _nullspace, "its pivots are those of G along the constraints", constraints, _by_basis, orthonormal=True
 )

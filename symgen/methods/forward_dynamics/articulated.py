@@ -9,6 +9,7 @@ were rounded one by one.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from enum import Enum, auto
 from functools import cached_property, partial
 
 from symgen.linear_algebra.guards import Guard
@@ -25,7 +26,7 @@ from symgen.methods.forward_dynamics.held_lengths import HeldLengths, LengthsApa
 from symgen.methods.forward_dynamics.joint_accelerations import by_joints
 from symgen.methods.forward_dynamics.loop_points import LoopPoint, acceleration, loop_points, wrenches
 from symgen.methods.forward_dynamics.motion import Motion, Problem
-from symgen.methods.forward_dynamics.motions import BY_BODIES_ALONE, STRUCTURED, WithoutNullSpace
+from symgen.methods.forward_dynamics.motions import BY_BODIES_ALONE, STRUCTURED, WithoutNullSpace, constraints
 from symgen.methods.method import Method
 from symgen.methods.workspace import Workspace
 from symgen.model.expressions.expression import Number
@@ -82,6 +83,16 @@ class _SpatialLoops(Problem):
         return tuple(found)
 
 
+class RefinedBy(Enum):
+    """What a solution is put into to solve for what it leaves once more."""
+
+    NOTHING = auto()
+    COLUMNS = auto()
+    """Those of B^T as they were brought inwards."""
+    BODIES = auto()
+    """Newton and Euler's equations of the bodies."""
+
+
 class BodyEquations:
     """G q_ddot + B^T lambda = f, B q_ddot = -a of bodies, solved from body to body.
 
@@ -113,20 +124,21 @@ class BodyEquations:
         self._apart = LengthsApart(self._problem, factor, columns, held, rank)
         self.guards = self._apart.guards
 
-    def motion(self, by_bodies: bool = False) -> Motion:
-        """q_ddot and lambda; `by_bodies` they are refined by Newton and Euler's equations of the bodies."""
+    def motion(self, refined_by: RefinedBy = RefinedBy.NOTHING) -> Motion:
+        """q_ddot and lambda."""
         mechanics, problem = self._mechanics, self._problem
         loops, forces = problem.loops, self._forces
+        by_bodies, by_columns = refined_by is RefinedBy.BODIES, refined_by is RefinedBy.COLUMNS
         own = None if by_bodies else by_joints(mechanics, self._factor, loops, forces, self._given)
         if own is not None:
-            found = self._apart.solve(own.force, own.bias, raised=own.raised)
+            found = self._apart.solve(own.force, own.bias, by_columns, own.raised)
             return Motion(found[0], self._completed(problem.of_the_model(found[1])), self.guards)
         none = (mechanics.graph.zero,) * mechanics.n
         direct, loads = self._given
         inertial = self._inertial_forces(mechanics.qd, none, mechanics.bodies.gravity)
         force = self._factor.lowered(direct, added_loads(inertial, loads, mechanics.graph.one))
         if not by_bodies:
-            found = self._apart.solve(force, problem.bias)
+            found = self._apart.solve(force, problem.bias, by_columns)
         else:
 
             def left_over(q_ddot: Vector, multipliers: Vector) -> Solution:
@@ -180,13 +192,15 @@ class BodyEquations:
         return {name: tuple(-x for x in (*wrench.moment, *wrench.force)) for name, wrench in found.items()}
 
 
-def articulated(model: Model, generic: Genericity, by_bodies: bool = False) -> tuple[System, Motion] | None:
-    """The motion and the system it was derived on, a graph of its own; `by_bodies` it is refined by their equations.
+def articulated(
+    model: Model, generic: Genericity, refined_by: RefinedBy = RefinedBy.NOTHING
+) -> tuple[System, Motion] | None:
+    """The motion and the system it was derived on, a graph of its own.
 
     None where T is not that of bodies alone, a coordinate moves several frames or none, or G is not definite.
     """
     found = body_equations(model, generic, turned=generic.rank == generic.r)
-    return None if found is None else (found[0], found[1].motion(by_bodies))
+    return None if found is None else (found[0], found[1].motion(refined_by))
 
 
 def body_equations(model: Model, generic: Genericity, turned: bool) -> tuple[System, BodyEquations] | None:
@@ -239,10 +253,13 @@ def _along_best_axes(
     return min(found.items(), key=lambda one: sum(not entry.is_zero for column in one[1] for entry in column))
 
 
-def _alone(workspace: Workspace, by_bodies: bool = False) -> tuple[System, Motion] | str:
-    found = articulated(workspace.model, workspace.generic, by_bodies)
+def _alone(workspace: Workspace, refined_by: RefinedBy) -> tuple[System, Motion] | str:
+    if refined_by is RefinedBy.COLUMNS and (reason := constraints(workspace.generic)):
+        return reason
+    found = articulated(workspace.model, workspace.generic, refined_by)
     return BY_BODIES_ALONE if found is None else found
 
 
-ARTICULATED: Method = WithoutNullSpace(_alone, STRUCTURED)
-REFINED: Method = WithoutNullSpace(partial(_alone, by_bodies=True), STRUCTURED)
+ARTICULATED: Method = WithoutNullSpace(partial(_alone, refined_by=RefinedBy.NOTHING), STRUCTURED)
+BY_COLUMNS: Method = WithoutNullSpace(partial(_alone, refined_by=RefinedBy.COLUMNS), STRUCTURED)
+BY_BODIES: Method = WithoutNullSpace(partial(_alone, refined_by=RefinedBy.BODIES), STRUCTURED)

@@ -153,7 +153,7 @@ class LengthsApart:
         return tuple(dict.fromkeys((*self._rest.guards, *self._held.guards)))
 
     def solve(
-        self, force: Vector, bias: Vector, refining: bool = True, raised: Callable[[Vector], Vector] | None = None
+        self, force: Vector, bias: Vector, refining: bool, raised: Callable[[Vector], Vector] | None = None
     ) -> Solution:
         """q_ddot and lambda for L^-1 f and a; `raised` leads to q_ddot if that of the factor does not."""
         graph, held = self._graph, self._held

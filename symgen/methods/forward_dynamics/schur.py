@@ -51,8 +51,8 @@ class SchurQR:
         columns = [self._factor.lowered(row) for row in problem.rows]
         self._elimination = SchurElimination(problem, self._factor, columns, rank)
 
-    def motion(self, force: Vector, bias: Vector) -> Motion:
-        """The solution of G q_ddot + B^T lambda = f, B q_ddot = -a."""
+    def motion(self, force: Vector, bias: Vector, refining: bool = True) -> Motion:
+        """The solution of G q_ddot + B^T lambda = f, B q_ddot = -a; `refining` solves for what it leaves once more."""
         graph, factor, elimination, rows = self._graph, self._factor, self._elimination, self._elimination.rows
         asked = elimination.asked(bias)
 
@@ -62,16 +62,18 @@ class SchurQR:
             forces = subtract_vectors(factor.lowered(less_forces(graph, force, rows, multipliers)), x)
             return forces, missing(graph, rows, asked, elimination.accelerations(x))
 
-        return elimination.motion(factor.lowered(force), asked, left_over)
+        return elimination.motion(factor.lowered(force), asked, left_over if refining else None)
 
 
-def schur_qr(problem: Problem, rank: int, factor: MassMatrixFactor | None = None) -> Motion:
+def schur_qr(
+    problem: Problem, rank: int, factor: MassMatrixFactor | None = None, refining: bool = False
+) -> Motion:
     """q_ddot and lambda of a system's own right-hand sides."""
-    return SchurQR(problem, rank, factor).motion(problem.force, problem.bias)
+    return SchurQR(problem, rank, factor).motion(problem.force, problem.bias, refining)
 
 
 class SchurElimination:
-    """x + A lambda = L^-1 f, A^T D^-1 x = -a, refined once; `columns` are those of A.
+    """x + A lambda = L^-1 f, A^T D^-1 x = -a; `columns` are those of A.
 
     `guards` are the denominators.
     """
@@ -104,13 +106,15 @@ class SchurElimination:
         """q_ddot of x = D L^T q_ddot."""
         return self._factor.raised(tuple(entry * weight for entry, weight in zip(x, self.weights, strict=True)))
 
-    def motion(self, force: Vector, asked: Vector, left_over: Callable[[Vector, Vector], Solution]) -> Motion:
-        """q_ddot and lambda for L^-1 f; `left_over` is what a solution leaves of the right-hand sides."""
+    def motion(
+        self, force: Vector, asked: Vector, left_over: Callable[[Vector, Vector], Solution] | None
+    ) -> Motion:
+        """q_ddot and lambda for L^-1 f; `left_over` is what a solution leaves of the right-hand sides, to refine it."""
         x, multipliers = self._solution(force, asked, left_over)
         return Motion(self.accelerations(x), multipliers, self.guards)
 
-    def by_columns(self, force: Vector, bias: Vector, refining: bool = True) -> Solution:
-        """x and lambda for L^-1 f and a, refined by the columns of A."""
+    def by_columns(self, force: Vector, bias: Vector, refining: bool) -> Solution:
+        """x and lambda for L^-1 f and a; `refining` by the columns of A."""
         asked, columns = self.asked(bias), self._orthogonal.chosen(self._columns)
         left_over = of_columns(self._graph, columns, self.weights, force, asked)
         return self._solution(force, asked, left_over if refining else None)
