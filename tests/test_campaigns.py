@@ -67,6 +67,19 @@ def test_what_was_recorded_is_not_run_again(root: Path) -> None:
     assert ran(root) == []
 
 
+def test_what_has_changed_is_run_and_recorded(root: Path) -> None:
+    members = [member("a"), member("b")]
+    run_and_record(root, members, version)
+    ran(root)
+    (root / "generated/b/files.sha256").write_text("1235  c/x.c\n")
+    assert run_and_record(root, members, version, changed=True) == 0
+    assert ran(root) == ["b"]
+    assert run_changed(root, members, NOT_SAMPLED, version) == 0
+    assert ran(root) == []
+    assert run_and_record(root, members, version, changed=True) == 0
+    assert ran(root) == []
+
+
 def test_every_change_is_noticed(root: Path) -> None:
     members = [member("a"), member("b")]
     run_and_record(root, members, version)

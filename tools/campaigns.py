@@ -1,6 +1,7 @@
 """Campaigns of minutes: recorded with what went in, and run again where that has changed.
 
     python tools/campaigns.py run [CAMPAIGN...]     runs every member and records it
+    python tools/campaigns.py refresh [CAMPAIGN...] runs and records what has changed since it was recorded
     python tools/campaigns.py changed COUNT         runs what has changed since it was recorded, and one in twelve of
                                                     the others, chosen by COUNT (of commits): these must give the same
 
@@ -22,6 +23,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
 from campaign_member import Member
@@ -129,15 +131,28 @@ def write_record(root: Path, record: Mapping[str, Mapping[str, Any]]) -> None:
     (root / RECORD).write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")
 
 
-def run_and_record(root: Path, members: Sequence[Member], version: Callable[[str], str] = version_of) -> int:
-    """Runs all and records those that pass; what is no member any more is forgotten."""
+def run_and_record(
+    root: Path, members: Sequence[Member], version: Callable[[str], str] = version_of, changed: bool = False
+) -> int:
+    """Runs all and records those that pass as they end; what is no member any more is forgotten.
+
+    With `changed` only those run that are not recorded as they are.
+    """
     record = read_record(root)
     for campaign in {member.campaign for member in members}:
         names = {member.name for member in members if member.campaign == campaign}
         record[campaign] = {name: known for name, known in record.get(campaign, {}).items() if name in names}
 
+    hashes = {(member.campaign, member.name): inputs_hash(root, member, version) for member in members}
+    if changed:
+        members = [one for one in members if _recorded(record, one) != hashes[one.campaign, one.name]]
+    lock = Lock()
+
     def note(member: Member, result: Any) -> str:
-        record[member.campaign][member.name] = {"inputs": inputs_hash(root, member, version), "result": result}
+        with lock:
+            inputs = hashes[member.campaign, member.name]
+            record[member.campaign][member.name] = {"inputs": inputs, "result": result}
+            write_record(root, record)
         return ""
 
     failed = run_all(root, members, note)
@@ -146,6 +161,11 @@ def run_and_record(root: Path, members: Sequence[Member], version: Callable[[str
         record[campaign].pop(member, None)
     write_record(root, record)
     return _said(failed)
+
+
+def _recorded(record: Record, member: Member) -> str:
+    """The hash of what went in when a member was recorded; empty where it was not."""
+    return str(record[member.campaign].get(member.name, {}).get("inputs", ""))
 
 
 def run_changed(
@@ -181,6 +201,9 @@ def main(arguments: Sequence[str]) -> int:
     match arguments:
         case ["run", *names]:
             return run_and_record(ROOT, [member for member in members if not names or member.campaign in names])
+        case ["refresh", *names]:
+            these = [member for member in members if not names or member.campaign in names]
+            return run_and_record(ROOT, these, changed=True)
         case ["changed", count]:
             return run_changed(ROOT, members, int(count))
     print(__doc__, file=sys.stderr)

@@ -23,7 +23,7 @@ from symgen.cli.arguments import (
     parts,
 )
 from symgen.cli.measuring import bench, simulate, stress, target
-from symgen.cli.outcome import DONE, MODEL_WRONG, WRONG_USE, check_present, guarded
+from symgen.cli.outcome import DONE, MODEL_WRONG, WRONG_USE, check_present, check_writable, guarded
 from symgen.cli.signals import EndedError, signals_end_the_run
 from symgen.generation.results import ALL_PARTS, PARTS, Options, Result, WrongUseError
 from symgen.ir.kernel import Scalar
@@ -167,6 +167,8 @@ def _generate(arguments: list[str]) -> int:
         as_recorded=given.check or given.recorded is not None,
     )
     finish = _check_files if given.check else _write_files
+    if not given.check:
+        check_writable(given.out)
     recover_folders(given.out)
     return _each_model(given.models, options, given.quiet, lambda result: finish(result, given.out, given.quiet))
 

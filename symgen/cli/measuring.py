@@ -33,7 +33,7 @@ def bench(arguments: list[str]) -> int:
             return run_mechanism_bench(path, given.out, given.quiet, progress)
         return run_bench(path, given.out, given.states, given.quiet, progress)
 
-    return each_file(given.models, given.quiet, one)
+    return each_file(given.models, given.out, given.quiet, one)
 
 
 def stress(arguments: list[str]) -> int:
@@ -55,7 +55,7 @@ def stress(arguments: list[str]) -> int:
 
         return run_stress(path, given.out, max(0, given.steps), given.quiet, progress)
 
-    return each_file(given.models, given.quiet, one)
+    return each_file(given.models, given.out, given.quiet, one)
 
 
 def target(arguments: list[str]) -> int:
@@ -81,7 +81,7 @@ def target(arguments: list[str]) -> int:
 
         return run_target(path, given.out, cores, given.quiet, progress)
 
-    return each_file(given.models, given.quiet, one)
+    return each_file(given.models, given.out, given.quiet, one)
 
 
 def simulate(arguments: list[str]) -> int:
@@ -105,4 +105,4 @@ def simulate(arguments: list[str]) -> int:
         request = Request(given.duration, max(1, given.frames), given.start, given.inputs)
         return run_simulate(path, given.out, request, given.quiet, progress)
 
-    return each_file(given.models, given.quiet, one)
+    return each_file(given.models, given.out, given.quiet, one)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import traceback
 from collections.abc import Callable, Sequence
@@ -19,7 +20,7 @@ from symgen.terminal import Progress
 DONE, MODEL_WRONG, WRONG_USE = 0, 1, 2
 
 
-def each_file(models: Sequence[Path], quiet: bool, work: Callable[[Path, Progress], int]) -> int:
+def each_file(models: Sequence[Path], out: Path, quiet: bool, work: Callable[[Path, Progress], int]) -> int:
     """Measures every model, also after one that failed; the highest exit code wins."""
 
     def one(path: Path) -> int:
@@ -30,6 +31,7 @@ def each_file(models: Sequence[Path], quiet: bool, work: Callable[[Path, Progres
             progress.done()
 
     check_present(models)
+    check_writable(out)
     return max([guarded(partial(one, path)) for path in models])
 
 
@@ -38,6 +40,15 @@ def check_present(models: Sequence[Path]) -> None:
     for path in models:
         if not path.is_file():
             raise WrongUseError(_why_missing(path))
+
+
+def check_writable(out: Path) -> None:
+    """WrongUseError where no folder can stand, before work starts that takes minutes."""
+    there = next(path for path in (out.absolute(), *out.absolute().parents) if path.exists())
+    if not there.is_dir():
+        raise WrongUseError(f"{there} is a file: name a folder with --out")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise WrongUseError(f"nothing may be written into {there}: name another folder with --out")
 
 
 def _why_missing(path: Path) -> str:

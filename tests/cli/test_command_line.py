@@ -277,8 +277,10 @@ def test_the_real_pipeline_to_c(tmp_path: Path, scalar: Scalar) -> None:
 def test_out_is_a_file(asked: list[Options], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "generated").write_text("")
     assert code(SKATE) == 2
-    assert "Traceback" not in capsys.readouterr().err
-    assert len(asked) == 1
+    assert f"{tmp_path / 'generated'} is a file: name a folder with --out" in capsys.readouterr().err
+    assert asked == []
+    assert code(SKATE, "--out", "generated/below") == 2
+    assert asked == []
 
 
 def test_explain_one_quantity(capsys: pytest.CaptureFixture[str]) -> None:
