@@ -195,11 +195,8 @@ class Fallback:
     def _next(self, draft: Draft, quantity: str, expected: Expected) -> Passing | None:
         """The next method that passes with a margin, or else the best of those that pass; others are noted."""
         passing, needed = self._passing[quantity], tuple(draft.kernels(quantity))
-        for one in self._of_all_tiers(draft, quantity, expected, LONG_TRIED):
-            if one.scalars == needed and one.largest <= MARGIN:
-                return one
-            if "float64" in one.scalars:
-                passing.append(one)
+        if (found := self._first_of(draft, quantity, expected, LONG_TRIED)) is not None:
+            return found
         for one in self._with_more_digits(draft, quantity, expected):
             # more digits in float64, too, are worth a margin only where next to none is left
             most = MARGIN if one.alternative.choice.wide == needed else NARROW
@@ -207,9 +204,8 @@ class Fallback:
                 return one
             if "float64" in one.scalars:
                 passing.append(one)
-        if not passing:
-            rest = self._of_all_tiers(draft, quantity, expected, inf)
-            passing.extend(one for one in rest if "float64" in one.scalars)
+        if not passing and (found := self._first_of(draft, quantity, expected, inf)) is not None:
+            return found
         while passing:
             best = min(passing, key=lambda one: (-len(one.scalars), one.largest))
             passing.remove(best)
@@ -218,6 +214,16 @@ class Fallback:
                 return one
             if one.scalars:
                 passing.append(one)
+        return None
+
+    def _first_of(self, draft: Draft, quantity: str, expected: Expected, operations: float) -> Passing | None:
+        """The first method that passes with a margin; others that pass are noted."""
+        needed = tuple(draft.kernels(quantity))
+        for one in self._of_all_tiers(draft, quantity, expected, operations):
+            if one.scalars == needed and one.largest <= MARGIN:
+                return one
+            if "float64" in one.scalars:
+                self._passing[quantity].append(one)
         return None
 
     def _with_margin(self, draft: Draft, quantity: str, largest: float, expected: Expected) -> Draft:

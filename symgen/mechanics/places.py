@@ -22,8 +22,7 @@ from symgen.symbolic.traverse import substitute
 if TYPE_CHECKING:
     from symgen.mechanics.system import System
 
-# Points of a frame from which on what its axes do is shared by enough of them: one for each axis.
-SHARING = 3
+AXES = "xyz"
 
 
 def with_leaves(mechanics: System, owners: Sequence[str]) -> tuple[dict[str, Scalar], dict[str, Vector3]]:
@@ -31,9 +30,9 @@ def with_leaves(mechanics: System, owners: Sequence[str]) -> tuple[dict[str, Sca
     graph, model = mechanics.graph, mechanics.model
     names, leaves = dict(mechanics.names), dict[str, Vector3]()
     for owner in owners:
-        x, y, z = (graph.stand_in(f"{owner}.{axis} held") for axis in "xyz")
+        x, y, z = (graph.stand_in(f"{owner}.{axis} held") for axis in AXES)
         leaves[owner] = (x, y, z)
-        names |= {f"{owner}.{axis}": leaf for axis, leaf in zip("xyz", (x, y, z), strict=True)}
+        names |= {f"{owner}.{axis}": leaf for axis, leaf in zip(AXES, (x, y, z), strict=True)}
     apart = without_components(model.definitions)
     for definition in model.definitions:
         if definition not in apart:
@@ -73,12 +72,12 @@ def acceleration_bias(mechanics: System, velocity: Vector) -> dict[int, Scalar]:
 
 
 def _sharing(mechanics: System) -> list[str]:
-    """The points that rows may hold, of frames in space that have several of them."""
+    """The points that rows may hold, of frames in space: where there are as many as axes, these are worth deriving."""
     kinematics = mechanics.bodies.kinematics
     owners = dict.fromkeys(component(name).owner for name in components_in(mechanics.model))
     of_frame = defaultdict[str, list[str]](list)
     for owner in owners:
         point = kinematics.points.get(owner)
         of_frame[owner if point is None else point.frame].append(owner)
-    several = [(frame, points) for frame, points in of_frame.items() if frame != WORLD and len(points) >= SHARING]
+    several = [(frame, points) for frame, points in of_frame.items() if frame != WORLD and len(points) >= len(AXES)]
     return [owner for frame, points in several if kinematics.plane(WORLD, frame) is None for owner in points]

@@ -36,7 +36,7 @@ from symgen.verify.sampling.searched import JUDGED
 from symgen.verify.sampling.settling import Settling
 from symgen.verify.sampling.states import Sample
 
-# A pin on a crank moves a slotted slider: one row, one degree of freedom.
+# A pin on a crank moves a slider in a bent slot: one row, one degree of freedom, and nothing to be substituted.
 YOKE = """
 model: yoke
 coordinates:
@@ -47,10 +47,11 @@ parameters:
   J: {value: 0.02, unit: kg*m**2}
   m: {value: 1.5, unit: kg, range: [1, 2]}
   k: {value: 40, unit: N/m}
+  b: {value: 2, unit: m, description: how straight the slot is}
 kinetic_energy: J/2*a_dot**2 + m/2*x_dot**2
 potential_energy: k/2*x**2
 constraints:
-  geometric: {slot: x - r*cos(a)}
+  geometric: {slot: x + x**3/b**2 - r*cos(a)}
 inputs:
   torque: {unit: N*m, acts_on: {a: 1}}
 configuration: {a: 0.8, x: 0.2}
@@ -132,7 +133,7 @@ def cancelling(motion: Motion) -> Motion:
 
 def narrow(motion: Motion) -> Motion:
     """λ that takes a good half of what is allowed, where the crank turns little."""
-    return replace(motion, multipliers=tuple(lossy(value, Fraction(5)) for value in motion.multipliers))
+    return replace(motion, multipliers=tuple(lossy(value, Fraction(4)) for value in motion.multipliers))
 
 
 def edgy(motion: Motion) -> Motion:
@@ -142,7 +143,7 @@ def edgy(motion: Motion) -> Motion:
 
 def edging(motion: Motion) -> Motion:
     """The same, less: a good half of what is allowed is lost there."""
-    return replace(motion, multipliers=tuple(lossy(value, Fraction(1, 16)) for value in motion.multipliers))
+    return replace(motion, multipliers=tuple(lossy(value, Fraction(1, 8)) for value in motion.multipliers))
 
 
 def losing_digits(motion: Motion) -> Motion:
@@ -262,9 +263,9 @@ def test_what_passes_narrowly_takes_one_with_half_of_its_error(yoke: Path, monke
     result = made(yoke)
     assert "rejected" not in derived(result)
     assert result.left_out == ()
+    assert derived(result)["kernels"]["multipliers"]["way"] == "minors"
     assert result.certificate is not None
     assert result.certificate["passed"]
-    assert max(e["largest"] for e in result.certificate["errors"] if e["quantity"] == "multipliers") > 8
 
 
 def test_a_loss_that_no_state_of_the_verification_meets_is_searched_for(
@@ -310,8 +311,8 @@ def test_a_long_alternative_has_its_numbers_grouped_once_its_worst_states_speak_
 
 def test_what_needs_nearly_all_takes_twice_the_digits(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     yoke.write_text(YOKE + "ranges: {a: [0.7, 1]}\n", encoding="utf-8")
-    spoil_choice(monkeypatch, lambda motion: losing(motion, 22))
-    spoil_named(monkeypatch, lambda motion: losing(motion, 22))
+    spoil_choice(monkeypatch, lambda motion: losing(motion, 28))
+    spoil_named(monkeypatch, lambda motion: losing(motion, 28))
     result = made(yoke)
     (rejected,) = derived(result)["rejected"]
     assert float(re.findall(r"error (\S+) times", rejected["why"])[0]) > NARROW

@@ -40,8 +40,8 @@ kinetic_energy: m/2*(x_dot**2 + y_dot**2) + J/2*a_dot**2
 potential_energy: m*g*y
 constraints:
   geometric:
-    ground: x - l/2*cos(a)
-    wall: y - l/2*sin(a)
+    foot: x*sin(a) - y*cos(a)
+    middle: x*cos(a) + y*sin(a) - l/2
 inputs:
   push: {unit: N, acts_on: {x: 1}}
 configuration: {x: 0.96, y: 0.8, a: 0.69}
