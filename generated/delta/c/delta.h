@@ -17,13 +17,14 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      52     71      1      0      3      0
- * forward_dynamics     253    376     11      2      3      0
- * multipliers          235    350     11      2      3      0
+ * forward_dynamics     174    287     11      2      3      0
+ * multipliers          164    268     11      2      3      0
  * singularity           56    107     13      3      3      0
  * (changes of sign are not counted)
  *
  * Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:
  *   inverse_dynamics 0.00043 <= l_2 <= 8.5
+ *   forward_dynamics 0.03 <= m_a, J_a <= 3.5, J_m <= 1.5
  *   multipliers m_a <= 20, m_r <= 5
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

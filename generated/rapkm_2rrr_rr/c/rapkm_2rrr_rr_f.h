@@ -48,8 +48,8 @@
  * projected_configuration             276    322     29     11     12      0
  * inverse_dynamics                     51     79      3      0      5      0
  * inverse_dynamics_residual             0      0      0      0      0      0
- * forward_dynamics                    412    569     29      3      6      0
- * multipliers                         368    519     29      3      6      0
+ * forward_dynamics                    273    430     29      3      6      0
+ * multipliers                         231    379     29      3      6      0
  * energy                               20     31      0      0      3      0
  * singularity                          55     96     17      4      6      0
  * (changes of sign are not counted)
@@ -72,7 +72,7 @@
  *   admissible_velocity 0.027 <= l_1
  *   admissible_acceleration 0.027 <= l_1 <= 3, l_2 <= 3
  *   projected_configuration l_1 <= 3, l_2 <= 3
- *   forward_dynamics |m_payload| <= 17
+ *   forward_dynamics J_2 <= 310000, |m_payload| <= 17
  *   multipliers |m_payload| <= 10
  *   singularity 0.027 <= l_1
  *

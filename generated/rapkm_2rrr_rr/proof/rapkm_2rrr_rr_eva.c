@@ -1153,7 +1153,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t56, t95, t104, t180, t168, t284, t276, t259, t322, t359, t407, t489, t499, t504, t475. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t56, t95, t104, t180, t168, t284, t276, t322, t359, t259, t407, t489, t499, t504, t475. */
 void eva_multipliers(void) {
     double q[6];
     double qd[6];
