@@ -40,6 +40,7 @@ NOTED = (f"--junitxml={FIGURES}", "-o", "junit_family=xunit1")
 # What in tests/ has tests of the mark `campaign`, and the tools they need; a part of each class stays in `make test`.
 TESTED = {
     "backends": ("gcc",),
+    "cli": ("gcc",),
     "generation": ("gcc",),
     "growth": (),
     "ir": (),
@@ -47,8 +48,10 @@ TESTED = {
     "mechanics": ("gcc",),
     "methods": ("gcc",),
     "model": (),
+    "notebook": ("gcc",),
     "package": ("cmake", "arm-none-eabi-gcc", "riscv64-unknown-elf-gcc"),
     "proof": ("frama-c", "gappa", "gcc", "clang", "cppcheck", "clang-tidy"),
+    "simulate": ("gcc",),
     "stress": ("gcc",),
     "test_generated.py": ("gcc", "g++", "clang", "clang++"),
     "toolchain": ("gcc", "g++", "clang", "arm-none-eabi-gcc", "riscv64-unknown-elf-gcc"),

@@ -254,7 +254,7 @@ def has_jax() -> bool:
     pytest.skip(message)
 
 
-@pytest.mark.parametrize("library", ["numpy", pytest.param("jax", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("library", ["numpy", pytest.param("jax", marks=pytest.mark.campaign)])
 def test_what_the_page_shows_runs(library: str, tmp_path: Path) -> None:
     """In a process of its own: the threads of JAX do not outlive it."""
     assert library == "numpy" or has_jax()

@@ -34,6 +34,7 @@ def gcc(tool: Callable[[str], str]) -> str:
 @pytest.mark.toolchain
 @pytest.mark.slow
 @pytest.mark.usefixtures("gcc")
+@pytest.mark.bench
 def test_files_and_table(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

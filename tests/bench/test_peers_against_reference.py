@@ -45,7 +45,8 @@ def under_actuated(folder: Path) -> Model:
 
 
 @pytest.mark.parametrize(
-    "name", ["skate", "under-actuated", *(pytest.param(n, marks=pytest.mark.bench) for n in DRIVEN if n != "skate")]
+    "name",
+    ["skate", *(pytest.param(n, marks=pytest.mark.bench) for n in ("under-actuated", *DRIVEN) if n != "skate")],
 )
 def test_inverse_dynamics_of_every_peer(name: str, tmp_path: Path) -> None:
     described = under_actuated(tmp_path) if name == "under-actuated" else model(name)
@@ -68,7 +69,7 @@ def test_inverse_dynamics_of_every_peer(name: str, tmp_path: Path) -> None:
     assert all(built.footprints[c.entry].code > 50 for c in candidates)
 
 
-@pytest.mark.parametrize("quantity", ["forward_dynamics", "multipliers"])
+@pytest.mark.parametrize("quantity", ["forward_dynamics", pytest.param("multipliers", marks=pytest.mark.bench)])
 @pytest.mark.parametrize("name", ["slider_crank", pytest.param("front_car", marks=pytest.mark.bench)])
 def test_forward_dynamics_and_multipliers(name: str, quantity: str, tmp_path: Path) -> None:
     described = model(name)

@@ -160,6 +160,7 @@ def test_a_hangup_that_is_ignored_stays_ignored() -> None:
     assert subprocess.run([sys.executable, "-c", script], capture_output=True, text=True).stdout == "still here\n"
 
 
+QUICK = ("does not answer", "makes nothing", "makes no library")
 ODD = {
     "does not answer": ("sleep 60\n", "did not end within 1 s", 2),
     "hangs": ('case "$*" in *--version*) echo odd ;; *) sleep 60 ;; esac\n', "did not end within", 1),
@@ -177,7 +178,9 @@ ODD = {
 }
 
 
-@pytest.mark.parametrize("case", ODD)
+@pytest.mark.parametrize(
+    "case", [case if case in QUICK else pytest.param(case, marks=pytest.mark.campaign) for case in ODD]
+)
 def test_an_odd_compiler_is_an_error_with_a_remedy(
     case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str],
     tool: Callable[[str], str],

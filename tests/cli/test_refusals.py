@@ -49,6 +49,7 @@ def test_where_no_states_are_found_the_row_is_named(
     assert "remedy: give a start\n" in told
 
 
+@pytest.mark.campaign
 def test_states_are_found_where_functions_are_steep(tmp_path: Path) -> None:
     """exp(exp(exp(exp(3 x)))) leaves room for one configuration in 1e6."""
     path = tmp_path / "steep.yaml"
@@ -64,6 +65,7 @@ def test_a_number_beyond_float32_is_told_with_a_way_out(tmp_path: Path, capsys: 
     assert "`--scalar float64`" in told
 
 
+@pytest.mark.campaign
 def test_rows_that_hold_nothing_press_on_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Multipliers of a model none of whose rows counts are zeros."""
     path = tmp_path / "free.yaml"

@@ -414,6 +414,7 @@ def test_float32_works_with_twice_the_digits_where_it_alone_is_rejected(
     assert cli.main([*common, "--check"]) == 0
 
 
+@pytest.mark.campaign
 def test_float64_stays_where_float32_alone_is_rejected(
     whole: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -476,6 +477,7 @@ def test_where_every_method_loses_digits_one_works_with_twice_as_many(
     assert cli.main([*common, "--quiet", "--check"]) == 0
 
 
+@pytest.mark.campaign
 def test_more_digits_in_float32_alone_take_nothing_from_more_in_both(
     yoke: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -497,6 +499,7 @@ def test_more_digits_in_float32_alone_take_nothing_from_more_in_both(
     assert tried == [("float32",), ("float64", "float32")]
 
 
+@pytest.mark.campaign
 def test_kernels_that_are_too_long_stay_as_they_are(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     spoil_choice(monkeypatch, losing_digits)
     spoil_named(monkeypatch, losing_digits)
@@ -505,6 +508,7 @@ def test_kernels_that_are_too_long_stay_as_they_are(yoke: Path, monkeypatch: pyt
 
 
 @pytest.mark.parametrize("digits_help", [True, False])
+@pytest.mark.campaign
 def test_after_long_methods_twice_the_digits_are_tried_before_the_rest(
     digits_help: bool, yoke: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -521,6 +525,7 @@ def test_after_long_methods_twice_the_digits_are_tried_before_the_rest(
 
 
 @pytest.mark.parametrize("asked", [True, False])
+@pytest.mark.campaign
 def test_twice_the_digits_of_what_is_long_are_for_those_who_ask(
     asked: bool, yoke: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -535,6 +540,7 @@ def test_twice_the_digits_of_what_is_long_are_for_those_who_ask(
 
 
 @pytest.mark.parametrize("asked", [True, False])
+@pytest.mark.campaign
 def test_methods_of_what_nobody_asked_for_are_tried_so_many_times(
     asked: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -548,6 +554,7 @@ def test_methods_of_what_nobody_asked_for_are_tried_so_many_times(
     assert [name in message for message in told] == ([] if asked else [True])
 
 
+@pytest.mark.campaign
 def test_what_all_leaves_out_is_no_longer_left_out_of_one_type(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     spoil_choice(monkeypatch, losing_digits)
     spoil_named(monkeypatch, losing_digits)
@@ -646,6 +653,7 @@ def test_real_machines_get_every_quantity(text: str, tmp_path: Path) -> None:
     assert set(derived(result)["kernels"]) == {"inverse_dynamics", "forward_dynamics", "multipliers"}
 
 
+@pytest.mark.campaign
 def test_laws_that_a_number_with_few_digits_violates_too_do_not_keep_it_from_more_digits(
     yoke: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -657,6 +665,7 @@ def test_laws_that_a_number_with_few_digits_violates_too_do_not_keep_it_from_mor
     assert derived(result)["kernels"]["forward_dynamics"]["twice_the_digits"] == ["float64", "float32"]
 
 
+@pytest.mark.campaign
 def test_a_status_of_float32_does_not_keep_what_loses_digits_from_more_of_them(
     yoke: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -105,7 +105,7 @@ configuration: {a: 0.4, c: 1, b: -0.5, r: 1.5}
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("text", [TUG, MILL], ids=["tug", "mill"])
+@pytest.mark.parametrize("text", [TUG, pytest.param(MILL, marks=pytest.mark.campaign)], ids=["tug", "mill"])
 def test_wheels_and_cranks_that_turn_for_hours_are_verified_in_float32(text: str, tmp_path: Path) -> None:
     derivation = verified(text, tmp_path, MOTION)
     assert not any(kernel.get("twice_the_digits") for kernel in derivation["kernels"].values())
@@ -231,5 +231,6 @@ def test_a_ring_of_six_bars_has_every_motion(text: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.campaign
 def test_the_input_of_a_ring_with_unequal_bars_is_verified(tmp_path: Path) -> None:
     assert verified(TRIHEDRAL, tmp_path, MOTION[:1], "--states", "8")["sizes"]["rank"] == 4

@@ -98,6 +98,7 @@ def test_twice_the_multiples_of_one_row_are_about_twice_the_operations() -> None
     assert operations(*five, "5", "-1/3", "1e-3", "11", "1/9") <= 2.5 * operations(*five)
 
 
+@pytest.mark.campaign
 def test_rows_that_are_multiples_of_one_row_are_verified(tmp_path: Path) -> None:
     path = tmp_path / "ellipse.yaml"
     path.write_text(dependent_rows(("1", "2", "-3", "1/7", "1e4")))

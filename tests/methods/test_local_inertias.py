@@ -73,6 +73,7 @@ def test_nor_do_point_masses() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.campaign
 def test_a_link_more_costs_as_much_as_the_one_before() -> None:
     counts = [weights(links)["forward_dynamics"] for links in (7, 9, 11, 13)]
     steps = [after - before for before, after in pairwise(counts)]

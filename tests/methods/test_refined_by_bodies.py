@@ -174,6 +174,7 @@ def test_weighted_projections_with_dependent_rows(quantity: str) -> None:
         assert found == pytest.approx(wanted, rel=1e-9, abs=1e-9)
 
 
+@pytest.mark.campaign
 def test_heavy_bodies_at_the_end_of_light_links() -> None:
     """A step of refinement gives back what articulated inertias lose by a thousand units, and dense methods by 1e5."""
     motion = "forward_dynamics"

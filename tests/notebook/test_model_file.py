@@ -215,6 +215,7 @@ def test_compiled_functions_are_the_equations_of_motion() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.campaign
 def test_a_motion_has_arrays_a_chart_and_an_animation() -> None:
     motion = cart().simulate(0.4, frames=20, start={"a": 1.0}, inputs={"F": 1.0})
     assert motion.q.shape == motion.rates.shape == (9, 2)
@@ -251,6 +252,7 @@ def test_parts_and_methods_that_there_are_not(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.campaign
 def test_no_motion_from_a_singular_start() -> None:
     """A crank as long as its rod, with the slider at its centre."""
     crank = load(ROOT / "models" / "slider_crank.yaml").parameter("r", 0.3, unit="m").parameter("l", 0.3, unit="m")

@@ -12,6 +12,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "python.md"
 
 @pytest.mark.slow
 @pytest.mark.toolchain
+@pytest.mark.campaign
 def test_the_code_of_the_page_runs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -137,6 +137,7 @@ def made(out: Path, parts: str) -> int:
 
 
 @pytest.mark.toolchain
+@pytest.mark.campaign
 def test_a_package_or_proofs_alone_are_verified_as_their_c_is(tool: Callable[[str], str], tmp_path: Path) -> None:
     tool("cc")
     certificates = []
@@ -152,6 +153,7 @@ def test_a_package_or_proofs_alone_are_verified_as_their_c_is(tool: Callable[[st
 
 @pytest.mark.toolchain
 @pytest.mark.parametrize("parts", ["package", "proof"])
+@pytest.mark.campaign
 def test_nothing_is_written_about_wrong_c(
     tool: Callable[[str], str],
     tmp_path: Path,

@@ -235,6 +235,7 @@ def test_remaining_denominators_are_named() -> None:
     assert "| inverse_dynamics(" not in proofs("front_car")["proof/README.md"]
 
 
+@pytest.mark.campaign
 def test_static_analysis_has_listed_deviations_only(tool: Callable[[str], str], tmp_path: Path) -> None:
     """package/DEVIATIONS.md lists them; each is found, so none is stale."""
     write(tmp_path, {path: text for path, text in sources("skate").items() if "batch" not in path})

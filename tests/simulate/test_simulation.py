@@ -48,6 +48,7 @@ def out(tmp_path: Path, tool: Callable[[str], str], monkeypatch: pytest.MonkeyPa
     return tmp_path
 
 
+@pytest.mark.campaign
 def test_a_free_motion_keeps_its_energy(out: Path) -> None:
     text = (MODELS / "double_pendulum.yaml").read_text(encoding="utf-8")
     (out / "free.yaml").write_text(re.sub(r"applied_forces:\n(  .*\n)+", "", text), encoding="utf-8")
@@ -74,6 +75,7 @@ def test_constraints_hold_and_rates_are_projected(out: Path) -> None:
     assert max(energy) - min(energy) < 1e-9 * max(energy)
 
 
+@pytest.mark.campaign
 def test_rows_in_other_units_hold_as_well(out: Path, tmp_path: Path) -> None:
     start = "configuration: {a0: 0.9, a1: 0.7, b1: 0.1}"
     moved = []
@@ -121,6 +123,7 @@ def test_kernels_that_verification_rejects_are_not_integrated(
     assert not list(out.iterdir())
 
 
+@pytest.mark.campaign
 def test_what_was_verified_is_told(
     tool: Callable[[str], str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -130,6 +133,7 @@ def test_what_was_verified_is_told(
     assert re.search(r"verified at 64 states, off by [0-9.]+ units of 16", capsys.readouterr().out)
 
 
+@pytest.mark.campaign
 def test_without_a_compiler_the_interpreter_runs_what_python_verified(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, out: Path
 ) -> None:
@@ -170,6 +174,7 @@ def test_a_new_model_works_and_is_animated(out: Path, monkeypatch: pytest.Monkey
     assert main(["my_cart.yaml", "--out", str(out / "made"), "--only", "c", "--no-verify", "--quiet"]) == 0
 
 
+@pytest.mark.campaign
 def test_wheels_rods_and_bodies_are_drawn(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (out / "cart.yaml").write_text(
         """\
@@ -236,6 +241,7 @@ def test_new_leaves_a_file_as_it_is(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert (tmp_path / "kept.yaml").read_text(encoding="utf-8") == "mine"
 
 
+@pytest.mark.campaign
 def test_a_motion_of_endless_steps_stops(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A spring that swings ten thousand times in a frame: each frame would take minutes."""
     text = """model: stiff

@@ -68,6 +68,7 @@ def test_projections_keep_a_long_run_on_the_constraints(
     assert max(projected.energy) < 1e-10
 
 
+@pytest.mark.campaign
 def test_command_writes_numbers_and_charts(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "cart.yaml"
     file.write_text(CART)

@@ -61,6 +61,7 @@ def report(tool: Callable[[str], str]) -> TargetReport:
         return measure(replace(model("front_car"), outputs=("inverse_dynamics",)), [BY_NAME["cortex-m4f"]])
 
 
+@pytest.mark.firmware
 def test_a_model_passes_with_the_same_bits_at_every_level(report: TargetReport) -> None:
     assert report.failures == ()
     assert report.vectors["regular"] == 256

@@ -212,7 +212,7 @@ def neighbours(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("compiler", ["gcc", "g++"])
+@pytest.mark.parametrize("compiler", ["gcc", pytest.param("g++", marks=pytest.mark.campaign)])
 def test_models_live_in_one_program(tool: Callable[[str], str], neighbours: Path, compiler: str) -> None:
     """All headers of all kinds in one file, then all single headers with their definitions; no file name is shared."""
     headers = sorted(neighbours.glob("*/c/*.h"))
@@ -248,6 +248,7 @@ def test_files_of_models_differ_but_for_capitals(neighbours: Path) -> None:
         assert not stems[one] & stems[other]
 
 
+@pytest.mark.campaign
 def test_packages_build_beside_each_other(tool: Callable[[str], str], neighbours: Path, tmp_path: Path) -> None:
     folders = [neighbours / name / "package" for name in words("rob rob_f Rob rob_minimal x m math")]
     names = [re.findall(r"add_library\((\w+) STATIC", (folder / "CMakeLists.txt").read_text())[0] for folder in folders]

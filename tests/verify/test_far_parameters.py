@@ -123,6 +123,7 @@ def test_what_is_divided_by_is_bounded_below(expected: Expected) -> None:
     assert 1e-6 < bound.low < 1e-1
 
 
+@pytest.mark.campaign
 def test_what_float32_does_not_hold_is_bounded(expected: Expected) -> None:
     """m^6 / m^5 where m^6 is no number of float32 any more."""
     powers = [Statement((f"p{k}",), "mul", (Local(f"p{k - 1}" if k > 2 else "m"), Local("m"))) for k in range(2, 7)]
@@ -330,6 +331,7 @@ def test_a_bound_close_by_is_told(crane: Path) -> None:
     ]
 
 
+@pytest.mark.campaign
 def test_a_declared_range_lies_within_the_bounds(tmp_path: Path) -> None:
     path = tmp_path / "crane.yaml"
     path.write_text(CRANE.replace("m_3: {value: 0.4, unit: kg}", "m_3: {value: 0.4, unit: kg, range: [0.1, 500]}"))
@@ -340,6 +342,7 @@ def test_a_declared_range_lies_within_the_bounds(tmp_path: Path) -> None:
         assert found.get(MASS, (None, None))[1] is None or found[MASS][1] >= 500
 
 
+@pytest.mark.campaign
 def test_a_linkage_without_parameters_has_no_bounds(tmp_path: Path) -> None:
     values = {"l_1": "0.9", "l_2": "0.7", "m_1": "2", "m_2": "1.5", "m_3": "0.4", "length: d": "length: 1.1"}
     head, _, rest = CRANE.partition("gravity:")
