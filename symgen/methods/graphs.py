@@ -38,10 +38,11 @@ class GraphCopy:
     def __init__(self, graph: Graph, symbols: Mapping[str, Scalar] = MappingProxyType({})) -> None:
         self._graph = graph
         self._symbols = symbols
+        self._image: dict[Scalar, Scalar] = {}
 
     def scalars(self, given: Sequence[Scalar]) -> tuple[Scalar, ...]:
         """The scalars on the other graph."""
-        return tuple(transplanted(self._graph, given, self._symbols))
+        return tuple(transplanted(self._graph, given, self._symbols, self._image))
 
     def guards(self, given: tuple[Guard, ...]) -> tuple[Guard, ...]:
         """The guards with all their scalars on the other graph."""

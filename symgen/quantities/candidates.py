@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import nullcontext, suppress
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
@@ -27,6 +28,7 @@ from symgen.model.quantities import PARTITION
 from symgen.quantities.catalogue import CatalogueEntry, by_blocks, derive, derived_from
 from symgen.quantities.everything import WorkBudget
 from symgen.runtime.activity import working
+from symgen.runtime.effort import TooLongError, at_most, worth_trying
 from symgen.symbolic.traverse import cost
 
 ABSOLUTE = "householder in absolute angles"
@@ -114,9 +116,16 @@ class Candidates:
         """
         if self._generic.rank < self._generic.r:
             return {}
-        found = {name: self._methods.candidate(quantity, name) for name in motions_alone()}
-        made = {TITLES.get(name, name): one for name, one in found.items() if isinstance(one, Candidate)}
-        return {title: replace(one, along=title) for title, one in made.items()}
+        made: dict[str, Candidate] = {}
+        names = motions_alone()
+        for name in sorted(names, key=lambda name: name != BY_FRAMES):
+            least = min((one.weight for one in made.values()), default=None)
+            # what factors a whole matrix of a long chain may take as long as what goes from body to body is worth
+            with suppress(TooLongError), nullcontext() if least is None else at_most(worth_trying(least)):
+                one = self._methods.candidate(quantity, name)
+                if isinstance(one, Candidate):
+                    made[name] = replace(one, along=TITLES.get(name, name))
+        return {made[name].along: made[name] for name in names if name in made}
 
     def _brought(self, made: dict[str, Candidate]) -> dict[str, Candidate]:
         """The same on the graph of the other quantities."""

@@ -14,12 +14,18 @@ from symgen.symbolic.traverse import topological
 
 
 def transplanted(
-    graph: Graph, outputs: Iterable[Scalar], symbols: Mapping[str, Scalar] = MappingProxyType({})
+    graph: Graph,
+    outputs: Iterable[Scalar],
+    symbols: Mapping[str, Scalar] = MappingProxyType({}),
+    image: dict[Scalar, Scalar] | None = None,
 ) -> list[Scalar]:
-    """The same scalars as nodes of `graph`; symbols keep their names, or take the place that `symbols` gives them."""
+    """The same scalars as nodes of `graph`; symbols keep their names, or take the place that `symbols` gives them.
+
+    `image` holds what was brought there before, and what is now.
+    """
     outputs = list(outputs)
-    image: dict[Scalar, Scalar] = {}
-    for node in topological(outputs):
+    image = {} if image is None else image
+    for node in topological(outputs, image):
         args = tuple(map(image.__getitem__, node.args))
         if node.op == "symbol":
             name = str(node.payload)

@@ -15,6 +15,7 @@ from symgen.generation.results import Options
 from symgen.model.load import load_text
 from symgen.pipeline import generate
 from symgen.quantities.select import derive_quantities
+from symgen.runtime.effort import done, worth_trying
 
 LINKS = 200
 # Of a verified run: CPU seconds, and MB that its largest process holds.
@@ -104,6 +105,16 @@ def test_rows_that_are_multiples_of_one_row_are_verified(tmp_path: Path) -> None
     path.write_text(dependent_rows(("1", "2", "-3", "1/7", "1e4")))
     result = generate(path, Options(states=8, parts=("c", "python")), lambda _: None)
     assert not result.failures
+
+
+def test_a_gear_in_a_long_chain_leaves_its_accelerations_to_the_links() -> None:
+    """What would factor the whole mass matrix is given up once that takes longer than it may be worth."""
+    text = chain(60).replace("[inverse_dynamics]", "[forward_dynamics]")
+    geared = load_text(f"{text}constraints: {{geometric: {{gear: a9 - 2*a8}}}}\n", "chain.yaml")
+    before = done()
+    (choice,) = derive_quantities(geared, ["forward_dynamics"]).choices
+    assert choice.method == "articulated"
+    assert done() - before < 3 * worth_trying(min(dict(choice.costs).values()))
 
 
 def test_u_of_a_long_chain_takes_a_few_operations_a_link() -> None:

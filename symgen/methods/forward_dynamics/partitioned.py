@@ -149,19 +149,16 @@ def pivots(mechanics: System) -> list[Pivot]:
     rows, definite = mechanics.constraint_jacobian, Definite(mechanics)
     coordinates = zip(mechanics.q, mechanics.model.coordinates, strict=True)
     lengths = {q for q, c in coordinates if not c.is_angle and not c.range[0] <= 0 <= c.range[1]}
-    inertias = [sum(not x.is_zero for x in row) for row in mechanics.mass_matrix]
-    holders = [sum(not row[j].is_zero for row in rows) for j in range(mechanics.n)]
-
     def usable(entry: Scalar) -> bool:
         factors = mechanics.graph.products.monomial(entry)[1]
         return not entry.is_zero and all(factor in lengths or definite.holds(factor) for factor in factors)
 
-    left = sorted(
-        (not definite.holds(entry), holders[j], inertias[j], i, j)
-        for i, row in enumerate(rows)
-        for j, entry in enumerate(row)
-        if usable(entry)
-    )
+    entries = [(i, j) for i, row in enumerate(rows) for j, entry in enumerate(row) if usable(entry)]
+    if not entries:
+        return []
+    inertias = [sum(not x.is_zero for x in row) for row in mechanics.mass_matrix]
+    holders = [sum(not row[j].is_zero for row in rows) for j in range(mechanics.n)]
+    left = sorted((not definite.holds(rows[i][j]), holders[j], inertias[j], i, j) for i, j in entries)
     found: list[Pivot] = []
     while left:
         *_, i, j = left[0]
@@ -183,7 +180,7 @@ def _solved(problem: Reduced) -> Motion | None:
     graph, n, r = problem.graph, problem.n, problem.r
     if not r:
         return _free(problem)
-    if n - r <= LARGEST_DELTA and has_few_minors(problem.rows, r):
+    if 1 <= n - r <= LARGEST_DELTA and has_few_minors(problem.rows, r):
         problem.guards = MinorSpace(graph, problem.rows, n, r).guards
         return minor_motion(problem).motion
     if not positive_definite(problem.mechanics):
