@@ -1,4 +1,4 @@
-"""Fills the marked blocks of README.md and the generated pages of docs/.
+"""Fills the marked blocks of README.md and docs/, and makes the generated pages.
 
 `python tools/fill_readme.py` rewrites everything; `--check` compares the deterministic parts and lists what differs.
 """
@@ -21,6 +21,7 @@ from symgen.model.quantities import QUANTITIES
 
 ROOT = Path(__file__).resolve().parent.parent
 PAPER_MODELS = ("skate", "front_car", "front_car_wheelset", "rear_car", "rapkm_2rrr_rr")
+FILLED = ("README.md", "docs/paper.md")
 BLOCK = re.compile(r"(<!-- begin (\w+) -->\n).*?(<!-- end \2 -->)", re.DOTALL)
 
 WITH_MISTAKES = """\
@@ -49,11 +50,6 @@ def symgen(*arguments: str, folder: Path = ROOT) -> str:
 def example_model() -> str:
     """The car's file up to the blocks that serve the paper's tests."""
     return model_file("front_car")
-
-
-def bodies_model() -> str:
-    """A robot arm given by bodies."""
-    return model_file("scara")
 
 
 def model_file(name: str) -> str:
@@ -151,7 +147,6 @@ def picture() -> str:
 
 DETERMINISTIC: dict[str, Callable[[], str]] = {
     "model": example_model,
-    "bodies": bodies_model,
     "explain": explained,
     "mistakes": mistakes,
     "paper": paper,
@@ -160,7 +155,7 @@ MEASURED: dict[str, Callable[[], str]] = {"output": example_output, "measured": 
 
 
 def filled(text: str, blocks: dict[str, Callable[[], str]]) -> str:
-    """README.md with the given blocks made anew."""
+    """A page with the given blocks made anew."""
 
     def replace(match: re.Match[str]) -> str:
         make = blocks.get(match[2])
@@ -171,18 +166,16 @@ def filled(text: str, blocks: dict[str, Callable[[], str]]) -> str:
 
 def main() -> int:
     """Rewrites, or with --check compares."""
-    readme = ROOT / "README.md"
-    text = readme.read_text(encoding="utf-8")
+    pages = {path: (ROOT / path).read_text(encoding="utf-8") for path in FILLED}
     if "--check" in sys.argv[1:]:
-        stale = []
-        if filled(text, DETERMINISTIC) != text:
-            stale.append("README.md")
+        stale = [path for path, text in pages.items() if filled(text, DETERMINISTIC) != text]
         if (ROOT / "docs/quantities.md").read_text(encoding="utf-8") != quantities():
             stale.append("docs/quantities.md")
         for name in stale:
             print(f"{name} is stale: run python tools/fill_readme.py")
         return 1 if stale else 0
-    readme.write_text(filled(text, DETERMINISTIC | MEASURED), encoding="utf-8")
+    for path, text in pages.items():
+        (ROOT / path).write_text(filled(text, DETERMINISTIC | MEASURED), encoding="utf-8")
     (ROOT / "docs/quantities.md").write_text(quantities(), encoding="utf-8")
     (ROOT / "docs/rapkm_determinants.svg").write_text(picture(), encoding="utf-8")
     return 0
