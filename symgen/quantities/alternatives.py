@@ -27,7 +27,7 @@ from symgen.symbolic.traverse import cost, reached
 
 # Scalars of an alternative beyond which numbers are grouped only in what is taken: that is most of the work there.
 LONG_ALTERNATIVE = 6_000
-# Counted cost of a method beyond which those of last resort are given up: they take as long as all before them.
+# Counted cost of a method beyond which refined ones and those of last resort are given up: they take as long as others.
 LONGEST_OF_LAST_RESORT = 10_000
 # How many times other methods are offered: valid ones, then those of last resort.
 TIERS = 2
@@ -69,16 +69,19 @@ class Alternatives:
         """A quantity by the methods of a tier, but the one taken, that are valid at all regular states.
 
         The one that counts least comes first.  Methods that take much longer to derive than the one taken is are given
-        up, and named in `too_long`; so are those of last resort where that one is long itself.
+        up, and named in `too_long`; so are refined ones and those of last resort where that one is long itself.
         """
         same = taken.method if taken.title in ("minors", "householder", taken.method) else ""
         cost_taken = dict(taken.costs)[taken.title]
-        if tier and cost_taken > LONGEST_OF_LAST_RESORT:
-            self.too_long[quantity] += _names(quantity, tier)
-            return ()
+        names = _names(quantity, tier)
+        if cost_taken > LONGEST_OF_LAST_RESORT:
+            long = (Use.SPARE, Use.LAST) if quantity in MOTIONS else (Use.LAST,)
+            given_up = [row.name for row in methods(quantity) if row.use in long and row.name in names]
+            self.too_long[quantity] += given_up
+            names = tuple(name for name in names if name not in given_up)
         most = worth_trying(cost_taken)
         found = []
-        for name in _names(quantity, tier):
+        for name in names:
             if name in (taken.title, same):
                 continue
             try:

@@ -8,6 +8,7 @@ from linkages import row_of_four_bars
 from symgen.mechanics.genericity import genericity
 from symgen.mechanics.system import System
 from symgen.model.load import load_text
+from symgen.quantities import alternatives
 from symgen.quantities.alternatives import Alternatives
 from symgen.quantities.candidates import ARTICULATED
 from symgen.quantities.select import derive_quantities
@@ -76,3 +77,20 @@ def test_methods_that_take_too_long_are_named(monkeypatch: pytest.MonkeyPatch) -
     left = [one.choice.title for one in short.of("inverse_dynamics", choice, 0)]
     assert short.too_long["inverse_dynamics"]
     assert {*left, *short.too_long["inverse_dynamics"]} >= {*titles}
+
+
+def test_of_long_methods_refined_ones_are_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    """They are as long again: what loses digits there takes twice as many."""
+    tail = "configuration: {a0: 1, a1: 1, a2: 1, b1: 0, b2: 0}"
+    model = load_text(row_of_four_bars(2, ground="0.5", tail=tail), "row.yaml")
+    choice = derive_quantities(model, ("multipliers",)).choices[0]
+    refined = "schur_qr_refined"
+    free = Alternatives(model, genericity(System(model)), None)
+    assert refined in [one.choice.title for one in free.of("multipliers", choice, 0)]
+    monkeypatch.setattr(alternatives, "LONGEST_OF_LAST_RESORT", 10)
+    short = Alternatives(model, genericity(System(model)), None)
+    left = [one.choice.title for one in short.of("multipliers", choice, 0)]
+    assert left
+    assert refined not in left
+    assert refined in short.too_long["multipliers"]
+    assert short.of("multipliers", choice, 1) == ()
