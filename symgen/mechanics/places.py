@@ -14,7 +14,7 @@ from symgen.mechanics.bodies import Vector3
 from symgen.model.kinematics.components import components_in, without_components
 from symgen.model.mechanism import WORLD, component
 from symgen.symbolic.calculus import derivative_along, gradient
-from symgen.symbolic.matrix import Vector, dot
+from symgen.symbolic.matrix import Vector, dot, matvec
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.translate import translate
 from symgen.symbolic.traverse import substitute
@@ -40,7 +40,20 @@ def with_leaves(mechanics: System, owners: Sequence[str]) -> tuple[dict[str, Sca
     return names, leaves
 
 
-def acceleration_bias(mechanics: System, velocity: Vector) -> dict[int, Scalar]:
+def acceleration_bias(mechanics: System, velocity: Vector) -> Vector:
+    """B_dot v along v: differentiating B v is cheaper than forming B_dot, and places where a frame has many."""
+    graph, rows = mechanics.graph, mechanics.constraint_jacobian
+    found = _by_places(mechanics, velocity)
+    frozen = tuple(graph.stand_in(f"{c.name}_frozen rate") for c in mechanics.model.coordinates)
+    left = [i for i in range(mechanics.r) if i not in found]
+    products = matvec(graph, tuple(rows[i] for i in left), frozen)
+    rates = derivative_along(graph, products, dict(zip(mechanics.q, velocity, strict=True)))
+    others = substitute(graph, rates, dict(zip(frozen, velocity, strict=True)))
+    found |= zip(left, others, strict=True)
+    return tuple(found[i] for i in range(mechanics.r))
+
+
+def _by_places(mechanics: System, velocity: Vector) -> dict[int, Scalar]:
     """B_dot v along v of the rows that hold frames in space by several points, by their numbers."""
     owners = _sharing(mechanics)
     if not owners:
@@ -63,9 +76,7 @@ def acceleration_bias(mechanics: System, velocity: Vector) -> dict[int, Scalar]:
         slopes = gradient(graph, translate(graph, row.expression, names), list(variables))
         if all(slope.is_zero for slope in slopes[mechanics.n :]):
             continue
-        (turned,) = derivative_along(
-            graph, [dot(graph, slopes, frozen)], dict(zip(variables, along, strict=True))
-        )
+        (turned,) = derivative_along(graph, [dot(graph, slopes, frozen)], dict(zip(variables, along, strict=True)))
         whole = turned + dot(graph, slopes[mechanics.n :], accelerations)
         (found[i],) = substitute(graph, [whole], back)
     return found

@@ -51,7 +51,7 @@ class SchurQR:
         columns = [self._factor.lowered(row) for row in problem.rows]
         self._elimination = SchurElimination(problem, self._factor, columns, rank)
 
-    def motion(self, force: Vector, bias: Vector, refining: bool = True) -> Motion:
+    def motion(self, force: Vector, bias: Vector, refining: bool) -> Motion:
         """The solution of G q_ddot + B^T lambda = f, B q_ddot = -a; `refining` solves for what it leaves once more."""
         graph, factor, elimination, rows = self._graph, self._factor, self._elimination, self._elimination.rows
         asked = elimination.asked(bias)

@@ -100,11 +100,11 @@ def _motions(mechanics: System, solver: SchurQR, quantity: str) -> list[Motion]:
     graph, n, r = mechanics.graph, mechanics.n, mechanics.r
     nothing: tuple[tuple[Scalar, ...], tuple[Scalar, ...]] = (graph.zero,) * n, (graph.zero,) * r
     if quantity == PSEUDOINVERSE:
-        return [solver.motion(nothing[0], tuple(-x for x in unit)) for unit in identity(graph, r)]
+        return [solver.motion(nothing[0], tuple(-x for x in unit), refining=True) for unit in identity(graph, r)]
     units = identity(graph, n)
     if mechanics.change is not None:
         units = tuple(map(mechanics.change.absolute, units))
-    return [solver.motion(matvec(graph, mechanics.mass_matrix, unit), nothing[1]) for unit in units]
+    return [solver.motion(matvec(graph, mechanics.mass_matrix, unit), nothing[1], refining=True) for unit in units]
 
 
 SCHUR_QR: Method = _Eliminated(weighted_projection, POSITIVE, "G is not positive definite everywhere")
