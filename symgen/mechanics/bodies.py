@@ -117,6 +117,15 @@ class Bodies:
             total = total - self.scalars.value(body.mass) * inner(self.gravity, place)
         return total
 
+    @cached_property
+    def weights_work(self) -> bool:
+        """Whether a weight loads any coordinate.
+
+        Weights that joints bear are left out of recursions: turned from frame to frame and back, they would leave a
+        rounding of themselves, which is all there is near rest.
+        """
+        return not all(force.is_zero for force in gradient(self.graph, self.potential_energy, self.q))
+
     def inertia(self, name: str) -> tuple[Vector3, Vector3, Vector3]:
         """The inertia tensor of a body, in its frame's axes about its centre of mass."""
         body = next(body for body in self.mechanism.bodies if body.name == name)

@@ -81,6 +81,12 @@ class System:
             self.names[name] = bodies.component(name)
         return bodies
 
+    @cached_property
+    def working_gravity(self) -> Vector3:
+        """The acceleration of gravity for recursions over the joints; 0 where no weight works (on another graph)."""
+        zero, working = self.graph.zero, System(self.model).bodies.weights_work
+        return self.bodies.gravity if working else (zero, zero, zero)
+
     @property
     def n(self) -> int:
         """Number of coordinates."""
@@ -224,7 +230,7 @@ class System:
     def _conservative_force(self, acceleration: Vector) -> Vector:
         """G a + C q_dot + Q; with bodies in one recursion, where weight is an acceleration of the world."""
         if self.model.mechanism.has_mass:
-            inertial = self._inertial_force_of_bodies(acceleration, self.bodies.gravity)
+            inertial = self._inertial_force_of_bodies(acceleration, self.working_gravity)
             potential: Vector = tuple(gradient(self.graph, self._written_potential, self.q))
         else:
             inertial, potential = self._inertial_force(acceleration), self.potential_force

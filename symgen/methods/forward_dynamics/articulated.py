@@ -55,7 +55,7 @@ class _SpatialLoops(Problem):
     def bias_at(self, q_ddot: Vector) -> Vector:
         """B q_ddot + a."""
         mechanics = self.mechanics
-        weight = mechanics.bodies.gravity
+        weight = mechanics.working_gravity
         motions = frame_motions(mechanics.bodies, mechanics.qd, q_ddot, weight) if self.loops else {}
         held = [i for loop, _ in self.loops if motions.keys() >= set(loop.frames) for i in loop.rows.values()]
         if len(held) < self.r:
@@ -135,14 +135,14 @@ class BodyEquations:
             return Motion(found[0], self._completed(problem.of_the_model(found[1])), self.guards)
         none = (mechanics.graph.zero,) * mechanics.n
         direct, loads = self._given
-        inertial = self._inertial_forces(mechanics.qd, none, mechanics.bodies.gravity)
+        inertial = self._inertial_forces(mechanics.qd, none, mechanics.working_gravity)
         force = self._factor.lowered(direct, added_loads(inertial, loads, mechanics.graph.one))
         if not by_bodies:
             found = self._apart.solve(force, problem.bias, by_columns)
         else:
 
             def left_over(q_ddot: Vector, multipliers: Vector) -> Solution:
-                inertial = self._inertial_forces(mechanics.qd, q_ddot, mechanics.bodies.gravity)
+                inertial = self._inertial_forces(mechanics.qd, q_ddot, mechanics.working_gravity)
                 acting = added_loads(inertial, loads, mechanics.graph.one)
                 return self._less(direct, acting, q_ddot, multipliers), problem.bias_at(q_ddot)
 

@@ -47,7 +47,7 @@ def by_joints(
     the axes of a frame.
     """
     bodies = mechanics.bodies
-    motions = joint_motions(bodies, mechanics.qd, bodies.gravity)
+    motions = joint_motions(bodies, mechanics.qd, mechanics.working_gravity)
     moving = {name: (*one.acceleration, *one.linear) for name, one in motions.added.items()}
     added = {name: six for name, six in moving.items() if not all(x.is_zero for x in six)}
     if any(not x.is_zero for six in added.values() for x in six[:3]):

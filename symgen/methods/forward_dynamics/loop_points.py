@@ -97,7 +97,7 @@ def acceleration(mechanics: System, motions: Mapping[str, FrameMotion], loop: Lo
         parts.append([point.weight * x for x in turned])
     # motions fall with gravity, which matters only where weights do not add up to 0
     falling = graph.sum(point.weight for point in loop.points)
-    gravity = applied(transposed(kinematics.axes(axes)), mechanics.bodies.gravity)
+    gravity = applied(transposed(kinematics.axes(axes)), mechanics.working_gravity)
     return triple([graph.sum((*terms, falling * g)) for *terms, g in zip(*parts, gravity, strict=True)])
 
 
