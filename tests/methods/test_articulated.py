@@ -24,6 +24,7 @@ from symgen.model.load import load_model
 from symgen.model.mechanism import WORLD
 from symgen.model.model import Model
 from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.traverse import reached
 
 # revolute and prismatic joints, rotors, points of wheels, floating bodies in the plane, damped and driven
 NAMES = ("scara", "five_bar", "delta", "differential_drive", "rolling_disc", "front_car_bodies", "arm7", "gough_loops")
@@ -148,6 +149,21 @@ inputs:
   w: {unit: N*m, joint: phi}
 """
 
+# A stirrer with its centre of mass on an oblique axis, on a turntable that is held: no weight does work.
+STIRRER = """model: stirrer
+coordinates: {turn: {unit: rad, range: [-3, 3]}, stir: {unit: rad, range: [-3, 3]}}
+parameters: {m: {value: 3, unit: kg}, g: {value: 9.81, unit: m/s**2}, hold: {value: 0.4, unit: rad}}
+gravity: [0, 0, -g]
+joints:
+  table: {type: revolute, axis: z, coordinate: turn}
+  stirrer: {type: revolute, parent: table, at: [0.3, 0, 0.2], axis: [1, 2, 2], coordinate: stir}
+bodies:
+  table: {mass: 9, com: [0.1, 0, 0], inertia: {xx: 0.1, yy: 0.1, zz: 0.2}}
+  stirrer: {mass: m, com: COM, inertia: {xx: 0.04, yy: 0.041, zz: 0.06}}
+constraints: {geometric: {brake: turn - hold}}
+outputs: [forward_dynamics, multipliers]
+"""
+
 
 def compared(model: Model) -> float:
     """The largest relative difference of the two methods over a few states off and on the constraints."""
@@ -195,6 +211,19 @@ def test_a_free_body_that_is_driven_by_its_coordinates(tmp_path: Path) -> None:
     assert found is not None
     last = Evaluator([found[1].guards[-1].denominator])
     assert abs(last({"theta": 1.2})[0]) == pytest.approx(math.cos(1.2))
+
+
+@pytest.mark.parametrize(("com", "weighs"), [("[0, 0, 0]", False), ("[0.1, 0.2, 0.2]", False), ("[0, 0.1, 0]", True)])
+def test_weights_that_do_no_work_leave_no_rounding(com: str, weighs: bool, tmp_path: Path) -> None:
+    """Turned to the oblique axis and back, they would drown the torque of the brake near rest."""
+    path = tmp_path / "stirrer.yaml"
+    path.write_text(STIRRER.replace("COM", com), encoding="utf-8")
+    model = load_model(path)
+    assert compared(model) < 1e-9
+    found = articulated(model, genericity(System(model)))
+    assert found is not None
+    outputs = (*found[1].accelerations, *found[1].multipliers)
+    assert ("g" in {str(node.payload) for node in reached(outputs) if node.op == "symbol"}) is weighs
 
 
 def test_a_loop_in_space_beside_other_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
