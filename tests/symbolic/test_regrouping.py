@@ -12,7 +12,7 @@ from symgen.symbolic.passes.grouping import grouped
 from symgen.symbolic.passes.quotients import with_quotients
 from symgen.symbolic.passes.rebuilt import rebuilt
 from symgen.symbolic.passes.sum_factors import with_common_factors
-from symgen.symbolic.passes.terms import MOST_FACTORED_TERMS
+from symgen.symbolic.passes.terms import MOST_FACTORED_TERMS, sum_of
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import cost, topological
 
@@ -69,6 +69,18 @@ def test_what_is_taken_off_by_a_sign_within_a_product_is_gone(graph: Graph) -> N
     outputs = [((a + b) * inner - g) + a * opposite, inner]
     found = grouped(graph, Factoring(graph, ()), outputs)
     assert Evaluator(found)({**POINT, "a": 1e20}) == pytest.approx(values([b * inner - g, inner]))
+
+
+def test_a_sum_of_terms_taken_off_is_taken_off_whole(graph: Graph) -> None:
+    """A change of sign is an instruction: -x - y under a factor is -(x + y), whose sign goes to where that is used."""
+    a, b, c, _, _, _, _, x, y, z = symbols(graph)
+    total = sum_of(graph, [(-1, x), (-1, y), (-1, z)])
+    assert (total.op, total.args[0].op) == ("neg", "add")
+    assert values([total]) == pytest.approx(values([-(x + y + z)]))
+    product = graph.raw("mul", (a, c))
+    used = rebuilt(graph, graph.raw("sub", (b, product)), (b, graph.raw("neg", (product,))))
+    assert used.op == "add"
+    assert rebuilt(graph, graph.raw("sub", (b, x)), (graph.raw("neg", (a,)), x)).op == "neg"
 
 
 @pytest.mark.parametrize("sign", range(8))

@@ -18,4 +18,6 @@ def rebuilt(graph: Graph, node: Scalar, args: tuple[Scalar, ...]) -> Scalar:
         return graph.raw("sub" if node.op == "add" else "add", (args[0], args[1].args[0]))
     if node.op == "add" and args[0].op == "neg":
         return graph.raw("sub", (args[1], args[0].args[0]))
+    if node.op == "sub" and args[0].op == "neg":
+        return graph.raw("neg", (graph.raw("add", (args[0].args[0], args[1])),))
     return graph.raw(node.op, args, node.payload)

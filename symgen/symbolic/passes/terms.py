@@ -75,10 +75,11 @@ def _added_up(node: Scalar) -> list[Term]:
 
 
 def sum_of(graph: Graph, terms: Sequence[Term]) -> Scalar:
-    """The sum of signed scalars, a positive one first if there is one."""
-    start = next((place for place, (sign, _) in enumerate(terms) if sign > 0), 0)
-    sign, total = terms[start]
-    total = total if sign > 0 else graph.raw("neg", (total,))
+    """The sum of signed scalars, a positive one first; where there is none, the opposite of the sum of all."""
+    start = next((place for place, (sign, _) in enumerate(terms) if sign > 0), None)
+    if start is None:
+        return graph.raw("neg", (sum_of(graph, [(1, term) for _, term in terms]),))
+    total = terms[start][1]
     for place, (sign, term) in enumerate(terms):
         if place != start:
             total = graph.raw("add" if sign > 0 else "sub", (total, term))
