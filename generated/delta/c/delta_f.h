@@ -17,8 +17,8 @@
  *
  * Operations           + -      *      /   sqrt sincos  other
  * inverse_dynamics      52     71      1      0      3      0
- * forward_dynamics     174    287     11      2      3      0
- * multipliers          164    268     11      2      3      0
+ * forward_dynamics     173    287     11      2      3      0
+ * multipliers          163    268     11      2      3      0
  * singularity           56    107     13      3      3      0
  * (changes of sign are not counted)
  *

@@ -14,12 +14,12 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    double value[13];
+    double value[12];
 } delta_prepared;
 
 delta_prepared delta_prepare(const delta_params *p);
 
-/* u: the smallest inputs that produce the motion, (27); 117 operations instead of 136 */
+/* u: the smallest inputs that produce the motion, (27); 116 operations instead of 134 */
 delta_status delta_inverse_dynamics_prepared(const double q[6], const double qd[6], const double qdd[6], const delta_prepared *p, double u[3]);
 
 #ifdef __cplusplus

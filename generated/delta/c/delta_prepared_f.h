@@ -14,12 +14,12 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    float value[13];
+    float value[12];
 } delta_prepared_f;
 
 delta_prepared_f delta_prepare_f(const delta_params_f *p);
 
-/* u: the smallest inputs that produce the motion, (27); 117 operations instead of 136 */
+/* u: the smallest inputs that produce the motion, (27); 116 operations instead of 134 */
 delta_status delta_inverse_dynamics_prepared_f(const float q[6], const float qd[6], const float qdd[6], const delta_prepared_f *p, float u[3]);
 
 #ifdef __cplusplus

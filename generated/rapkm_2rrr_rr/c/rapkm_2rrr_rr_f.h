@@ -28,7 +28,7 @@
  * constraint_pseudoinverse            142    218     14      4      6      0
  * nullspace_projector                 122    198      9      4      6      0
  * nullspace_projector_dot             383    549     14      4      6      0
- * weighted_pseudoinverse              286    491      1      0      6      0
+ * weighted_pseudoinverse              283    491      1      0      6      0
  * weighted_nullspace_projector        224    350     22      4      6      0
  * control_matrix                        0      0      0      0      0      0
  * projected_control_matrix            101    177      1      0      6      0
@@ -39,7 +39,7 @@
  * projected_potential_force             0      0      0      0      0      0
  * projected_applied_force               0      0      0      0      0      0
  * minimal_mass_matrix                  63    114      1      0      6      0
- * minimal_coriolis_matrix             330    568      2      0      6      0
+ * minimal_coriolis_matrix             328    568      2      0      6      0
  * minimal_potential_force               0      0      0      0      0      0
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                8     15      1      0      6      0

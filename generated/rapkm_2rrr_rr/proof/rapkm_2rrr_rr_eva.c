@@ -399,7 +399,7 @@ void eva_nullspace_projector_dot(void) {
 
 void eva_weighted_pseudoinverse(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t364. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t361. */
 void eva_weighted_pseudoinverse(void) {
     double q[6];
     rapkm_2rrr_rr_params p;
