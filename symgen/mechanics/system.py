@@ -88,6 +88,11 @@ class System:
         return self.bodies.gravity if working else (zero, zero, zero)
 
     @property
+    def motion(self) -> Vector:
+        """q, q_dot and q_ddot, 3n."""
+        return (*self.q, *self.qd, *self.qdd)
+
+    @property
     def n(self) -> int:
         """Number of coordinates."""
         return len(self.q)

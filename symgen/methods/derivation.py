@@ -29,7 +29,7 @@ from symgen.methods.allocation import InputAllocation
 from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
 from symgen.methods.forward_dynamics.motion import Problem
 from symgen.methods.least_inputs import least_inputs
-from symgen.symbolic.calculus import derivative_along
+from symgen.symbolic.calculus import derivative_along, jacobian
 from symgen.symbolic.matrix import (
     Matrix,
     Vector,
@@ -188,7 +188,8 @@ class Derivation:
         return tuple(a - b for a, b in zip(first, again, strict=True))
 
     @cached_property
-    def _newton_space(self) -> NullSpace:
+    def geometric_space(self) -> NullSpace:
+        """The velocities that the geometric rows allow."""
         rows = self.mechanics.geometric_jacobian
         if isinstance(self.space, HouseholderSpace):
             return reflected(self.graph, rows, self.n, self.generic.geometric_rank)
@@ -198,7 +199,7 @@ class Derivation:
     def _newton_step(self) -> Vector:
         if not self.mechanics.geometric_jacobian:
             return (self.graph.zero,) * self.n
-        return self._newton_space.lift(self.mechanics.constraint_residual)
+        return self.geometric_space.lift(self.mechanics.constraint_residual)
 
     @property
     def newton_guards(self) -> tuple[Guard, ...]:
@@ -207,7 +208,7 @@ class Derivation:
             return ()
         q = self.mechanics.q
         moved = {a: a - b for a, b in zip(q, self._newton_step, strict=True)}
-        guards = self._newton_space.guards
+        guards = self.geometric_space.guards
         return (*guards, *(self._moved(guard, moved) for guard in guards))
 
     def _moved(self, guard: Guard, replacements: Mapping[Scalar, Scalar]) -> Guard:
@@ -335,6 +336,10 @@ class Derivation:
         forms, restriction = self._actuation
         _, rest = self._taken_directly(self.mechanics.balance)
         return residual(self.space, rest, self.mechanics.inputs, forms.solve(restriction(rest)))
+
+    def inverse_dynamics_jacobian(self) -> Matrix:
+        """The derivatives of u by q, q_dot and q_ddot, m x 3n."""
+        return jacobian(self.graph, self.inverse_dynamics, self.mechanics.motion)
 
     @cached_property
     def actuator_basis(self) -> Matrix:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symgen.model.model import Model
-from symgen.model.quantities import ACTUATORS, PARTITION, QuantityRow
+from symgen.model.quantities import ACTUATORS, OF_INPUTS, PARTITION, VARIATIONS, QuantityRow
 
 
 def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actuation: int | None = None) -> str | None:
@@ -25,4 +25,10 @@ def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actua
         return "the model names no `independent_velocities`"
     if quantity.needs == ACTUATORS and delta is not None and not model.m == delta == actuation:
         return "it needs as many independent inputs as degrees of freedom"
+    if quantity.needs == VARIATIONS and not model.constraints:
+        return "the model has no constraints"
+    if quantity.is_derivative and delta is not None and model.n - delta < model.r:
+        return "its constraints depend on each other: beside them it is not differentiable"
+    if quantity.needs == OF_INPUTS and delta is not None and actuation not in (None, min(model.m, delta)):
+        return "on the constraints its inputs reach less than beside them: u is not differentiable there"
     return None

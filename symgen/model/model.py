@@ -231,6 +231,7 @@ class Model:
     forces: tuple[Force, ...] = ()
     allocation: Allocation | None = None
     trig_range: Literal["normal", "wide"] = "normal"
+    derivatives: bool = False
     assembly: Assembly | None = None
     row_units: tuple[int, ...] = ()
     taken: tuple[tuple[str, Fraction], ...] = ()

@@ -11,16 +11,19 @@ from symgen.records import dataclass
 Argument: TypeAlias = Literal["q", "qd", "qdd", "u"]
 # What a model must have for some quantities.
 PARTITION, ACTUATORS, POINTS = "independent_velocities", "m = delta", "points"
+# Those that `all` takes where the model says `derivatives` only; the latter two need more than constraints that do not
+# depend on each other.
+DERIVATIVES, OF_INPUTS, VARIATIONS = "derivatives", "derivatives of inputs", "derivatives along constraints"
 
 
 @dataclass(frozen=True, slots=True)
 class QuantityRow:
     """A quantity by the name used in `outputs`, C and Python; `equation` is the number in Müller's paper, or empty.
 
-    `result` is what its array is called in C.  `shape` has its extents, products of numbers and of sizes of the system:
-    n coordinates, m inputs, r rows, of these r_g geometric, delta degrees of freedom, points.  A quantity exists where
-    none of them is 0 and the model has what it `needs`.  The `main` ones are what the equations of motion are solved
-    for.
+    `result` is what its array is called in C.  `shape` has its extents, sums of products of numbers and of sizes of the
+    system: n coordinates, m inputs, r rows, of these r_g geometric, delta degrees of freedom, points.  A quantity
+    exists where none of them is 0 and the model has what it `needs`.  The `main` ones are what the equations of motion
+    are solved for.
     """
 
     name: str
@@ -36,12 +39,21 @@ class QuantityRow:
     @property
     def sizes(self) -> frozenset[str]:
         """What its extents are made of."""
-        return frozenset(factor for extent in self.shape for factor in extent.split("*"))
+        terms = (term for extent in self.shape for term in extent.split("+"))
+        return frozenset(factor for term in terms for factor in term.split("*"))
+
+    @property
+    def is_derivative(self) -> bool:
+        """Whether `all` takes it where the model says `derivatives` only."""
+        return self.needs in (DERIVATIVES, OF_INPUTS, VARIATIONS)
 
     def extents(self, sizes: Mapping[str, int]) -> tuple[int, ...]:
         """Its shape in numbers."""
         known = {factor: int(factor) if factor.isdigit() else sizes[factor] for factor in self.sizes}
-        return tuple(math.prod(known[factor] for factor in extent.split("*")) for extent in self.shape)
+        return tuple(
+            sum(math.prod(known[factor] for factor in term.split("*")) for term in extent.split("+"))
+            for extent in self.shape
+        )
 
 
 def _row(
@@ -101,6 +113,10 @@ QUANTITIES: tuple[QuantityRow, ...] = (
          "two Newton steps towards the configuration space"),
     _row("inverse_dynamics", "u", "(27)", "u", "q qd qdd", "m", "the smallest inputs that produce the motion",
          main=True),
+    _row("inverse_dynamics_jacobian", "J_u", "", "u_x", "q qd qdd", "m 3*n",
+         "derivatives of u by q, qd and qdd, each by itself", OF_INPUTS),
+    _row("constraint_variations", "X", "", "X", "q qd qdd", "3*n 3*n",
+         "projector onto the changes of q, qd and qdd that the constraints allow", VARIATIONS),
     _row("inverse_dynamics_residual", "F Fᵀ(τ − M u)", "", "residual", "q qd qdd", "n",
          "the force no input can supply"),
     _row("actuator_velocity", "ν", "Remark 10", "nu", "q qd", "m", "velocities along the inputs", ACTUATORS),
@@ -110,6 +126,8 @@ QUANTITIES: tuple[QuantityRow, ...] = (
          "further forces along the inputs", ACTUATORS),
     _row("forward_dynamics", "q̈", "(15)", "qdd", "q qd u", "n", "accelerations under the inputs",
          main=True),
+    _row("forward_dynamics_jacobian", "J_a", "", "qdd_x", "q qd u", "n 2*n+m",
+         "derivatives of q̈ by q, qd and u, each by itself", DERIVATIVES),
     _row("multipliers", "λ", "(14)", "lambda_B", "q qd u", "r",
          "Lagrange multipliers; the reaction on the system is −Bᵀλ", main=True),
     _row("energy", "T, U", "", "T_U", "q qd", "2", "kinetic and potential energy"),

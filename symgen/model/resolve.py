@@ -93,6 +93,7 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
         applied_forces=forces,
         outputs=_outputs(tree.get("outputs"), bool(inputs)),
         independent_velocities=_coordinate_list(scope, tree.get("independent_velocities"), names),
+        derivatives=text_of(tree.get("derivatives")) == "true",
         configuration=_configuration(scope, tree.get("configuration"), names, joint_coordinates),
         constraint_rank_tolerance=_tolerance(scope, tolerances, "constraint_rank"),
         actuation_rank_tolerance=_tolerance(scope, tolerances, "actuation_rank"),

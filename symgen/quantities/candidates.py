@@ -17,24 +17,28 @@ from symgen.methods.forward_dynamics.absolute import brought_back, in_absolute_a
 from symgen.methods.forward_dynamics.minor_motion import CANCELLATION_WORTH, LARGEST_DELTA
 from symgen.methods.forward_dynamics.motion import Motion
 from symgen.methods.forward_dynamics.motions import BY_FRAMES, cost_factor, motions_alone, motions_along
-from symgen.methods.graphs import moved
-from symgen.methods.method import MOTIONS, Candidate
+from symgen.methods.graphs import derived_on, moved
+from symgen.methods.method import INPUTS, MOTIONS, Candidate
 from symgen.methods.quantity import scalars
 from symgen.methods.selection import FACTORING_LIMIT, Methods, cheapest
 from symgen.methods.spaces import derivations
 from symgen.methods.system import MethodInput
 from symgen.model.model import Model
 from symgen.model.quantities import PARTITION
-from symgen.quantities.catalogue import CatalogueEntry, by_blocks, derive, derived_from
+from symgen.quantities.catalogue import BY_NAME, CatalogueEntry, by_blocks, derive, derived_from, sizes
 from symgen.quantities.everything import WorkBudget
 from symgen.runtime.activity import working
 from symgen.runtime.effort import TooLongError, at_most, worth_trying
+from symgen.symbolic.calculus import jacobian
+from symgen.symbolic.matrix import flatten
 from symgen.symbolic.traverse import cost
 
 ABSOLUTE = "householder in absolute angles"
 # What derivation.json calls methods that need no null space.
 ARTICULATED = "articulated inertias"
 TITLES = {BY_FRAMES: ARTICULATED}
+# What is the derivative of what.
+SLOPES = {"inverse_dynamics_jacobian": INPUTS, "forward_dynamics_jacobian": MOTIONS[0]}
 MOST_WORTH = 1 + CANCELLATION_WORTH
 VALID = Validity(0, 0, (), "along null spaces only ranks are divided by")
 
@@ -48,7 +52,8 @@ class Candidates:
         self._system = MethodInput(mechanics, generic)
         self._methods, self._everything = methods, everything
         self._derivations = derivations(mechanics, generic)
-        moving = [name for name in MOTIONS if name in asked]
+        wanted = {*asked, *(SLOPES[name] for name in asked if name in SLOPES)}
+        moving = [name for name in MOTIONS if name in wanted]
         with working("articulated inertias"):
             self._alone = {name: self._without_null_space(name) for name in moving}
         need = moving and not any(self._alone.values())
@@ -57,7 +62,9 @@ class Candidates:
 
     def cheapest(self, entry: CatalogueEntry) -> tuple[Candidate, dict[str, int]] | None:
         """The one that is taken, and the counted cost of all by title; None where each takes too long."""
-        made = self._of(entry)
+        made = self._of(entry) if entry.outputs is not None or entry.name in MOTIONS else {}
+        if entry.name in SLOPES:
+            made |= self._differentiated(entry, SLOPES[entry.name])
         if not made:
             return None
         costs = {title: cost(scalars(one.derived)).weight for title, one in made.items()}
@@ -107,6 +114,24 @@ class Candidates:
     def _moving(self, entry: CatalogueEntry, name: str, derivation: Derivation, motion: Motion) -> Candidate:
         found = derived_from(entry, derivation, motion.part(entry.name), lambda _: motion.guards)
         return Candidate(self._system, found, method=name)
+
+    def _differentiated(self, entry: CatalogueEntry, quantity: str) -> dict[str, Candidate]:
+        """The derivatives of a quantity by the method that it takes itself."""
+        graph, seen = self._mechanics.graph, self._mechanics
+        if quantity == INPUTS:
+            chosen = self._methods.choose(quantity)
+            one = None if isinstance(chosen, str) else replace(chosen[0], derived=derived_on(graph, chosen[0]))
+            by = (*seen.q, *seen.qd, *seen.qdd)
+        else:
+            best = self.cheapest(BY_NAME[quantity])
+            one = None if best is None else best[0]
+            by = (*seen.q, *seen.qd, *seen.u)
+        if one is None:
+            return {}
+        outputs = flatten(jacobian(graph, one.derived.outputs, by))
+        shape = entry.shape(sizes(seen.model, self._generic))
+        derived = replace(one.derived, name=entry.name, shape=shape, outputs=outputs)
+        return {one.title: Candidate(self._system, derived, along=one.title)}
 
     def _without_null_space(self, quantity: str) -> dict[str, Candidate]:
         """By methods that need none.

@@ -9,6 +9,7 @@ from symgen.linear_algebra.null_spaces import rests_on_rank
 from symgen.mechanics.genericity import Genericity
 from symgen.methods.derivation import Derivation
 from symgen.methods.quantity import Quantity, is_fixed
+from symgen.methods.variations import constraint_variations
 from symgen.model.availability import lacking
 from symgen.model.model import Model
 from symgen.model.quantities import QUANTITIES, QuantityRow
@@ -62,6 +63,10 @@ def _actuation(d: Derivation) -> tuple[Guard, ...]:
     return d.actuation_guards
 
 
+def _inputs(d: Derivation) -> tuple[Guard, ...]:
+    return d.inverse_dynamics_guards
+
+
 def _actuator(d: Derivation) -> tuple[Guard, ...]:
     return (*d.space.guards, *d.actuation_guards)
 
@@ -76,6 +81,10 @@ def _partition(d: Derivation) -> tuple[Guard, ...]:
 
 def _partition_rate(d: Derivation) -> tuple[Guard, ...]:
     return (*d.space.guards, *d.partition_guards)
+
+
+def _variations(d: Derivation) -> tuple[Guard, ...]:
+    return (*d.space.guards, *(g for g in d.geometric_space.guards if g not in d.space.guards))
 
 
 _BY_METHODS = (None, _none)
@@ -116,11 +125,14 @@ _DERIVED: dict[str, tuple[Callable[[Derivation], Vector] | None, Callable[[Deriv
     "admissible_acceleration": (lambda d: d.admissible_acceleration(), _constraint),
     "projected_configuration": (lambda d: d.projected_configuration(), lambda d: d.newton_guards),
     "inverse_dynamics": _BY_METHODS,
+    "inverse_dynamics_jacobian": (lambda d: flatten(d.inverse_dynamics_jacobian()), _inputs),
+    "constraint_variations": (lambda d: flatten(constraint_variations(d)), _variations),
     "inverse_dynamics_residual": (lambda d: d.inverse_dynamics_residual(), _residual),
     "actuator_velocity": (lambda d: d.actuator_velocity(), _none),
     "actuator_mass_matrix": (lambda d: flatten(d.actuator_mass_matrix()), _actuation),
     "actuator_bias": (lambda d: d.actuator_bias(), _actuator),
     "forward_dynamics": _BY_METHODS,
+    "forward_dynamics_jacobian": _BY_METHODS,
     "multipliers": _BY_METHODS,
     "energy": (lambda d: d.energy(), _none),
     "singularity": (lambda d: d.singularity(), _none),

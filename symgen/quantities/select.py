@@ -15,7 +15,7 @@ from symgen.methods.selection import AUTO, MethodChoice, Methods
 from symgen.model.model import Model
 from symgen.model.quantities import POINTS
 from symgen.quantities.candidates import Candidates
-from symgen.quantities.catalogue import BY_NAME, CATALOGUE, missing
+from symgen.quantities.catalogue import BY_NAME, CATALOGUE, CatalogueEntry, missing
 from symgen.quantities.everything import WorkBudget, too_long
 from symgen.quantities.finish import finished
 from symgen.quantities.row_units import in_ordinary_units
@@ -82,14 +82,20 @@ def requested(model: Model, generic: Genericity, outputs: Sequence[str]) -> tupl
     present: list[str] = []
     absent: list[tuple[str, str]] = []
     for entry in CATALOGUE:
-        # `all` does not ask a system without points for theirs
-        if entry.name in outputs or (everything and (entry.needs != POINTS or model.mechanism.points)):
+        if entry.name in outputs or (everything and _is_meant(entry, model)):
             reason = missing(entry, model, generic)
             if reason is None:
                 present.append(entry.name)
             else:
                 absent.append((entry.name, reason))
     return present, absent
+
+
+def _is_meant(entry: CatalogueEntry, model: Model) -> bool:
+    """Whether `all` asks a system for a quantity: for places of points where it has some, derivatives where it says."""
+    if entry.row.is_derivative:
+        return model.derivatives
+    return entry.needs != POINTS or bool(model.mechanism.points)
 
 
 def derive_quantities(

@@ -113,3 +113,8 @@ def gradient(graph: Graph, output: Scalar, symbols: Sequence[Scalar]) -> list[Sc
             if argument in touched:
                 adjoint[argument] = adjoint.get(argument, graph.zero) + adjoint[node] * partial
     return [adjoint.get(symbol, graph.zero) for symbol in symbols]
+
+
+def jacobian(graph: Graph, outputs: Sequence[Scalar], symbols: Sequence[Scalar]) -> tuple[tuple[Scalar, ...], ...]:
+    """The derivatives of the outputs by the symbols: a row for each output, in one reverse sweep each."""
+    return tuple(tuple(gradient(graph, output, symbols)) for output in outputs)

@@ -61,6 +61,12 @@ def derive(model: Model, s: Lagrange, ranks: ConfigurationRanks) -> dict[str, ca
         "energy": casadi.vertcat(s.kinetic, s.potential),
         "singularity": _singularity(s, N, model.n, ranks),
     }
+    if ranks.constraints == model.r and ranks.actuation == min(model.m, model.n - ranks.constraints):
+        quantities["inverse_dynamics_jacobian"] = casadi.jacobian(u, casadi.vertcat(s.q, s.qd, s.qdd))
+    if ranks.constraints == model.r:
+        quantities["forward_dynamics_jacobian"] = casadi.jacobian(acceleration, casadi.vertcat(s.q, s.qd, s.u))
+    if ranks.constraints == model.r > 0:
+        quantities["constraint_variations"] = _variations(s, ranks)
     if model.independent_velocities:
         quantities |= _minimal(model, s, ranks)
     if 0 < model.m == model.n - ranks.constraints == ranks.actuation:
@@ -134,6 +140,25 @@ def _singularity(s: Lagrange, N: casadi.SX, n: int, ranks: ConfigurationRanks) -
 
 def _ratio_or_zero(numerator: casadi.SX, denominator: casadi.SX) -> casadi.SX:
     return casadi.if_else(denominator == 0, 0, numerator / denominator)
+
+
+def _variations(s: Lagrange, ranks: ConfigurationRanks) -> casadi.SX:
+    """The projector (3n×3n) onto the changes of (q, q̇, q̈) that the constraints allow.
+
+    With E for all that is to stay 0 on V, written one below another, and E⁺ that answers it place by place, I − E⁺ ∂E:
+    rows of places answer changes of q, those of rates changes of q̇, those of accelerations changes of q̈.
+    """
+    rows = s.residual.shape[0]
+    motion = casadi.vertcat(s.q, s.qd, s.qdd)
+    held = (s.residual, s.jacobian @ s.qd, s.jacobian @ s.qdd + s.jacobian_dot @ s.qd)
+    answers = [pseudoinverse(s.jacobian[:rows, :], ranks.geometric)] if rows else [casadi.SX(s.q.shape[0], 0)]
+    answers += [pseudoinverse(s.jacobian, ranks.constraints)] * 2
+    found = casadi.SX.eye(motion.shape[0])
+    n = s.q.shape[0]
+    for k, (what, answer) in enumerate(zip(held, answers, strict=True)):
+        answered = answer @ casadi.jacobian(what, motion) @ found
+        found[k * n : (k + 1) * n, :] -= answered
+    return found
 
 
 def _minimal(model: Model, s: Lagrange, ranks: ConfigurationRanks) -> dict[str, casadi.SX]:

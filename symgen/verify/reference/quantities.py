@@ -9,9 +9,11 @@ from collections.abc import Callable
 from typing import Any
 
 from symgen.verify.reference.allocation import allocated
-from symgen.verify.reference.arithmetic.linear import column, right_pseudoinverse
+from symgen.verify.reference.arithmetic.linear import column, identity, right_pseudoinverse
 from symgen.verify.reference.evaluation import Evaluation
 from symgen.verify.reference.measures import actuation_measure, constraint_measure
+from symgen.verify.reference.parts import placed
+from symgen.verify.reference.slopes import jacobian
 
 
 def _inverse_dynamics(e: Evaluation) -> Any:
@@ -20,6 +22,45 @@ def _inverse_dynamics(e: Evaluation) -> Any:
     if allocation is not None:
         return allocated(e, allocation)
     return e.inputs
+
+
+def _inverse_dynamics_jacobian(e: Evaluation) -> Any:
+    """The derivatives of u by (q, qd, qdd)."""
+    return jacobian(e, _inverse_dynamics, ("q", "qd", "qdd"))
+
+
+def _forward_dynamics_jacobian(e: Evaluation) -> Any:
+    """The derivatives of qdd by (q, qd, u)."""
+    return jacobian(e, lambda at: at.accelerations, ("q", "qd", "u"))
+
+
+def _constraint_acceleration(e: Evaluation) -> Any:
+    return e.at.constraints * column(e.qdd) + e.motion(e.rate)[1]
+
+
+def _constraint_variations(e: Evaluation) -> Any:
+    """The projector onto (dq, dqd, dqdd) that keep g = 0, B qd = 0 and B qdd + Bdot qd = 0."""
+    n = e.system.n
+    _, rows = e.system.geometry(e.q, e.parameters, e.literals)
+    places = identity(n)
+    if e.system.r_geometric:
+        places -= right_pseudoinverse(rows, e.ranks.geometric) * rows
+    by_places = jacobian(e, lambda at: at.at.constraints * at.rate, ("q",))
+    of_rates = -(e.inverse * (by_places * places))
+    drift_by_places = jacobian(e, _constraint_acceleration, ("q",))
+    drift_by_rates = jacobian(e, lambda at: at.motion(at.rate)[1], ("qd",))
+    of_accelerations = -(e.inverse * (drift_by_places * places + drift_by_rates * of_rates))
+    by_own_rates = -(e.inverse * (drift_by_rates * e.projector))
+    first, second, third = range(n), range(n, 2 * n), range(2 * n, 3 * n)
+    blocks = (
+        (first, first, places),
+        (second, first, of_rates),
+        (second, second, e.projector),
+        (third, first, of_accelerations),
+        (third, second, by_own_rates),
+        (third, third, e.projector),
+    )
+    return placed(3 * n, 3 * n, blocks)
 
 
 def _inverse_dynamics_residual(e: Evaluation) -> Any:
@@ -52,8 +93,8 @@ def _projected_configuration(e: Evaluation) -> Any:
     if e.system.r_geometric == 0:
         return q
     for _ in range(2):
-        residual, jacobian = e.system.geometry(q.entries(), e.parameters, e.literals)
-        q = q - right_pseudoinverse(jacobian, e.ranks.geometric) * residual
+        residual, rows = e.system.geometry(q.entries(), e.parameters, e.literals)
+        q = q - right_pseudoinverse(rows, e.ranks.geometric) * residual
     return q
 
 
@@ -108,6 +149,9 @@ QUANTITIES: dict[str, Definition] = {
     "admissible_acceleration": _admissible_acceleration,
     "projected_configuration": _projected_configuration,
     "inverse_dynamics": _inverse_dynamics,
+    "inverse_dynamics_jacobian": _inverse_dynamics_jacobian,
+    "forward_dynamics_jacobian": _forward_dynamics_jacobian,
+    "constraint_variations": _constraint_variations,
     "inverse_dynamics_residual": _inverse_dynamics_residual,
     "actuator_velocity": lambda e: e.at.control.transpose() * e.rate,
     "actuator_mass_matrix": lambda e: e.quasi.transpose() * e.at.mass * e.quasi,
@@ -119,7 +163,8 @@ QUANTITIES: dict[str, Definition] = {
     "point_position": lambda e: e.points[0],
     "point_jacobian": lambda e: e.points[1],
 }
-
+# Of two thirds of the digits that others have.
+DIFFERENCED = frozenset({"inverse_dynamics_jacobian", "forward_dynamics_jacobian", "constraint_variations"})
 # The matrices whose rates these take; the others do with what a velocity adds to forces and accelerations.
 RATES = {
     "coriolis_matrix": ("mass",),

@@ -23,7 +23,7 @@ from symgen.verify.reference.arithmetic.tape import ball, precision
 from symgen.verify.reference.evaluation import Evaluation
 from symgen.verify.reference.manifold import ManifoldRanks, generic_ranks
 from symgen.verify.reference.measures import measures_of_parts
-from symgen.verify.reference.quantities import QUANTITIES
+from symgen.verify.reference.quantities import DIFFERENCED, QUANTITIES
 from symgen.verify.reference.system import ReferenceSystem
 from symgen.verify.reference.translation import literal_values
 
@@ -93,7 +93,7 @@ class Reference:
 
     def precise(self, state: State, quantities: Sequence[str]) -> dict[str, Any]:
         """Like `evaluate`, as matrices of balls (vectors are columns)."""
-        bits = REFERENCE_BITS
+        bits = 2 * REFERENCE_BITS if DIFFERENCED.intersection(quantities) else REFERENCE_BITS
         while bits <= MOST_BITS:
             matrices = self.matrices(state, quantities, bits)
             with precision(bits):

@@ -13,7 +13,7 @@ from symgen.ir.kernel import Scalar
 from symgen.model.quantities import PARTITION, ROWS
 from symgen.runtime.activity import working
 from symgen.verify.reference.arithmetic.tape import precision
-from symgen.verify.reference.quantities import RATES
+from symgen.verify.reference.quantities import DIFFERENCED, RATES
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.sampling.inertias import Inertias
 from symgen.verify.sampling.plain_values import SAMPLING_BITS, floats, measured, settled, values_at
@@ -49,7 +49,9 @@ def affordable_states(reference: Reference, quantities: Sequence[str], wanted: i
         subsets = comb(system.r, ranks.constraints)
     rates = (matrix for quantity in quantities for matrix in RATES.get(quantity, ()))
     operations = system.operations(rates) + solved * subsets
-    seconds_per_state = 30 * 1.3e-7 * operations
+    # derivatives by coordinates take the whole at two more places for each
+    places = 1 + 2 * system.n if DIFFERENCED.intersection(quantities) else 1
+    seconds_per_state = 30 * 1.3e-7 * operations * places
     return max(FEWEST_STATES, min(wanted, int(LONGEST_SECONDS / seconds_per_state)))
 
 

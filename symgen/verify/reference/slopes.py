@@ -1,0 +1,52 @@
+"""Derivatives of the reference by central differences in many digits.
+
+A step of 2^(-b/3) at b binary digits leaves two thirds of them: what is left out and what is rounded are as large.
+They share nothing with the rules by which kernels are differentiated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from typing import Any, Literal, TypeAlias
+
+from flint import arb, arb_mat, ctx
+
+from symgen.verify.reference.evaluation import Evaluation
+
+Part: TypeAlias = Literal["q", "qd", "qdd", "u"]
+# What depends on q alone, which a change of rates leaves as it is.
+AT_REST = (
+    "at", "inverse", "projector_off", "projector", "projected_control", "driven", "control_inverse", "weighted",
+)  # fmt: skip
+
+
+def slopes(e: Evaluation, value: Callable[[Evaluation], Any], part: Part) -> list[Any]:
+    """The derivatives of a column by each entry of q, qd, qdd or u, a column each."""
+    step = arb(2) ** -(ctx.prec // 3)
+    value(e)  # what it takes of AT_REST is known from here on
+    found = []
+    for k in range(len(getattr(e, part))):
+        above, below = (value(one) for one in _moved(e, part, k, step))
+        found.append((above - below) / (2 * step))
+    return found
+
+
+def _moved(e: Evaluation, part: Part, k: int, step: Any) -> Iterator[Evaluation]:
+    """The state with one entry a step further, and a step back."""
+    at_rest = {name: e.__dict__[name] for name in AT_REST if name in e.__dict__}
+    for sign in (1, -1):
+        entries = list(getattr(e, part))
+        entries[k] = entries[k] + sign * step
+        state: dict[str, Any] = {part: entries, "derivatives": {}}
+        moved = replace(e, **state)
+        if part != "q":
+            moved.__dict__.update(at_rest)
+        yield moved
+
+
+def jacobian(e: Evaluation, value: Callable[[Evaluation], Any], by: Sequence[Part]) -> Any:
+    """The derivatives of a column (k x 1) by parts of the state, beside each other."""
+    columns = [slope for part in by for slope in slopes(e, value, part)]
+    rows = columns[0].nrows()
+    return arb_mat(rows, len(columns), [column[i, 0] for i in range(rows) for column in columns])
