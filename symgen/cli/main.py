@@ -22,6 +22,7 @@ from symgen.cli.arguments import (
     names,
     parts,
 )
+from symgen.cli.linearizing import LINEARIZATION, add_linearization, explain_linear_system
 from symgen.cli.measuring import bench, simulate, stress, target
 from symgen.cli.outcome import DONE, MODEL_WRONG, WRONG_USE, check_present, check_writable, guarded
 from symgen.cli.signals import EndedError, signals_end_the_run
@@ -195,12 +196,20 @@ def _verify(arguments: list[str]) -> int:
 def _explain(arguments: list[str]) -> int:
     parser = make_parser("symgen explain", "Closed forms, structure, and what is skipped and why.")
     parser.add_argument("model", metavar="MODEL.yaml", type=Path, help="model file")
-    parser.add_argument("quantity", metavar="QUANTITY", nargs="?", help="one quantity (default: an overview)")
+    parser.add_argument(
+        "quantity",
+        metavar="QUANTITY",
+        nargs="?",
+        help=f"one quantity, or {LINEARIZATION}: poles and gains at rest (default: an overview)",
+    )
+    add_linearization(parser)
     add_method(parser)
     add_out(parser, "takes what verification led to from DIR/<model>/ (default: generated)")
     given = parser.parse_args(arguments)
 
     check_present([given.model])
+    if given.quantity == LINEARIZATION:
+        return guarded(lambda: explain_linear_system(given.model, given.start, given.lqr))
 
     def explain() -> int:
         from symgen.generation.explain import explain

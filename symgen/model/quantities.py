@@ -38,9 +38,8 @@ class QuantityRow:
 
     @property
     def sizes(self) -> frozenset[str]:
-        """What its extents are made of."""
-        terms = (term for extent in self.shape for term in extent.split("+"))
-        return frozenset(factor for term in terms for factor in term.split("*"))
+        """Of which none may be 0: those of extents that are one product."""
+        return frozenset(factor for extent in self.shape if "+" not in extent for factor in extent.split("*"))
 
     @property
     def is_derivative(self) -> bool:
@@ -49,11 +48,11 @@ class QuantityRow:
 
     def extents(self, sizes: Mapping[str, int]) -> tuple[int, ...]:
         """Its shape in numbers."""
-        known = {factor: int(factor) if factor.isdigit() else sizes[factor] for factor in self.sizes}
-        return tuple(
-            sum(math.prod(known[factor] for factor in term.split("*")) for term in extent.split("+"))
-            for extent in self.shape
-        )
+
+        def product(term: str) -> int:
+            return math.prod(int(factor) if factor.isdigit() else sizes[factor] for factor in term.split("*"))
+
+        return tuple(sum(map(product, extent.split("+"))) for extent in self.shape)
 
 
 def _row(
