@@ -9,19 +9,18 @@ do, but for the digits that pairs gain.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from fractions import Fraction
+from dataclasses import dataclass
 from math import dist, inf
 
 import numpy as np
 
-from symgen.ir.interpret import round_literal
-from symgen.ir.kernel import UNIT_ROUNDOFF, Block, Kernel, Literal, Operand, Program, Scalar, Status
+from symgen.ir.kernel import UNIT_ROUNDOFF, Kernel, Program, Scalar, Status
 from symgen.ir.wide import GAINED
 from symgen.ir.wide_functions import works_with_pairs
 from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.many_states import run_many
 from symgen.verify.sampling.lanes import RoundingErrors
+from symgen.verify.single_precision import in_single_precision, with_numbers_of_float32
 
 
 @dataclass(frozen=True)
@@ -45,8 +44,7 @@ class Far:
     @property
     def rounded(self) -> list[dict[str, list[float]]]:
         """Of each state, what is given in single precision."""
-        single = {name: rows.astype(np.float32).tolist() for name, rows in self.given.items()}
-        return [{name: rows[place] for name, rows in single.items()} for place in range(len(self))]
+        return in_single_precision(self.given)
 
 
 class FarErrors:
@@ -59,7 +57,7 @@ class FarErrors:
         self._estimates = RoundingErrors(plain or kernels["float64"])
         self._single = kernels.get("float32")
         if self._single is not None:
-            self._beside = _with_numbers_of_float32(self._single)
+            self._beside = with_numbers_of_float32(self._single)
 
     def units(self, far: Far) -> dict[Scalar, Lanes]:
         """By scalar type, a number for each state; 0 where a kernel refuses with reason.
@@ -117,18 +115,3 @@ def _is_unfounded(status: Status, regular: bool) -> bool:
     if status in (Status.CONSTRAINT_RANK, Status.ACTUATION_RANK):
         return regular
     return status in (Status.MASS_RANK, Status.NOT_FINITE)
-
-
-def _with_numbers_of_float32(kernel: Kernel) -> Kernel:
-    """The kernel with its literals in single precision, so that they make no difference between the types."""
-
-    def of(operand: Operand) -> Operand:
-        if isinstance(operand, Literal):
-            return Literal(Fraction(round_literal(operand.value, "float32")))
-        return operand
-
-    def block_of(block: Block) -> Block:
-        statements = (replace(s, operands=tuple(map(of, s.operands))) for s in block.statements)
-        return Block(tuple(statements), tuple(replace(c, value=of(c.value), limit=of(c.limit)) for c in block.checks))
-
-    return replace(kernel, blocks=tuple(map(block_of, kernel.blocks)), outputs=tuple(map(of, kernel.outputs)))

@@ -37,6 +37,9 @@ OFF = (1.0, 5.0)
 LITTLE_INPUT = (1.0, 4.0)
 # Powers of ten by which a machine that all but rests is slower than samples are, its inputs as much smaller.
 SLOWER = (1.0, 4.0)
+# Powers of ten by which inputs are smaller where weights or springs alone drive a machine that all but rests: what
+# these leave of a result that they do not load is all there is then.
+HARDLY_ANY_INPUT = (4.0, 9.0)
 # How often a state is led on along a line that is drawn, how far that goes at most in shares of ranges, how much of the
 # way is left, and the steps that show the slope, shares of that.
 LED_STEPS, LONGEST_LED, WAY_LEFT, PROBED = 8, 0.4, 0.3, 1e-2
@@ -162,6 +165,16 @@ class Surroundings:
         slow = {name: start.parts[name] * pace for name in ("qd", "qdd", "u")}
         with np.errstate(all="ignore"):
             return self._settled(Nearby({**start.parts, **slow}, start.admissible, start.origins), start.parts["q"])
+
+    def hardly_driven(self, count: int) -> Nearby:
+        """So many that all but rest, with next to no inputs; none where inputs alone drive the machine."""
+        start = self.resting(count)
+        if not self._driven_by_itself:
+            return start.only(slice(0))
+        dice = random.Random("hardly driven")
+        little = np.array([10.0 ** -dice.uniform(*HARDLY_ANY_INPUT) for _ in range(len(start))])[:, None]
+        u = self.samples.parts["u"][start.origins] * little
+        return Nearby({**start.parts, "u": u}, start.admissible, start.origins)
 
     def towards(self, count: int, least: Sequence[float]) -> Nearby:
         """So many nearer and nearer to where rows, or inputs, lose rank, as far as measures stay above the least."""

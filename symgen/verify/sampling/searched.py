@@ -29,10 +29,11 @@ from symgen.verify.sampling.lanes import RoundingErrors
 from symgen.verify.sampling.nearby import Nearby, Surroundings, joined, of_samples
 from symgen.verify.sampling.settling import Settling
 from symgen.verify.sampling.states import Sample, rounded
+from symgen.verify.single_precision import lost_in_float32
 from symgen.verify.tolerance import FACTOR, Expectation, expectations
 
 # States drawn; fewer of long kernels, so that no more numbers are held at a time.
-DRAWN, ALIGNED, IN_MODES, RESTING, FURTHER_OUT, TOWARDS = 512, 256, 256, 128, 256, 256
+DRAWN, ALIGNED, IN_MODES, RESTING, FURTHER_OUT, TOWARDS, HARDLY_DRIVEN = 512, 256, 256, 128, 256, 256, 64
 # Numbers that are held at a time; of long kernels fewer states are looked at together.
 NUMBERS = 4_000_000
 # Of each kind also fewer where decompositions of large parts would take longest: the cube of their coordinates counts.
@@ -64,9 +65,13 @@ class WorstStateSearch:
 
     def _add(self, kernel: Kernel, states: Nearby, units: Lanes) -> None:
         settling = self._settling(kernel.name)
-        doubtful = (place for place in _worst(units, SETTLED) if units[place] > DOUBTFUL)
+        doubtful = [place for place in _worst(units, SETTLED) if units[place] > DOUBTFUL]
+        if "float32" in self._expected.scalars:
+            measured = self._measured(kernel, states)
+            doubtful += [place for place in _worst(measured, SETTLED // 2) if measured[place] > DOUBTFUL]
         tried = (
-            settling.sample(states.state(place), bool(states.admissible[place]), kernel.name) for place in doubtful
+            settling.sample(states.state(place), bool(states.admissible[place]), kernel.name)
+            for place in dict.fromkeys(doubtful)
         )
         samples = [sample for sample in tried if sample is not None]
         for sample in self._worst_of(kernel, samples) if len(samples) > JUDGED else samples:
@@ -140,6 +145,13 @@ class WorstStateSearch:
         units, measures = errors.at(states.parts, self._tangents(states)), self._surroundings.measures(states)
         return np.where((measures >= least).all(axis=1), units, 0.0)
 
+    def _measured(self, kernel: Kernel, states: Nearby) -> Lanes:
+        """What float32 loses there, in units, however large the estimates are."""
+        unit = RoundingErrors(kernel).with_units(states.parts, self._tangents(states))[1]
+        measures, least = self._surroundings.measures(states), self._settling(kernel.name).measures
+        units = lost_in_float32(kernel, states.parts) / (unit * float(UNIT_ROUNDOFF["float32"]))
+        return np.where((measures >= least).all(axis=1), units, 0.0)
+
     @cached_property
     def _surroundings(self) -> Surroundings:
         expected = self._expected
@@ -152,7 +164,8 @@ class WorstStateSearch:
         found = joined(found, around.in_modes(self._affordable(IN_MODES)))
         found = joined(found, around.resting(self._affordable(RESTING)))
         found = joined(found, around.further_out(self._affordable(FURTHER_OUT)))
-        return joined(found, around.drawn(self._affordable(DRAWN)))
+        found = joined(found, around.drawn(self._affordable(DRAWN)))
+        return joined(found, around.hardly_driven(self._affordable(HARDLY_DRIVEN)))
 
     @cached_property
     def _beside_singular(self) -> Nearby:

@@ -11,7 +11,7 @@ import pytest
 
 from symgen.generation.draft import draft_of
 from symgen.generation.results import Options
-from symgen.ir.kernel import Block, Kernel, Literal, Load, Local, Scalar, Statement
+from symgen.ir.kernel import Block, Kernel, Literal, Load, Local, OperationName, Scalar, Statement
 from symgen.ir.wide import widened
 from symgen.model.load import load_model, load_text
 from symgen.verify.expected import Expected
@@ -25,6 +25,7 @@ from symgen.verify.sampling.ranks_in_lanes import ranked_parts
 from symgen.verify.sampling.rates_in_lanes import RatesInLanes
 from symgen.verify.sampling.searched import WorstStateSearch
 from symgen.verify.sampling.states import Sample, rounded, sample_states
+from symgen.verify.single_precision import lost_in_float32
 from symgen.verify.tolerance import FACTOR
 
 # A ladder whose feet slide on a floor and along a wall, and a disc that is geared to its turning.
@@ -370,3 +371,69 @@ def test_surplus_rows_hide_no_loss_of_digits() -> None:
     search, (kernel,) = WorstStateSearch(expected), program.kernels
     search.look(kernel)
     assert search.largest(kernel, program.sincos, "float64") > FACTOR
+
+
+# A jib without a mass on a boom, which a strong spring moves: its drive alone loads the rod.
+BOOM = """
+model: boom
+gravity: [0, -9.81, 0]
+parameters: {m: {value: 6}, light: {value: 1e-6}, l: {value: 0.25}}
+joints:
+  ball: {type: spherical, coordinates: [e0, e1, e2, e3]}
+  boom: {type: prismatic, parent: ball, at: [0, 0, 0.6], axis: [1, 2, 3], coordinate: s}
+  jib: {type: prismatic, parent: boom, at: [0, 0, l], axis: [1, 0, -1], coordinate: d}
+bodies:
+  ball: {mass: light, com: [0, 0, 0.3], inertia: {xx: 0.05, yy: 0.06, zz: 0.09}}
+  boom: {mass: m, com: [0, 0, l/2], inertia: {xx: 0.02, yy: 0.03, zz: 0.03}}
+points:
+  hook: {frame: jib, at: [0, 1.2, 0]}
+  ground: {at: [0.3, 0.3, -0.4]}
+  far: {at: [3, 3, 3]}
+loops:
+  rod: {type: distance, between: [hook, ground], length: 0.9}
+springs:
+  rope: {between: [boom, far], stiffness: 1e4, length: 0.5}
+inputs:
+  winch: {joint: d}
+  lift: {joint: s}
+outputs: [multipliers]
+"""
+
+
+def test_what_float32_loses_is_measured_where_next_to_nothing_drives() -> None:
+    """What the spring leaves of a force that it does not load is all there is then; no estimate tells."""
+    model = load_text(BOOM, "boom.yaml")
+    draft = draft_of(model, model.outputs, Options())
+    programs = draft.programs
+    (kernel,), (single,) = programs["float64"].kernels, programs["float32"].kernels
+    expected = Expected(model, model.outputs, 16, lambda _: None)
+    only = WorstStateSearch(expected)
+    only.look(kernel)
+    assert only.largest(single, programs["float32"].sincos, "float32") < FACTOR  # what the estimates alone find
+    expected.values("float32")
+    search = WorstStateSearch(expected)
+    search.look(kernel)
+    assert search.largest(kernel, programs["float64"].sincos, "float64") < FACTOR
+    assert search.largest(single, programs["float32"].sincos, "float32") > 4 * FACTOR
+
+
+def test_noise_times_noise_is_no_loss_of_the_first_order() -> None:
+    """y = x + 1e10 ((x + 5) - 5 - x) ((x + 7) - 7 - x), of which both brackets are 0 but for roundings."""
+    steps: list[tuple[OperationName, str | None, str | int]] = [
+        ("add", "x", 5), ("sub", None, 5), ("sub", None, "x"), ("add", "x", 7), ("sub", None, 7), ("sub", None, "x"),
+    ]  # fmt: skip
+    statements: list[Statement] = []
+    for number, (operation, left, right) in enumerate(steps):
+        first = Local(f"t{number - 1}") if left is None else Local(left)
+        second = Local(right) if isinstance(right, str) else Literal(Fraction(right))
+        statements.append(Statement((f"t{number}",), operation, (first, second)))
+    statements += [
+        Statement(("noise",), "mul", (Local("t2"), Local("t5"))),
+        Statement(("large",), "mul", (Local("noise"), Literal(Fraction(10) ** 10))),
+        Statement(("y",), "add", (X, Local("large"))),
+    ]
+    kernel = straight(*statements)
+    given = {"q": np.array([[1e-3, 0.0], [0.3, 0.0]])}
+    own, unit = RoundingErrors(kernel).with_units(given)
+    assert (own / unit).max() < 1
+    assert (lost_in_float32(kernel, given) / unit).max() > 1e3 * 2.0**-24
