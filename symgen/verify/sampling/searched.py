@@ -48,6 +48,8 @@ DOUBTFUL = FACTOR / 2
 NEARER = 1e-6
 # How many are judged, and how many are brought onto V at most: not all that lie near come to a regular state.
 JUDGED, SETTLED = 8, 32
+# How many more are, of those at which float32 is measured to lose most.
+MEASURED = 4
 
 
 class WorstStateSearch:
@@ -64,19 +66,22 @@ class WorstStateSearch:
             self._add(kernel, *self._estimated(kernel))
 
     def _add(self, kernel: Kernel, states: Nearby, units: Lanes) -> None:
-        settling = self._settling(kernel.name)
-        doubtful = [place for place in _worst(units, SETTLED) if units[place] > DOUBTFUL]
+        samples = self._brought(kernel, states, units, SETTLED)
+        found = self._worst_of(kernel, samples) if len(samples) > JUDGED else samples
         if "float32" in self._expected.scalars:
-            measured = self._measured(kernel, states)
-            doubtful += [place for place in _worst(measured, SETTLED // 2) if measured[place] > DOUBTFUL]
+            # beside those that estimates tell of, not in their places
+            found += self._brought(kernel, states, self._measured(kernel, states), MEASURED)
+        known = self._states[kernel.name]
+        known += [sample for sample in dict.fromkeys(found) if sample not in known]
+
+    def _brought(self, kernel: Kernel, states: Nearby, units: Lanes, count: int) -> list[Sample]:
+        """The worst of them that leave a doubt, where they can be brought onto V."""
+        settling = self._settling(kernel.name)
+        doubtful = (place for place in _worst(units, count) if units[place] > DOUBTFUL)
         tried = (
-            settling.sample(states.state(place), bool(states.admissible[place]), kernel.name)
-            for place in dict.fromkeys(doubtful)
+            settling.sample(states.state(place), bool(states.admissible[place]), kernel.name) for place in doubtful
         )
-        samples = [sample for sample in tried if sample is not None]
-        for sample in self._worst_of(kernel, samples) if len(samples) > JUDGED else samples:
-            if sample not in self._states[kernel.name]:
-                self._states[kernel.name].append(sample)
+        return [sample for sample in tried if sample is not None]
 
     def _worst_of(self, kernel: Kernel, samples: Sequence[Sample]) -> list[Sample]:
         """Those that a kernel of plain numbers does worst at, half of them in each scalar type.
