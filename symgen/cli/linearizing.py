@@ -9,9 +9,7 @@ from pathlib import Path
 
 from symgen.cli.arguments import positive, values
 from symgen.cli.outcome import DONE, MODEL_WRONG
-
-# What it is called in the place of a quantity.
-LINEARIZATION = "linearization"
+from symgen.generation.requested import LINEARIZATION
 
 
 def add_linearization(parser: argparse.ArgumentParser) -> None:

@@ -14,9 +14,8 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from symgen.generation.results import WrongUseError
+from symgen.generation.requested import check_known, configuration_near
 from symgen.model.availability import lacking
-from symgen.model.expressions.names import did_you_mean
 from symgen.model.model import Model
 from symgen.model.quantities import ROWS
 from symgen.verify.reference.arithmetic.tape import precision
@@ -30,7 +29,7 @@ JACOBIAN = "forward_dynamics_jacobian"
 STEPS_TO_CLOSE, SHUT = 20, 1e-30
 # Accelerations that count as none, against those without inputs and of a g.
 HELD_STILL = 1e-12
-# Of a direction of a basis, squared: less is a rounding of none.
+# Of a direction of a basis: less is a rounding of none.
 DIRECTION = 1e-9
 # Of the largest singular value: a pole that inputs do not reach has less.
 REACHED = 1e-9
@@ -45,7 +44,6 @@ class LinearSystem:
     """x' = A x + B v at a configuration at rest.
 
     `of_places` (n x k) and `of_rates` (n x delta) are the bases: dq = of_places x[:k], dq_dot = of_rates x[k:].
-    `along` names the coordinate that each direction was begun with.
     """
 
     model: Model
@@ -53,7 +51,6 @@ class LinearSystem:
     u: Array
     of_places: Array
     of_rates: Array
-    along: tuple[str, ...]
     a: Array
     b: Array
 
@@ -80,14 +77,9 @@ def linearized(model: Model, start: Mapping[str, float]) -> LinearSystem:
 
     Raises NotLinearizedError where the loops do not close, the inputs do not hold it still, or it has no derivatives.
     """
-    names = [c.name for c in model.coordinates]
-    for name in start:
-        if name not in names:
-            remedy = did_you_mean(name, names, f"it has {', '.join(names)}")
-            raise WrongUseError(f"{name!r} is no coordinate of {model.name}; {remedy}")
+    check_known(model, "start", start, [c.name for c in model.coordinates])
     try:
-        reference = Reference(model)
-        return _Equilibrium(reference, start).system()
+        return _Equilibrium(Reference(model), start).system()
     except ReferenceValueError as reason:
         raise NotLinearizedError(str(reason)) from reason
 
@@ -111,7 +103,8 @@ class _Equilibrium:
             self._parameters = tuple(x.mid() for x in default_parameters(self._model))
         self._none = (Fraction(0),) * n
         self._u: tuple[Any, ...] = (Fraction(0),) * self._model.m
-        self._q = self._closed(self._start(start))
+        self._q: tuple[Any, ...] = tuple(map(Fraction, configuration_near(self._model, start)))
+        self._close()
 
     def system(self) -> LinearSystem:
         """Its linear system."""
@@ -125,35 +118,31 @@ class _Equilibrium:
                 f"no equilibrium: the inputs do not hold it still there, {worst} accelerates by "
                 f"{left[np.argmax(abs(left))]:.3g}; remedy: another place with --start"
             )
-        n, geometric = self._model.n, self._reference.system.r_geometric
-        rows = _numbers(self._evaluated("constraint_jacobian")) if self._model.r else np.zeros((0, n))
-        places, began = _basis(rows[:geometric])
-        rates, _ = _basis(rows)
+        n, m = self._model.n, self._model.m
+        allowed = _numbers(self._evaluated("constraint_variations")) if self._model.r else np.eye(2 * n)
+        places, rates = _basis(allowed[:n, :n]), _basis(allowed[n : 2 * n, n : 2 * n])
         slopes = _numbers(self._evaluated(JACOBIAN))
         of_places, of_rates = rates.T @ slopes[:, :n] @ places, rates.T @ slopes[:, n : 2 * n] @ rates
         k = places.shape[1]
         a = np.block([[np.zeros((k, k)), places.T @ rates], [of_places, of_rates]])
-        b = np.vstack([np.zeros((k, self._model.m)), rates.T @ slopes[:, 2 * n :]])
-        names = tuple(self._model.coordinates[i].name for i in began)
-        return LinearSystem(self._model, _numbers(self._q), _numbers(self._u), places, rates, names, a, b)
+        b = np.vstack([np.zeros((k, m)), rates.T @ slopes[:, 2 * n :]])
+        return LinearSystem(self._model, _numbers(self._q), _numbers(self._u), places, rates, a, b)
 
-    def _start(self, start: Mapping[str, float]) -> tuple[Any, ...]:
-        declared = {name: float(value) for name, value in self._model.configuration}
-        middle = {c.name: float(sum(c.range)) / 2 for c in self._model.coordinates}
-        return tuple(Fraction({**middle, **declared, **start}[c.name]) for c in self._model.coordinates)
-
-    def _closed(self, q: tuple[Any, ...]) -> tuple[Any, ...]:
-        """Where Newton's method leads from q; the loops are closed there."""
-        if not self._reference.system.r_geometric:
-            return q
+    def _close(self) -> None:
+        """Goes where Newton's method leads; the loops are closed there."""
         for _ in range(STEPS_TO_CLOSE):
-            self._q = q
-            gaps = abs(_numbers(self._evaluated("constraint_residual"))).ravel()
-            if gaps.max() <= SHUT:
-                return q
-            q = tuple(x.mid() for x in self._evaluated("projected_configuration").ravel())
-        row = self._model.constraints[int(np.argmax(gaps))].name
-        raise NotLinearizedError(f"no configuration: {row} stays open by {gaps.max():.3g}; remedy: a nearer --start")
+            row, gap = self._widest_gap()
+            if gap <= SHUT:
+                return
+            self._q = tuple(x.mid() for x in self._evaluated("projected_configuration").ravel())
+        raise NotLinearizedError(f"no configuration: {row} stays open by {gap:.3g}; remedy: a nearer --start")
+
+    def _widest_gap(self) -> tuple[str, float]:
+        """The geometric row that is least closed, and how far it is open."""
+        if not self._reference.system.r_geometric:
+            return "", 0.0
+        gaps = abs(_numbers(self._evaluated("constraint_residual"))).ravel()
+        return self._model.constraints[int(np.argmax(gaps))].name, float(gaps.max())
 
     def _accelerations(self) -> Array:
         return _numbers(self._evaluated("forward_dynamics")).ravel()
@@ -169,21 +158,16 @@ def _numbers(values: Sequence[Any] | NDArray[Any]) -> Array:
     return np.vectorize(float, otypes=[np.float64])(np.array(values, dtype=object)) if len(values) else np.zeros(0)
 
 
-def _basis(rows: Array) -> tuple[Array, list[int]]:
-    """An orthonormal basis of what rows allow (n x k), and the coordinate that each direction is begun with.
+def _basis(projector: Array) -> Array:
+    """An orthonormal basis (n x k) of what a projector leaves.
 
-    Each is along the coordinate that moves most freely beside those before it (Gram and Schmidt, pivoted), so that it
-    is the same everywhere and most of its entries are 0.
+    Each direction is along the coordinate that moves most freely beside those before it (Gram and Schmidt, pivoted), so
+    that it is the same everywhere and most of its entries are 0.
     """
-    n = rows.shape[1]
-    left = np.eye(n) - np.linalg.pinv(rows) @ rows if len(rows) else np.eye(n)
-    found: list[Array] = []
-    began: list[int] = []
-    for _ in range(n - (np.linalg.matrix_rank(rows) if len(rows) else 0)):
-        free = np.diag(left).round(9)
-        place = int(np.argmax(free))
+    left, found = projector, list[Array]()
+    for _ in range(round(np.trace(projector))):
+        place = int(np.argmax(np.diag(left).round(9)))
         direction = left[:, place] / np.sqrt(left[place, place])
         found.append(np.where(abs(direction) < DIRECTION, 0.0, direction))
-        began.append(place)
         left = left - np.outer(direction, direction)
-    return np.array(found).T.reshape(n, len(found)), began
+    return np.array(found).T.reshape(len(projector), len(found))

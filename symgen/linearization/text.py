@@ -22,8 +22,8 @@ def linear_system_text(system: LinearSystem, held: Regulator | None) -> str:
     places = [f"{c.name} = {_number(x)}" for c, x in zip(model.coordinates, system.q, strict=True)]
     inputs = [f"{i.name} = {_number(x)}" for i, x in zip(model.inputs, system.u, strict=True)]
     lines = [f"{model.name} at rest", *_listed("at", places), *_listed("held by", inputs)]
-    size = len(system.a)
-    lines += ["", f"x' = A x + B v with {size} states: {len(system.along)} places, {system.of_rates.shape[1]} rates"]
+    size, places_moved, rates_moved = len(system.a), system.of_places.shape[1], system.of_rates.shape[1]
+    lines += ["", f"x' = A x + B v with {size} states: {places_moved} places, {rates_moved} rates"]
     lines += _listed("places along", _directions(system.of_places, [c.name for c in model.coordinates]))
     if not np.array_equal(system.of_places, system.of_rates):
         lines += _listed("rates along", _directions(system.of_rates, [c.rate for c in model.coordinates]))

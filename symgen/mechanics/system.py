@@ -11,6 +11,7 @@ from functools import cached_property
 
 from symgen.mechanics.absolute_angles import AbsoluteAngles
 from symgen.mechanics.bodies import Bodies, Vector3
+from symgen.mechanics.christoffel import by_products_of_rates
 from symgen.mechanics.joint_axes import along_joints
 from symgen.mechanics.places import acceleration_bias
 from symgen.model.checks.signs import nonnegative_parameters, positive_parameters
@@ -250,29 +251,10 @@ class System:
         motion = dict(zip((*self.q, *self.qd), (*self.qd, *acceleration), strict=True))
         rates = derivative_along(graph, self.momentum, motion)
         direct = [p - t for p, t in zip(rates, gradient(graph, self.kinetic_energy, self.q), strict=True)]
-        half = graph.const(1) / 2
-        squared: list[Scalar] = []
-        d = self.mass_matrix_gradient
-        for i, pairs in enumerate(self._products_of_rates()):
-            total = graph.zero
-            for j, k in pairs:
-                christoffel = d[k][i][j] + d[j][i][k] - d[i][j][k]
-                weight = half if j == k else graph.one
-                total = total + christoffel * weight * (self.qd[j] * self.qd[k])
-            squared.append(total)
+        squared = by_products_of_rates(graph, self.qd, self.mass_matrix_gradient, self._mass_slopes)
         linear = matvec(graph, self.mass_matrix, acceleration)
         collected = [a + b for a, b in zip(linear, squared, strict=True)]
         return tuple(min((direct, collected), key=lambda force: cost(force).weight))
-
-    def _products_of_rates(self) -> list[list[tuple[int, int]]]:
-        """For every i the pairs j <= k of rates that may load it: the others have no Christoffel symbol."""
-        pairs: list[set[tuple[int, int]]] = [set() for _ in self.q]
-        for k, slopes in enumerate(self._mass_slopes):
-            for i, j in slopes:
-                pairs[k].add((i, j))
-                pairs[i].add((min(j, k), max(j, k)))
-                pairs[j].add((min(i, k), max(i, k)))
-        return [sorted(these) for these in pairs]
 
     def _inertial_force_of_bodies(self, acceleration: Vector, gravity: Vector3) -> Vector:
         """The same without the energies of the bodies, whose differentiation would undo the recursion."""

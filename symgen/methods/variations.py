@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symgen.symbolic.calculus import gradient
-from symgen.symbolic.matrix import Matrix, add, dot, identity, matmul, scale, subtract
+from symgen.symbolic.calculus import jacobian
+from symgen.symbolic.matrix import Matrix, add, identity, matmul, matvec, scale, subtract
 
 if TYPE_CHECKING:
     from symgen.methods.derivation import Derivation
@@ -21,8 +21,8 @@ def constraint_variations(derivation: Derivation) -> Matrix:
     mechanics, graph, n = derivation.mechanics, derivation.graph, derivation.n
     rows, inverse, projector = mechanics.constraint_jacobian, derivation.space.pseudoinverse, derivation.space.projector
     bias = mechanics.constraint_acceleration_bias(mechanics.qd)
-    velocities = [dot(graph, row, mechanics.qd) for row in rows]
-    accelerations = [dot(graph, row, mechanics.qdd) + a for row, a in zip(rows, bias, strict=True)]
+    velocities = matvec(graph, rows, mechanics.qd)
+    accelerations = [b + a for b, a in zip(matvec(graph, rows, mechanics.qdd), bias, strict=True)]
 
     def taken_back(by_row: Matrix, change: Matrix) -> Matrix:
         """B^+ times what a change does to the rows."""
@@ -31,10 +31,8 @@ def constraint_variations(derivation: Derivation) -> Matrix:
     none = scale(identity(graph, n), graph.zero)
     has_geometric_rows = bool(mechanics.geometric_jacobian)
     places = derivation.geometric_space.projector if has_geometric_rows else identity(graph, n)
-    of_velocities = tuple(tuple(gradient(graph, x, mechanics.q)) for x in velocities)
-    turned = subtract(none, taken_back(of_velocities, places))
-    by_places = tuple(tuple(gradient(graph, x, mechanics.q)) for x in accelerations)
-    by_rates = tuple(tuple(gradient(graph, x, mechanics.qd)) for x in bias)
+    turned = subtract(none, taken_back(jacobian(graph, velocities, mechanics.q), places))
+    by_places, by_rates = jacobian(graph, accelerations, mechanics.q), jacobian(graph, bias, mechanics.qd)
     of_places = subtract(none, add(taken_back(by_places, places), taken_back(by_rates, turned)))
     of_rates = subtract(none, taken_back(by_rates, projector))
     return (

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from symgen.drawing.scene import scene
-from symgen.generation.results import Options, Result, WrongUseError
+from symgen.generation.requested import check_known, configuration_near
+from symgen.generation.results import Options, Result
 from symgen.generation.runnable import Runner
 from symgen.mechanics.genericity import configurations, parameter_values
 from symgen.mechanics.system import System
-from symgen.model.expressions.names import did_you_mean
 from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.pipeline import generate
@@ -72,10 +72,9 @@ def simulated(path: Path, request: Request, progress: Progress) -> Simulation:
     coordinates = {c.name: i for i, c in enumerate(model.coordinates)}
     rates = {c.rate: i for i, c in enumerate(model.coordinates)}
     given = {i.name: k for k, i in enumerate(model.inputs)}
-    _known(model, "start", request.start, [*coordinates, *rates])
-    _known(model, "inputs", request.inputs, [*given])
-    declared = {name: float(value) for name, value in model.configuration}
-    q = [request.start.get(c.name, declared.get(c.name, float(sum(c.range)) / 2)) for c in model.coordinates]
+    check_known(model, "start", request.start, [*coordinates, *rates])
+    check_known(model, "inputs", request.inputs, [*given])
+    q = configuration_near(model, request.start)
     qd = [request.start.get(c.rate, 0.0) for c in model.coordinates]
     u = [request.inputs.get(i.name, 0.0) for i in model.inputs]
     count = max(1, round(request.duration * request.frames))
@@ -87,7 +86,7 @@ def simulated(path: Path, request: Request, progress: Progress) -> Simulation:
         runner = Runner(model, {"float64": verified.programs["float64"]}, Path(folder))
         plant = Plant(model, tuple(parameters[p.name] for p in model.parameters), runner)
         try:
-            start = _start(plant, mechanics, q, qd, chosen=bool(request.start or declared))
+            start = _start(plant, mechanics, q, qd, chosen=bool(request.start or model.configuration))
         except PlantError as fault:
             raise NotSimulatedError(f"no consistent start: {fault}") from fault
         motion = integrate(plant, start, u, times, lambda t: progress(f"integrating, {t:.2f} of {times[-1]:g} s"))
@@ -128,10 +127,3 @@ def _start(
         if not found:
             raise
         return consistent_start(plant, [found[0][c.name] for c in plant.model.coordinates], qd)
-
-
-def _known(model: Model, option: str, values: Mapping[str, float], names: list[str]) -> None:
-    for name in values:
-        if name not in names:
-            remedy = did_you_mean(name, names, f"the model has {', '.join(names) or 'none'}")
-            raise WrongUseError(f"{model.name}: {option}: unknown name {name!r}; {remedy}")

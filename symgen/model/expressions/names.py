@@ -18,6 +18,8 @@ if TYPE_CHECKING:  # the command line corrects misspelt options too, and needs n
 MAXIMUM_NAME = 40
 # Names in a remedy.
 MOST_LISTED = 10
+# Likeness of a name that is meant for sure, and of one that may be.
+SLIP, LIKENESS = 0.9, 0.65
 # Names that count on, from which they are shown by their first and last.
 SHORTEST_RUN = 4
 NAME_PATTERN = "[A-Za-z][A-Za-z0-9_]*"
@@ -96,10 +98,11 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str) -> str:
 
 
 def nearest(name: str, candidates: Sequence[str]) -> str:
-    """The nearest of the candidates: other capitals, one that begins the other, or a few letters apart; else empty."""
+    """The nearest candidate, or empty: in other capitals, by a slip, begun the same, a few letters apart."""
     same = [one for one in candidates if one.lower() == name.lower()]
     long = [one for one in candidates if min(len(one), len(name)) > 2]
     begun = [one for one in long if one.startswith(name) or name.startswith(one)]
-    near = same or sorted(begun, key=lambda one: abs(len(one) - len(name)))
-    near = near or difflib.get_close_matches(name, candidates, 1, 0.65)
+    slip = difflib.get_close_matches(name, candidates, 1, SLIP)
+    near = same or slip or sorted(begun, key=lambda one: abs(len(one) - len(name)))
+    near = near or difflib.get_close_matches(name, candidates, 1, LIKENESS)
     return near[0] if near else ""
