@@ -9,7 +9,7 @@ from pathlib import Path
 
 from symgen.cli.arguments import positive, values
 from symgen.cli.outcome import DONE, MODEL_WRONG
-from symgen.generation.requested import LINEARIZATION
+from symgen.generation.results import LINEARIZATION
 
 
 def add_linearization(parser: argparse.ArgumentParser) -> None:

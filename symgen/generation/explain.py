@@ -12,8 +12,8 @@ from symgen.generation.explain_text import methods_text, overview, quantity_text
 from symgen.generation.facts import facts
 from symgen.generation.notices import replaced
 from symgen.generation.recorded import as_recorded
-from symgen.generation.requested import LINEARIZATION, unknown_quantity
-from symgen.generation.results import NAMED_METHODS, Options
+from symgen.generation.requested import unknown_quantity
+from symgen.generation.results import LINEARIZATION, NAMED_METHODS, Options
 from symgen.methods.selection import MethodChoice
 from symgen.model.load import load_model
 from symgen.quantities.catalogue import BY_NAME
