@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import deque
+from collections import OrderedDict
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
@@ -12,16 +12,25 @@ Made = TypeVar("Made")
 
 
 class LastKernels(Generic[Made]):
-    """Results by kernel, which is known by being the same object: kernels are compared by all that they hold."""
+    """Results by kernel, which is known by being the same object: kernels are compared by all that they hold.
 
-    def __init__(self, count: int) -> None:
-        self._known: deque[tuple[Kernel, Made]] = deque(maxlen=count)
+    Those of the last `count` kernels, and of as many before as have no more than `statements` together with them.
+    """
+
+    def __init__(self, count: int, statements: int = 0) -> None:
+        self._count, self._statements, self._held = count, statements, 0
+        self._known: OrderedDict[int, tuple[Kernel, Made, int]] = OrderedDict()
 
     def of(self, kernel: Kernel, make: Callable[[], Made]) -> Made:
         """The result of a kernel, made if it is not among the last ones."""
-        for known, made in self._known:
-            if known is kernel:
-                return made
-        made = make()
-        self._known.append((kernel, made))
+        known = self._known.get(id(kernel))
+        if known is not None:
+            self._known.move_to_end(id(kernel))
+            return known[1]
+        made, size = make(), len(kernel.statements)
+        self._known[id(kernel)] = kernel, made, size
+        self._held += size
+        while len(self._known) > self._count and self._held > self._statements:
+            _, (_, _, let_go) = self._known.popitem(last=False)
+            self._held -= let_go
         return made

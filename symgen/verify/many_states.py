@@ -183,4 +183,5 @@ class _Plan:
         return _CheckPlan(check.status, check.inclusive, value, limit, first)
 
 
-_PLANS = LastKernels[_Plan](4)
+# Every step looks at all kernels of a model in turn: short ones stay until the next.
+_PLANS = LastKernels[_Plan](4, statements=150_000)

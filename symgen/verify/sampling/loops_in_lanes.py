@@ -23,6 +23,8 @@ LANE_STEPS = 12
 CLOSED_IN_LANES = 1e-11
 # Of the largest singular value: rows depend on each other.
 DEPENDENT = 1e-8
+# Entries of (J J')^-1, for rows of length 1, that leave a step of Newton's method half of its digits.
+FAR_FROM_DEPENDENT = 1e6
 # Steps of Levenberg and Marquardt's method.
 DAMPED_STEPS = 40
 # How small its damping becomes.
@@ -60,23 +62,24 @@ class LoopsInLanes:
         shut = np.ones(q.shape, dtype=bool)
         if held is not None:
             q[np.arange(len(q)), held[0]] = held[1]
+        moving = np.arange(len(q))
         for _ in range(LANE_STEPS if self._system.r_geometric else 0):
-            steps = []
-            for loop, rows, gaps, finite in self._evaluated(q, p):
-                these = list(loop.coordinates)
+            here, still = q[moving], np.zeros(len(moving), dtype=bool)
+            for loop, rows, gaps, finite in self._evaluated(here, p[moving]):
+                these = np.array(loop.coordinates)
                 rows[~finite], gaps[~finite] = 0.0, 0.0
                 if held is not None:
-                    rows = np.concatenate((rows, (held[0][:, None] == np.array(these))[:, None] * 1.0), axis=1)
-                    gaps = np.concatenate((gaps, np.zeros((len(q), 1))), axis=1)
+                    rows = np.concatenate((rows, (held[0][moving, None] == these)[:, None] * 1.0), axis=1)
+                    gaps = np.concatenate((gaps, np.zeros((len(moving), 1))), axis=1)
                 rows, gaps = _in_own_units(rows, gaps)
                 near = np.abs(gaps).max(axis=1) <= CLOSED_IN_LANES
-                shut[:, these] = (finite & near)[:, None]
-                if not near.all():
-                    steps.append((these, times(np.linalg.pinv(rows, rcond=DEPENDENT), gaps)))
-            if not steps:
+                shut[np.ix_(moving, these)] = (finite & near)[:, None]
+                here[np.ix_(~near, these)] -= _newton_step(rows[~near], gaps[~near])
+                still |= ~near
+            q[moving] = here
+            moving = moving[still]
+            if not len(moving):
                 break
-            for these, step in steps:
-                q[:, these] -= step
         return q, shut
 
     def damped(self, q: Lanes, p: Lanes, most_steps: int = DAMPED_STEPS) -> Lanes:
@@ -125,6 +128,18 @@ class LoopsInLanes:
             rows = block(made, [[r + i * n + j for j in loop.coordinates] for i in loop.rows])
             gaps = block(made, [[i] for i in loop.rows])[:, :, 0]
             yield loop, rows, gaps, np.isfinite(rows).all(axis=(1, 2)) & np.isfinite(gaps).all(axis=1)
+
+
+def _newton_step(rows: Lanes, gaps: Lanes) -> Lanes:
+    """J^+ g of each state, for rows of length 1: by J J' where these are far from dependent, which is far shorter."""
+    across = np.swapaxes(rows, 1, 2)
+    gram = rows @ across
+    # what rounding leaves of rows that depend on each other is no pivot
+    inverse = np.linalg.inv(gram + 1e-14 * np.eye(gram.shape[1]))
+    step = times(across, times(inverse, gaps))
+    dependent = ~(np.abs(inverse).max(axis=(1, 2), initial=0.0) < FAR_FROM_DEPENDENT)
+    step[dependent] = times(np.linalg.pinv(rows[dependent], rcond=DEPENDENT), gaps[dependent])
+    return step
 
 
 def _damped_step(rows: Lanes, gaps: Lanes, damping: Lanes) -> Lanes:
