@@ -371,7 +371,7 @@ static DELTA_APART delta_status delta_inverse_dynamics_cause(const double q[6], 
 delta_status delta_inverse_dynamics(const double q[6], const double qd[6], const double qdd[6], const delta_params *p, double u[3]) {
     (void)qd;
     const double l_2 = p->l_2;
-    if (DELTA_RARELY(!(l_2 >= 0.00043))) {
+    if (DELTA_RARELY(!(l_2 >= 0.00076))) {
         return DELTA_PARAMETER_RANGE;
     }
     if (DELTA_RARELY(!(8.5 >= l_2))) {

@@ -23,7 +23,7 @@
  * (changes of sign are not counted)
  *
  * Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:
- *   inverse_dynamics 0.00043 <= l_2 <= 8.5
+ *   inverse_dynamics 0.00076 <= l_2 <= 8.5
  *   forward_dynamics 0.03 <= m_a, J_a <= 3.5, J_m <= 1.5
  *   multipliers m_a <= 20, m_r <= 5
  *

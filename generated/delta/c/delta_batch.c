@@ -297,7 +297,7 @@ size_t delta_inverse_dynamics_batch(size_t count, size_t stride, const double *q
             const double t325 = t319 * t324;
             const double t326 = t314 - t325;
             double rest = (t290 - t290) * t311 * t326;
-            rest += l_2 >= 0.00043 ? 0.0 : 1.0;
+            rest += l_2 >= 0.00076 ? 0.0 : 1.0;
             rest += 8.5 >= l_2 ? 0.0 : 1.0;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += 100000.0 >= t2 ? 0.0 : 1.0;

@@ -348,6 +348,7 @@ size_t delta_forward_dynamics_batch_f(size_t count, size_t stride, const float *
     const float m_p = p->m_p;
     const float J_m = p->J_m;
     const float g = p->g;
+    const float l_2 = p->l_2;
     const float t36 = 0.5f * r;
     const float t174 = 0.5f * m_r;
     const float t173 = 0.25f * m_a;
@@ -889,6 +890,7 @@ size_t delta_forward_dynamics_batch_f(size_t count, size_t stride, const float *
             const float t467 = t399 - t466;
             const float t468 = t189 * t467;
             float rest = (t459 - t459) * t465 * t468 + (t476 - t476) * t484 * t492;
+            rest += l_2 >= 7.5e-08f ? 0.0f : 1.0f;
             rest += m_a >= 0.03f ? 0.0f : 1.0f;
             rest += 3.5f >= J_a ? 0.0f : 1.0f;
             rest += 1.5f >= J_m ? 0.0f : 1.0f;

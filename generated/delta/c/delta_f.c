@@ -554,6 +554,10 @@ delta_status delta_inverse_dynamics_f(const float q[6], const float qd[6], const
 }
 
 delta_status delta_forward_dynamics_f(const float q[6], const float qd[6], const float u[3], const delta_params_f *p, float qdd[6]) {
+    const float l_2 = p->l_2;
+    if (DELTA_RARELY_F(!(l_2 >= 7.5e-08f))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const float m_a = p->m_a;
     if (DELTA_RARELY_F(!(m_a >= 0.03f))) {
         return DELTA_PARAMETER_RANGE;

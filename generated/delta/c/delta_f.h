@@ -24,7 +24,7 @@
  *
  * Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:
  *   inverse_dynamics l_1 <= 3.5, 0.14 <= l_2 <= 8.5
- *   forward_dynamics 0.03 <= m_a, J_a <= 3.5, J_m <= 1.5
+ *   forward_dynamics 7.5e-08 <= l_2, 0.03 <= m_a, J_a <= 3.5, J_m <= 1.5
  *   multipliers 7.5e-08 <= l_2, m_a <= 20, m_r <= 5
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

@@ -263,7 +263,7 @@ static DELTA_APART delta_status delta_inverse_dynamics_sc_cause(const delta_trig
 delta_status delta_inverse_dynamics_sc(const delta_trig *sc, const double q[6], const double qd[6], const double qdd[6], const delta_params *p, double u[3]) {
     (void)qd;
     const double l_2 = p->l_2;
-    if (DELTA_RARELY(!(l_2 >= 0.00043))) {
+    if (DELTA_RARELY(!(l_2 >= 0.00076))) {
         return DELTA_PARAMETER_RANGE;
     }
     if (DELTA_RARELY(!(8.5 >= l_2))) {

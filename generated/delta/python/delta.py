@@ -23,7 +23,7 @@ singularity           56    107     13      3      3      0
 (changes of sign are not counted)
 
 Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:
-  inverse_dynamics 0.00043 <= l_2 <= 8.5
+  inverse_dynamics 0.00076 <= l_2 <= 8.5
   forward_dynamics 0.03 <= m_a, J_a <= 3.5, J_m <= 1.5
   multipliers m_a <= 20, m_r <= 5
 
@@ -230,7 +230,7 @@ def inverse_dynamics(q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, p: Parameters 
         J_m = np.float64(p.J_m)
         g = np.float64(p.g)
         l_2 = np.float64(p.l_2)
-        status = _first(status, ~np.asarray(l_2 >= 0.00043), 6)
+        status = _first(status, ~np.asarray(l_2 >= 0.00076), 6)
         status = _first(status, ~np.asarray(8.5 >= l_2), 6)
         t1 = np.abs(a_1)
         t2 = np.abs(a_2)
