@@ -62,9 +62,13 @@ def _by_places(mechanics: System, velocity: Vector) -> dict[int, Scalar]:
     names, leaves = with_leaves(mechanics, owners)
     held = [leaf for three in leaves.values() for leaf in three]
     places = [place for owner in leaves for place in kinematics.position(owner)]
-    moved = dict(zip(mechanics.q, velocity, strict=True))
-    rates = derivative_along(graph, places, moved)
-    accelerations = derivative_along(graph, rates, moved)
+    # the velocity may depend on q, and stands still here all the same
+    still = tuple(graph.stand_in(f"{c.name} standing rate") for c in mechanics.model.coordinates)
+    moved = dict(zip(mechanics.q, still, strict=True))
+    found_rates = derivative_along(graph, places, moved)
+    bound = [*found_rates, *derivative_along(graph, found_rates, moved)]
+    made = substitute(graph, bound, dict(zip(still, velocity, strict=True)))
+    rates, accelerations = made[: len(places)], made[len(places) :]
     variables = (*mechanics.q, *held)
     along, frozen = ([graph.stand_in(f"{x.serial} {word}") for x in variables] for word in ("rate", "frozen rate"))
     values = [*velocity, *rates]

@@ -6,14 +6,14 @@ or six products and sums, and so does an angle that another one is turned into b
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from symgen.model.kinematics.fixed_angles import sine_of_steps
 from symgen.symbolic.angles.angle_forms import angle_form
 from symgen.symbolic.identity import same_values
 from symgen.symbolic.scalar import PI, Graph, Scalar
-from symgen.symbolic.traverse import reached, topological
+from symgen.symbolic.traverse import reached
 
 # An odd number without a pattern, and a prime modulo which its powers are taken: sums are equal by chance hardly
 # ever.
@@ -183,15 +183,26 @@ def _signed(graph: Graph, sign_a: int, a: Scalar, sign_b: int, b: Scalar) -> Sca
     return graph.raw("sub", (b, a)) if sign_b > 0 else graph.raw("neg", (graph.raw("add", (a, b)),))
 
 
-def _replace(graph: Graph, outputs: Sequence[Scalar], image: dict[Scalar, Scalar]) -> list[Scalar]:
-    done: dict[Scalar, Scalar] = dict(image)
-    for node in topological([*outputs, *image.values()]):
-        if node in done:
+def _replace(graph: Graph, outputs: Sequence[Scalar], image: Mapping[Scalar, Scalar]) -> list[Scalar]:
+    """The outputs with images in the place of nodes, in what images are made of, too.
+
+    An angle may be computed from sines of others.  Where its own sine kept the angle as it was before these were
+    replaced, both would be computed, and differ by their roundings.
+    """
+    done: dict[Scalar, Scalar] = {}
+    stack = list(reversed(outputs))
+    while stack:
+        node = stack[-1]
+        needed = (image[node],) if node in image else node.args
+        missing = [x for x in reversed(needed) if x not in done]
+        if node not in done and missing:
+            stack += missing
             continue
-        args = tuple(done.get(argument, argument) for argument in node.args)
-        if args == node.args:
-            done[node] = node
-        else:
+        stack.pop()
+        if node in image:
+            done[node] = done[image[node]]
+        elif node not in done:
+            args = tuple(done[argument] for argument in node.args)
             # as it stands: the constructors would find the angle again
-            done[node] = graph.raw(node.op, args, node.payload)
+            done[node] = node if args == node.args else graph.raw(node.op, args, node.payload)
     return [done[output] for output in outputs]

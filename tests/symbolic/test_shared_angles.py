@@ -1,0 +1,23 @@
+"""Angles that are computed from sines of others: what takes the place of a sine is made of what took their places."""
+
+from __future__ import annotations
+
+from symgen.symbolic.angles.sharing import angles_of, share_angles
+from symgen.symbolic.scalar import PI, Graph
+from symgen.symbolic.traverse import reached
+
+
+def test_an_angle_behind_shared_sines_is_computed_once() -> None:
+    graph = Graph()
+    x, turn = graph.symbol("x"), graph.const(2 * PI / 3)
+    steps = [x]
+    for _ in range(3):
+        here = steps[-1]
+        moved = graph.trig("sin", here) * graph.trig("cos", here + turn)
+        steps.append(graph.function("rounded", (here + moved / 5,)))
+    outputs = [graph.trig("sin", steps[-1]), graph.trig("sin", steps[-1] + turn)]
+    shared = share_angles(graph, outputs)
+    # one pair a step: the turned angle follows from it
+    assert len(angles_of(outputs)) == 8
+    assert len(angles_of(shared)) == 4
+    assert len([node for node in reached(shared) if node.op == "rounded"]) == 3
