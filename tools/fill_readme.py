@@ -124,7 +124,8 @@ def quantities() -> str:
         "Names in `outputs:`, C and Python, with the symbols and equation numbers of the paper.",
         "τ = G q̈ + C q̇ + Q − Q_a. Matrices are row-major.",
         "",
-        "n coordinates, m inputs, r constraints, of these r_g geometric, δ degrees of freedom, p points.",
+        "n coordinates, m inputs, r constraints, of these r_g geometric, δ degrees of freedom, p points; q_m, qd_m and "
+        "qdd_m are measured coordinates, rates and accelerations.",
         "",
         "| name | symbol | equation | what | arguments | shape |",
         "|---|---|---|---|---|---|",

@@ -21,7 +21,17 @@ STATUS_MEANING: dict[Status, str] = {
     Status.ANGLE_RANGE: "an angle is beyond the range of the sine and cosine",
     Status.MASS_RANK: "the masses do not determine the acceleration although the constraints keep their rank",
     Status.PARAMETER_RANGE: "a parameter is so far from its value in the model file that the result would lose digits",
+    Status.MEASURED_RANK: "what is measured does not determine the rest at this configuration",
+    Status.NOT_CLOSED: "Newton's method has not closed the loops from this start",
+    Status.BRANCH: "the start is so far away that the result may belong to another assembly mode",
 }
+# Those of models that name what is measured.
+_OF_MEASURED = frozenset({Status.MEASURED_RANK, Status.NOT_CLOSED, Status.BRANCH})
+
+
+def statuses_of(model: Model) -> tuple[Status, ...]:
+    """The statuses that kernels of a model may have."""
+    return tuple(status for status in Status if model.measured or status not in _OF_MEASURED)
 
 
 def symbol_lines(model: Model) -> Iterator[str]:
@@ -33,6 +43,9 @@ def symbol_lines(model: Model) -> Iterator[str]:
         yield "Inputs u:"
         for index, control in enumerate(model.inputs):
             yield _symbol(f"u[{index}]", control.name, control.unit, control.description)
+    if model.measured:
+        yield "Measured coordinates q_m (rates qd_m and accelerations qdd_m in the same order):"
+        yield f"  {', '.join(model.measured)}"
     if model.allocation is not None:
         yield "How inverse_dynamics shares the work among the inputs:"
         yield from _allocation_lines(model.allocation)

@@ -29,6 +29,9 @@ class Status(IntEnum):
     ANGLE_RANGE = 4
     MASS_RANK = 5
     PARAMETER_RANGE = 6
+    MEASURED_RANK = 7
+    NOT_CLOSED = 8
+    BRANCH = 9
 
 
 OperationName: TypeAlias = Choice[
@@ -90,12 +93,16 @@ Operand: TypeAlias = Local | Literal
 
 @dataclass(frozen=True, slots=True)
 class Load:
-    """`local = argument[index]`; `member` is the parameter in the struct `p`, the sine or cosine in the struct `sc`."""
+    """`local = argument[index]`; `member` is the parameter in the struct `p`, the sine or cosine in the struct `sc`.
+
+    A measured value is that of the coordinate at `place`.
+    """
 
     local: str
-    argument: Choice["q", "qd", "qdd", "u", "p", "sc"]
+    argument: Choice["q", "qd", "qdd", "u", "q_m", "qd_m", "qdd_m", "p", "sc"]
     index: int
     member: str = ""
+    place: int = -1
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,10 +149,14 @@ class Check:
 
 @dataclass(frozen=True, slots=True)
 class Argument:
-    """An array argument of a kernel; arrays of length 0 are left out of signatures."""
+    """An array argument of a kernel; arrays of length 0 are left out of signatures.
 
-    name: Choice["q", "qd", "qdd", "u"]
+    Measured values are those of the coordinates at `places`.
+    """
+
+    name: Choice["q", "qd", "qdd", "u", "q_m", "qd_m", "qdd_m"]
     length: int
+    places: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

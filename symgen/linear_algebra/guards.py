@@ -33,7 +33,8 @@ class Guard:
     `degree` is 2 for a sum of squares (the threshold is squared), else 1.  `first` holds guards that are looked at
     only on failure, to name the cause.  `scale` takes the place of D_max where another factor of the denominator
     has a guard of its own.  `directions` is how many the denominator is a determinant of, in this scale.  One that is
-    `positive` is lost below 0, too: pivots of a definite matrix are lengths to what comes after them.
+    `positive` is lost below 0, too: pivots of a definite matrix are lengths to what comes after them.  One to be
+    `small` fails where it is not negligible.
     """
 
     status: Status
@@ -43,6 +44,7 @@ class Guard:
     scale: Scalar | None = None
     directions: int = 1
     positive: bool = False
+    small: bool = False
 
     def threshold(self, n: int, unit_roundoff: Fraction) -> Fraction:
         """8 n eps for one direction, n eps for determinants of three or more; squared for sums of squares."""

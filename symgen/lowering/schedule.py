@@ -31,7 +31,7 @@ from symgen.linear_algebra.guards import Guard, lost_only_at_zero, magnitude, wh
 from symgen.lowering.writer import ANGLE, ScalarWriter, Test, angles_among, angles_of
 from symgen.mechanics.system import System
 from symgen.methods.quantity import Quantity
-from symgen.model.quantities import ROWS
+from symgen.model.quantities import MEASURED_ARGUMENTS, ROWS
 from symgen.runtime.activity import each
 from symgen.symbolic.angles.sharing import share_angles
 from symgen.symbolic.scalar import Graph
@@ -39,7 +39,15 @@ from symgen.symbolic.scalar import Scalar as Node
 from symgen.symbolic.traverse import topological
 
 # The order in which statuses are reported (interface, section 4).
-ORDER = (Status.ANGLE_RANGE, Status.CONSTRAINT_RANK, Status.MASS_RANK, Status.ACTUATION_RANK)
+ORDER = (
+    Status.ANGLE_RANGE,
+    Status.CONSTRAINT_RANK,
+    Status.MASS_RANK,
+    Status.ACTUATION_RANK,
+    Status.MEASURED_RANK,
+    Status.BRANCH,
+    Status.NOT_CLOSED,
+)
 
 
 def schedule(mechanics: System, quantities: Sequence[Quantity], scalars: Sequence[Scalar]) -> dict[Scalar, Program]:
@@ -83,6 +91,9 @@ class _GuardTests:
             graph = self._mechanics.graph
             signed = guard.degree == 1 and not guard.positive
             size = graph.function("abs", (guard.denominator,)) if signed else guard.denominator
+            if guard.small:
+                self._known[guard] = Test(guard.status, self._limit(guard), size, (), vanishes=False)
+                return self._known[guard]
             first = tuple(self.tests(guard.first))
             if all(cause.status is guard.status and not cause.first for cause in first):
                 first = ()  # nothing to tell apart
@@ -217,8 +228,11 @@ def _meant(outputs: Sequence[Node], tests: Sequence[Test], image: Mapping[Node, 
 
 
 def _arguments(mechanics: System, quantity: str) -> tuple[Argument, ...]:
-    sizes = {"q": mechanics.n, "qd": mechanics.n, "qdd": mechanics.n, "u": mechanics.m}
-    return tuple(Argument(name, sizes[name]) for name in ROWS[quantity].arguments if sizes[name])
+    n, m, places = mechanics.n, mechanics.m, mechanics.model.measured_places
+    sizes = Argument("q", n), Argument("qd", n), Argument("qdd", n), Argument("u", m)
+    measured = (Argument(name, len(places), places) for name in MEASURED_ARGUMENTS)
+    every = {argument.name: argument for argument in (*sizes, *measured)}
+    return tuple(every[name] for name in ROWS[quantity].arguments if every[name].length)
 
 
 def _causes(tests: Sequence[Test]) -> list[Node]:

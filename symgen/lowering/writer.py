@@ -8,6 +8,7 @@ from fractions import Fraction
 from symgen.diagnostics import SymgenBug
 from symgen.ir.kernel import Block, Check, Literal, Load, Local, Operand, Statement, Status
 from symgen.mechanics.system import System
+from symgen.model.quantities import MEASURED_ARGUMENTS
 from symgen.records import dataclass
 from symgen.symbolic.scalar import Graph
 from symgen.symbolic.scalar import Scalar as Node
@@ -61,7 +62,7 @@ class ScalarWriter:
 
     def loads(self) -> tuple[Load, ...]:
         """The inputs used, arguments first, each in order of its index."""
-        order = {"q": 0, "qd": 1, "qdd": 2, "u": 3, "p": 4}
+        order = {name: k for k, name in enumerate(("q", "qd", "qdd", "u", *MEASURED_ARGUMENTS, "p"))}
         return tuple(sorted(self._loads.values(), key=lambda load: (order[load.argument], load.index)))
 
     def operand(self, node: Node) -> Operand:
@@ -192,6 +193,9 @@ def _symbol_loads(mechanics: System) -> dict[str, Load]:
         loads[c.name] = Load(c.name, "q", i)
         loads[c.rate] = Load(c.rate, "qd", i)
         loads[c.acceleration] = Load(c.acceleration, "qdd", i)
+    for argument, names in zip(MEASURED_ARGUMENTS, model.measured_names, strict=True):
+        for i, (name, place) in enumerate(zip(names, model.measured_places, strict=True)):
+            loads[name] = Load(name, argument, i, place=place)
     for i, given in enumerate(model.inputs):
         loads[given.name] = Load(given.name, "u", i)
     for i, parameter in enumerate(model.parameters):

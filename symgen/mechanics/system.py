@@ -55,6 +55,7 @@ class System:
         self.parameters: Vector = tuple(graph.symbol(p.name) for p in model.parameters)
         self.u: Vector = tuple(graph.symbol(i.name) for i in model.inputs)
         q, qd = (self.q, self.qd) if change is None else (change.relative(self.q), change.relative(self.qd))
+        self.measured = tuple(tuple(map(symbol, names)) for names in model.measured_names)
         self.names: dict[str, Scalar] = {
             **{c.name: node for c, node in zip(model.coordinates, q, strict=True)},
             **{c.rate: node for c, node in zip(model.coordinates, qd, strict=True)},

@@ -29,6 +29,8 @@ from symgen.methods.allocation import InputAllocation
 from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
 from symgen.methods.forward_dynamics.motion import Problem
 from symgen.methods.least_inputs import least_inputs
+from symgen.methods.measured import MeasuredMotion
+from symgen.methods.measured_configuration import MeasuredConfiguration
 from symgen.symbolic.calculus import derivative_along, jacobian
 from symgen.symbolic.matrix import (
     Matrix,
@@ -215,6 +217,18 @@ class Derivation:
         scale = magnitude(self.graph, [guard.denominator])[0] if guard.scale is None else guard.scale
         denominator, scale = substitute(self.graph, [guard.denominator, scale], replacements)
         return replace(guard, denominator=denominator, scale=scale)
+
+    # from what is measured -------------------------------------------------------------------------------------------
+
+    @cached_property
+    def measured_motion(self) -> MeasuredMotion:
+        """What measured rates determine."""
+        return MeasuredMotion(self)
+
+    @cached_property
+    def measured_configuration(self) -> MeasuredConfiguration:
+        """What measured coordinates determine."""
+        return MeasuredConfiguration(self)
 
     # projected equations (30) ----------------------------------------------------------------------------------------
 

@@ -3,7 +3,14 @@
 from __future__ import annotations
 
 from symgen.model.model import Model
-from symgen.model.quantities import ACTUATORS, OF_INPUTS, PARTITION, VARIATIONS, QuantityRow
+from symgen.model.quantities import (
+    ACTUATORS,
+    MEASURED_PLACES,
+    OF_INPUTS,
+    PARTITION,
+    VARIATIONS,
+    QuantityRow,
+)
 
 
 def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actuation: int | None = None) -> str | None:
@@ -11,9 +18,10 @@ def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actua
 
     `delta` and `actuation`, the rank of the projected control matrix, are left out where only the file is known.
     """
+    geometric = sum(row.kind == "geometric" for row in model.constraints)
     counts = {
         "r": (model.r, "constraints"),
-        "r_g": (sum(row.kind == "geometric" for row in model.constraints), "geometric constraints"),
+        "r_g": (geometric, "geometric constraints"),
         "m": (model.m, "inputs"),
         "points": (len(model.mechanism.points), "points"),
         "delta": (delta, "degrees of freedom"),
@@ -23,6 +31,13 @@ def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actua
             return f"the model has no {what}"
     if quantity.needs == PARTITION and not model.independent_velocities:
         return "the model names no `independent_velocities`"
+    if quantity.is_of_measured and not model.measured:
+        return "the model names no `measured` coordinates"
+    if quantity.needs == MEASURED_PLACES:
+        if geometric == 0:
+            return "the model has no geometric constraints: every place has to be measured"
+        if geometric < model.r and len(model.measured) < model.n - geometric:
+            return "rows that hold rates leave places open: all of these would have to be measured"
     if quantity.needs == ACTUATORS and delta is not None and not model.m == delta == actuation:
         return "it needs as many independent inputs as degrees of freedom"
     if quantity.needs == VARIATIONS and not model.constraints:

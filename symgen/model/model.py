@@ -232,6 +232,7 @@ class Model:
     allocation: Allocation | None = None
     trig_range: Literal["normal", "wide"] = "normal"
     derivatives: bool = False
+    measured: tuple[str, ...] = ()
     assembly: Assembly | None = None
     row_units: tuple[int, ...] = ()
     taken: tuple[tuple[str, Fraction], ...] = ()
@@ -240,6 +241,25 @@ class Model:
     def c_name(self) -> str:
         """What its files, functions and types are called: its name, unless that clashes."""
         return c_name(self.name)
+
+    @property
+    def measured_places(self) -> tuple[int, ...]:
+        """The numbers of the measured coordinates, in the order of the file."""
+        names = [c.name for c in self.coordinates]
+        return tuple(names.index(name) for name in self.measured)
+
+    @property
+    def measured_names(self) -> tuple[tuple[str, ...], ...]:
+        """What the measured values, rates and accelerations are called: names that nothing else has."""
+        coordinates = [self.coordinates[k] for k in self.measured_places]
+        taken = {name for c in self.coordinates for name in (c.name, c.rate, c.acceleration)}
+        taken |= {item.name for group in (self.parameters, self.definitions, self.inputs) for item in group}
+
+        def free(name: str) -> str:
+            return free(name + "_") if name in taken else name
+
+        levels = ([c.name for c in coordinates], [c.rate for c in coordinates], [c.acceleration for c in coordinates])
+        return tuple(tuple(free(f"{name}_measured") for name in level) for level in levels)
 
     @property
     def n(self) -> int:

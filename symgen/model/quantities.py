@@ -8,9 +8,13 @@ from typing import Literal, TypeAlias, cast
 
 from symgen.records import dataclass
 
-Argument: TypeAlias = Literal["q", "qd", "qdd", "u"]
+Argument: TypeAlias = Literal["q", "qd", "qdd", "u", "q_m", "qd_m", "qdd_m"]
+# Measured coordinates, rates and accelerations.
+MEASURED_ARGUMENTS: tuple[Literal["q_m", "qd_m", "qdd_m"], ...] = ("q_m", "qd_m", "qdd_m")
 # What a model must have for some quantities.
 PARTITION, ACTUATORS, POINTS = "independent_velocities", "m = delta", "points"
+# What encoders determine: of rates, and of places.
+MEASURED, MEASURED_PLACES = "measured", "measured places"
 # Those that `all` takes where the model says `derivatives` only; the latter two need more than constraints that do not
 # depend on each other.
 DERIVATIVES, OF_INPUTS, VARIATIONS = "derivatives", "derivatives of inputs", "derivatives along constraints"
@@ -45,6 +49,11 @@ class QuantityRow:
     def is_derivative(self) -> bool:
         """Whether `all` takes it where the model says `derivatives` only."""
         return self.needs in (DERIVATIVES, OF_INPUTS, VARIATIONS)
+
+    @property
+    def is_of_measured(self) -> bool:
+        """Whether it is found from measured coordinates."""
+        return self.needs in (MEASURED, MEASURED_PLACES)
 
     def extents(self, sizes: Mapping[str, int]) -> tuple[int, ...]:
         """Its shape in numbers."""
@@ -110,6 +119,12 @@ QUANTITIES: tuple[QuantityRow, ...] = (
          "acceleration made admissible"),
     _row("projected_configuration", "q − B⁺g", "", "q_projected", "q", "n",
          "two Newton steps towards the configuration space"),
+    _row("configuration_from_measured", "q(q_m)", "", "q_found", "q_m q", "n",
+         "the configuration with the measured coordinates, or nearest to them, on the branch of q", MEASURED_PLACES),
+    _row("velocity_from_measured", "q̇(q̇_m)", "", "qd_found", "q qd_m", "n",
+         "the admissible velocity with the measured rates, or nearest to them", MEASURED),
+    _row("acceleration_from_measured", "q̈(q̈_m)", "", "qdd_found", "q qd_m qdd_m", "n",
+         "the admissible acceleration with the measured ones, or nearest to them, at the measured velocity", MEASURED),
     _row("inverse_dynamics", "u", "(27)", "u", "q qd qdd", "m", "the smallest inputs that produce the motion",
          main=True),
     _row("inverse_dynamics_jacobian", "J_u", "", "u_x", "q qd qdd", "m 3*n",

@@ -39,8 +39,8 @@ from symgen.model.file.scope import CONFIGURATION, STATE, Scope
 from symgen.model.file.source import MappingNode, Node, ScalarNode
 from symgen.model.kinematics.components import without_components
 from symgen.model.mechanism import Mechanism, Quaternion
-from symgen.model.model import Model
-from symgen.model.quantities import QUANTITIES
+from symgen.model.model import Input, Model
+from symgen.model.quantities import QUANTITIES, ROWS
 
 ZERO = Number(Fraction(0))
 
@@ -92,7 +92,8 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
         allocation=allocation,
         applied_forces=forces,
         outputs=_outputs(tree.get("outputs"), bool(inputs)),
-        independent_velocities=_coordinate_list(scope, tree.get("independent_velocities"), names),
+        independent_velocities=_coordinate_list(scope, tree, "independent_velocities", names),
+        measured=_coordinate_list(scope, tree, "measured", names) or _driven(tree.get("outputs"), inputs),
         derivatives=text_of(tree.get("derivatives")) == "true",
         configuration=_configuration(scope, tree.get("configuration"), names, joint_coordinates),
         constraint_rank_tolerance=_tolerance(scope, tolerances, "constraint_rank"),
@@ -165,8 +166,17 @@ def _outputs(node: Node | None, has_inputs: bool) -> tuple[str, ...]:
     return tuple(outputs) or (("inverse_dynamics",) if has_inputs else ("forward_dynamics",))
 
 
-def _coordinate_list(scope: Scope, node: Node | None, names: tuple[str, ...]) -> tuple[str, ...]:
+def _driven(outputs: Node | None, inputs: tuple[Input, ...]) -> tuple[str, ...]:
+    """The coordinates that inputs drive alone: what is measured where outputs need it and the file does not say."""
+    asked = any(text_of(item) in ROWS and ROWS[str(text_of(item))].is_of_measured for item in items(outputs))
+    columns = [given.acts_on for given in inputs if given.velocity is None] if asked else []
+    driven = (column[0] for column in columns if len(column) == 1)
+    return tuple(dict.fromkeys(name for name, force in driven if isinstance(force, Number)))
+
+
+def _coordinate_list(scope: Scope, tree: MappingNode, key: str, names: tuple[str, ...]) -> tuple[str, ...]:
     chosen: list[str] = []
+    node = tree.get(key)
     for item in items(node):
         name = text_of(item)
         if name is None:
@@ -175,9 +185,9 @@ def _coordinate_list(scope: Scope, node: Node | None, names: tuple[str, ...]) ->
             remedy = did_you_mean(name, names, "name coordinates, without _dot")
             if name.removesuffix("_dot") in names:
                 remedy = f"write the coordinate: `{name.removesuffix('_dot')}`"
-            scope.wrong_about(name, f"`{name}` in `independent_velocities` is no coordinate", remedy, item.span)
+            scope.wrong_about(name, f"`{name}` in `{key}` is no coordinate", remedy, item.span)
         elif name in chosen:
-            scope.wrong(f"`{name}` stands twice in `independent_velocities`", "name it once", item.span)
+            scope.wrong(f"`{name}` stands twice in `{key}`", "name it once", item.span)
         else:
             chosen.append(name)
     # With a faulty name the count would be wrong too; one mistake is enough.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from symgen.backends.about import STATUS_MEANING
+from symgen.backends.about import STATUS_MEANING, statuses_of
 from symgen.backends.c.names import c_names, global_name, status_name
 from symgen.backends.defaults import default_values
 from symgen.backends.literals import decimal_text
@@ -16,6 +16,7 @@ from symgen.ir.kernel import Kernel, Program, Status
 from symgen.ir.sincos import ANGLE_LIMIT
 from symgen.ir.wide_functions import works_with_pairs
 from symgen.model.model import Model, Range
+from symgen.model.quantities import MEASURED_ARGUMENTS
 from symgen.naming import macro_name
 from symgen.package.single_header import implementation_macro
 
@@ -87,12 +88,13 @@ def _example(model: Model, program: Program) -> Iterator[str]:
 
 
 def _order(model: Model, argument: str) -> str:
-    names = {
+    names: dict[str, list[str]] = {
         "q": [c.name for c in model.coordinates],
         "qd": [c.rate for c in model.coordinates],
         "qdd": [c.acceleration for c in model.coordinates],
         "u": [control.name for control in model.inputs],
     }
+    names |= zip(MEASURED_ARGUMENTS, map(list, model.measured_names), strict=True)
     return ", ".join(names[argument])
 
 
@@ -131,7 +133,7 @@ def _statuses(model: Model, programs: Sequence[Program]) -> Iterator[str]:
     yield ""
     yield "| | | |"
     yield "|---|---|---|"
-    yield from (f"| {int(s)} | `{status_name(model, s)}` | {STATUS_MEANING[s]} |" for s in Status)
+    yield from (f"| {int(s)} | `{status_name(model, s)}` | {STATUS_MEANING[s]} |" for s in statuses_of(model))
     yield ""
     limits = [(C_TYPE[p.scalar], decimal_text("float64", ANGLE_LIMIT[p.scalar])) for p in programs if p.sincos]
     if limits:

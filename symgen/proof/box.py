@@ -23,6 +23,9 @@ def box(model: Model) -> dict[str, tuple[Range, ...]]:
         "qd": tuple(coordinate.rate_range for coordinate in model.coordinates),
         "qdd": tuple(coordinate.acceleration_range for coordinate in model.coordinates),
         "u": (_UNIT,) * model.m,
+        "q_m": tuple(model.coordinates[k].range for k in model.measured_places),
+        "qd_m": tuple(model.coordinates[k].rate_range for k in model.measured_places),
+        "qdd_m": tuple(model.coordinates[k].acceleration_range for k in model.measured_places),
         "p": tuple(p.range or (values[p.name], values[p.name]) for p in model.parameters),
     }
 

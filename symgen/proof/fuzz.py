@@ -19,6 +19,7 @@ from symgen.ir.given_trig import GivenTrig, given_trig
 from symgen.ir.kernel import Kernel, Program
 from symgen.ir.prepare import prepare
 from symgen.model.model import Model, Range
+from symgen.model.quantities import MEASURED_ARGUMENTS
 from symgen.proof.box import box
 
 ARRAYS = ("q", "qd", "qdd", "u")
@@ -57,6 +58,7 @@ class FuzzView:
     model: str
     types: tuple[tuple[str, int, str], ...]
     units: tuple[str, ...]
+    names: str
     sizes: tuple[tuple[str, int], ...]
     longest: int
     largest_result: int
@@ -74,8 +76,9 @@ def emit_fuzz(model: Model, programs: Sequence[Program]) -> dict[str, str]:
     ready, (given, trig) = _prepared(programs), _given(model, programs)
     named_members = c_members(model, program)
     members = tuple(named_members[parameter.name] for parameter in model.parameters)
-    sizes = (*((name, len(ranges[name])) for name in ARRAYS), ("sc", len(trig)))
-    named = [(f"{name}[{index}]", pair) for name in (*ARRAYS, "p") for index, pair in enumerate(ranges[name])]
+    arrays = _arrays(model)
+    sizes = (*((name, len(ranges[name])) for name in arrays), ("sc", len(trig)))
+    named = [(f"{name}[{index}]", pair) for name in (*arrays, "p") for index, pair in enumerate(ranges[name])]
     variants = {"": program.kernels, PREPARED: ready, SINES_GIVEN: given}
     units = [ending for ending, kernels in variants.items() if kernels]
     stem = model.c_name
@@ -84,13 +87,14 @@ def emit_fuzz(model: Model, programs: Sequence[Program]) -> dict[str, str]:
         model=model.c_name,
         types=tuple((C_TYPE[one.scalar], BITS[one.scalar], SUFFIX[one.scalar]) for one in programs),
         units=tuple(file_stem(stem, one.scalar, ending) for ending in units for one in programs),
+        names=", ".join(arrays),
         sizes=sizes,
         longest=max(1, *(size for _, size in sizes)),
         largest_result=max((len(kernel.outputs) for kernel in program.kernels), default=1),
         members=members,
         given=trig,
         ranges=tuple((place, *_bounds(pair)) for place, pair in named),
-        kernels=tuple(_kernel(kernel, ending) for ending, kernels in variants.items() for kernel in kernels),
+        kernels=tuple(_kernel(kernel, ending, arrays) for ending, kernels in variants.items() for kernel in kernels),
         held=tuple(kernel.name for kernel in program.kernels if kernel.name in HELD),
     )
     return {f"proof/{view.stem}_fuzz.c": render("proof/fuzz.c.jinja", view)} if view.kernels else {}
@@ -125,13 +129,18 @@ def _with_trig(program: Program) -> Iterator[GivenTrig]:
     return (one for one in found if one is not None)
 
 
-def _kernel(kernel: Kernel, ending: str) -> FuzzedFunctionView:
-    places = tuple(ARRAYS.index(argument.name) for argument in array_arguments(kernel))
+def _kernel(kernel: Kernel, ending: str, arrays: Sequence[str]) -> FuzzedFunctionView:
+    places = tuple(arrays.index(argument.name) for argument in array_arguments(kernel))
     prepared, name = ending == PREPARED, kernel.name
     same = name if prepared else ""
     return FuzzedFunctionView(
         name + ending, prepared, ending == SINES_GIVEN, places, len(kernel.outputs), name in HELD, same
     )
+
+
+def _arrays(model: Model) -> tuple[str, ...]:
+    """The array arguments that kernels of a model may have."""
+    return (*ARRAYS, *(MEASURED_ARGUMENTS if model.measured else ()))
 
 
 def _bounds(pair: Range) -> tuple[str, str]:

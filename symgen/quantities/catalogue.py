@@ -124,6 +124,12 @@ _DERIVED: dict[str, tuple[Callable[[Derivation], Vector] | None, Callable[[Deriv
     "admissible_velocity": (lambda d: d.admissible, _constraint),
     "admissible_acceleration": (lambda d: d.admissible_acceleration(), _constraint),
     "projected_configuration": (lambda d: d.projected_configuration(), lambda d: d.newton_guards),
+    "configuration_from_measured": (
+        lambda d: d.measured_configuration.outputs,
+        lambda d: d.measured_configuration.guards,
+    ),
+    "velocity_from_measured": (lambda d: d.measured_motion.velocity, lambda d: d.measured_motion.guards),
+    "acceleration_from_measured": (lambda d: d.measured_motion.acceleration, lambda d: d.measured_motion.guards),
     "inverse_dynamics": _BY_METHODS,
     "inverse_dynamics_jacobian": (lambda d: flatten(d.inverse_dynamics_jacobian()), _inputs),
     "constraint_variations": (lambda d: flatten(constraint_variations(d)), _variations),

@@ -10,6 +10,7 @@ from symgen.runtime.activity import working
 from symgen.verify.certificate import ErrorRecord, Fault
 from symgen.verify.comparison import compare, faults_of
 from symgen.verify.expected import Expected
+from symgen.verify.given import parts_of
 from symgen.verify.many_states import run_many
 from symgen.verify.reference.reference import State
 from symgen.verify.running.compile import Outcome
@@ -45,9 +46,7 @@ class Measurements:
 def outcomes(kernel: Kernel, sincos: Function | None, scalar: Scalar, states: Sequence[State]) -> list[Outcome]:
     """What a kernel gives at states of its scalar type: NaN where it refuses."""
     given = [
-        {part: tuple(map(float, getattr(state, part))) for part in ("q", "qd", "qdd", "u")}
-        | {"p": tuple(map(float, state.parameters))}
-        for state in states
+        {name: tuple(map(float, values)) for name, values in parts_of(state).items()} for state in states
     ]
     nothing = (math.nan,) * max(1, math.prod(kernel.shape))
     return [

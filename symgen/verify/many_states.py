@@ -26,6 +26,7 @@ from symgen.ir.kernel import (
     Status,
 )
 from symgen.ir.last_kernels import LastKernels
+from symgen.verify.given import entry
 from symgen.verify.lane_arithmetic import TYPES, LaneArithmetic, Lanes, number
 
 _Places: TypeAlias = Any
@@ -51,7 +52,7 @@ class _KernelRun:
         self._plan = plan = _PLANS.of(kernel, lambda: _Plan(kernel))
         self._values = np.empty((plan.rows, len(given)), TYPES[scalar])
         for load in kernel.loads:
-            self._values[plan.loaded[load.local]] = [one[load.argument][load.index] for one in given]
+            self._values[plan.loaded[load.local]] = [entry(one, load) for one in given]
         places, numbers = plan.rounded(scalar)
         self._values[places] = numbers[:, None]
 

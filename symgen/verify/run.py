@@ -22,6 +22,7 @@ from symgen.verify.certificate import Certificate, ConditionRecord, ErrorRecord,
 from symgen.verify.comparison import VIOLATES, Results, check_laws, compare, faults_of
 from symgen.verify.conditions import condition_numbers
 from symgen.verify.expected import Expected, Progress
+from symgen.verify.given import arrays
 from symgen.verify.reference.reference import ReferenceValueError
 from symgen.verify.running.batch import run_batch
 from symgen.verify.running.compile import (
@@ -204,10 +205,10 @@ def _run_c(
         outcomes: dict[str, list[Outcome]] = {kernel.name: [] for kernel in kernels}
         for sample in each(target, samples[scalar]):
             state = sample.state
-            arrays = {name: c_array(scalar, getattr(state, name)) for name in ("q", "qd", "qdd", "u")}
+            read = {name: c_array(scalar, values) for name, values in arrays(state, kernels).items()}
             parameters = c_array(scalar, state.parameters)
             for kernel, function in zip(kernels, functions, strict=True):
-                outcomes[kernel.name].append(function(arrays, parameters))
+                outcomes[kernel.name].append(function(read, parameters))
         results[target] = (scalar, outcomes)
         companions = dict(sources[scalar].companions)
         given = library, model.c_name, kernels, scalar, samples[scalar], outcomes

@@ -210,6 +210,9 @@ MECHANISM = {
     "immobile": GOOD + "constraints: {geometric: {c: x - l, d: sin(a)}}\n",
     "immobile_nonholonomic": GOOD + "constraints: {geometric: {c: x - l}, nonholonomic: {d: 5*a_dot + 3*x_dot}}\n",
     "count_of_independent": geometric("x - l*sin(a)") + "independent_velocities: [x, a]\n",
+    "too_few_measured": GOOD + "measured: [x]\n",
+    "measured_twice": geometric("x - l*sin(a)") + "measured: [x, x]\n",
+    "measured_rate": geometric("x - l*sin(a)") + "measured: [x_dot]\n",
     "dependent_independent": geometric("x - l") + "independent_velocities: [x]\n",
 }
 UNITS = {

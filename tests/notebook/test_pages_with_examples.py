@@ -1,4 +1,4 @@
-"""docs/derivatives.md is true: its blocks run one after the other, and print what it says."""
+"""Pages that go through an example are true: their blocks run one after the other, and print what they say."""
 
 from __future__ import annotations
 
@@ -11,23 +11,26 @@ from pathlib import Path
 
 import pytest
 
-PAGE = Path(__file__).parents[2] / "docs" / "derivatives.md"
+DOCS = Path(__file__).parents[2] / "docs"
 
 
 @pytest.mark.slow
 @pytest.mark.campaign
 @pytest.mark.toolchain
-def test_every_block_runs_and_prints_what_the_page_says(tmp_path: Path, tool: Callable[[str], str]) -> None:
+@pytest.mark.parametrize("name", ["derivatives", "encoders"])
+def test_every_block_runs_and_prints_what_the_page_says(
+    name: str, tmp_path: Path, tool: Callable[[str], str]
+) -> None:
     tool("cc")
-    page = PAGE.read_text(encoding="utf-8")
+    page = (DOCS / f"{name}.md").read_text(encoding="utf-8")
     commands = Path(sys.executable).parent
     environment = {**os.environ, "PATH": f"{commands}{os.pathsep}{os.environ['PATH']}"}
     printed = ""
     for language, block in re.findall(r"```(\w+)\n(.*?)```", page, re.DOTALL):
         if language == "yaml":
-            name = re.search(r"model: (\w+)", block)
-            assert name is not None
-            (tmp_path / f"{name[1]}.yaml").write_text(block, encoding="utf-8")
+            model = re.search(r"model: (\w+)", block)
+            assert model is not None
+            (tmp_path / f"{model[1]}.yaml").write_text(block, encoding="utf-8")
             continue
         command = ["sh", "-ec", block] if language == "sh" else ["python", "-c", block]
         made = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)

@@ -10,6 +10,7 @@ from symgen.backends.about import (
     count_lines,
     renaming_lines,
     shape_text,
+    statuses_of,
     symbol_lines,
     unit_text,
 )
@@ -21,7 +22,7 @@ from symgen.backends.comments import c_comment, c_comment_lines, indent_of
 from symgen.backends.defaults import default_values
 from symgen.backends.locals import Names
 from symgen.backends.quantities import meaning
-from symgen.ir.kernel import Program, Status
+from symgen.ir.kernel import Program
 from symgen.model.model import Model
 from symgen.naming import macro_name
 from symgen.records import dataclass
@@ -65,7 +66,7 @@ def emit_c(model: Model, program: Program) -> dict[str, str]:
         StatusView(
             f"{macro_name(model.c_name)}_STATUS_DEFINED",
             f"{model.c_name}_status",
-            tuple((status_name(model, status), int(status), STATUS_MEANING[status]) for status in Status),
+            tuple((status_name(model, status), int(status), STATUS_MEANING[status]) for status in statuses_of(model)),
         ),
     )
     return files(view)

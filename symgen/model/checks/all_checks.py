@@ -75,7 +75,8 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
         found = branches(mechanics, model.inputs, start)
         written_out = {key.value for key, _ in entries(tree.get("configuration"))}
         declared = {name: value for name, value in start.items() if name in written_out}
-        _add(scope, check_motion(mechanics, found, model.independent_velocities, declared, _block_spans(tree)))
+        chosen = model.independent_velocities, model.measured
+        _add(scope, check_motion(mechanics, found, *chosen, declared, _block_spans(tree)))
         if isinstance(found, Assembly) and len(scope.mistakes) == before:
             if model.allocation is not None:
                 _add(scope, check_redundancy(mechanics, found, model.inputs, model.allocation))
@@ -154,7 +155,7 @@ def _add(scope: Scope, reports: Iterable[Mistake | Notice]) -> None:
 
 
 def _block_spans(tree: MappingNode) -> dict[str, Span | None]:
-    keys = ("constraints", "kinetic_energy", "independent_velocities", "coordinates", "configuration")
+    keys = ("constraints", "kinetic_energy", "independent_velocities", "measured", "coordinates", "configuration")
     spans = {key: key_span(tree, key) for key in keys}
     spans["kinetic_energy"] = spans["kinetic_energy"] or key_span(tree, "bodies")
     constraints = member(tree, "constraints")

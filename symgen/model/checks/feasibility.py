@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from symgen.diagnostics import Mistake, Notice, Span
 from symgen.model.checks.masses import check_masses
@@ -33,6 +33,7 @@ def check_motion(
     mechanics: NumericSystem,
     assembly: Assembly | OpenLoop | None,
     independent: tuple[str, ...],
+    measured: tuple[str, ...],
     declared: Mapping[str, float],
     spans: dict[str, Span | None],
 ) -> Iterator[Mistake | Notice]:
@@ -68,6 +69,8 @@ def check_motion(
     yield from _other_branches(mechanics, assembly, spans["configuration"])
     if independent:
         yield from _check_independent(mechanics, regular, independent, n - rank, spans["independent_velocities"])
+    if measured:
+        yield from _check_measured(mechanics, [rows for _, rows in regular], measured, spans["measured"])
 
 
 def _further(mechanics: NumericSystem, assembly: Assembly) -> list[list[float]]:
@@ -180,6 +183,24 @@ def _held(mechanics: NumericSystem, assembly: Assembly, span: Span | None) -> It
         yield Notice(
             f"{names} cannot move: the constraints hold {listed}; if that is not meant, check axes, lengths and "
             f"loops{left_out}",
+            span,
+        )
+
+
+def _check_measured(
+    mechanics: NumericSystem, places: Sequence[Rows], measured: tuple[str, ...], span: Span | None
+) -> Iterator[Mistake]:
+    """What is measured must determine the other rates somewhere."""
+    names = [c.name for c in mechanics.coordinates]
+    units = {name: [float(name == other) for other in names] for name in names}
+    known = [units[name] for name in measured]
+    rows = max(([*place, *known] for place in places), key=rank)
+    if missing := len(names) - rank(rows):
+        more = [name for name in names if rank([*rows, units[name]]) > len(names) - missing]
+        yield Mistake(
+            f"{shown_names(measured)} do{'es' if len(measured) == 1 else ''} not determine the other rates anywhere: "
+            f"{counted(missing, 'direction')} stay{'s' if missing == 1 else ''} open",
+            f"name {counted(missing, 'coordinate')} more in `measured`, such as {shown_names(more[:MOST_SHOWN])}",
             span,
         )
 

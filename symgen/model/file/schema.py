@@ -341,6 +341,7 @@ MODEL = RecordShape(
             "quantities to generate, or all",
         ),
         Key("independent_velocities", _NAMES, "coordinates whose rates serve in F and the minimal form"),
+        Key("measured", _NAMES, "coordinates that encoders say, from which the others are found"),
         Key("derivatives", Word(("true", "false")), "whether `outputs: all` takes derivatives"),
         Key("configuration", TableShape(ExpressionShape()), "a start for Newton's method: the assembly mode"),
         Key("ranges", TableShape(_RANGE), "[lower, upper] of coordinates, rates, accelerations, parameters"),

@@ -11,6 +11,11 @@ from typing import Any
 from symgen.verify.reference.allocation import allocated
 from symgen.verify.reference.arithmetic.linear import column, identity, right_pseudoinverse
 from symgen.verify.reference.evaluation import Evaluation
+from symgen.verify.reference.measured import (
+    acceleration_from_measured,
+    configuration_from_measured,
+    velocity_from_measured,
+)
 from symgen.verify.reference.measures import actuation_measure, constraint_measure
 from symgen.verify.reference.parts import placed
 from symgen.verify.reference.slopes import jacobian
@@ -148,6 +153,9 @@ QUANTITIES: dict[str, Definition] = {
     "admissible_velocity": lambda e: e.projected_rate,
     "admissible_acceleration": _admissible_acceleration,
     "projected_configuration": _projected_configuration,
+    "configuration_from_measured": configuration_from_measured,
+    "velocity_from_measured": velocity_from_measured,
+    "acceleration_from_measured": acceleration_from_measured,
     "inverse_dynamics": _inverse_dynamics,
     "inverse_dynamics_jacobian": _inverse_dynamics_jacobian,
     "forward_dynamics_jacobian": _forward_dynamics_jacobian,
@@ -165,6 +173,8 @@ QUANTITIES: dict[str, Definition] = {
 }
 # Of two thirds of the digits that others have.
 DIFFERENCED = frozenset({"inverse_dynamics_jacobian", "forward_dynamics_jacobian", "constraint_variations"})
+# What no finite count of operations gives exactly.
+ITERATED = frozenset({"configuration_from_measured"})
 # The matrices whose rates these take; the others do with what a velocity adds to forces and accelerations.
 RATES = {
     "coriolis_matrix": ("mass",),

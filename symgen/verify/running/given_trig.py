@@ -15,6 +15,7 @@ from symgen.backends.c.names import global_name
 from symgen.backends.locals import array_arguments
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.model.model import Model
+from symgen.verify.given import entries
 from symgen.verify.running.compile import C_TYPES, Outcome, c_array
 from symgen.verify.sampling.states import Sample
 
@@ -54,7 +55,7 @@ def run_given_trig(
         for sample in samples:
             state = sample.state
             given = c_array(scalar, exact_trig(model, header, state.q))
-            arrays: list[Any] = [c_array(scalar, getattr(state, a.name)) for a in array_arguments(kernel)]
+            arrays: list[Any] = [c_array(scalar, entries(state, a)) for a in array_arguments(kernel)]
             result = kind(*([math.nan] * kind._length_))
             status = function(given, *arrays, c_array(scalar, state.parameters), result)
             outcomes[kernel.name].append(Outcome(int(status), tuple(result)))

@@ -13,6 +13,7 @@ from symgen.backends.c.names import global_name
 from symgen.backends.locals import array_arguments
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.verify.certificate import Fault
+from symgen.verify.given import entries
 from symgen.verify.running.batch import HARD
 from symgen.verify.running.compile import C_TYPES, CFunction, Outcome, c_array
 from symgen.verify.sampling.states import Sample
@@ -60,7 +61,7 @@ def run_prepared(
         place = kernel.name, f"C {scalar} prepared"
         outcomes[kernel.name] = [
             prepared(
-                {a.name: c_array(scalar, getattr(sample.state, a.name)) for a in array_arguments(kernel)},
+                {a.name: c_array(scalar, entries(sample.state, a)) for a in array_arguments(kernel)},
                 c_array(scalar, sample.state.parameters),
             )
             for sample in samples

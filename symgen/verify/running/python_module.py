@@ -10,6 +10,7 @@ from typing import Any
 
 from symgen.backends.locals import array_arguments
 from symgen.ir.kernel import Kernel, Status
+from symgen.verify.given import entries
 from symgen.verify.reference.reference import State
 from symgen.verify.running.compile import Outcome
 
@@ -42,7 +43,7 @@ class PythonModule:
         """All states in one vectorised call; a state without result has NaN entries and no status of its own."""
         import numpy as np
 
-        arrays = [np.array([getattr(s, a.name) for s in states], dtype=np.float64) for a in array_arguments(kernel)]
+        arrays = [np.array([entries(s, a) for s in states], dtype=np.float64) for a in array_arguments(kernel)]
         columns = [np.array(column) for column in zip(*(s.parameters for s in states), strict=True)]
         result = getattr(self.module, kernel.name)(*arrays, p=self.module.Parameters(*columns))
         rows: list[list[float]] = result.reshape(len(states), -1).tolist()
@@ -50,7 +51,7 @@ class PythonModule:
 
     def run_single(self, kernel: Kernel, state: State) -> Outcome:
         """One state without leading axes."""
-        arrays: list[Any] = [list(getattr(state, argument.name)) for argument in array_arguments(kernel)]
+        arrays: list[Any] = [list(entries(state, argument)) for argument in array_arguments(kernel)]
         try:
             result = getattr(self.module, kernel.name)(*arrays, p=self.module.Parameters(*state.parameters))
         except self.module.StateError as refusal:

@@ -13,6 +13,7 @@ from typing import TypeAlias
 import numpy as np
 
 from symgen.ir.kernel import Kernel, Literal, Operand, OperationName, Statement, Status
+from symgen.verify.given import loaded
 from symgen.verify.lane_arithmetic import VECTORISED, Lanes
 
 # Combinations of outputs with random signs, which stand for all of them.
@@ -106,7 +107,7 @@ class RoundingErrors:
         """What every local is on the way of a regular state, numbers last, and where no check fails."""
         values: list[Lanes] = [None] * len(self._locals) + self._numbers[::-1]
         for place, load in enumerate(self._kernel.loads):
-            values[place] = given[load.argument][:, load.index]
+            values[place] = loaded(given, load)
         regular = np.ones(count, dtype=bool)
         for steps, checks in self._blocks:
             for operation, operands, targets, _ in steps:

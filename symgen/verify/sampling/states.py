@@ -10,10 +10,11 @@ from math import comb, isfinite
 from typing import Any
 
 from symgen.ir.kernel import Scalar
-from symgen.model.quantities import PARTITION, ROWS
+from symgen.model.quantities import MEASURED, MEASURED_PLACES, PARTITION, ROWS
 from symgen.runtime.activity import working
 from symgen.verify.reference.arithmetic.tape import precision
-from symgen.verify.reference.quantities import DIFFERENCED, RATES
+from symgen.verify.reference.measured import USUAL_STEPS, is_clear
+from symgen.verify.reference.quantities import DIFFERENCED, ITERATED, RATES
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.sampling.inertias import Inertias
 from symgen.verify.sampling.plain_values import SAMPLING_BITS, floats, measured, settled, values_at
@@ -51,6 +52,7 @@ def affordable_states(reference: Reference, quantities: Sequence[str], wanted: i
     operations = system.operations(rates) + solved * subsets
     # derivatives by coordinates take the whole at two more places for each
     places = 1 + 2 * system.n if DIFFERENCED.intersection(quantities) else 1
+    places += USUAL_STEPS if ITERATED.intersection(quantities) else 0
     seconds_per_state = 30 * 1.3e-7 * operations * places
     return max(FEWEST_STATES, min(wanted, int(LONGEST_SECONDS / seconds_per_state)))
 
@@ -140,6 +142,9 @@ def _sample(
         return None
     if any(ROWS[name].needs == PARTITION for name in quantities) and not _is_free(reference, state):
         return None
+    kinds = {ROWS[name].needs for name in quantities}
+    if kinds & {MEASURED, MEASURED_PLACES} and not _is_followed(reference, state, MEASURED_PLACES in kinds):
+        return None
     if not inertias.is_regular(inertias.share(everything)):
         return None
     first, second = values["singularity"]
@@ -153,3 +158,11 @@ def _is_free(reference: Reference, state: State) -> bool:
     """
     (complement,) = values_at(reference, state, ("orthogonal_complement",)).values()
     return max(map(abs, complement)) * REGULAR_SHARE < 1
+
+
+def _is_followed(reference: Reference, state: State, places: bool) -> bool:
+    """Whether what is measured determines the rest here, far from where it does not: kernels have a status there."""
+    try:
+        return reference.regular(lambda: is_clear(reference.evaluation(state), places), SAMPLING_BITS)
+    except ReferenceValueError:
+        return False

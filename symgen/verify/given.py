@@ -1,0 +1,50 @@
+"""What kernels are given at a state: its parts, and as measured values what encoders say a moment later.
+
+Where the machine is then it has not been seen, which is what measured values are good for: a configuration is looked
+for from the one before.  Rates and accelerations are measured as they are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from symgen.backends.locals import array_arguments
+from symgen.ir.kernel import Argument, Kernel, Load
+from symgen.verify.reference.measured import MOMENT
+from symgen.verify.reference.reference import State
+
+# The parts of a state that measured values are taken from.
+_PARTS = {"q_m": "q", "qd_m": "qd", "qdd_m": "qdd"}
+
+
+def entry(given: Mapping[str, Sequence[Any]], load: Load) -> Any:
+    """The value of a load, of parts of one state by name, `p` among them."""
+    if load.argument not in _PARTS:
+        return given[load.argument][load.index]
+    value = given[_PARTS[load.argument]][load.place]
+    return value + given["qd"][load.place] * MOMENT if load.argument == "q_m" else value
+
+
+def parts_of(state: State) -> dict[str, Sequence[Any]]:
+    """The parts of a state by name."""
+    return {"q": state.q, "qd": state.qd, "qdd": state.qdd, "u": state.u, "p": state.parameters}
+
+
+def loaded(given: Mapping[str, Any], load: Load) -> Any:
+    """The same of many states, a row each."""
+    return entry({name: rows.T for name, rows in given.items()}, load)
+
+
+def entries(state: State, argument: Argument) -> Sequence[Any]:
+    """An array argument at a state."""
+    if argument.name not in _PARTS:
+        return tuple(getattr(state, argument.name))
+    loads = (Load("", argument.name, i, place=place) for i, place in enumerate(argument.places))
+    return tuple(entry(parts_of(state), load) for load in loads)
+
+
+def arrays(state: State, kernels: Sequence[Kernel]) -> dict[str, Sequence[Any]]:
+    """All array arguments of kernels of one model at a state, by name."""
+    every = {argument.name: argument for kernel in kernels for argument in array_arguments(kernel)}
+    return {name: entries(state, argument) for name, argument in every.items()}
