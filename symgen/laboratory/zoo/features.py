@@ -54,7 +54,8 @@ ALL = (
     "parameter that is zero", "parameters that are equal", "parameters 1e9 apart", "parameter with a range",
     *(f"names that hurt in {language}" for language in LEGAL_BY_LANGUAGE), "reserved name",
     "outputs chosen at random", "all outputs", "outputs by default", "start told", "start left out",
-    "independent velocities", "weights", "one preload", "preloads", "limits", "wide range of angles",
+    "independent velocities", "measured coordinates", "weights", "one preload", "preloads", "limits",
+    "wide range of angles",
     "spring", "damper", "friction", "force element", "rotor", "applied force", "skew axis", "fixed turn",
     "mistake on purpose",
 )  # fmt: skip
@@ -164,6 +165,7 @@ def _of_elements(blocks: Mapping[str, Any]) -> Iterator[str]:
         "preloads": isinstance(preload, Mapping),
         "limits": "limits" in allocation,
         "independent velocities": "independent_velocities" in blocks,
+        "measured coordinates": "measured" in blocks,
         "wide range of angles": blocks.get("trig_range") == "wide",
     }
     yield from (name for name, true in told.items() if true)

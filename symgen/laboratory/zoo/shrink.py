@@ -17,7 +17,7 @@ Fails = Callable[[Description], bool]
 OPTIONAL = (
     "description", "ranges", "tolerances", "allocation", "springs", "friction", "forces", "applied_forces",
     "rotor_inertias", "gravity", "potential_energy", "rolling", "loops", "inputs", "configuration", "outputs",
-    "independent_velocities",
+    "independent_velocities", "measured",
 )  # fmt: skip
 ENTRIES = ("inputs", "loops", "rolling", "springs", "friction", "forces", "applied_forces", "rotor_inertias", "ranges")
 
@@ -130,9 +130,10 @@ def frozen(description: Description, name: str) -> Description:
             break
     else:
         gone = [name]
-    if "independent_velocities" in blocks:
-        # which of the others determine the rest now is not known
-        blocks = _without(blocks, "independent_velocities")
+    for chosen in ("independent_velocities", "measured"):
+        if chosen in blocks:
+            # which of the others determine the rest now is not known
+            blocks = _without(blocks, chosen)
     for each in gone:
         for block in ("coordinates", "configuration", "ranges", "friction", "rotor_inertias", "applied_forces"):
             if each in (blocks.get(block) or {}):

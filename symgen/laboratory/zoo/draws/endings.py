@@ -1,4 +1,4 @@
-"""What every drawn file ends with: outputs, start, ranges, independent velocities."""
+"""What every drawn file ends with: outputs, start, ranges, independent velocities, what is measured."""
 
 from __future__ import annotations
 
@@ -27,7 +27,11 @@ OTHERS = (
     "actuator_mass_matrix", "actuator_bias", "energy", "singularity",
 )  # fmt: skip
 OF_POINTS = ("point_position", "point_jacobian")
+OF_MEASURED = ("configuration_from_measured", "velocity_from_measured", "acceleration_from_measured")
 OF_INDEPENDENT = ("orthogonal_complement", "minimal_mass_matrix", "minimal_coriolis_matrix", "minimal_control_matrix")
+
+# Share of systems that measure.
+MEASURED_SHARE = 0.15
 
 
 def finish(sketch: Sketch) -> Description:
@@ -39,14 +43,18 @@ def finish(sketch: Sketch) -> Description:
     if dice.chance(0.12):
         blocks["independent_velocities"] = independent(sketch)
         others += OF_INDEPENDENT
+    more: list[str] = []
+    if dice.chance(MEASURED_SHARE):
+        blocks["measured"] = measured(sketch)
+        more = dice.sample(OF_MEASURED, dice.whole(1, len(OF_MEASURED)))
     match dice.weighted({"main": 5, "some": 4, "all": 2, "none": 1}):
         case "main":
-            blocks["outputs"] = list(MAIN)
+            blocks["outputs"] = [*MAIN, *more]
         case "some":
             # what the witness compares is always among them, in another place each time
             first = dice.sample(MAIN, dice.whole(1, 3))
             rest = [name for name in MAIN if name not in first]
-            blocks["outputs"] = [*first, *dice.sample(others, dice.whole(0, 6)), *rest]
+            blocks["outputs"] = [*first, *dice.sample(others, dice.whole(0, 6)), *more, *rest]
         case "all":
             blocks["outputs"] = "all"
     if dice.chance(0.7):
@@ -124,6 +132,15 @@ def allocate(sketch: Sketch) -> None:
         allocation["preload"] = {name: dice.choice(("5", "-3")) for name in chosen}
     if allocation:
         blocks["allocation"] = allocation
+
+
+def measured(sketch: Sketch) -> list[str]:
+    """Coordinates that determine all others, and now and then some that have an encoder as well."""
+    dice, names = sketch.dice, independent(sketch)
+    others = [name for name in sketch.start if name not in names]
+    if others and dice.chance(0.3):
+        names += dice.sample(others, dice.whole(1, min(2, len(others))))
+    return dice.shuffled(names)
 
 
 def independent(sketch: Sketch) -> list[str]:
