@@ -7,6 +7,7 @@
 
 #include "board.h"
 #include "control.h"
+#include "encoders.h"
 #include "rapkm_2rrr_rr.h"
 #include "trajectory.h"
 
@@ -25,15 +26,11 @@ static void add_product(const float *matrix, const float *vector, int rows, int 
     }
 }
 
-rapkm_2rrr_rr_status control_step(float t, const float measured[JOINTS], const float rates[JOINTS], float u[DRIVES]) {
+rapkm_2rrr_rr_status control_step(float t, const float angles[DRIVES], const float rates[DRIVES], float u[DRIVES]) {
     const rapkm_2rrr_rr_params_f p = rapkm_2rrr_rr_default_params_f();
     float q[JOINTS], qd[JOINTS], wanted[JOINTS], wanted_rate[JOINTS], wanted_acceleration[JOINTS];
     float matrix[JOINTS * JOINTS], force[JOINTS];
-    rapkm_2rrr_rr_status status = rapkm_2rrr_rr_projected_configuration_f(measured, &p, q);
-    if (status != RAPKM_2RRR_RR_OK) {
-        return status;
-    }
-    status = rapkm_2rrr_rr_admissible_velocity_f(q, rates, &p, qd);
+    rapkm_2rrr_rr_status status = encoders_read(&p, angles, rates, q, qd);
     if (status != RAPKM_2RRR_RR_OK) {
         return status;
     }

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "control.h"
+#include "encoders.h"
 #include "trajectory.h"
 
 #define STIFFNESS 3600.0f /* 1/s^2: errors die out like those of a critically damped oscillator with 60 rad/s */
@@ -12,15 +13,10 @@
 
 const char control_name[] = "computed torque";
 
-rapkm_2rrr_rr_status control_step(float t, const float measured[JOINTS], const float rates[JOINTS], float u[DRIVES]) {
+rapkm_2rrr_rr_status control_step(float t, const float angles[DRIVES], const float rates[DRIVES], float u[DRIVES]) {
     const rapkm_2rrr_rr_params_f p = rapkm_2rrr_rr_default_params_f();
     float q[JOINTS], qd[JOINTS], wanted[JOINTS], wanted_rate[JOINTS], qdd[JOINTS];
-    /* measured states satisfy the constraints only up to noise: bring them back (Remark 9) */
-    rapkm_2rrr_rr_status status = rapkm_2rrr_rr_projected_configuration_f(measured, &p, q);
-    if (status != RAPKM_2RRR_RR_OK) {
-        return status;
-    }
-    status = rapkm_2rrr_rr_admissible_velocity_f(q, rates, &p, qd);
+    rapkm_2rrr_rr_status status = encoders_read(&p, angles, rates, q, qd);
     if (status != RAPKM_2RRR_RR_OK) {
         return status;
     }

@@ -12,10 +12,10 @@
 extern const char control_name[];
 
 /*
- * Torques u at time t from measured angles and rates, limited to what the drives can do.
+ * Torques u at time t from measured angles and rates of the drives, limited to what the drives can do.
  * On a status other than 0, which is returned, they are not computed: the caller decides what to do.
  */
-rapkm_2rrr_rr_status control_step(float t, const float q[JOINTS], const float qd[JOINTS], float u[DRIVES]);
+rapkm_2rrr_rr_status control_step(float t, const float angles[DRIVES], const float rates[DRIVES], float u[DRIVES]);
 
 /* A property of the model the controller relies on, tested at a state of the plant; prints what it finds. */
 bool control_check(const double q[JOINTS], const double qd[JOINTS]);

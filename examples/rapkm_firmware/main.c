@@ -3,6 +3,7 @@
 
 #include "board.h"
 #include "control.h"
+#include "encoders.h"
 #include "plant.h"
 #include "trajectory.h"
 
@@ -33,13 +34,13 @@ void control_limit(const rapkm_2rrr_rr_params_f *p, float u[DRIVES]) {
     }
 }
 
-static void measure(const plant_t *plant, int step, float q[JOINTS], float qd[JOINTS]) {
-    for (int i = 0; i < JOINTS; i++) {
-        q[i] = (float)(ENCODER * floor(plant->q[i] / ENCODER + 0.5));
-        qd[i] = (float)(GYRO * floor(plant->qd[i] / GYRO + 0.5));
+static void measure(const plant_t *plant, int step, float angles[DRIVES], float rates[DRIVES]) {
+    for (int k = 0; k < DRIVES; k++) { /* the first three joints are the driven ones */
+        angles[k] = (float)(ENCODER * floor(plant->q[k] / ENCODER + 0.5));
+        rates[k] = (float)(GYRO * floor(plant->qd[k] / GYRO + 0.5));
     }
     if (step >= LOST_FROM && step < LOST_TO) {
-        q[0] = NAN;
+        angles[0] = NAN;
     }
 }
 
@@ -62,19 +63,20 @@ static void tell(const char *what, double value, int decimals, const char *unit)
 
 int main(void) {
     const rapkm_2rrr_rr_params_f p = rapkm_2rrr_rr_default_params_f();
-    float q[JOINTS], qd[JOINTS], qdd[JOINTS], u[DRIVES] = {0};
+    float q[JOINTS], qd[JOINTS], qdd[JOINTS], angles[DRIVES], rates[DRIVES], u[DRIVES] = {0};
     plant_t plant;
     trajectory(0.0f, &p, q, qd, qdd);
     bool good = plant_start(&plant, q);
+    encoders_start(q);
     plant.p.m_payload = PAYLOAD;
     double largest = 0.0, squares = 0.0, worst = 0.0, torque = 0.0;
     int held = 0;
     board_start_ticks();
     for (int step = 0; step < STEPS && good; step++) {
         const float t = (float)step / RATE;
-        measure(&plant, step, q, qd);
+        measure(&plant, step, angles, rates);
         const uint32_t before = board_ticks();
-        const rapkm_2rrr_rr_status status = control_step(t, q, qd, u);
+        const rapkm_2rrr_rr_status status = control_step(t, angles, rates, u);
         const double instructions = board_instructions(before, board_ticks());
         worst = fmax(worst, instructions);
         if (status != RAPKM_2RRR_RR_OK) {
