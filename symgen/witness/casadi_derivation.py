@@ -29,7 +29,7 @@ def witness_functions(model: Model) -> dict[str, casadi.Function]:
 
 
 def _function(quantity: QuantityRow, value: casadi.SX, lagrange: Lagrange) -> casadi.Function:
-    symbols = {"q": lagrange.q, "qd": lagrange.qd, "qdd": lagrange.qdd, "u": lagrange.u}
+    symbols = {name: getattr(lagrange, name) for name in quantity.arguments}
     names = [argument for argument in quantity.arguments if symbols[argument].shape[0]]
     inputs = [symbols[argument] for argument in names]
     return casadi.Function(quantity.name, [*inputs, lagrange.p], [value], [*names, "p"], ["value"])

@@ -9,6 +9,7 @@ import casadi
 from symgen.model.expressions.expression import Expression
 from symgen.model.kinematics.energy_form import energy_form
 from symgen.model.model import Model
+from symgen.model.quantities import MEASURED_ARGUMENTS
 from symgen.witness.translate import translate, with_definitions
 
 
@@ -32,6 +33,9 @@ class Lagrange:
     jacobian: casadi.SX  # B (1), r×n
     jacobian_dot: casadi.SX  # Ḃ along q̇, r×n
     control: casadi.SX  # M (3), n×m
+    q_m: casadi.SX  # measured coordinates
+    qd_m: casadi.SX  # their rates
+    qdd_m: casadi.SX  # their accelerations
 
     @property
     def balance(self) -> casadi.SX:
@@ -68,6 +72,7 @@ def differentiate(model: Model) -> Lagrange:
         column(*(row.expression for row in model.constraints if row.kind == "nonholonomic")),
         control,
         applied,
+        len(model.measured),
     )
 
 
@@ -79,13 +84,18 @@ def lagrange(
     nonholonomic: casadi.SX,
     control: casadi.SX,
     applied: casadi.SX,
+    measured: int = 0,
 ) -> Lagrange:
-    """All of `Lagrange` from T, U, the columns of rows, M and Q_a; `symbols` are q, qd, qdd, u, p."""
+    """All of `Lagrange` from T, U, the columns of rows, M and Q_a; `symbols` are q, qd, qdd, u, p.
+
+    So many coordinates are `measured`.
+    """
     q, qd, qdd, u, p = symbols
     mass = casadi.densify(casadi.hessian(kinetic, qd)[0])
     momentum = mass @ qd
     shift = casadi.jacobian(momentum, q)
     jacobian = casadi.vertcat(casadi.jacobian(geometric, q), casadi.jacobian(nonholonomic, qd))
+    q_m, qd_m, qdd_m = (casadi.SX.sym(name, measured) for name in MEASURED_ARGUMENTS)
     return Lagrange(
         q=q,
         qd=qd,
@@ -103,6 +113,9 @@ def lagrange(
         jacobian=casadi.densify(jacobian),
         jacobian_dot=along(jacobian, q, qd),
         control=control,
+        q_m=q_m,
+        qd_m=qd_m,
+        qdd_m=qdd_m,
     )
 
 

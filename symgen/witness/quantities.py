@@ -9,6 +9,7 @@ from symgen.model.model import Model
 from symgen.witness.allocation import allocated
 from symgen.witness.lagrange import Lagrange, along
 from symgen.witness.linear import compound, pseudoinverse, solve
+from symgen.witness.measured import measured_quantities
 
 # Newton steps towards V of the configuration that is projected.
 PROJECTION_STEPS = 2
@@ -67,6 +68,7 @@ def derive(model: Model, s: Lagrange, ranks: ConfigurationRanks) -> dict[str, ca
         quantities["forward_dynamics_jacobian"] = casadi.jacobian(acceleration, casadi.vertcat(s.q, s.qd, s.u))
     if ranks.constraints == model.r > 0:
         quantities["constraint_variations"] = _variations(s, ranks)
+    quantities |= measured_quantities(model, s, ranks)
     if model.independent_velocities:
         quantities |= _minimal(model, s, ranks)
     if 0 < model.m == model.n - ranks.constraints == ranks.actuation:

@@ -70,7 +70,7 @@ def linkage(measured: str) -> str:
 def shipped_with(name: str, measured: str, outputs: str) -> str:
     """A shipped model that measures, with other outputs."""
     text = (MODELS / f"{name}.yaml").read_text(encoding="utf-8")
-    text = re.sub(r"^outputs:.*\n", "", text, flags=re.MULTILINE)
+    text = re.sub(r"^(outputs|measured):.*\n(  .*\n)*", "", text, flags=re.MULTILINE)
     return f"{text}\nmeasured: {measured}\noutputs: {outputs}\n"
 
 

@@ -56,7 +56,11 @@ def states(model: Model, singularity: Any) -> list[State]:
         found_here = configurations(model, lagrange, p, seed=k, trials=40)
         q = next(q for q in found_here if np.min(singularity(q, p).full()) > REGULAR)
         rates = {name: generator.normal(size=model.n) for name in ("qd", "qdd")}
-        found.append({"q": q, **rates, "u": generator.normal(size=model.m), "p": p})
+        state = {"q": q, **rates, "u": generator.normal(size=model.m), "p": p}
+        places = list(model.measured_places)
+        moved = q[places] + generator.uniform(-1e-3, 1e-3, len(places))
+        measured = {"q_m": moved, "qd_m": state["qd"][places], "qdd_m": state["qdd"][places]}
+        found.append(state | measured)
     return found
 
 

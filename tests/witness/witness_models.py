@@ -17,6 +17,7 @@ constraints:
     cy: l*sin(c) - y - 2*sin(turn)
 inputs: {drive: {acts_on: {a: 1}}}
 configuration: {a: 1.5, b: 1.5, c: 1.5, x: 0.035, y: 0.499, turn: 0}
+measured: [b]
 outputs: all
 """
 
@@ -50,6 +51,7 @@ points:
 constraints: {geometric: {level: hook.z - 0.2}}
 inputs: {turn: {joint: a}, slide: {joint: s}}
 configuration: {a: 0.3, b: 0.1, s: 0.4}
+measured: [a, s, b]
 outputs: all
 """
 
