@@ -13,7 +13,7 @@ from symgen.model.kinematics.fixed_angles import sine_of_steps
 from symgen.symbolic.angles.angle_forms import angle_form
 from symgen.symbolic.identity import same_values
 from symgen.symbolic.scalar import PI, Graph, Scalar
-from symgen.symbolic.traverse import reached
+from symgen.symbolic.traverse import topological
 
 # An odd number without a pattern, and a prime modulo which its powers are taken: sums are equal by chance hardly
 # ever.
@@ -49,6 +49,8 @@ def share_angles(graph: Graph, outputs: Sequence[Scalar], evaluated: Sequence[Sc
         level = [graph.raw("mul", (cosines[0], cosines[1])), graph.raw("mul", (sines[0], sines[1]))]
         image[graph.trig("sin", angle)] = _signed(graph, sign_a, crossed[0], sign_b, crossed[1])
         image[graph.trig("cos", angle)] = _signed(graph, 1, level[0], -sign_a * sign_b, level[1])
+    # an angle that is known may follow from itself, turned by nothing
+    image = {node: value for node, value in image.items() if value is not node}
     if not image:
         return list(outputs)
     shared = _replace(graph, outputs, image)
@@ -57,13 +59,18 @@ def share_angles(graph: Graph, outputs: Sequence[Scalar], evaluated: Sequence[Sc
 
 
 def angles_of(outputs: Sequence[Scalar]) -> list[Scalar]:
-    """The arguments of all sines and cosines, simple ones first."""
-    arguments = {node.args[0] for node in reached(outputs) if node.op in ("sin", "cos")}
-    graph = next(iter(arguments)).graph if arguments else None
-    if graph is None:
-        return []
+    """The arguments of all sines and cosines, simple ones first, but none before those whose sines it is made of."""
+    nested: dict[Scalar, int] = {}
+    arguments: dict[Scalar, int] = {}
+    for node in topological(outputs):
+        nested[node] = max((nested[x] for x in node.args), default=0)
+        if node.op in ("sin", "cos"):
+            arguments[node.args[0]] = nested[node]
+            nested[node] += 1
     forms = {argument: angle_form(argument) for argument in arguments}
-    return sorted(arguments, key=lambda a: (len(forms[a]), sum(map(abs, forms[a].values())), a.serial))
+    return sorted(
+        arguments, key=lambda a: (arguments[a], len(forms[a]), sum(map(abs, forms[a].values())), a.serial)
+    )
 
 
 class _EvaluatedAngles:
