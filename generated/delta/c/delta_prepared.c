@@ -206,7 +206,7 @@ static DELTA_APART delta_status delta_inverse_dynamics_prepared_cause(const doub
     const double R = p->value[0];
     const double r = p->value[1];
     const double l_1 = p->value[2];
-    const double t66 = l_1 * t8;
+    const double t66 = l_1 * t6;
     const double t67 = z + t66;
     const double t68 = x + r;
     const double t69 = l_1 * t5;
@@ -215,7 +215,7 @@ static DELTA_APART delta_status delta_inverse_dynamics_prepared_cause(const doub
     const double t73 = r * 1.7320508075688772;
     const double t74 = 0.5 * t73;
     const double t75 = y + t74;
-    const double t76 = l_1 * t7;
+    const double t76 = l_1 * t9;
     const double t77 = R + t76;
     const double t78 = 1.7320508075688772 * t77;
     const double t79 = 0.5 * t78;
@@ -229,12 +229,12 @@ static DELTA_APART delta_status delta_inverse_dynamics_prepared_cause(const doub
     const double t87 = t81 - t86;
     const double t88 = t67 * t87;
     const double t89 = y - t74;
-    const double t90 = l_1 * t9;
+    const double t90 = l_1 * t7;
     const double t91 = R + t90;
     const double t92 = 1.7320508075688772 * t91;
     const double t93 = 0.5 * t92;
     const double t94 = t89 + t93;
-    const double t95 = l_1 * t6;
+    const double t95 = l_1 * t8;
     const double t96 = z + t95;
     const double t97 = t71 * t96;
     const double t98 = l_1 * t4;
@@ -251,11 +251,11 @@ static DELTA_APART delta_status delta_inverse_dynamics_prepared_cause(const doub
     const double t109 = t105 * t108;
     const double t110 = t103 + t109;
     const double t111 = t110 * t110;
-    const double t112 = x - R;
-    const double t113 = r + t112;
-    const double t114 = t4 * t113;
-    const double t115 = z * t5;
-    const double t116 = t114 + t115;
+    const double t112 = z * t5;
+    const double t113 = x - R;
+    const double t114 = r + t113;
+    const double t115 = t4 * t114;
+    const double t116 = t112 + t115;
     const double t117 = l_1 * t116;
     const double t118 = t80 * t117;
     const double t119 = t105 * t118;
@@ -275,15 +275,15 @@ static DELTA_APART delta_status delta_inverse_dynamics_prepared_cause(const doub
     const double t133 = t131 - t132;
     const double t134 = t133 * t133;
     const double t135 = t130 + t134;
-    const double t136 = y * 1.7320508075688772;
-    const double t137 = 0.5 * t136;
-    const double t138 = 0.5 * x;
-    const double t139 = t137 - t138;
-    const double t140 = t139 - R;
-    const double t141 = r + t140;
-    const double t142 = t6 * t141;
-    const double t143 = z * t7;
-    const double t144 = t142 + t143;
+    const double t136 = z * t9;
+    const double t137 = y * 1.7320508075688772;
+    const double t138 = 0.5 * t137;
+    const double t139 = 0.5 * x;
+    const double t140 = t138 - t139;
+    const double t141 = t140 - R;
+    const double t142 = r + t141;
+    const double t143 = t8 * t142;
+    const double t144 = t136 + t143;
     const double t145 = l_1 * t144;
     const double t146 = t71 * t145;
     const double t147 = t94 * t146;
@@ -313,12 +313,12 @@ static DELTA_APART delta_status delta_inverse_dynamics_prepared_cause(const doub
     const double t171 = t67 * t164;
     const double t172 = t171 * t171;
     const double t173 = t170 + t172;
-    const double t174 = t137 + t138;
-    const double t175 = R + t174;
-    const double t176 = r - t175;
-    const double t177 = t8 * t176;
-    const double t178 = z * t9;
-    const double t179 = t177 + t178;
+    const double t174 = z * t7;
+    const double t175 = t138 + t139;
+    const double t176 = R + t175;
+    const double t177 = r - t176;
+    const double t178 = t6 * t177;
+    const double t179 = t174 + t178;
     const double t180 = l_1 * t179;
     const double t181 = t87 * t180;
     const double t182 = t181 * t181;
@@ -401,7 +401,7 @@ static DELTA_APART delta_status delta_inverse_dynamics_prepared_cause(const doub
 delta_status delta_inverse_dynamics_prepared(const double q[6], const double qd[6], const double qdd[6], const delta_prepared *p, double u[3]) {
     (void)qd;
     const double l_2 = p->value[4];
-    if (DELTA_RARELY(!(l_2 >= 0.00076))) {
+    if (DELTA_RARELY(!(l_2 >= 0.00043))) {
         return DELTA_PARAMETER_RANGE;
     }
     if (DELTA_RARELY(!(8.5 >= l_2))) {
@@ -409,10 +409,10 @@ delta_status delta_inverse_dynamics_prepared(const double q[6], const double qd[
     }
     const double a_1 = q[0];
     const double t1 = fabs(a_1);
-    const double a_2 = q[1];
-    const double t2 = fabs(a_2);
     const double a_3 = q[2];
-    const double t3 = fabs(a_3);
+    const double t2 = fabs(a_3);
+    const double a_2 = q[1];
+    const double t3 = fabs(a_2);
     if (DELTA_RARELY(!(100000.0 >= t1))) {
         return DELTA_ANGLE_RANGE;
     }
@@ -422,13 +422,13 @@ delta_status delta_inverse_dynamics_prepared(const double q[6], const double qd[
     if (DELTA_RARELY(!(100000.0 >= t3))) {
         return DELTA_ANGLE_RANGE;
     }
-    const double angle[4] = {a_1, a_2, a_3, a_3};
+    const double angle[4] = {a_1, a_3, a_2, a_2};
     double sine[4];
     double cosine[4];
     delta_sincos_group(3, angle, sine, cosine);
     const double l_1 = p->value[2];
-    const double t7 = cosine[1];
-    const double t18 = l_1 * t7;
+    const double t9 = cosine[2];
+    const double t18 = l_1 * t9;
     const double t12 = p->value[5];
     const double t19 = t18 + t12;
     const double t20 = 0.8660254037844386 * t19;
@@ -437,8 +437,8 @@ delta_status delta_inverse_dynamics_prepared(const double q[6], const double qd[
     const double t23 = 0.5 * t19;
     const double x = q[3];
     const double t24 = x + t23;
-    const double t9 = cosine[2];
-    const double t30 = l_1 * t9;
+    const double t7 = cosine[1];
+    const double t30 = l_1 * t7;
     const double t31 = t30 + t12;
     const double t32 = 0.8660254037844386 * t31;
     const double t33 = y + t32;
@@ -456,8 +456,8 @@ delta_status delta_inverse_dynamics_prepared(const double q[6], const double qd[
     const double t22 = t15 * t21;
     const double t25 = y * t24;
     const double t26 = t22 - t25;
-    const double t43 = t24 * t33;
-    const double t44 = t21 * t36;
+    const double t43 = t33 * t24;
+    const double t44 = t36 * t21;
     const double t45 = t43 - t44;
     const double t273 = t272 * t24;
     const double t275 = t274 * t21;
@@ -475,12 +475,12 @@ delta_status delta_inverse_dynamics_prepared(const double q[6], const double qd[
     const double g = p->value[3];
     const double t267 = z_ddot + g;
     const double t270 = t267 * t269;
-    const double t8 = sine[2];
-    const double t10 = l_1 * t8;
+    const double t6 = sine[1];
+    const double t10 = l_1 * t6;
     const double z = q[5];
     const double t11 = z + t10;
-    const double t6 = sine[1];
-    const double t28 = l_1 * t6;
+    const double t8 = sine[2];
+    const double t28 = l_1 * t8;
     const double t29 = z + t28;
     const double t4 = sine[0];
     const double t41 = l_1 * t4;
@@ -544,11 +544,11 @@ delta_status delta_inverse_dynamics_prepared(const double q[6], const double qd[
     const double t305 = t304 + t12;
     const double a_2_ddot = qdd[1];
     const double t291 = a_2_ddot * t259;
-    const double t292 = t7 * t264;
+    const double t292 = t9 * t264;
     const double t293 = t291 - t292;
-    const double t302 = z * t7;
+    const double t302 = z * t9;
     const double t306 = t303 - t305;
-    const double t307 = t6 * t306;
+    const double t307 = t8 * t306;
     const double t308 = t302 + t307;
     const double t309 = t308 * t287;
     const double t310 = t301 * t309;
@@ -556,11 +556,11 @@ delta_status delta_inverse_dynamics_prepared(const double q[6], const double qd[
     rest *= t311;
     const double a_3_ddot = qdd[2];
     const double t312 = a_3_ddot * t259;
-    const double t313 = t9 * t264;
+    const double t313 = t7 * t264;
     const double t314 = t312 - t313;
-    const double t320 = z * t9;
+    const double t320 = z * t7;
     const double t321 = t305 + t303;
-    const double t322 = t8 * t321;
+    const double t322 = t6 * t321;
     const double t323 = t320 - t322;
     const double t324 = t323 * t287;
     const double t325 = t319 * t324;

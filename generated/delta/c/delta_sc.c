@@ -113,11 +113,11 @@ static DELTA_APART delta_status delta_inverse_dynamics_sc_cause(const delta_trig
     const double t109 = t105 * t108;
     const double t110 = t103 + t109;
     const double t111 = t110 * t110;
-    const double t112 = x - R;
-    const double t113 = r + t112;
-    const double t114 = sin_a_1 * t113;
-    const double t115 = z * cos_a_1;
-    const double t116 = t114 + t115;
+    const double t112 = z * cos_a_1;
+    const double t113 = x - R;
+    const double t114 = r + t113;
+    const double t115 = sin_a_1 * t114;
+    const double t116 = t112 + t115;
     const double t117 = l_1 * t116;
     const double t118 = t80 * t117;
     const double t119 = t105 * t118;
@@ -137,15 +137,15 @@ static DELTA_APART delta_status delta_inverse_dynamics_sc_cause(const delta_trig
     const double t133 = t131 - t132;
     const double t134 = t133 * t133;
     const double t135 = t130 + t134;
-    const double t136 = y * 1.7320508075688772;
-    const double t137 = 0.5 * t136;
-    const double t138 = 0.5 * x;
-    const double t139 = t137 - t138;
-    const double t140 = t139 - R;
-    const double t141 = r + t140;
-    const double t142 = sin_a_2 * t141;
-    const double t143 = z * cos_a_2;
-    const double t144 = t142 + t143;
+    const double t136 = z * cos_a_2;
+    const double t137 = y * 1.7320508075688772;
+    const double t138 = 0.5 * t137;
+    const double t139 = 0.5 * x;
+    const double t140 = t138 - t139;
+    const double t141 = t140 - R;
+    const double t142 = r + t141;
+    const double t143 = sin_a_2 * t142;
+    const double t144 = t136 + t143;
     const double t145 = l_1 * t144;
     const double t146 = t71 * t145;
     const double t147 = t94 * t146;
@@ -175,12 +175,12 @@ static DELTA_APART delta_status delta_inverse_dynamics_sc_cause(const delta_trig
     const double t171 = t67 * t164;
     const double t172 = t171 * t171;
     const double t173 = t170 + t172;
-    const double t174 = t137 + t138;
-    const double t175 = R + t174;
-    const double t176 = r - t175;
-    const double t177 = sin_a_3 * t176;
-    const double t178 = z * cos_a_3;
-    const double t179 = t177 + t178;
+    const double t174 = z * cos_a_3;
+    const double t175 = t138 + t139;
+    const double t176 = R + t175;
+    const double t177 = r - t176;
+    const double t178 = sin_a_3 * t177;
+    const double t179 = t174 + t178;
     const double t180 = l_1 * t179;
     const double t181 = t87 * t180;
     const double t182 = t181 * t181;
@@ -263,7 +263,7 @@ static DELTA_APART delta_status delta_inverse_dynamics_sc_cause(const delta_trig
 delta_status delta_inverse_dynamics_sc(const delta_trig *sc, const double q[6], const double qd[6], const double qdd[6], const delta_params *p, double u[3]) {
     (void)qd;
     const double l_2 = p->l_2;
-    if (DELTA_RARELY(!(l_2 >= 0.00076))) {
+    if (DELTA_RARELY(!(l_2 >= 0.00043))) {
         return DELTA_PARAMETER_RANGE;
     }
     if (DELTA_RARELY(!(8.5 >= l_2))) {
@@ -304,8 +304,8 @@ delta_status delta_inverse_dynamics_sc(const delta_trig *sc, const double q[6], 
     const double t22 = t15 * t21;
     const double t25 = y * t24;
     const double t26 = t22 - t25;
-    const double t43 = t24 * t33;
-    const double t44 = t21 * t36;
+    const double t43 = t33 * t24;
+    const double t44 = t36 * t21;
     const double t45 = t43 - t44;
     const double t273 = t272 * t24;
     const double t275 = t274 * t21;
@@ -437,16 +437,12 @@ delta_status delta_inverse_dynamics_sc(const delta_trig *sc, const double q[6], 
 }
 
 delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], const double qd[6], const double u[3], const delta_params *p, double qdd[6]) {
-    const double m_a = p->m_a;
-    if (DELTA_RARELY(!(m_a >= 0.03))) {
-        return DELTA_PARAMETER_RANGE;
-    }
     const double J_a = p->J_a;
-    if (DELTA_RARELY(!(3.5 >= J_a))) {
+    if (DELTA_RARELY(!(2.0 >= J_a))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double J_m = p->J_m;
-    if (DELTA_RARELY(!(1.5 >= J_m))) {
+    if (DELTA_RARELY(!(0.88 >= J_m))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double r = p->r;
@@ -472,14 +468,14 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
     const double z = q[5];
     const double t11 = z + t10;
     const double t12 = 4.0 * t11;
-    const double t14 = x + r;
-    const double cos_a_1 = sc->cos_a_1;
-    const double t15 = l_1 * cos_a_1;
-    const double t16 = R + t15;
-    const double t17 = t14 - t16;
-    const double t18 = 4.0 * t17;
     const double y = q[4];
-    const double t20 = 4.0 * y;
+    const double t14 = 4.0 * y;
+    const double t16 = x + r;
+    const double cos_a_1 = sc->cos_a_1;
+    const double t17 = l_1 * cos_a_1;
+    const double t18 = R + t17;
+    const double t19 = t16 - t18;
+    const double t20 = 4.0 * t19;
     const double sin_a_2 = sc->sin_a_2;
     const double t32 = l_1 * sin_a_2;
     const double t33 = z + t32;
@@ -489,14 +485,14 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
     const double t97 = z + t96;
     const double t114 = t97 * t12;
     const double t13 = t11 * t12;
-    const double t19 = t17 * t18;
-    const double t21 = y * t20;
-    const double t22 = t19 + t21;
+    const double t15 = y * t14;
+    const double t21 = t19 * t20;
+    const double t22 = t15 + t21;
     const double t23 = t13 + t22;
-    const double t60 = t41 * t18;
-    const double t115 = t103 * t18;
+    const double t60 = t41 * t20;
+    const double t116 = t103 * t20;
     const double t24 = 2.0 * t11;
-    const double t26 = 2.0 * t17;
+    const double t26 = 2.0 * t19;
     const double t25 = cos_a_1 * t24;
     const double t27 = sin_a_1 * t26;
     const double t28 = t25 + t27;
@@ -510,10 +506,10 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
     const double t46 = y + t45;
     const double t105 = 1.7320508075688772 * t104;
     const double t106 = y - t105;
-    const double t61 = t46 * t20;
+    const double t61 = t14 * t46;
     const double t62 = t60 + t61;
     const double t63 = t59 + t62;
-    const double t116 = t106 * t20;
+    const double t115 = t14 * t106;
     const double t117 = t115 + t116;
     const double t118 = t114 + t117;
     const double t54 = sqrt(t31);
@@ -585,36 +581,36 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
     const double t134 = t132 + t133;
     const double t135 = t132 * t134;
     const double t136 = t131 / t135;
-    const double t149 = copysign(t132, t51);
+    const double t158 = copysign(t132, t51);
     const double t99 = cos_a_3 * t98;
     const double t107 = 1.7320508075688772 * t106;
     const double t108 = t103 + t107;
     const double t109 = sin_a_3 * t108;
     const double t110 = t99 - t109;
     const double t111 = l_1 * t110;
-    const double t150 = t51 + t149;
-    const double t151 = t150 * t136;
-    const double t152 = t151 / t149;
+    const double t159 = t51 + t158;
+    const double t160 = t159 * t136;
+    const double t161 = t160 / t158;
     const double t112 = t111 * t111;
-    const double t159 = t97 * t97;
-    const double t160 = 4.0 * t159;
-    const double t163 = t103 * t103;
-    const double t164 = 4.0 * t163;
-    const double t161 = t106 * t106;
-    const double t162 = 4.0 * t161;
-    const double t165 = t164 + t112;
-    const double t166 = t162 + t165;
-    const double t167 = t160 + t166;
-    const double t153 = t63 * t152;
-    const double t154 = t153 - t118;
-    const double t155 = t90 * t154;
-    const double t156 = t58 * t155;
-    const double t157 = t156 * t156;
-    const double t158 = t31 * t157;
-    const double t168 = t152 * t152;
-    const double t169 = t87 * t168;
-    const double t170 = t167 + t169;
-    const double t171 = t158 + t170;
+    const double t149 = t97 * t97;
+    const double t150 = 4.0 * t149;
+    const double t153 = t103 * t103;
+    const double t154 = 4.0 * t153;
+    const double t151 = t106 * t106;
+    const double t152 = 4.0 * t151;
+    const double t155 = t154 + t112;
+    const double t156 = t152 + t155;
+    const double t157 = t150 + t156;
+    const double t162 = t161 * t161;
+    const double t163 = t87 * t162;
+    const double t164 = t157 + t163;
+    const double t165 = t63 * t161;
+    const double t166 = t165 - t118;
+    const double t167 = t90 * t166;
+    const double t168 = t58 * t167;
+    const double t169 = t168 * t168;
+    const double t170 = t31 * t169;
+    const double t171 = t164 + t170;
     const double t172 = t171 * 2.8398992587956425e-29;
     const double t137 = t66 * t136;
     const double t138 = t121 - t137;
@@ -675,7 +671,7 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
     const double t343 = t11 * t342;
     const double t344 = t341 - t343;
     const double t345 = 2.0 * t344;
-    const double t346 = t17 * t336;
+    const double t346 = t19 * t336;
     const double t349 = sin_a_1 * t348;
     const double t350 = t346 + t349;
     const double t351 = 2.0 * t350;
@@ -735,6 +731,7 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
     }
     const double m_r = p->m_r;
     const double t174 = 0.5 * m_r;
+    const double m_a = p->m_a;
     const double t173 = 0.25 * m_a;
     const double t175 = t173 + t174;
     const double t176 = l_1 * l_1;
@@ -758,7 +755,7 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
     if (DELTA_RARELY(!(t188 > 0.0))) {
         return DELTA_MASS_RANK;
     }
-    const double t190 = t189 * t29;
+    const double t190 = t29 * t189;
     const double t191 = t29 * t190;
     const double t192 = 1.0 / t188;
     const double t193 = t192 * t23;
@@ -788,7 +785,7 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
     const double t296 = t245 * t245;
     const double t297 = t249 * t249;
     const double t298 = t296 + t297;
-    const double t299 = t160 + t298;
+    const double t299 = t150 + t298;
     const double t254 = t195 * t253;
     const double t257 = t26 * t254;
     const double t258 = t245 - t257;
@@ -843,7 +840,7 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
     const double t292 = t279 + t291;
     const double t229 = t189 * t51;
     const double t230 = t51 * t229;
-    const double t294 = t189 * t111;
+    const double t294 = t111 * t189;
     const double t295 = t111 * t294;
     const double t227 = 6.0 * t226;
     const double t228 = 5.0 * t226;
@@ -992,10 +989,6 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
 }
 
 delta_status delta_multipliers_sc(const delta_trig *sc, const double q[6], const double qd[6], const double u[3], const delta_params *p, double lambda_B[3]) {
-    const double m_a = p->m_a;
-    if (DELTA_RARELY(!(20.0 >= m_a))) {
-        return DELTA_PARAMETER_RANGE;
-    }
     const double m_r = p->m_r;
     if (DELTA_RARELY(!(5.0 >= m_r))) {
         return DELTA_PARAMETER_RANGE;
@@ -1023,14 +1016,14 @@ delta_status delta_multipliers_sc(const delta_trig *sc, const double q[6], const
     const double z = q[5];
     const double t11 = z + t10;
     const double t12 = 4.0 * t11;
-    const double t14 = x + r;
-    const double cos_a_1 = sc->cos_a_1;
-    const double t15 = l_1 * cos_a_1;
-    const double t16 = R + t15;
-    const double t17 = t14 - t16;
-    const double t18 = 4.0 * t17;
     const double y = q[4];
-    const double t20 = 4.0 * y;
+    const double t14 = 4.0 * y;
+    const double t16 = x + r;
+    const double cos_a_1 = sc->cos_a_1;
+    const double t17 = l_1 * cos_a_1;
+    const double t18 = R + t17;
+    const double t19 = t16 - t18;
+    const double t20 = 4.0 * t19;
     const double sin_a_2 = sc->sin_a_2;
     const double t32 = l_1 * sin_a_2;
     const double t33 = z + t32;
@@ -1040,14 +1033,14 @@ delta_status delta_multipliers_sc(const delta_trig *sc, const double q[6], const
     const double t97 = z + t96;
     const double t114 = t97 * t12;
     const double t13 = t11 * t12;
-    const double t19 = t17 * t18;
-    const double t21 = y * t20;
-    const double t22 = t19 + t21;
+    const double t15 = y * t14;
+    const double t21 = t19 * t20;
+    const double t22 = t15 + t21;
     const double t23 = t13 + t22;
-    const double t60 = t41 * t18;
-    const double t115 = t103 * t18;
+    const double t60 = t41 * t20;
+    const double t116 = t103 * t20;
     const double t24 = 2.0 * t11;
-    const double t26 = 2.0 * t17;
+    const double t26 = 2.0 * t19;
     const double t25 = cos_a_1 * t24;
     const double t27 = sin_a_1 * t26;
     const double t28 = t25 + t27;
@@ -1061,10 +1054,10 @@ delta_status delta_multipliers_sc(const delta_trig *sc, const double q[6], const
     const double t46 = y + t45;
     const double t105 = 1.7320508075688772 * t104;
     const double t106 = y - t105;
-    const double t61 = t46 * t20;
+    const double t61 = t14 * t46;
     const double t62 = t60 + t61;
     const double t63 = t59 + t62;
-    const double t116 = t106 * t20;
+    const double t115 = t14 * t106;
     const double t117 = t115 + t116;
     const double t118 = t114 + t117;
     const double t54 = sqrt(t31);
@@ -1136,36 +1129,36 @@ delta_status delta_multipliers_sc(const delta_trig *sc, const double q[6], const
     const double t134 = t132 + t133;
     const double t135 = t132 * t134;
     const double t136 = t131 / t135;
-    const double t149 = copysign(t132, t51);
+    const double t158 = copysign(t132, t51);
     const double t99 = cos_a_3 * t98;
     const double t107 = 1.7320508075688772 * t106;
     const double t108 = t103 + t107;
     const double t109 = sin_a_3 * t108;
     const double t110 = t99 - t109;
     const double t111 = l_1 * t110;
-    const double t150 = t51 + t149;
-    const double t151 = t150 * t136;
-    const double t152 = t151 / t149;
+    const double t159 = t51 + t158;
+    const double t160 = t159 * t136;
+    const double t161 = t160 / t158;
     const double t112 = t111 * t111;
-    const double t159 = t97 * t97;
-    const double t160 = 4.0 * t159;
-    const double t163 = t103 * t103;
-    const double t164 = 4.0 * t163;
-    const double t161 = t106 * t106;
-    const double t162 = 4.0 * t161;
-    const double t165 = t164 + t112;
-    const double t166 = t162 + t165;
-    const double t167 = t160 + t166;
-    const double t153 = t63 * t152;
-    const double t154 = t153 - t118;
-    const double t155 = t90 * t154;
-    const double t156 = t58 * t155;
-    const double t157 = t156 * t156;
-    const double t158 = t31 * t157;
-    const double t168 = t152 * t152;
-    const double t169 = t87 * t168;
-    const double t170 = t167 + t169;
-    const double t171 = t158 + t170;
+    const double t149 = t97 * t97;
+    const double t150 = 4.0 * t149;
+    const double t153 = t103 * t103;
+    const double t154 = 4.0 * t153;
+    const double t151 = t106 * t106;
+    const double t152 = 4.0 * t151;
+    const double t155 = t154 + t112;
+    const double t156 = t152 + t155;
+    const double t157 = t150 + t156;
+    const double t162 = t161 * t161;
+    const double t163 = t87 * t162;
+    const double t164 = t157 + t163;
+    const double t165 = t63 * t161;
+    const double t166 = t165 - t118;
+    const double t167 = t90 * t166;
+    const double t168 = t58 * t167;
+    const double t169 = t168 * t168;
+    const double t170 = t31 * t169;
+    const double t171 = t164 + t170;
     const double t172 = t171 * 2.8398992587956425e-29;
     const double t137 = t66 * t136;
     const double t138 = t121 - t137;
@@ -1226,7 +1219,7 @@ delta_status delta_multipliers_sc(const delta_trig *sc, const double q[6], const
     const double t315 = t11 * t314;
     const double t316 = t313 - t315;
     const double t317 = 2.0 * t316;
-    const double t318 = t17 * t306;
+    const double t318 = t19 * t306;
     const double t321 = sin_a_1 * t320;
     const double t322 = t318 + t321;
     const double t323 = 2.0 * t322;
@@ -1282,6 +1275,7 @@ delta_status delta_multipliers_sc(const delta_trig *sc, const double q[6], const
     const double t382 = t311 * t381;
     const double t385 = t384 * t327;
     const double t174 = 0.5 * m_r;
+    const double m_a = p->m_a;
     const double t173 = 0.25 * m_a;
     const double t175 = t173 + t174;
     const double t176 = l_1 * l_1;
@@ -1307,7 +1301,7 @@ delta_status delta_multipliers_sc(const delta_trig *sc, const double q[6], const
     if (DELTA_RARELY(!(t188 > 0.0))) {
         return DELTA_MASS_RANK;
     }
-    const double t190 = t189 * t29;
+    const double t190 = t29 * t189;
     const double t191 = t29 * t190;
     const double t192 = 1.0 / t188;
     const double t193 = t192 * t23;
@@ -1461,10 +1455,10 @@ delta_status delta_multipliers_sc(const delta_trig *sc, const double q[6], const
     const double t296 = t245 * t245;
     const double t297 = t249 * t249;
     const double t298 = t296 + t297;
-    const double t299 = t160 + t298;
+    const double t299 = t150 + t298;
     const double t229 = t189 * t51;
     const double t230 = t51 * t229;
-    const double t294 = t189 * t111;
+    const double t294 = t111 * t189;
     const double t295 = t111 * t294;
     const double t227 = 6.0 * t226;
     const double t228 = 5.0 * t226;

@@ -108,11 +108,11 @@ static DELTA_APART_F delta_status delta_inverse_dynamics_sc_f_cause(const delta_
     const float t109 = t105 * t108;
     const float t110 = t103 + t109;
     const float t111 = t110 * t110;
-    const float t112 = x - R;
-    const float t113 = r + t112;
-    const float t114 = sin_a_1 * t113;
-    const float t115 = z * cos_a_1;
-    const float t116 = t114 + t115;
+    const float t112 = z * cos_a_1;
+    const float t113 = x - R;
+    const float t114 = r + t113;
+    const float t115 = sin_a_1 * t114;
+    const float t116 = t112 + t115;
     const float t117 = l_1 * t116;
     const float t118 = t80 * t117;
     const float t119 = t105 * t118;
@@ -132,15 +132,15 @@ static DELTA_APART_F delta_status delta_inverse_dynamics_sc_f_cause(const delta_
     const float t133 = t131 - t132;
     const float t134 = t133 * t133;
     const float t135 = t130 + t134;
-    const float t136 = y * 1.7320508f;
-    const float t137 = 0.5f * t136;
-    const float t138 = 0.5f * x;
-    const float t139 = t137 - t138;
-    const float t140 = t139 - R;
-    const float t141 = r + t140;
-    const float t142 = sin_a_2 * t141;
-    const float t143 = z * cos_a_2;
-    const float t144 = t142 + t143;
+    const float t136 = z * cos_a_2;
+    const float t137 = y * 1.7320508f;
+    const float t138 = 0.5f * t137;
+    const float t139 = 0.5f * x;
+    const float t140 = t138 - t139;
+    const float t141 = t140 - R;
+    const float t142 = r + t141;
+    const float t143 = sin_a_2 * t142;
+    const float t144 = t136 + t143;
     const float t145 = l_1 * t144;
     const float t146 = t71 * t145;
     const float t147 = t94 * t146;
@@ -170,12 +170,12 @@ static DELTA_APART_F delta_status delta_inverse_dynamics_sc_f_cause(const delta_
     const float t171 = t67 * t164;
     const float t172 = t171 * t171;
     const float t173 = t170 + t172;
-    const float t174 = t137 + t138;
-    const float t175 = R + t174;
-    const float t176 = r - t175;
-    const float t177 = sin_a_3 * t176;
-    const float t178 = z * cos_a_3;
-    const float t179 = t177 + t178;
+    const float t174 = z * cos_a_3;
+    const float t175 = t138 + t139;
+    const float t176 = R + t175;
+    const float t177 = r - t176;
+    const float t178 = sin_a_3 * t177;
+    const float t179 = t174 + t178;
     const float t180 = l_1 * t179;
     const float t181 = t87 * t180;
     const float t182 = t181 * t181;
@@ -302,8 +302,8 @@ delta_status delta_inverse_dynamics_sc_f(const delta_trig_f *sc, const float q[6
     const float t22 = t15 * t21;
     const float t25 = y * t24;
     const float t26 = t22 - t25;
-    const float t43 = t24 * t33;
-    const float t44 = t21 * t36;
+    const float t43 = t33 * t24;
+    const float t44 = t36 * t21;
     const float t45 = t43 - t44;
     const float t273 = t272 * t24;
     const float t275 = t274 * t21;
@@ -435,20 +435,12 @@ delta_status delta_inverse_dynamics_sc_f(const delta_trig_f *sc, const float q[6
 }
 
 delta_status delta_forward_dynamics_sc_f(const delta_trig_f *sc, const float q[6], const float qd[6], const float u[3], const delta_params_f *p, float qdd[6]) {
-    const float l_2 = p->l_2;
-    if (DELTA_RARELY_F(!(l_2 >= 7.5e-08f))) {
-        return DELTA_PARAMETER_RANGE;
-    }
-    const float m_a = p->m_a;
-    if (DELTA_RARELY_F(!(m_a >= 0.03f))) {
-        return DELTA_PARAMETER_RANGE;
-    }
     const float J_a = p->J_a;
-    if (DELTA_RARELY_F(!(3.5f >= J_a))) {
+    if (DELTA_RARELY_F(!(2.0f >= J_a))) {
         return DELTA_PARAMETER_RANGE;
     }
     const float J_m = p->J_m;
-    if (DELTA_RARELY_F(!(1.5f >= J_m))) {
+    if (DELTA_RARELY_F(!(0.88f >= J_m))) {
         return DELTA_PARAMETER_RANGE;
     }
     const float r = p->r;
@@ -474,14 +466,14 @@ delta_status delta_forward_dynamics_sc_f(const delta_trig_f *sc, const float q[6
     const float z = q[5];
     const float t11 = z + t10;
     const float t12 = 4.0f * t11;
-    const float t14 = x + r;
-    const float cos_a_1 = sc->cos_a_1;
-    const float t15 = l_1 * cos_a_1;
-    const float t16 = R + t15;
-    const float t17 = t14 - t16;
-    const float t18 = 4.0f * t17;
     const float y = q[4];
-    const float t20 = 4.0f * y;
+    const float t14 = 4.0f * y;
+    const float t16 = x + r;
+    const float cos_a_1 = sc->cos_a_1;
+    const float t17 = l_1 * cos_a_1;
+    const float t18 = R + t17;
+    const float t19 = t16 - t18;
+    const float t20 = 4.0f * t19;
     const float sin_a_2 = sc->sin_a_2;
     const float t32 = l_1 * sin_a_2;
     const float t33 = z + t32;
@@ -491,14 +483,14 @@ delta_status delta_forward_dynamics_sc_f(const delta_trig_f *sc, const float q[6
     const float t97 = z + t96;
     const float t114 = t97 * t12;
     const float t13 = t11 * t12;
-    const float t19 = t17 * t18;
-    const float t21 = y * t20;
-    const float t22 = t19 + t21;
+    const float t15 = y * t14;
+    const float t21 = t19 * t20;
+    const float t22 = t15 + t21;
     const float t23 = t13 + t22;
-    const float t60 = t41 * t18;
-    const float t115 = t103 * t18;
+    const float t60 = t41 * t20;
+    const float t116 = t103 * t20;
     const float t24 = 2.0f * t11;
-    const float t26 = 2.0f * t17;
+    const float t26 = 2.0f * t19;
     const float t25 = cos_a_1 * t24;
     const float t27 = sin_a_1 * t26;
     const float t28 = t25 + t27;
@@ -512,10 +504,10 @@ delta_status delta_forward_dynamics_sc_f(const delta_trig_f *sc, const float q[6
     const float t46 = y + t45;
     const float t105 = 1.7320508f * t104;
     const float t106 = y - t105;
-    const float t61 = t46 * t20;
+    const float t61 = t14 * t46;
     const float t62 = t60 + t61;
     const float t63 = t59 + t62;
-    const float t116 = t106 * t20;
+    const float t115 = t14 * t106;
     const float t117 = t115 + t116;
     const float t118 = t114 + t117;
     const float t54 = sqrtf(t31);
@@ -587,36 +579,36 @@ delta_status delta_forward_dynamics_sc_f(const delta_trig_f *sc, const float q[6
     const float t134 = t132 + t133;
     const float t135 = t132 * t134;
     const float t136 = t131 / t135;
-    const float t149 = copysignf(t132, t51);
+    const float t158 = copysignf(t132, t51);
     const float t99 = cos_a_3 * t98;
     const float t107 = 1.7320508f * t106;
     const float t108 = t103 + t107;
     const float t109 = sin_a_3 * t108;
     const float t110 = t99 - t109;
     const float t111 = l_1 * t110;
-    const float t150 = t51 + t149;
-    const float t151 = t150 * t136;
-    const float t152 = t151 / t149;
+    const float t159 = t51 + t158;
+    const float t160 = t159 * t136;
+    const float t161 = t160 / t158;
     const float t112 = t111 * t111;
-    const float t159 = t97 * t97;
-    const float t160 = 4.0f * t159;
-    const float t163 = t103 * t103;
-    const float t164 = 4.0f * t163;
-    const float t161 = t106 * t106;
-    const float t162 = 4.0f * t161;
-    const float t165 = t164 + t112;
-    const float t166 = t162 + t165;
-    const float t167 = t160 + t166;
-    const float t153 = t63 * t152;
-    const float t154 = t153 - t118;
-    const float t155 = t90 * t154;
-    const float t156 = t58 * t155;
-    const float t157 = t156 * t156;
-    const float t158 = t31 * t157;
-    const float t168 = t152 * t152;
-    const float t169 = t87 * t168;
-    const float t170 = t167 + t169;
-    const float t171 = t158 + t170;
+    const float t149 = t97 * t97;
+    const float t150 = 4.0f * t149;
+    const float t153 = t103 * t103;
+    const float t154 = 4.0f * t153;
+    const float t151 = t106 * t106;
+    const float t152 = 4.0f * t151;
+    const float t155 = t154 + t112;
+    const float t156 = t152 + t155;
+    const float t157 = t150 + t156;
+    const float t162 = t161 * t161;
+    const float t163 = t87 * t162;
+    const float t164 = t157 + t163;
+    const float t165 = t63 * t161;
+    const float t166 = t165 - t118;
+    const float t167 = t90 * t166;
+    const float t168 = t58 * t167;
+    const float t169 = t168 * t168;
+    const float t170 = t31 * t169;
+    const float t171 = t164 + t170;
     const float t172 = t171 * 8.185452e-12f;
     const float t137 = t66 * t136;
     const float t138 = t121 - t137;
@@ -677,7 +669,7 @@ delta_status delta_forward_dynamics_sc_f(const delta_trig_f *sc, const float q[6
     const float t343 = t11 * t342;
     const float t344 = t341 - t343;
     const float t345 = 2.0f * t344;
-    const float t346 = t17 * t336;
+    const float t346 = t19 * t336;
     const float t349 = sin_a_1 * t348;
     const float t350 = t346 + t349;
     const float t351 = 2.0f * t350;
@@ -737,6 +729,7 @@ delta_status delta_forward_dynamics_sc_f(const delta_trig_f *sc, const float q[6
     }
     const float m_r = p->m_r;
     const float t174 = 0.5f * m_r;
+    const float m_a = p->m_a;
     const float t173 = 0.25f * m_a;
     const float t175 = t173 + t174;
     const float t176 = l_1 * l_1;
@@ -760,7 +753,7 @@ delta_status delta_forward_dynamics_sc_f(const delta_trig_f *sc, const float q[6
     if (DELTA_RARELY_F(!(t188 > 0.0f))) {
         return DELTA_MASS_RANK;
     }
-    const float t190 = t189 * t29;
+    const float t190 = t29 * t189;
     const float t191 = t29 * t190;
     const float t192 = 1.0f / t188;
     const float t193 = t192 * t23;
@@ -790,7 +783,7 @@ delta_status delta_forward_dynamics_sc_f(const delta_trig_f *sc, const float q[6
     const float t296 = t245 * t245;
     const float t297 = t249 * t249;
     const float t298 = t296 + t297;
-    const float t299 = t160 + t298;
+    const float t299 = t150 + t298;
     const float t254 = t195 * t253;
     const float t257 = t26 * t254;
     const float t258 = t245 - t257;
@@ -845,7 +838,7 @@ delta_status delta_forward_dynamics_sc_f(const delta_trig_f *sc, const float q[6
     const float t292 = t279 + t291;
     const float t229 = t189 * t51;
     const float t230 = t51 * t229;
-    const float t294 = t189 * t111;
+    const float t294 = t111 * t189;
     const float t295 = t111 * t294;
     const float t227 = 6.0f * t226;
     const float t228 = 5.0f * t226;
@@ -998,10 +991,6 @@ delta_status delta_multipliers_sc_f(const delta_trig_f *sc, const float q[6], co
     if (DELTA_RARELY_F(!(l_2 >= 7.5e-08f))) {
         return DELTA_PARAMETER_RANGE;
     }
-    const float m_a = p->m_a;
-    if (DELTA_RARELY_F(!(20.0f >= m_a))) {
-        return DELTA_PARAMETER_RANGE;
-    }
     const float m_r = p->m_r;
     if (DELTA_RARELY_F(!(5.0f >= m_r))) {
         return DELTA_PARAMETER_RANGE;
@@ -1029,14 +1018,14 @@ delta_status delta_multipliers_sc_f(const delta_trig_f *sc, const float q[6], co
     const float z = q[5];
     const float t11 = z + t10;
     const float t12 = 4.0f * t11;
-    const float t14 = x + r;
-    const float cos_a_1 = sc->cos_a_1;
-    const float t15 = l_1 * cos_a_1;
-    const float t16 = R + t15;
-    const float t17 = t14 - t16;
-    const float t18 = 4.0f * t17;
     const float y = q[4];
-    const float t20 = 4.0f * y;
+    const float t14 = 4.0f * y;
+    const float t16 = x + r;
+    const float cos_a_1 = sc->cos_a_1;
+    const float t17 = l_1 * cos_a_1;
+    const float t18 = R + t17;
+    const float t19 = t16 - t18;
+    const float t20 = 4.0f * t19;
     const float sin_a_2 = sc->sin_a_2;
     const float t32 = l_1 * sin_a_2;
     const float t33 = z + t32;
@@ -1046,14 +1035,14 @@ delta_status delta_multipliers_sc_f(const delta_trig_f *sc, const float q[6], co
     const float t97 = z + t96;
     const float t114 = t97 * t12;
     const float t13 = t11 * t12;
-    const float t19 = t17 * t18;
-    const float t21 = y * t20;
-    const float t22 = t19 + t21;
+    const float t15 = y * t14;
+    const float t21 = t19 * t20;
+    const float t22 = t15 + t21;
     const float t23 = t13 + t22;
-    const float t60 = t41 * t18;
-    const float t115 = t103 * t18;
+    const float t60 = t41 * t20;
+    const float t116 = t103 * t20;
     const float t24 = 2.0f * t11;
-    const float t26 = 2.0f * t17;
+    const float t26 = 2.0f * t19;
     const float t25 = cos_a_1 * t24;
     const float t27 = sin_a_1 * t26;
     const float t28 = t25 + t27;
@@ -1067,10 +1056,10 @@ delta_status delta_multipliers_sc_f(const delta_trig_f *sc, const float q[6], co
     const float t46 = y + t45;
     const float t105 = 1.7320508f * t104;
     const float t106 = y - t105;
-    const float t61 = t46 * t20;
+    const float t61 = t14 * t46;
     const float t62 = t60 + t61;
     const float t63 = t59 + t62;
-    const float t116 = t106 * t20;
+    const float t115 = t14 * t106;
     const float t117 = t115 + t116;
     const float t118 = t114 + t117;
     const float t54 = sqrtf(t31);
@@ -1142,36 +1131,36 @@ delta_status delta_multipliers_sc_f(const delta_trig_f *sc, const float q[6], co
     const float t134 = t132 + t133;
     const float t135 = t132 * t134;
     const float t136 = t131 / t135;
-    const float t149 = copysignf(t132, t51);
+    const float t158 = copysignf(t132, t51);
     const float t99 = cos_a_3 * t98;
     const float t107 = 1.7320508f * t106;
     const float t108 = t103 + t107;
     const float t109 = sin_a_3 * t108;
     const float t110 = t99 - t109;
     const float t111 = l_1 * t110;
-    const float t150 = t51 + t149;
-    const float t151 = t150 * t136;
-    const float t152 = t151 / t149;
+    const float t159 = t51 + t158;
+    const float t160 = t159 * t136;
+    const float t161 = t160 / t158;
     const float t112 = t111 * t111;
-    const float t159 = t97 * t97;
-    const float t160 = 4.0f * t159;
-    const float t163 = t103 * t103;
-    const float t164 = 4.0f * t163;
-    const float t161 = t106 * t106;
-    const float t162 = 4.0f * t161;
-    const float t165 = t164 + t112;
-    const float t166 = t162 + t165;
-    const float t167 = t160 + t166;
-    const float t153 = t63 * t152;
-    const float t154 = t153 - t118;
-    const float t155 = t90 * t154;
-    const float t156 = t58 * t155;
-    const float t157 = t156 * t156;
-    const float t158 = t31 * t157;
-    const float t168 = t152 * t152;
-    const float t169 = t87 * t168;
-    const float t170 = t167 + t169;
-    const float t171 = t158 + t170;
+    const float t149 = t97 * t97;
+    const float t150 = 4.0f * t149;
+    const float t153 = t103 * t103;
+    const float t154 = 4.0f * t153;
+    const float t151 = t106 * t106;
+    const float t152 = 4.0f * t151;
+    const float t155 = t154 + t112;
+    const float t156 = t152 + t155;
+    const float t157 = t150 + t156;
+    const float t162 = t161 * t161;
+    const float t163 = t87 * t162;
+    const float t164 = t157 + t163;
+    const float t165 = t63 * t161;
+    const float t166 = t165 - t118;
+    const float t167 = t90 * t166;
+    const float t168 = t58 * t167;
+    const float t169 = t168 * t168;
+    const float t170 = t31 * t169;
+    const float t171 = t164 + t170;
     const float t172 = t171 * 8.185452e-12f;
     const float t137 = t66 * t136;
     const float t138 = t121 - t137;
@@ -1232,7 +1221,7 @@ delta_status delta_multipliers_sc_f(const delta_trig_f *sc, const float q[6], co
     const float t315 = t11 * t314;
     const float t316 = t313 - t315;
     const float t317 = 2.0f * t316;
-    const float t318 = t17 * t306;
+    const float t318 = t19 * t306;
     const float t321 = sin_a_1 * t320;
     const float t322 = t318 + t321;
     const float t323 = 2.0f * t322;
@@ -1288,6 +1277,7 @@ delta_status delta_multipliers_sc_f(const delta_trig_f *sc, const float q[6], co
     const float t382 = t311 * t381;
     const float t385 = t384 * t327;
     const float t174 = 0.5f * m_r;
+    const float m_a = p->m_a;
     const float t173 = 0.25f * m_a;
     const float t175 = t173 + t174;
     const float t176 = l_1 * l_1;
@@ -1313,7 +1303,7 @@ delta_status delta_multipliers_sc_f(const delta_trig_f *sc, const float q[6], co
     if (DELTA_RARELY_F(!(t188 > 0.0f))) {
         return DELTA_MASS_RANK;
     }
-    const float t190 = t189 * t29;
+    const float t190 = t29 * t189;
     const float t191 = t29 * t190;
     const float t192 = 1.0f / t188;
     const float t193 = t192 * t23;
@@ -1467,10 +1457,10 @@ delta_status delta_multipliers_sc_f(const delta_trig_f *sc, const float q[6], co
     const float t296 = t245 * t245;
     const float t297 = t249 * t249;
     const float t298 = t296 + t297;
-    const float t299 = t160 + t298;
+    const float t299 = t150 + t298;
     const float t229 = t189 * t51;
     const float t230 = t51 * t229;
-    const float t294 = t189 * t111;
+    const float t294 = t111 * t189;
     const float t295 = t111 * t294;
     const float t227 = 6.0f * t226;
     const float t228 = 5.0f * t226;

@@ -18,6 +18,151 @@
 double Frama_C_double_interval(double min, double max);
 #endif
 
+void eva_configuration_from_measured(void);
+
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t267, t529, t534, t541, t876, t882, t926, t930, t957, t1007, t1013, t1051, t1055, t1082, t1132, t1138, t1176, t1180, t1207, t2055, t2062, t2918, t2923, t2930. */
+void eva_configuration_from_measured(void) {
+    static const double low_0[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
+    static const double high_0[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
+    static const double low_1[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
+    static const double high_1[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
+    static const double low_2[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
+    static const double high_2[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
+    double q_m[3];
+    double q[6];
+    delta_params p;
+    double y[6];
+    q_m[0] = Frama_C_double_interval(-0.6, 1.2);
+    q_m[1] = Frama_C_double_interval(-0.6, 1.2);
+    q_m[2] = Frama_C_double_interval(-0.6, 1.2);
+    q[3] = Frama_C_double_interval(-0.25, 0.25);
+    q[4] = Frama_C_double_interval(-0.25, 0.25);
+    q[5] = Frama_C_double_interval(-0.9, -0.5);
+    p.R = Frama_C_double_interval(0.15, 0.25);
+    p.r = Frama_C_double_interval(0.04, 0.07);
+    p.l_1 = Frama_C_double_interval(0.25, 0.35);
+    p.l_2 = Frama_C_double_interval(0.75, 0.85);
+    p.m_a = Frama_C_double_interval(0.3, 2.0);
+    p.J_a = Frama_C_double_interval(0.001, 0.02);
+    p.m_r = Frama_C_double_interval(0.05, 0.5);
+    p.m_p = Frama_C_double_interval(0.2, 3.0);
+    p.J_m = Frama_C_double_interval(0.005, 0.05);
+    p.g = Frama_C_double_interval(9.81, 9.81);
+    //@ loop unroll 8;
+    for (int i_0 = 0; i_0 < 8; i_0++) {
+    q[0] = Frama_C_double_interval(low_0[i_0], high_0[i_0]);
+    //@ loop unroll 8;
+    for (int i_1 = 0; i_1 < 8; i_1++) {
+    q[1] = Frama_C_double_interval(low_1[i_1], high_1[i_1]);
+    //@ loop unroll 8;
+    for (int i_2 = 0; i_2 < 8; i_2++) {
+    q[2] = Frama_C_double_interval(low_2[i_2], high_2[i_2]);
+    delta_status status = delta_configuration_from_measured(q_m, q, &p, y);
+    //@ assert regular: status == DELTA_OK || status == DELTA_NOT_FINITE;
+    (void)status;
+    }
+    }
+    }
+}
+
+void eva_velocity_from_measured(void);
+
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t56. */
+void eva_velocity_from_measured(void) {
+    static const double low_0[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
+    static const double high_0[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
+    static const double low_1[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
+    static const double high_1[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
+    static const double low_2[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
+    static const double high_2[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
+    double q[6];
+    double qd_m[3];
+    delta_params p;
+    double y[6];
+    q[3] = Frama_C_double_interval(-0.25, 0.25);
+    q[4] = Frama_C_double_interval(-0.25, 0.25);
+    q[5] = Frama_C_double_interval(-0.9, -0.5);
+    qd_m[0] = Frama_C_double_interval(-1.0, 1.0);
+    qd_m[1] = Frama_C_double_interval(-1.0, 1.0);
+    qd_m[2] = Frama_C_double_interval(-1.0, 1.0);
+    p.R = Frama_C_double_interval(0.15, 0.25);
+    p.r = Frama_C_double_interval(0.04, 0.07);
+    p.l_1 = Frama_C_double_interval(0.25, 0.35);
+    p.l_2 = Frama_C_double_interval(0.75, 0.85);
+    p.m_a = Frama_C_double_interval(0.3, 2.0);
+    p.J_a = Frama_C_double_interval(0.001, 0.02);
+    p.m_r = Frama_C_double_interval(0.05, 0.5);
+    p.m_p = Frama_C_double_interval(0.2, 3.0);
+    p.J_m = Frama_C_double_interval(0.005, 0.05);
+    p.g = Frama_C_double_interval(9.81, 9.81);
+    //@ loop unroll 8;
+    for (int i_0 = 0; i_0 < 8; i_0++) {
+    q[0] = Frama_C_double_interval(low_0[i_0], high_0[i_0]);
+    //@ loop unroll 8;
+    for (int i_1 = 0; i_1 < 8; i_1++) {
+    q[1] = Frama_C_double_interval(low_1[i_1], high_1[i_1]);
+    //@ loop unroll 8;
+    for (int i_2 = 0; i_2 < 8; i_2++) {
+    q[2] = Frama_C_double_interval(low_2[i_2], high_2[i_2]);
+    delta_status status = delta_velocity_from_measured(q, qd_m, &p, y);
+    //@ assert regular: status == DELTA_OK || status == DELTA_NOT_FINITE;
+    (void)status;
+    }
+    }
+    }
+}
+
+void eva_acceleration_from_measured(void);
+
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t57. */
+void eva_acceleration_from_measured(void) {
+    static const double low_0[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
+    static const double high_0[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
+    static const double low_1[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
+    static const double high_1[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
+    static const double low_2[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
+    static const double high_2[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
+    double q[6];
+    double qd_m[3];
+    double qdd_m[3];
+    delta_params p;
+    double y[6];
+    q[3] = Frama_C_double_interval(-0.25, 0.25);
+    q[4] = Frama_C_double_interval(-0.25, 0.25);
+    q[5] = Frama_C_double_interval(-0.9, -0.5);
+    qd_m[0] = Frama_C_double_interval(-1.0, 1.0);
+    qd_m[1] = Frama_C_double_interval(-1.0, 1.0);
+    qd_m[2] = Frama_C_double_interval(-1.0, 1.0);
+    qdd_m[0] = Frama_C_double_interval(-1.0, 1.0);
+    qdd_m[1] = Frama_C_double_interval(-1.0, 1.0);
+    qdd_m[2] = Frama_C_double_interval(-1.0, 1.0);
+    p.R = Frama_C_double_interval(0.15, 0.25);
+    p.r = Frama_C_double_interval(0.04, 0.07);
+    p.l_1 = Frama_C_double_interval(0.25, 0.35);
+    p.l_2 = Frama_C_double_interval(0.75, 0.85);
+    p.m_a = Frama_C_double_interval(0.3, 2.0);
+    p.J_a = Frama_C_double_interval(0.001, 0.02);
+    p.m_r = Frama_C_double_interval(0.05, 0.5);
+    p.m_p = Frama_C_double_interval(0.2, 3.0);
+    p.J_m = Frama_C_double_interval(0.005, 0.05);
+    p.g = Frama_C_double_interval(9.81, 9.81);
+    //@ loop unroll 8;
+    for (int i_0 = 0; i_0 < 8; i_0++) {
+    q[0] = Frama_C_double_interval(low_0[i_0], high_0[i_0]);
+    //@ loop unroll 8;
+    for (int i_1 = 0; i_1 < 8; i_1++) {
+    q[1] = Frama_C_double_interval(low_1[i_1], high_1[i_1]);
+    //@ loop unroll 8;
+    for (int i_2 = 0; i_2 < 8; i_2++) {
+    q[2] = Frama_C_double_interval(low_2[i_2], high_2[i_2]);
+    delta_status status = delta_acceleration_from_measured(q, qd_m, qdd_m, &p, y);
+    //@ assert regular: status == DELTA_OK || status == DELTA_NOT_FINITE;
+    (void)status;
+    }
+    }
+    }
+}
+
 void eva_inverse_dynamics(void);
 
 /* Intervals of the ideal operations alone do not keep these denominators from 0: t47. */
@@ -77,7 +222,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t57, t88, t135, t149, t194, t226, t237, t303, t292. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t57, t88, t135, t158, t194, t226, t237, t303, t292. */
 void eva_forward_dynamics(void) {
     static const double low_0[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
     static const double high_0[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
@@ -131,7 +276,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t57, t88, t135, t149, t194, t226, t237, t303, t292. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t57, t88, t135, t158, t194, t226, t237, t303, t292. */
 void eva_multipliers(void) {
     static const double low_0[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
     static const double high_0[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};

@@ -18,6 +18,151 @@
 float Frama_C_float_interval(float min, float max);
 #endif
 
+void eva_configuration_from_measured(void);
+
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t267, t529, t534, t541, t876, t882, t926, t930, t957, t1007, t1013, t1051, t1055, t1082, t1132, t1138, t1176, t1180, t1207, t2055, t2062, t2918, t2923, t2930. */
+void eva_configuration_from_measured(void) {
+    static const float low_0[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
+    static const float high_0[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
+    static const float low_1[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
+    static const float high_1[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
+    static const float low_2[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
+    static const float high_2[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
+    float q_m[3];
+    float q[6];
+    delta_params_f p;
+    float y[6];
+    q_m[0] = Frama_C_float_interval(-0.6f, 1.2f);
+    q_m[1] = Frama_C_float_interval(-0.6f, 1.2f);
+    q_m[2] = Frama_C_float_interval(-0.6f, 1.2f);
+    q[3] = Frama_C_float_interval(-0.25f, 0.25f);
+    q[4] = Frama_C_float_interval(-0.25f, 0.25f);
+    q[5] = Frama_C_float_interval(-0.9f, -0.5f);
+    p.R = Frama_C_float_interval(0.15f, 0.25f);
+    p.r = Frama_C_float_interval(0.04f, 0.07f);
+    p.l_1 = Frama_C_float_interval(0.25f, 0.35f);
+    p.l_2 = Frama_C_float_interval(0.75f, 0.85f);
+    p.m_a = Frama_C_float_interval(0.3f, 2.0f);
+    p.J_a = Frama_C_float_interval(0.001f, 0.02f);
+    p.m_r = Frama_C_float_interval(0.05f, 0.5f);
+    p.m_p = Frama_C_float_interval(0.2f, 3.0f);
+    p.J_m = Frama_C_float_interval(0.005f, 0.05f);
+    p.g = Frama_C_float_interval(9.81f, 9.81f);
+    //@ loop unroll 8;
+    for (int i_0 = 0; i_0 < 8; i_0++) {
+    q[0] = Frama_C_float_interval(low_0[i_0], high_0[i_0]);
+    //@ loop unroll 8;
+    for (int i_1 = 0; i_1 < 8; i_1++) {
+    q[1] = Frama_C_float_interval(low_1[i_1], high_1[i_1]);
+    //@ loop unroll 8;
+    for (int i_2 = 0; i_2 < 8; i_2++) {
+    q[2] = Frama_C_float_interval(low_2[i_2], high_2[i_2]);
+    delta_status status = delta_configuration_from_measured_f(q_m, q, &p, y);
+    //@ assert regular: status == DELTA_OK || status == DELTA_NOT_FINITE;
+    (void)status;
+    }
+    }
+    }
+}
+
+void eva_velocity_from_measured(void);
+
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t56. */
+void eva_velocity_from_measured(void) {
+    static const float low_0[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
+    static const float high_0[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
+    static const float low_1[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
+    static const float high_1[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
+    static const float low_2[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
+    static const float high_2[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
+    float q[6];
+    float qd_m[3];
+    delta_params_f p;
+    float y[6];
+    q[3] = Frama_C_float_interval(-0.25f, 0.25f);
+    q[4] = Frama_C_float_interval(-0.25f, 0.25f);
+    q[5] = Frama_C_float_interval(-0.9f, -0.5f);
+    qd_m[0] = Frama_C_float_interval(-1.0f, 1.0f);
+    qd_m[1] = Frama_C_float_interval(-1.0f, 1.0f);
+    qd_m[2] = Frama_C_float_interval(-1.0f, 1.0f);
+    p.R = Frama_C_float_interval(0.15f, 0.25f);
+    p.r = Frama_C_float_interval(0.04f, 0.07f);
+    p.l_1 = Frama_C_float_interval(0.25f, 0.35f);
+    p.l_2 = Frama_C_float_interval(0.75f, 0.85f);
+    p.m_a = Frama_C_float_interval(0.3f, 2.0f);
+    p.J_a = Frama_C_float_interval(0.001f, 0.02f);
+    p.m_r = Frama_C_float_interval(0.05f, 0.5f);
+    p.m_p = Frama_C_float_interval(0.2f, 3.0f);
+    p.J_m = Frama_C_float_interval(0.005f, 0.05f);
+    p.g = Frama_C_float_interval(9.81f, 9.81f);
+    //@ loop unroll 8;
+    for (int i_0 = 0; i_0 < 8; i_0++) {
+    q[0] = Frama_C_float_interval(low_0[i_0], high_0[i_0]);
+    //@ loop unroll 8;
+    for (int i_1 = 0; i_1 < 8; i_1++) {
+    q[1] = Frama_C_float_interval(low_1[i_1], high_1[i_1]);
+    //@ loop unroll 8;
+    for (int i_2 = 0; i_2 < 8; i_2++) {
+    q[2] = Frama_C_float_interval(low_2[i_2], high_2[i_2]);
+    delta_status status = delta_velocity_from_measured_f(q, qd_m, &p, y);
+    //@ assert regular: status == DELTA_OK || status == DELTA_NOT_FINITE;
+    (void)status;
+    }
+    }
+    }
+}
+
+void eva_acceleration_from_measured(void);
+
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t57. */
+void eva_acceleration_from_measured(void) {
+    static const float low_0[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
+    static const float high_0[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
+    static const float low_1[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
+    static const float high_1[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
+    static const float low_2[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
+    static const float high_2[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
+    float q[6];
+    float qd_m[3];
+    float qdd_m[3];
+    delta_params_f p;
+    float y[6];
+    q[3] = Frama_C_float_interval(-0.25f, 0.25f);
+    q[4] = Frama_C_float_interval(-0.25f, 0.25f);
+    q[5] = Frama_C_float_interval(-0.9f, -0.5f);
+    qd_m[0] = Frama_C_float_interval(-1.0f, 1.0f);
+    qd_m[1] = Frama_C_float_interval(-1.0f, 1.0f);
+    qd_m[2] = Frama_C_float_interval(-1.0f, 1.0f);
+    qdd_m[0] = Frama_C_float_interval(-1.0f, 1.0f);
+    qdd_m[1] = Frama_C_float_interval(-1.0f, 1.0f);
+    qdd_m[2] = Frama_C_float_interval(-1.0f, 1.0f);
+    p.R = Frama_C_float_interval(0.15f, 0.25f);
+    p.r = Frama_C_float_interval(0.04f, 0.07f);
+    p.l_1 = Frama_C_float_interval(0.25f, 0.35f);
+    p.l_2 = Frama_C_float_interval(0.75f, 0.85f);
+    p.m_a = Frama_C_float_interval(0.3f, 2.0f);
+    p.J_a = Frama_C_float_interval(0.001f, 0.02f);
+    p.m_r = Frama_C_float_interval(0.05f, 0.5f);
+    p.m_p = Frama_C_float_interval(0.2f, 3.0f);
+    p.J_m = Frama_C_float_interval(0.005f, 0.05f);
+    p.g = Frama_C_float_interval(9.81f, 9.81f);
+    //@ loop unroll 8;
+    for (int i_0 = 0; i_0 < 8; i_0++) {
+    q[0] = Frama_C_float_interval(low_0[i_0], high_0[i_0]);
+    //@ loop unroll 8;
+    for (int i_1 = 0; i_1 < 8; i_1++) {
+    q[1] = Frama_C_float_interval(low_1[i_1], high_1[i_1]);
+    //@ loop unroll 8;
+    for (int i_2 = 0; i_2 < 8; i_2++) {
+    q[2] = Frama_C_float_interval(low_2[i_2], high_2[i_2]);
+    delta_status status = delta_acceleration_from_measured_f(q, qd_m, qdd_m, &p, y);
+    //@ assert regular: status == DELTA_OK || status == DELTA_NOT_FINITE;
+    (void)status;
+    }
+    }
+    }
+}
+
 void eva_inverse_dynamics(void);
 
 /* Intervals of the ideal operations alone do not keep these denominators from 0: t47. */
@@ -77,7 +222,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t57, t88, t135, t149, t194, t226, t237, t303, t292. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t57, t88, t135, t158, t194, t226, t237, t303, t292. */
 void eva_forward_dynamics(void) {
     static const float low_0[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
     static const float high_0[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
@@ -131,7 +276,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t57, t88, t135, t149, t194, t226, t237, t303, t292. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t57, t88, t135, t158, t194, t226, t237, t303, t292. */
 void eva_multipliers(void) {
     static const float low_0[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
     static const float high_0[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
