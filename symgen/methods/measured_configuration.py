@@ -77,11 +77,12 @@ class MeasuredConfiguration:
         found = [
             *(self._moved(guard, place) for place in (self._q, before) for guard in self._guards),
             Guard(Status.BRANCH, longer, 1, scale=self._graph.one, positive=True, small=True),
-            Guard(Status.BRANCH, same_side, 1, scale=self._graph.one, positive=True),
             self._closure,
             # half of the digits stood still in the last step: it has brought the others
             Guard(Status.NOT_CLOSED, last, 1, scale=self._graph.const(half), positive=True, small=True),
         ]
+        if same_side.constant is None:
+            found.append(Guard(Status.BRANCH, same_side, 1, scale=self._graph.one, positive=True))
         return tuple(found)
 
     def _by_rows(self) -> tuple[Vector, tuple[Guard, ...]]:
