@@ -36,7 +36,7 @@ def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actua
     if quantity.needs == MEASURED_PLACES:
         if geometric == 0:
             return "the model has no geometric constraints: every place has to be measured"
-        if geometric < model.r and len(model.measured) < model.n - geometric:
+        if not model.measures_places:
             return "rows that hold rates leave places open: all of these would have to be measured"
     if quantity.needs == ACTUATORS and delta is not None and not model.m == delta == actuation:
         return "it needs as many independent inputs as degrees of freedom"

@@ -203,6 +203,7 @@ class Model:
 
     T and U are the energies written in the file plus those of `mechanism`; `assembly` is what loading found out about
     its configurations.  `row_units` are set where rows stand here times 2 to these powers (`quantities/row_units.py`).
+    What is `measured` leaves places open where rows hold rates alone (`measures_places`).
     `taken` are parameters of the file that are numbers here (`as_numbers`).
     """
 
@@ -233,6 +234,7 @@ class Model:
     trig_range: Literal["normal", "wide"] = "normal"
     derivatives: bool = False
     measured: tuple[str, ...] = ()
+    measures_places: bool = True
     assembly: Assembly | None = None
     row_units: tuple[int, ...] = ()
     taken: tuple[tuple[str, Fraction], ...] = ()

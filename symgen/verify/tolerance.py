@@ -6,7 +6,8 @@ all inputs, run-time parameters and literals of the model.  So d holds the condi
 Verification is stricter: literals that the scalar type holds do not move, such as the ones in the direction of a slide
 along [1, 1, 0], which stays parallel to the axis of its joint.  Moved they would make an over-constrained linkage count
 as ill-conditioned where nothing that is rounded makes it so.  Axes and quarter turns are no literals here.  Sweeps
-towards singular sets take the rule as it stands.
+towards singular sets take the rule as it stands, and so does what solves g(q) = 0: the terms of g are rounded, be they
+literals or not.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
 from symgen.model.expressions.expression import Pi
 from symgen.verify.reference.arithmetic.linear import norm
 from symgen.verify.reference.arithmetic.tape import ball, precision
+from symgen.verify.reference.quantities import ITERATED
 from symgen.verify.reference.reference import Reference, State
 
 # Units of error that a correct kernel may be away.
@@ -102,6 +104,9 @@ def _estimates(
     eps = float(UNIT_ROUNDOFF[scalar])
     sizes = {name: norm(exact[name]) for name in quantities}
     worst = dict.fromkeys(quantities, 0.0)
+    solved = [name for name in quantities if name in ITERATED]
+    others = [name for name in quantities if name not in ITERATED]
+    kinds = [(names, whole) for names, whole in ((others, all_literals), (solved, True)) if names]
 
     def made() -> dict[str, Expectation]:
         return {name: Expectation(exact[name], sizes[name], worst[name] + eps * sizes[name]) for name in quantities}
@@ -111,9 +116,11 @@ def _estimates(
     with precision(PERTURBED_BITS):
         state = State(*(tuple(map(ball, part)) for part in (state.q, state.qd, state.qdd, state.u, state.parameters)))
     for signs in _signs(reference, state, generator):
-        with precision(PERTURBED_BITS):
-            moved, literals = perturbed(reference, state, scalar, signs, all_literals)
-        results = reference.matrices(moved, quantities, PERTURBED_BITS, literals)
+        results: dict[str, Any] = {}
+        for names, whole in kinds:
+            with precision(PERTURBED_BITS):
+                moved, literals = perturbed(reference, state, scalar, signs, whole)
+            results |= reference.matrices(moved, names, PERTURBED_BITS, literals)
         with precision(DISTANCE_BITS):
             for name, matrix in results.items():
                 worst[name] = max(worst[name], norm(matrix - exact[name]))

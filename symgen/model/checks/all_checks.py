@@ -10,7 +10,7 @@ from symgen.model.availability import lacking
 from symgen.model.checks.as_numbers import with_numbers
 from symgen.model.checks.bodies import check_bodies
 from symgen.model.checks.empty_rows import check_empty_rows, parameters_that_count
-from symgen.model.checks.feasibility import check_motion
+from symgen.model.checks.feasibility import check_motion, measures_places
 from symgen.model.checks.redundancy import check_redundancy
 from symgen.model.checks.structure import check_domain, check_kinetic_energy, check_nonholonomic
 from symgen.model.checks.tied import tied_parameters
@@ -82,7 +82,8 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
                 _add(scope, check_redundancy(mechanics, found, model.inputs, model.allocation))
             found = replace(found, tied=tied_parameters(written, mechanics, found))
             _add(scope, _notices_of_tied(model, found.tied))
-            return replace(model, assembly=found)
+            places = not model.measured or measures_places(mechanics, found, model.measured)
+            return replace(model, assembly=found, measures_places=places)
     return model
 
 

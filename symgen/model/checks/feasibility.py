@@ -187,6 +187,14 @@ def _held(mechanics: NumericSystem, assembly: Assembly, span: Span | None) -> It
         )
 
 
+def measures_places(mechanics: NumericSystem, assembly: Assembly, measured: tuple[str, ...]) -> bool:
+    """Whether geometric rows and what is measured determine every place: rows that hold rates alone do not."""
+    names = [c.name for c in mechanics.coordinates]
+    known = [[float(name == other) for other in names] for name in measured]
+    rows = (mechanics.jacobian(place.q)[: len(mechanics.geometric)] for place in assembly.places[:SAMPLES])
+    return any(rank([*place, *known]) == len(names) for place in rows)
+
+
 def _check_measured(
     mechanics: NumericSystem, places: Sequence[Rows], measured: tuple[str, ...], span: Span | None
 ) -> Iterator[Mistake]:

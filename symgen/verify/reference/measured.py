@@ -19,8 +19,8 @@ MOMENT = 2.0**-10
 # Steps that all digits usually take, and those at most: each leaves a share of what is missing, by which the encoders
 # disagree.
 USUAL_STEPS, MOST_NEWTON_STEPS = 8, 200
-# Times that a measured rate moves others where it determines them well, and by which steps grow shorter at first.
-AMPLIFIED, QUICK = 100.0, 8.0
+# Times by which steps grow shorter at first.
+QUICK = 8.0
 # Of the binary digits, what rounding may keep from standing still.
 RESTLESS = 24
 
@@ -63,11 +63,9 @@ def configuration_from_measured(e: Evaluation) -> Any:
     raise ZeroDivisionError("the configuration is not near enough to one with what is measured")
 
 
-def is_clear(e: Evaluation, places: bool) -> bool:
-    """Whether measured rates determine the others well and, of `places`, whether Newton's method is quick from q."""
-    if norm(_inverse(e)) > AMPLIFIED:
-        return False
-    (_, first), (_, second) = islice(_places(e), 2) if places else ((None, 1.0), (None, 0.0))
+def is_near(e: Evaluation) -> bool:
+    """Whether Newton's method is quick from q on: the configuration is well within where it leads back."""
+    (_, first), (_, second) = islice(_places(e), 2)
     return second <= first / QUICK
 
 

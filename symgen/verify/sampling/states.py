@@ -10,10 +10,10 @@ from math import comb, isfinite
 from typing import Any
 
 from symgen.ir.kernel import Scalar
-from symgen.model.quantities import MEASURED, MEASURED_PLACES, PARTITION, ROWS
+from symgen.model.quantities import MEASURED_PLACES, PARTITION, ROWS
 from symgen.runtime.activity import working
 from symgen.verify.reference.arithmetic.tape import precision
-from symgen.verify.reference.measured import USUAL_STEPS, is_clear
+from symgen.verify.reference.measured import USUAL_STEPS, is_near
 from symgen.verify.reference.quantities import DIFFERENCED, ITERATED, RATES
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.sampling.inertias import Inertias
@@ -142,8 +142,7 @@ def _sample(
         return None
     if any(ROWS[name].needs == PARTITION for name in quantities) and not _is_free(reference, state):
         return None
-    kinds = {ROWS[name].needs for name in quantities}
-    if kinds & {MEASURED, MEASURED_PLACES} and not _is_followed(reference, state, MEASURED_PLACES in kinds):
+    if any(ROWS[name].needs == MEASURED_PLACES for name in quantities) and not _is_followed(reference, state):
         return None
     if not inertias.is_regular(inertias.share(everything)):
         return None
@@ -160,9 +159,9 @@ def _is_free(reference: Reference, state: State) -> bool:
     return max(map(abs, complement)) * REGULAR_SHARE < 1
 
 
-def _is_followed(reference: Reference, state: State, places: bool) -> bool:
-    """Whether what is measured determines the rest here, far from where it does not: kernels have a status there."""
+def _is_followed(reference: Reference, state: State) -> bool:
+    """Whether a configuration that is measured a moment later is near enough: kernels have a status elsewhere."""
     try:
-        return reference.regular(lambda: is_clear(reference.evaluation(state), places), SAMPLING_BITS)
+        return reference.regular(lambda: is_near(reference.evaluation(state)), SAMPLING_BITS)
     except ReferenceValueError:
         return False
