@@ -15,6 +15,7 @@ from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.model.model import Model
 from symgen.model.quantities import MAIN
 from symgen.quantities.catalogue import CATALOGUE
+from symgen.verify.given import arrays
 from symgen.verify.reference.reference import State
 from symgen.verify.running.compile import CFunction, Compilation, Outcome, c_array, find_compiler
 from symgen.verify.running.sources import generated_sources
@@ -68,11 +69,11 @@ class Runner:
 
     def run(self, name: str, state: State, scalar: Scalar) -> Outcome:
         """One kernel at one state, whose numbers are of the scalar type already."""
-        parts = {part: getattr(state, part) for part in ("q", "qd", "qdd", "u")}
-        if self._functions:
-            arrays: dict[str, Any] = {part: c_array(scalar, values) for part, values in parts.items()}
-            return self._functions[scalar, name](arrays, c_array(scalar, state.parameters))
         kernel = self._kernels[scalar, name]
+        parts = arrays(state, [kernel])
+        if self._functions:
+            given: dict[str, Any] = {part: c_array(scalar, values) for part, values in parts.items()}
+            return self._functions[scalar, name](given, c_array(scalar, state.parameters))
         status, outputs = self._interpreters[scalar].run(kernel, parts, tuple(map(float, state.parameters)))
         return Outcome(int(status), tuple(outputs) or (math.nan,) * max(1, math.prod(kernel.shape)))
 

@@ -62,6 +62,12 @@ def test_states_are_packed_row_by_row() -> None:
     assert row[8:] == pytest.approx([0, 1, math.sin(2), math.cos(2)])
 
 
+def test_what_is_measured_stands_before_parameters() -> None:
+    state = State((0.0, 2.0), (3.0, 4.0), (5.0, 6.0), (7.0,), (8.0,))
+    _, *row = struct.unpack("<I12d", pack_states([state], "float64", (1,))[: 4 + 12 * 8])
+    assert row[6:11] == [7, 2 + 4 / 1024, 4, 6, 8]
+
+
 def test_results_are_read_back_and_short_files_refused() -> None:
     entries = _entries()
     rows = [struct.pack("<I2f", 0, *values) for values in ((1.0, 2.0), (3.0, 4.0))] * 2

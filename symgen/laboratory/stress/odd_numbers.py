@@ -9,6 +9,7 @@ from math import inf, isfinite, nan
 
 from symgen.generation.runnable import SCALARS, RunnableKernels, rounded_state
 from symgen.ir.kernel import Scalar, Status
+from symgen.verify.given import source
 from symgen.verify.reference.reference import State
 
 ODD: dict[Scalar, tuple[float, ...]] = {
@@ -40,9 +41,10 @@ def odd_numbers(
                 state = rounded_state(given, scalar)
                 for load in kernels.kernel(name, scalar).loads:
                     for odd in ODD[scalar]:
-                        part = "parameters" if load.argument == "p" else load.argument
+                        part, place = source(load)
+                        part = "parameters" if part == "p" else part
                         values = list(getattr(state, part))
-                        values[load.index] = odd
+                        values[place] = odd
                         changed = {part: tuple(values)}
                         outcome = kernels.run(name, replace(state, **changed), scalar)
                         calls += 1

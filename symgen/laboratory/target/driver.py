@@ -14,6 +14,7 @@ from symgen.backends.scalars import C_TYPE, file_stem
 from symgen.ir.kernel import Argument, Scalar
 from symgen.laboratory.target.entries import Entries, Entry
 from symgen.model.model import Model
+from symgen.verify.given import entries, measured_arrays
 from symgen.verify.reference.reference import State
 
 FORMAT: dict[Scalar, str] = {"float64": "d", "float32": "f"}
@@ -95,12 +96,15 @@ def driver_source(model: Model, entries: Mapping[Scalar, Entries]) -> str:
     return render("target/driver.c.jinja", TargetDriverView(tuple(_group(model, e) for e in entries.values())))
 
 
-def pack_states(states: Sequence[State], scalar: Scalar) -> bytes:
+def pack_states(states: Sequence[State], scalar: Scalar, measured: Sequence[int] = ()) -> bytes:
     """States as the driver reads them: their number, then rows; little-endian.
 
-    A row is q, qd, qdd, u, parameters, and the sine and cosine of every coordinate for those who take them.
+    A row is q, qd, qdd, u, what is measured of the coordinates at those places, parameters, and the sine and cosine of
+    every coordinate for those who take them.
     """
-    rows = [(*s.q, *s.qd, *s.qdd, *s.u, *s.parameters, *_given(s.q)) for s in states]
+    told = [[x for argument in measured_arrays(measured) for x in entries(s, argument)] for s in states]
+    pairs = zip(states, told, strict=True)
+    rows = [(*s.q, *s.qd, *s.qdd, *s.u, *also, *s.parameters, *_given(s.q)) for s, also in pairs]
     return struct.pack("<I", len(rows)) + b"".join(struct.pack(f"<{len(r)}{FORMAT[scalar]}", *r) for r in rows)
 
 
@@ -131,9 +135,9 @@ def _group(model: Model, entries: Entries) -> GroupView:
     def named(what: str) -> str:
         return global_name(model.c_name, entries.scalar, what)
 
-    arrays = (
+    arrays: tuple[Argument | OwnArray, ...] = (
         Argument("q", model.n), Argument("qd", model.n), Argument("qdd", model.n), Argument("u", model.m),
-        OwnArray("p", len(model.parameters)), OwnArray("sc", 2 * model.n),
+        *measured_arrays(model.measured_places), OwnArray("p", len(model.parameters)), OwnArray("sc", 2 * model.n),
     )
     units = dict.fromkeys([file_stem(model.c_name, entries.scalar), *(entry.unit for entry in entries.functions)])
     return GroupView(

@@ -32,7 +32,8 @@ def run_package(
     inputs = []
     for scalar in package.entries:
         inputs.append(folder / states_file(scalar))
-        inputs[-1].write_bytes(pack_states([states[scalar][k] for k in chosen[scalar]], scalar))
+        rows = [states[scalar][k] for k in chosen[scalar]]
+        inputs[-1].write_bytes(pack_states(rows, scalar, package.model.measured_places))
     stage(image, inputs)
     emulate(core, image)
     cells, failures = [], []
