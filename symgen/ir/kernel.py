@@ -7,12 +7,13 @@ thresholds and the sine/cosine function differ between float64 and float32.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from enum import IntEnum
 from fractions import Fraction
 from typing import Literal as Choice
 from typing import TypeAlias
 
+from symgen.model.quantities import MEASURED_ARGUMENTS
 from symgen.records import dataclass
 
 Scalar: TypeAlias = Choice["float64", "float32"]
@@ -157,6 +158,11 @@ class Argument:
     name: Choice["q", "qd", "qdd", "u", "q_m", "qd_m", "qdd_m"]
     length: int
     places: tuple[int, ...] = ()
+
+
+def measured_arguments(places: Sequence[int]) -> tuple[Argument, ...]:
+    """The array arguments that hold what is measured of the coordinates at some places."""
+    return tuple(Argument(name, len(places), tuple(places)) for name in MEASURED_ARGUMENTS)
 
 
 @dataclass(frozen=True, slots=True)

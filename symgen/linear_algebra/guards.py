@@ -12,7 +12,8 @@ rounding leaves of one that is 0.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 from symgen.ir.kernel import Status
@@ -50,6 +51,14 @@ class Guard:
         """8 n eps for one direction, n eps for determinants of three or more; squared for sums of squares."""
         loss = LEFT if self.directions > 2 else POORER if self.directions == 2 else 1
         return (max(Fraction(LEFT * n, loss), Fraction(LEFT)) * unit_roundoff) ** self.degree
+
+
+def moved(guard: Guard, replacements: Mapping[Scalar, Scalar]) -> Guard:
+    """A guard without causes where symbols are something else, measured by what it is made of now."""
+    graph = guard.denominator.graph
+    scale = magnitude(graph, [guard.denominator])[0] if guard.scale is None else guard.scale
+    denominator, scale = substitute(graph, [guard.denominator, scale], replacements)
+    return replace(guard, denominator=denominator, scale=scale)
 
 
 def beside_lengths(status: Status, pivots: Sequence[Scalar], lengths: Sequence[Scalar]) -> tuple[Guard, ...]:

@@ -23,6 +23,7 @@ from symgen.ir.kernel import (
     Scalar,
     Statement,
     Status,
+    measured_arguments,
 )
 from symgen.ir.lifted import Kind, Lifted, Meant, same_kernel
 from symgen.ir.order import REGISTERS, relaxed, waits
@@ -31,7 +32,7 @@ from symgen.linear_algebra.guards import Guard, lost_only_at_zero, magnitude, wh
 from symgen.lowering.writer import ANGLE, ScalarWriter, Test, angles_among, angles_of
 from symgen.mechanics.system import System
 from symgen.methods.quantity import Quantity
-from symgen.model.quantities import MEASURED_ARGUMENTS, ROWS
+from symgen.model.quantities import ROWS
 from symgen.runtime.activity import each
 from symgen.symbolic.angles.sharing import share_angles
 from symgen.symbolic.scalar import Graph
@@ -230,8 +231,7 @@ def _meant(outputs: Sequence[Node], tests: Sequence[Test], image: Mapping[Node, 
 def _arguments(mechanics: System, quantity: str) -> tuple[Argument, ...]:
     n, m, places = mechanics.n, mechanics.m, mechanics.model.measured_places
     sizes = Argument("q", n), Argument("qd", n), Argument("qdd", n), Argument("u", m)
-    measured = (Argument(name, len(places), places) for name in MEASURED_ARGUMENTS)
-    every = {argument.name: argument for argument in (*sizes, *measured)}
+    every = {argument.name: argument for argument in (*sizes, *measured_arguments(places))}
     return tuple(every[name] for name in ROWS[quantity].arguments if every[name].length)
 
 

@@ -6,13 +6,12 @@ by quantity name; `select` compares the derivations along different null spaces 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 from functools import cached_property
 
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.constrained_inverse import BasisInertia, ConstrainedInertia, FreeInertia, MinorInertia
-from symgen.linear_algebra.guards import Guard, magnitude
+from symgen.linear_algebra.guards import Guard, moved
 from symgen.linear_algebra.null_spaces import (
     HouseholderSpace,
     InputEquations,
@@ -209,14 +208,9 @@ class Derivation:
         if not self.mechanics.geometric_jacobian:
             return ()
         q = self.mechanics.q
-        moved = {a: a - b for a, b in zip(q, self._newton_step, strict=True)}
+        step = {a: a - b for a, b in zip(q, self._newton_step, strict=True)}
         guards = self.geometric_space.guards
-        return (*guards, *(self._moved(guard, moved) for guard in guards))
-
-    def _moved(self, guard: Guard, replacements: Mapping[Scalar, Scalar]) -> Guard:
-        scale = magnitude(self.graph, [guard.denominator])[0] if guard.scale is None else guard.scale
-        denominator, scale = substitute(self.graph, [guard.denominator, scale], replacements)
-        return replace(guard, denominator=denominator, scale=scale)
+        return (*guards, *(moved(guard, step) for guard in guards))
 
     # from what is measured -------------------------------------------------------------------------------------------
 

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.constrained_inverse import Cholesky
-from symgen.linear_algebra.guards import LEFT, Guard, magnitude
+from symgen.linear_algebra.guards import LEFT, Guard, magnitude, moved
 from symgen.linear_algebra.null_spaces import HouseholderSpace
 from symgen.linear_algebra.pivoted import reflected
 from symgen.symbolic.calculus import gradient, jacobian
@@ -64,8 +64,8 @@ class MeasuredConfiguration:
         It is a number: what is left of the rows there is no place for algebra with what led there.
         """
         held = dict(zip(self._places, self._given, strict=True)) if self._determined else {}
-        moved = map(_sum, self._iterates[-1], step)
-        return tuple(held[k] if k in held else self._graph.rounded(x) for k, x in enumerate(moved))
+        sums = map(_sum, self._iterates[-1], step)
+        return tuple(held[k] if k in held else self._graph.rounded(x) for k, x in enumerate(sums))
 
     @property
     def guards(self) -> tuple[Guard, ...]:
@@ -75,7 +75,8 @@ class MeasuredConfiguration:
         before = self._iterates[-2]
         same_side = self._orientation * self._at([self._orientation], before)[0]
         found = [
-            *(self._moved(guard, place) for place in (self._q, before) for guard in self._guards),
+            *self._guards,
+            *(moved(guard, dict(zip(self._q, before, strict=True))) for guard in self._guards),
             Guard(Status.BRANCH, longer, 1, scale=self._graph.one, positive=True, small=True),
             self._closure,
             # half of the digits stood still in the last step: it has brought the others
@@ -88,7 +89,7 @@ class MeasuredConfiguration:
     def _by_rows(self) -> tuple[Vector, tuple[Guard, ...]]:
         """The step to what is measured that closes the rows by the other coordinates, to the first order."""
         mechanics, n = self._derivation.mechanics, self._derivation.n
-        rows = _HeldRows(self._graph, mechanics.geometric_jacobian, self._places, n, self._space.guards)
+        rows = _HeldRows(self._graph, mechanics.geometric_jacobian, self._places, n)
         self._orientation = rows.orientation
         steps = [x - self._q[k] for x, k in zip(self._given, self._places, strict=True)]
         return rows.solve(steps, [-x for x in mechanics.constraint_residual]), rows.guards
@@ -129,8 +130,7 @@ class MeasuredConfiguration:
         slopes = [magnitude(graph, row) for row in mechanics.geometric_jacobian]
         sizes = [graph.function("abs", (x,)) for x in self._q]
         scales = [term + dot(graph, row, sizes) for term, row in zip(terms, slopes, strict=True)]
-        moved = dict(zip(self._q, last, strict=True))
-        left = substitute(graph, [*residual, *scales], moved)
+        left = self._at([*residual, *scales], last)
         open_, scale = left[: len(residual)], left[len(residual) :]
         return Guard(Status.NOT_CLOSED, dot(graph, open_, open_), 2, scale=dot(graph, scale, scale), small=True)
 
@@ -138,28 +138,17 @@ class MeasuredConfiguration:
         """The same at another configuration."""
         return tuple(substitute(self._graph, scalars, dict(zip(self._q, place, strict=True))))
 
-    def _moved(self, guard: Guard, place: Vector) -> Guard:
-        scale = magnitude(self._graph, [guard.denominator])[0] if guard.scale is None else guard.scale
-        denominator, scale = self._at([guard.denominator, scale], place)
-        first = tuple(self._moved(cause, place) for cause in guard.first)
-        return replace(guard, denominator=denominator, scale=scale, first=first)
-
 
 class _HeldRows:
-    """Rows solved for the coordinates that are not measured, where as many are as there are directions.
+    """Rows solved for the coordinates that are not measured, where as many are as there are directions."""
 
-    `regular` are guards of the rows themselves.
-    """
-
-    def __init__(self, graph: Graph, rows: Matrix, places: Sequence[int], n: int, regular: tuple[Guard, ...]) -> None:
+    def __init__(self, graph: Graph, rows: Matrix, places: Sequence[int], n: int) -> None:
         self._graph, self._rows, self._places = graph, rows, places
         self._free = [k for k in range(n) if k not in places]
         block = tuple(tuple(row[k] for k in self._free) for row in rows)
         self._space = reflected(graph, block, len(self._free), len(self._free))
-        # where the rows themselves lose rank that is the cause
-        self.guards = tuple(
-            replace(guard, status=Status.MEASURED_RANK, first=regular) for guard in self._space.guards
-        )
+        # rows that lose rank themselves leave the rest open, too: telling that apart takes them all once more
+        self.guards = tuple(replace(guard, status=Status.MEASURED_RANK) for guard in self._space.guards)
 
     @property
     def orientation(self) -> Scalar:

@@ -11,7 +11,6 @@ from typing import Any
 
 from symgen.backends.locals import array_arguments
 from symgen.ir.kernel import Argument, Kernel, Load
-from symgen.model.quantities import MEASURED_ARGUMENTS
 from symgen.verify.reference.measured import MOMENT
 from symgen.verify.reference.reference import State
 
@@ -35,11 +34,6 @@ def parts_of(state: State) -> dict[str, Sequence[Any]]:
 def loaded(given: Mapping[str, Any], load: Load) -> Any:
     """The same of many states, a row each."""
     return entry({name: rows.T for name, rows in given.items()}, load)
-
-
-def measured_arrays(places: Sequence[int]) -> tuple[Argument, ...]:
-    """The array arguments that hold what is measured of the coordinates at some places."""
-    return tuple(Argument(name, len(places), tuple(places)) for name in MEASURED_ARGUMENTS)
 
 
 def source(load: Load) -> tuple[str, int]:

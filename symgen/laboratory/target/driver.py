@@ -11,10 +11,10 @@ from typing import Any
 from symgen.backends.c.names import global_name
 from symgen.backends.render import render
 from symgen.backends.scalars import C_TYPE, file_stem
-from symgen.ir.kernel import Argument, Scalar
+from symgen.ir.kernel import Argument, Scalar, measured_arguments
 from symgen.laboratory.target.entries import Entries, Entry
 from symgen.model.model import Model
-from symgen.verify.given import entries, measured_arrays
+from symgen.verify.given import entries
 from symgen.verify.reference.reference import State
 
 FORMAT: dict[Scalar, str] = {"float64": "d", "float32": "f"}
@@ -102,7 +102,7 @@ def pack_states(states: Sequence[State], scalar: Scalar, measured: Sequence[int]
     A row is q, qd, qdd, u, what is measured of the coordinates at those places, parameters, and the sine and cosine of
     every coordinate for those who take them.
     """
-    told = [[x for argument in measured_arrays(measured) for x in entries(s, argument)] for s in states]
+    told = [[x for argument in measured_arguments(measured) for x in entries(s, argument)] for s in states]
     pairs = zip(states, told, strict=True)
     rows = [(*s.q, *s.qd, *s.qdd, *s.u, *also, *s.parameters, *_given(s.q)) for s, also in pairs]
     return struct.pack("<I", len(rows)) + b"".join(struct.pack(f"<{len(r)}{FORMAT[scalar]}", *r) for r in rows)
@@ -137,7 +137,7 @@ def _group(model: Model, entries: Entries) -> GroupView:
 
     arrays: tuple[Argument | OwnArray, ...] = (
         Argument("q", model.n), Argument("qd", model.n), Argument("qdd", model.n), Argument("u", model.m),
-        *measured_arrays(model.measured_places), OwnArray("p", len(model.parameters)), OwnArray("sc", 2 * model.n),
+        *measured_arguments(model.measured_places), OwnArray("p", len(model.parameters)), OwnArray("sc", 2 * model.n),
     )
     units = dict.fromkeys([file_stem(model.c_name, entries.scalar), *(entry.unit for entry in entries.functions)])
     return GroupView(

@@ -27,8 +27,7 @@ RESTLESS = 24
 
 def _selected(e: Evaluation) -> Any:
     """S."""
-    names = [c.name for c in e.system.model.coordinates]
-    return rows_of(identity(e.system.n), [names.index(name) for name in e.system.model.measured])
+    return rows_of(identity(e.system.n), e.system.model.measured_places)
 
 
 def _inverse(e: Evaluation) -> Any:
