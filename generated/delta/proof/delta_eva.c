@@ -20,7 +20,7 @@ double Frama_C_double_interval(double min, double max);
 
 void eva_configuration_from_measured(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t267, t529, t534, t541, t876, t882, t926, t930, t957, t1007, t1013, t1051, t1055, t1082, t1132, t1138, t1176, t1180, t1207, t2055, t2062, t2918, t2923, t2930. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t58, t111, t116, t123, t249, t255, t299, t303, t330, t380, t386, t424, t428, t455, t505, t511, t549, t553, t580, t622, t629, t679, t684, t691. */
 void eva_configuration_from_measured(void) {
     static const double low_0[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
     static const double high_0[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};

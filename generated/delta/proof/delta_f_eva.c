@@ -20,7 +20,7 @@ float Frama_C_float_interval(float min, float max);
 
 void eva_configuration_from_measured(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t267, t529, t534, t541, t876, t882, t926, t930, t957, t1007, t1013, t1051, t1055, t1082, t1132, t1138, t1176, t1180, t1207, t2055, t2062, t2918, t2923, t2930. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t58, t111, t116, t123, t249, t255, t299, t303, t330, t380, t386, t424, t428, t455, t505, t511, t549, t553, t580, t622, t629, t679, t684, t691. */
 void eva_configuration_from_measured(void) {
     static const float low_0[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
     static const float high_0[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
