@@ -413,6 +413,33 @@ outputs: [forward_dynamics]
         assert wrong > 1e3
 
 
+def test_what_roundings_move_by_their_squares_alone_is_held_against_squares() -> None:
+    """A sum of rates that rows hold at 0 is within 13 roundings of it; an acceleration is its square."""
+    text = """model: idle
+coordinates: {a: {unit: rad}, b: {unit: rad}, x: {unit: m}}
+kinetic_energy: (a_dot**2 + b_dot**2 + x_dot**2)/2
+constraints: {geometric: {both: x - sin(a + b), still: a + b - 0.7}}
+outputs: [forward_dynamics]
+configuration: {a: 0.4, b: 0.3, x: 0.644217687237691}
+"""
+    witness = Witness(text)
+    found, ranks = witness.walker().states(witness.defaults(), 20)
+    eps = 2.0**-53
+    for state in found:
+        off = state.qd[0] + state.qd[1]
+        rest = 13 * eps * abs(state.qd[0])
+        due = -math.sin(state.q[0] + state.q[1]) * (abs(off) + rest) ** 2
+        answers = (0.0, 0.0, due), (0.0, 0.0, 1e6 * due)
+        units = []
+        for answer in answers:
+            target = Target("made up", "float64", ("forward_dynamics",), (), lambda *_, x=answer: Answer(0, x))
+            judged = witness.compare(target, "forward_dynamics", state, ranks)
+            assert judged is not None
+            units.append(judged.units)
+        right, wrong = units
+        assert right <= 1 < wrong
+
+
 def test_what_steps_leave_of_a_root_at_0_is_0() -> None:
     """A slide along a fixed rail never turns: what refinement leaves of a quaternion off by 1e-9 is small, not 0."""
     text = """model: slide

@@ -266,15 +266,24 @@ class Witness:
             return math.inf
         error = _least_distance(answer.value, truth.value)
         size = _norm([float(x.mid()) for x in truth.value])
-        moved = 0.0
-        dice = Dice("perturbations", self._seed)
-        for _ in range(PERTURBATIONS + 1):
-            if error <= ALLOWED * (moved + eps * size):
-                break
-            other = self._truth(quantity, state, ranks, (dice, eps))
-            if other is not None:
-                moved = max(moved, _distance(other.value, truth.value))
-        allowed = ALLOWED * (moved + eps * size)
+
+        def moved(eps: float, allowed: float) -> float:
+            """What is allowed where roundings of this size move the result, worked out as far as it is needed."""
+            dice, largest, due = Dice("perturbations", self._seed), 0.0, allowed * eps * size
+            for _ in range(PERTURBATIONS):
+                if error <= due:
+                    break
+                other = self._truth(quantity, state, ranks, (dice, eps))
+                if other is not None:
+                    largest = max(largest, _distance(other.value, truth.value))
+                due = allowed * (largest + eps * size)
+            return due
+
+        allowed = moved(eps, ALLOWED)
+        if error > allowed:
+            # the same, for roundings of the same signs, but where these move the result by their squares alone, such as
+            # accelerations of idle motions
+            allowed = max(allowed, moved(ALLOWED * eps, 1.0))
         return error / allowed if allowed else (math.inf if error else 0.0)
 
     def _truth(
