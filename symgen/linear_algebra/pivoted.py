@@ -47,26 +47,27 @@ class PivotedReflections(Reflections):
         super().__init__(graph, (), n, everywhere, (*locked, *(j for j in range(n) if j not in locked)))
         remaining = [self.in_order(row) for row in rows]
         squares = [dot(graph, row, row) for row in rows]
+        # 1 for rows that were not chosen yet: what rounding leaves of the others must not be chosen again
+        free = [graph.one] * len(rows)
         self.lengths: list[Scalar] = []
         for k, places in enumerate(_candidates(rows, rank, locked)):
-            left = [dot(graph, remaining[i][k:], remaining[i][k:]) for i in places]
+            left = [free[i] * dot(graph, remaining[i][k:], remaining[i][k:]) for i in places]
             shares = [graph.function("ratio_or_zero", (a, squares[i])) for a, i in zip(left, places, strict=True)]
             # long rows are known to more digits than short ones that hold the same
             best = longest(graph, [a * b for a, b in zip(left, shares, strict=True)] if own else left)
             chosen = [graph.zero] * len(rows)
             for i, wins in zip(places, best, strict=True):
                 chosen[i] = wins
-            pairs = list(zip(chosen, remaining, strict=True))
-            tail = tuple(graph.sum(c * row[i] for c, row in pairs) for i in range(k, n))
+            taken = [(c * one, row) for c, one, row in zip(chosen, free, remaining, strict=True)]
+            tail = tuple(graph.sum(c * row[i] for c, row in taken) for i in range(k, n))
             self.lengths.append(graph.sum(c * square for c, square in zip(chosen, squares, strict=True)))
             self._add(k, tail)
-            turned = [self._reflect(self.reflectors[-1], row) for row in remaining]
-            # the chosen row lies in the directions taken; what rounding leaves of it must not be chosen again
-            remaining = [
-                (*row[: k + 1], *(entry * (1 - c) for entry in row[k + 1 :]))
-                for c, row in zip(chosen, turned, strict=True)
-            ]
-        self.rest: Matrix = tuple(remaining)
+            remaining = [self._reflect(self.reflectors[-1], row) for row in remaining]
+            free = [one * (1 - c) for c, one in zip(chosen, free, strict=True)]
+        # the chosen rows lie in the directions taken
+        self.rest: Matrix = tuple(
+            (*row[:rank], *(entry * one for entry in row[rank:])) for row, one in zip(remaining, free, strict=True)
+        )
         self.coefficients: Matrix = tuple(row[:rank] for row in remaining)
 
     def combinations(self, lengths: Sequence[Scalar]) -> list[Scalar]:

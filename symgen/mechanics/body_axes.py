@@ -15,9 +15,9 @@ from functools import cached_property
 
 from symgen.mechanics.bodies import Vector3
 from symgen.mechanics.free_bodies import FreeBody, free_bodies
+from symgen.mechanics.held_rows import with_leaves
 from symgen.mechanics.never_zero import Definite
 from symgen.mechanics.newton_euler import newton_euler
-from symgen.mechanics.places import with_leaves
 from symgen.mechanics.system import System
 from symgen.model.expressions.expression import Expression
 from symgen.model.kinematics.triples import Rows, applied, cross, inner, minus, plus, transposed, triple

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from symgen.mechanics.bodies import Vector3
-from symgen.mechanics.places import with_leaves
+from symgen.mechanics.held_rows import with_leaves
 from symgen.mechanics.system import System
 from symgen.model.expressions.expression import Expression
 from symgen.model.kinematics.components import components_in

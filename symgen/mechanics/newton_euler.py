@@ -16,7 +16,7 @@ from types import MappingProxyType
 from symgen.mechanics.bodies import Bodies, Vector3
 from symgen.mechanics.lumps import Lump, lumped_bodies
 from symgen.mechanics.quaternion_joints import quaternion_parts, turning_rate
-from symgen.model.kinematics.triples import Rows, applied, cross, inner, plus, transposed, triple
+from symgen.model.kinematics.triples import Rows, acceleration_field, applied, cross, inner, plus, transposed, triple
 from symgen.model.mechanism import WORLD, Body, Frame
 from symgen.symbolic.calculus import derivative_along, gradient
 from symgen.symbolic.matrix import Vector
@@ -95,7 +95,7 @@ def joint_motions(bodies: Bodies, qd: Vector, gravity: Vector3) -> JointMotions:
     frames = bodies.mechanism.frames
     for frame in frames:
         moved = added[frame.name] = recursion.step(frame.name)
-        turning = _field(moved.velocity, recursion.none)
+        turning = acceleration_field(moved.velocity, recursion.none)
         recursion.motions[frame.name] = FrameMotion(moved.velocity, recursion.none, recursion.none, turning)
     return JointMotions(added, recursion.motions, recursion.wrenches(frames, recursion.motions))
 
@@ -209,7 +209,8 @@ class _Recursion:
         if self.moves:
             acceleration = plus(acceleration, self._turning_rate(name))
         if self.at_rest:
-            return FrameMotion(self.none, acceleration, applied(inward, linear), _field(self.none, acceleration))
+            field = acceleration_field(self.none, acceleration)
+            return FrameMotion(self.none, acceleration, applied(inward, linear), field)
         linear = plus(linear, self._cross(parent.velocity, plus(joint.place_rate, joint.place_rate)))
         velocity = self.kinematics.twist(name).angular
         axis = self._shared_axis(name)
@@ -217,7 +218,7 @@ class _Recursion:
             acceleration = plus(acceleration, self._cross(applied(inward, parent.velocity), joint.turning))
         else:
             acceleration = _about_shared_axis(velocity, acceleration, axis[0], applied(inward, axis[1]))
-        return FrameMotion(velocity, acceleration, applied(inward, linear), _field(velocity, acceleration))
+        return FrameMotion(velocity, acceleration, applied(inward, linear), acceleration_field(velocity, acceleration))
 
     def _shared_axis(self, name: str) -> tuple[int, Vector3] | None:
         """The main axis k a frame turns about, and U e_k of its parent, whose main axis it is too; None without one.
@@ -246,7 +247,7 @@ class _Recursion:
         held = held and all(rate.is_zero for rate in self.kinematics.joint(name).place_rate)
         if not held or sum(not x.is_zero for x in motion.velocity) != 1:
             return motion
-        return replace(motion, field=_field(self.none, motion.acceleration))
+        return replace(motion, field=acceleration_field(self.none, motion.acceleration))
 
     def _inertial(self, body: Body, motion: FrameMotion) -> Wrench:
         """What moving a body so takes: m a of its centre of mass; the moment of that and I w' + w x I w."""
@@ -316,13 +317,6 @@ class _Recursion:
 
     def _cross(self, a: Vector3, b: Vector3) -> Vector3:
         return self.none if a is self.none or b is self.none else cross(a, b)
-
-
-def _field(w: Vector3, turning: Vector3) -> Rows[Scalar]:
-    """[w']x + [w]x [w]x, with each product of two rates once."""
-    (x, y, z), (a, b, c) = w, turning
-    xx, yy, zz, xy, xz, yz = x * x, y * y, z * z, x * y, x * z, y * z
-    return (-(yy + zz), xy - c, xz + b), (xy + c, -(xx + zz), yz - a), (xz - b, yz + a, -(xx + yy))
 
 
 def _about_shared_axis(w: Vector3, turning: Vector3, k: int, column: Vector3) -> Vector3:

@@ -12,8 +12,8 @@ from functools import cached_property
 from symgen.mechanics.absolute_angles import AbsoluteAngles
 from symgen.mechanics.bodies import Bodies, Vector3
 from symgen.mechanics.christoffel import by_products_of_rates
+from symgen.mechanics.held_rows import HeldRows, acceleration_bias, geometric_jacobian
 from symgen.mechanics.joint_axes import along_joints
-from symgen.mechanics.places import acceleration_bias
 from symgen.model.checks.signs import nonnegative_parameters, positive_parameters
 from symgen.model.expressions.expression import Expression
 from symgen.model.kinematics.components import components_in, definitions_before_frames
@@ -285,7 +285,12 @@ class System:
     @cached_property
     def geometric_jacobian(self) -> Matrix:
         """dg/dq."""
-        return tuple(tuple(gradient(self.graph, g, self.q)) for g in self.constraint_residual)
+        return geometric_jacobian(self)
+
+    @cached_property
+    def held_rows(self) -> HeldRows:
+        """The same rows by the places and directions that they hold."""
+        return HeldRows(self)
 
     @cached_property
     def constraint_jacobian(self) -> Matrix:

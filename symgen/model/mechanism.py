@@ -174,6 +174,11 @@ class Component:
         return self.what[0] in "vw"
 
     @property
+    def is_direction(self) -> bool:
+        """Whether it is an entry of the matrix of the owner's axes."""
+        return self.what[0] == "r"
+
+    @property
     def index(self) -> int:
         """0, 1, 2 for x, y, z."""
         return "xyz".index(self.what[-1])

@@ -12,8 +12,8 @@ from collections.abc import Mapping
 
 from symgen.mechanics.articulated_inertias import Six
 from symgen.mechanics.bodies import Vector3
+from symgen.mechanics.held_rows import with_leaves
 from symgen.mechanics.newton_euler import FrameMotion
-from symgen.mechanics.places import with_leaves
 from symgen.mechanics.system import System
 from symgen.model.kinematics.components import components_in
 from symgen.model.kinematics.triples import applied, cross, plus, transposed, triple

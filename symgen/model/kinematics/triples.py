@@ -167,3 +167,10 @@ def product(left: Rows[P], right: Rows[P]) -> Rows[P]:
     columns = transposed(right)
     first, second, third = ((inner(row, columns[0]), inner(row, columns[1]), inner(row, columns[2])) for row in left)
     return first, second, third
+
+
+def acceleration_field(spin: Triple[P], swing: Triple[P]) -> Rows[P]:
+    """[a]x + [w]x [w]x of an angular velocity w and acceleration a, with each product of two rates once."""
+    (x, y, z), (a, b, c) = spin, swing
+    xx, yy, zz, xy, xz, yz = x * x, y * y, z * z, x * y, x * z, y * z
+    return (-(yy + zz), xy - c, xz + b), (xy + c, -(xx + zz), yz - a), (xz - b, yz + a, -(xx + yy))

@@ -170,13 +170,13 @@ class Kinematics(Generic[P, V]):
 
     def component(self, one: Component) -> P:
         """The value of a component that is no rate."""
-        if one.what.startswith("r"):
+        if one.is_direction:
             return self.axes(one.owner, one.axes)[int(one.what[1]) - 1][int(one.what[2]) - 1]
         return self.position(one.owner, one.axes)[one.index]
 
     def component_rate(self, one: Component) -> V:
         """The value of a component that is a rate; the time derivative of one that is none."""
-        if one.what.startswith("r"):
+        if one.is_direction:
             return self.axes_rate(one.owner, one.axes)[int(one.what[1]) - 1][int(one.what[2]) - 1]
         if one.what.startswith("w"):
             return self.angular_velocity(one.owner, one.axes)[one.index]
