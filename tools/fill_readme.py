@@ -125,7 +125,7 @@ def quantities() -> str:
         "τ = G q̈ + C q̇ + Q − Q_a. Matrices are row-major.",
         "",
         "n coordinates, m inputs, r constraints, of these r_g geometric, δ degrees of freedom, p points; q_m, qd_m and "
-        "qdd_m are measured coordinates, rates and accelerations.",
+        "qdd_m are measured coordinates, rates and accelerations; w_u and w_qdd are weights of u and q̈.",
         "",
         "| name | symbol | equation | what | arguments | shape |",
         "|---|---|---|---|---|---|",

@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import Literal as Choice
 from typing import TypeAlias
 
-from symgen.model.quantities import MEASURED_ARGUMENTS
+from symgen.model.quantities import MEASURED_ARGUMENTS, WEIGHT_ARGUMENTS
 from symgen.records import dataclass
 
 Scalar: TypeAlias = Choice["float64", "float32"]
@@ -96,11 +96,11 @@ Operand: TypeAlias = Local | Literal
 class Load:
     """`local = argument[index]`; `member` is the parameter in the struct `p`, the sine or cosine in the struct `sc`.
 
-    A measured value is that of the coordinate at `place`.
+    A measured value is that of the coordinate at `place`; so is a weight that of an input or acceleration.
     """
 
     local: str
-    argument: Choice["q", "qd", "qdd", "u", "q_m", "qd_m", "qdd_m", "p", "sc"]
+    argument: Choice["q", "qd", "qdd", "u", "q_m", "qd_m", "qdd_m", "w_u", "w_qdd", "p", "sc"]
     index: int
     member: str = ""
     place: int = -1
@@ -152,10 +152,10 @@ class Check:
 class Argument:
     """An array argument of a kernel; arrays of length 0 are left out of signatures.
 
-    Measured values are those of the coordinates at `places`.
+    Measured values are those of the coordinates at `places`, weights those of inputs or accelerations.
     """
 
-    name: Choice["q", "qd", "qdd", "u", "q_m", "qd_m", "qdd_m"]
+    name: Choice["q", "qd", "qdd", "u", "q_m", "qd_m", "qdd_m", "w_u", "w_qdd"]
     length: int
     places: tuple[int, ...] = ()
 
@@ -163,6 +163,12 @@ class Argument:
 def measured_arguments(places: Sequence[int]) -> tuple[Argument, ...]:
     """The array arguments that hold what is measured of the coordinates at some places."""
     return tuple(Argument(name, len(places), tuple(places)) for name in MEASURED_ARGUMENTS)
+
+
+def weight_arguments(m: int, n: int) -> tuple[Argument, ...]:
+    """The array arguments that hold weights of so many inputs and accelerations."""
+    pairs = zip(WEIGHT_ARGUMENTS, (m, n), strict=True)
+    return tuple(Argument(name, count, tuple(range(count))) for name, count in pairs)
 
 
 @dataclass(frozen=True, slots=True)

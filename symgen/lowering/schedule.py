@@ -24,6 +24,7 @@ from symgen.ir.kernel import (
     Statement,
     Status,
     measured_arguments,
+    weight_arguments,
 )
 from symgen.ir.lifted import Kind, Lifted, Meant, same_kernel
 from symgen.ir.order import REGISTERS, relaxed, waits
@@ -231,7 +232,7 @@ def _meant(outputs: Sequence[Node], tests: Sequence[Test], image: Mapping[Node, 
 def _arguments(mechanics: System, quantity: str) -> tuple[Argument, ...]:
     n, m, places = mechanics.n, mechanics.m, mechanics.model.measured_places
     sizes = Argument("q", n), Argument("qd", n), Argument("qdd", n), Argument("u", m)
-    every = {argument.name: argument for argument in (*sizes, *measured_arguments(places))}
+    every = {argument.name: argument for argument in (*sizes, *measured_arguments(places), *weight_arguments(m, n))}
     return tuple(every[name] for name in ROWS[quantity].arguments if every[name].length)
 
 

@@ -8,7 +8,7 @@ from fractions import Fraction
 from symgen.diagnostics import SymgenBug
 from symgen.ir.kernel import Block, Check, Literal, Load, Local, Operand, Statement, Status
 from symgen.mechanics.system import System
-from symgen.model.quantities import MEASURED_ARGUMENTS
+from symgen.model.quantities import MEASURED_ARGUMENTS, WEIGHT_ARGUMENTS
 from symgen.records import dataclass
 from symgen.symbolic.scalar import Graph
 from symgen.symbolic.scalar import Scalar as Node
@@ -62,7 +62,7 @@ class ScalarWriter:
 
     def loads(self) -> tuple[Load, ...]:
         """The inputs used, arguments first, each in order of its index."""
-        order = {name: k for k, name in enumerate(("q", "qd", "qdd", "u", *MEASURED_ARGUMENTS, "p"))}
+        order = {name: k for k, name in enumerate(("q", "qd", "qdd", "u", *MEASURED_ARGUMENTS, *WEIGHT_ARGUMENTS, "p"))}
         return tuple(sorted(self._loads.values(), key=lambda load: (order[load.argument], load.index)))
 
     def operand(self, node: Node) -> Operand:
@@ -196,6 +196,9 @@ def _symbol_loads(mechanics: System) -> dict[str, Load]:
     for argument, names in zip(MEASURED_ARGUMENTS, model.measured_names, strict=True):
         for i, (name, place) in enumerate(zip(names, model.measured_places, strict=True)):
             loads[name] = Load(name, argument, i, place=place)
+    for weights, names in zip(WEIGHT_ARGUMENTS, model.weight_names, strict=True):
+        for i, name in enumerate(names):
+            loads[name] = Load(name, weights, i, place=i)
     for i, given in enumerate(model.inputs):
         loads[given.name] = Load(given.name, "u", i)
     for i, parameter in enumerate(model.parameters):

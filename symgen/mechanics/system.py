@@ -89,6 +89,11 @@ class System:
         zero, working = self.graph.zero, System(self.model).bodies.weights_work
         return self.bodies.gravity if working else (zero, zero, zero)
 
+    @cached_property
+    def weights(self) -> tuple[Vector, ...]:
+        """Of the inputs and of the accelerations."""
+        return tuple(tuple(map(self.graph.symbol, names)) for names in self.model.weight_names)
+
     @property
     def motion(self) -> Vector:
         """q, q_dot and q_ddot, 3n."""

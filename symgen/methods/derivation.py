@@ -30,7 +30,7 @@ from symgen.methods.forward_dynamics.motion import Problem
 from symgen.methods.least_inputs import least_inputs
 from symgen.methods.measured import MeasuredMotion
 from symgen.methods.measured_configuration import MeasuredConfiguration
-from symgen.symbolic.calculus import derivative_along, jacobian
+from symgen.symbolic.calculus import derivative_along, gradient, jacobian
 from symgen.symbolic.matrix import (
     Matrix,
     Vector,
@@ -345,9 +345,14 @@ class Derivation:
         _, rest = self._taken_directly(self.mechanics.balance)
         return residual(self.space, rest, self.mechanics.inputs, forms.solve(restriction(rest)))
 
-    def inverse_dynamics_jacobian(self) -> Matrix:
-        """The derivatives of u by q, q_dot and q_ddot, m x 3n."""
-        return jacobian(self.graph, self.inverse_dynamics, self.mechanics.motion)
+    def inverse_dynamics_jacobian(self, by: Vector) -> Matrix:
+        """The derivatives of u by symbols, a column each."""
+        return jacobian(self.graph, self.inverse_dynamics, by)
+
+    def inverse_dynamics_gradient(self) -> Vector:
+        """The derivatives of w^T u by q, q_dot and q_ddot, in one reverse sweep."""
+        weighted = dot(self.graph, self.mechanics.weights[0], self.inverse_dynamics)
+        return tuple(gradient(self.graph, weighted, self.mechanics.motion))
 
     @cached_property
     def actuator_basis(self) -> Matrix:

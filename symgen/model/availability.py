@@ -24,6 +24,7 @@ def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actua
         "r_g": (geometric, "geometric constraints"),
         "m": (model.m, "inputs"),
         "points": (len(model.mechanism.points), "points"),
+        "parameters": (len(model.parameters), "parameters"),
         "delta": (delta, "degrees of freedom"),
     }
     for size, (count, what) in counts.items():

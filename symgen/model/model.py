@@ -6,6 +6,7 @@ parameters, definitions (kept as names, in order of use), and in paths the time 
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
@@ -254,14 +255,23 @@ class Model:
     def measured_names(self) -> tuple[tuple[str, ...], ...]:
         """What the measured values, rates and accelerations are called: names that nothing else has."""
         coordinates = [self.coordinates[k] for k in self.measured_places]
+        levels = ([c.name for c in coordinates], [c.rate for c in coordinates], [c.acceleration for c in coordinates])
+        return self._with_ending(levels, "measured")
+
+    @property
+    def weight_names(self) -> tuple[tuple[str, ...], ...]:
+        """What weights of the inputs and of the accelerations are called: names that nothing else has."""
+        levels = [control.name for control in self.inputs], [c.acceleration for c in self.coordinates]
+        return self._with_ending(levels, "weight")
+
+    def _with_ending(self, levels: Iterable[Sequence[str]], ending: str) -> tuple[tuple[str, ...], ...]:
         taken = {name for c in self.coordinates for name in (c.name, c.rate, c.acceleration)}
         taken |= {item.name for group in (self.parameters, self.definitions, self.inputs) for item in group}
 
         def free(name: str) -> str:
             return free(name + "_") if name in taken else name
 
-        levels = ([c.name for c in coordinates], [c.rate for c in coordinates], [c.acceleration for c in coordinates])
-        return tuple(tuple(free(f"{name}_measured") for name in level) for level in levels)
+        return tuple(tuple(free(f"{name}_{ending}") for name in level) for level in levels)
 
     @property
     def n(self) -> int:

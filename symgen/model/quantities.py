@@ -8,9 +8,11 @@ from typing import Literal, TypeAlias, cast
 
 from symgen.records import dataclass
 
-Argument: TypeAlias = Literal["q", "qd", "qdd", "u", "q_m", "qd_m", "qdd_m"]
+Argument: TypeAlias = Literal["q", "qd", "qdd", "u", "q_m", "qd_m", "qdd_m", "w_u", "w_qdd"]
 # Measured coordinates, rates and accelerations.
 MEASURED_ARGUMENTS: tuple[Literal["q_m", "qd_m", "qdd_m"], ...] = ("q_m", "qd_m", "qdd_m")
+# Weights of inputs and of accelerations, of whose sums there are gradients.
+WEIGHT_ARGUMENTS: tuple[Literal["w_u", "w_qdd"], ...] = ("w_u", "w_qdd")
 # What a model must have for some quantities.
 PARTITION, ACTUATORS, POINTS = "independent_velocities", "m = delta", "points"
 # What encoders determine: of rates, and of places.
@@ -25,9 +27,9 @@ class QuantityRow:
     """A quantity by the name used in `outputs`, C and Python; `equation` is the number in Müller's paper, or empty.
 
     `result` is what its array is called in C.  `shape` has its extents, sums of products of numbers and of sizes of the
-    system: n coordinates, m inputs, r rows, of these r_g geometric, delta degrees of freedom, points.  A quantity
-    exists where none of them is 0 and the model has what it `needs`.  The `main` ones are what the equations of motion
-    are solved for.
+    system: n coordinates, m inputs, r rows, of these r_g geometric, delta degrees of freedom, points, parameters.  A
+    quantity exists where none of them is 0 and the model has what it `needs`.  The `main` ones are what the equations
+    of motion are solved for.
     """
 
     name: str
@@ -129,6 +131,10 @@ QUANTITIES: tuple[QuantityRow, ...] = (
          main=True),
     _row("inverse_dynamics_jacobian", "J_u", "", "u_x", "q qd qdd", "m 3*n",
          "derivatives of u by q, qd and qdd, each by itself", OF_INPUTS),
+    _row("inverse_dynamics_gradient", "J_uᵀ w", "", "w_u_x", "q qd qdd w_u", "3*n",
+         "derivatives of wᵀu by q, qd and qdd, for weights of the inputs", OF_INPUTS),
+    _row("inverse_dynamics_parameter_jacobian", "J_p", "", "u_p", "q qd qdd", "m parameters",
+         "derivatives of u by the parameters, in their order", OF_INPUTS),
     _row("constraint_variations", "X", "", "X", "q qd qdd", "3*n 3*n",
          "projector onto the changes of q, qd and qdd that the constraints allow", VARIATIONS),
     _row("inverse_dynamics_residual", "F Fᵀ(τ − M u)", "", "residual", "q qd qdd", "n",
@@ -142,8 +148,12 @@ QUANTITIES: tuple[QuantityRow, ...] = (
          main=True),
     _row("forward_dynamics_jacobian", "J_a", "", "qdd_x", "q qd u", "n 2*n+m",
          "derivatives of q̈ by q, qd and u, each by itself", DERIVATIVES),
+    _row("forward_dynamics_gradient", "J_aᵀ w", "", "w_qdd_x", "q qd u w_qdd", "2*n+m",
+         "derivatives of wᵀq̈ by q, qd and u, for weights of the accelerations", DERIVATIVES),
     _row("multipliers", "λ", "(14)", "lambda_B", "q qd u", "r",
          "Lagrange multipliers; the reaction on the system is −Bᵀλ", main=True),
+    _row("multipliers_jacobian", "J_λ", "", "lambda_x", "q qd u", "r 2*n+m",
+         "derivatives of λ by q, qd and u, each by itself", DERIVATIVES),
     _row("energy", "T, U", "", "T_U", "q qd", "2", "kinetic and potential energy"),
     _row("singularity", "σ", "", "measure", "q", "2", "distances from constraint and input singularities, 0 to 1"),
     _row("point_position", "(x, y, z)", "", "position", "q", "points 3",

@@ -19,7 +19,7 @@ from symgen.ir.given_trig import GivenTrig, given_trig
 from symgen.ir.kernel import Kernel, Program
 from symgen.ir.prepare import prepare
 from symgen.model.model import Model, Range
-from symgen.model.quantities import MEASURED_ARGUMENTS
+from symgen.model.quantities import MEASURED_ARGUMENTS, WEIGHT_ARGUMENTS
 from symgen.proof.box import box
 
 ARRAYS = ("q", "qd", "qdd", "u")
@@ -76,7 +76,7 @@ def emit_fuzz(model: Model, programs: Sequence[Program]) -> dict[str, str]:
     ready, (given, trig) = _prepared(programs), _given(model, programs)
     named_members = c_members(model, program)
     members = tuple(named_members[parameter.name] for parameter in model.parameters)
-    arrays = _arrays(model)
+    arrays = _arrays(model, program)
     sizes = (*((name, len(ranges[name])) for name in arrays), ("sc", len(trig)))
     named = [(f"{name}[{index}]", pair) for name in (*arrays, "p") for index, pair in enumerate(ranges[name])]
     variants = {"": program.kernels, PREPARED: ready, SINES_GIVEN: given}
@@ -138,9 +138,11 @@ def _kernel(kernel: Kernel, ending: str, arrays: Sequence[str]) -> FuzzedFunctio
     )
 
 
-def _arrays(model: Model) -> tuple[str, ...]:
-    """The array arguments that kernels of a model may have."""
-    return (*ARRAYS, *(MEASURED_ARGUMENTS if model.measured else ()))
+def _arrays(model: Model, program: Program) -> tuple[str, ...]:
+    """The array arguments that kernels of a model may have, and weights where any has them."""
+    taken = {argument.name for kernel in program.kernels for argument in array_arguments(kernel)}
+    weights = (name for name in WEIGHT_ARGUMENTS if name in taken)
+    return (*ARRAYS, *(MEASURED_ARGUMENTS if model.measured else ()), *weights)
 
 
 def _bounds(pair: Range) -> tuple[str, str]:

@@ -24,13 +24,13 @@ from symgen.methods.selection import FACTORING_LIMIT, Methods, cheapest
 from symgen.methods.spaces import derivations
 from symgen.methods.system import MethodInput
 from symgen.model.model import Model
-from symgen.model.quantities import PARTITION
+from symgen.model.quantities import PARTITION, WEIGHT_ARGUMENTS
 from symgen.quantities.catalogue import BY_NAME, CatalogueEntry, by_blocks, derive, derived_from, sizes
 from symgen.quantities.everything import WorkBudget
 from symgen.runtime.activity import working
 from symgen.runtime.effort import TooLongError, at_most, worth_trying
 from symgen.symbolic.calculus import jacobian
-from symgen.symbolic.matrix import flatten
+from symgen.symbolic.matrix import dot, flatten
 from symgen.symbolic.traverse import cost
 
 ABSOLUTE = "householder in absolute angles"
@@ -38,7 +38,14 @@ ABSOLUTE = "householder in absolute angles"
 ARTICULATED = "articulated inertias"
 TITLES = {BY_FRAMES: ARTICULATED}
 # What is the derivative of what.
-SLOPES = {"inverse_dynamics_jacobian": INPUTS, "forward_dynamics_jacobian": MOTIONS[0]}
+SLOPES = {
+    "inverse_dynamics_jacobian": INPUTS,
+    "inverse_dynamics_gradient": INPUTS,
+    "inverse_dynamics_parameter_jacobian": INPUTS,
+    "forward_dynamics_jacobian": MOTIONS[0],
+    "forward_dynamics_gradient": MOTIONS[0],
+    "multipliers_jacobian": MOTIONS[1],
+}
 MOST_WORTH = 1 + CANCELLATION_WORTH
 VALID = Validity(0, 0, (), "along null spaces only ranks are divided by")
 
@@ -121,14 +128,18 @@ class Candidates:
         if quantity == INPUTS:
             chosen = self._methods.choose(quantity)
             one = None if isinstance(chosen, str) else replace(chosen[0], derived=derived_on(graph, chosen[0]))
-            by = (*seen.q, *seen.qd, *seen.qdd)
+            by = seen.parameters if "parameters" in entry.row.sizes else seen.motion
         else:
             best = self.cheapest(BY_NAME[quantity])
             one = None if best is None else best[0]
             by = (*seen.q, *seen.qd, *seen.u)
         if one is None:
             return {}
-        outputs = flatten(jacobian(graph, one.derived.outputs, by))
+        values = one.derived.outputs
+        weights = dict(zip(WEIGHT_ARGUMENTS, seen.weights, strict=True))
+        if given := [weights[name] for name in entry.row.arguments if name in weights]:
+            values = tuple(dot(graph, one, values) for one in given)
+        outputs = flatten(jacobian(graph, values, by))
         shape = entry.shape(sizes(seen.model, self._generic))
         derived = replace(one.derived, name=entry.name, shape=shape, outputs=outputs)
         return {one.title: Candidate(self._system, derived, along=one.title)}

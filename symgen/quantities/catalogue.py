@@ -131,7 +131,12 @@ _DERIVED: dict[str, tuple[Callable[[Derivation], Vector] | None, Callable[[Deriv
     "velocity_from_measured": (lambda d: d.measured_motion.velocity, lambda d: d.measured_motion.guards),
     "acceleration_from_measured": (lambda d: d.measured_motion.acceleration, lambda d: d.measured_motion.guards),
     "inverse_dynamics": _BY_METHODS,
-    "inverse_dynamics_jacobian": (lambda d: flatten(d.inverse_dynamics_jacobian()), _inputs),
+    "inverse_dynamics_jacobian": (lambda d: flatten(d.inverse_dynamics_jacobian(d.mechanics.motion)), _inputs),
+    "inverse_dynamics_gradient": (lambda d: d.inverse_dynamics_gradient(), _inputs),
+    "inverse_dynamics_parameter_jacobian": (
+        lambda d: flatten(d.inverse_dynamics_jacobian(d.mechanics.parameters)),
+        _inputs,
+    ),
     "constraint_variations": (lambda d: flatten(constraint_variations(d)), _variations),
     "inverse_dynamics_residual": (lambda d: d.inverse_dynamics_residual(), _residual),
     "actuator_velocity": (lambda d: d.actuator_velocity(), _none),
@@ -139,7 +144,9 @@ _DERIVED: dict[str, tuple[Callable[[Derivation], Vector] | None, Callable[[Deriv
     "actuator_bias": (lambda d: d.actuator_bias(), _actuator),
     "forward_dynamics": _BY_METHODS,
     "forward_dynamics_jacobian": _BY_METHODS,
+    "forward_dynamics_gradient": _BY_METHODS,
     "multipliers": _BY_METHODS,
+    "multipliers_jacobian": _BY_METHODS,
     "energy": (lambda d: d.energy(), _none),
     "singularity": (lambda d: d.singularity(), _none),
     "point_position": (lambda d: d.mechanics.bodies.point_position, _none),
@@ -152,8 +159,8 @@ BY_NAME = {entry.name: entry for entry in CATALOGUE}
 def sizes(model: Model, generic: Genericity) -> dict[str, int]:
     """The sizes of a system, which shapes are made of."""
     geometric = sum(row.kind == "geometric" for row in model.constraints)
-    points = len(model.mechanism.points)
-    return {"n": generic.n, "r": generic.r, "r_g": geometric, "m": generic.m, "delta": generic.delta, "points": points}
+    of_system = {"n": generic.n, "r": generic.r, "r_g": geometric, "m": generic.m, "delta": generic.delta}
+    return {**of_system, "points": len(model.mechanism.points), "parameters": len(model.parameters)}
 
 
 def missing(entry: CatalogueEntry, model: Model, generic: Genericity) -> str | None:

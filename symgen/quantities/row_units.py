@@ -32,6 +32,7 @@ BACK: dict[str, Exponent] = {
     "constraint_pseudoinverse": lambda units, entry, length: units[entry % length],
     "weighted_pseudoinverse": lambda units, entry, length: units[entry % length],
     "multipliers": lambda units, entry, _: units[entry],
+    "multipliers_jacobian": lambda units, entry, length: units[entry // length],
 }
 
 

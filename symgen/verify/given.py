@@ -1,7 +1,8 @@
 """What kernels are given at a state: its parts, and as measured values what encoders say a moment later.
 
 Where the machine is then it has not been seen, which is what measured values are good for: a configuration is looked
-for from the one before.  Rates and accelerations are measured as they are.
+for from the one before.  Rates and accelerations are measured as they are.  Weights are the numbers that the inputs and
+accelerations of a state are, on which what is weighted does not depend.
 """
 
 from __future__ import annotations
@@ -14,8 +15,8 @@ from symgen.ir.kernel import Argument, Kernel, Load
 from symgen.verify.reference.measured import MOMENT
 from symgen.verify.reference.reference import State
 
-# The parts of a state that measured values are taken from.
-_PARTS = {"q_m": "q", "qd_m": "qd", "qdd_m": "qdd"}
+# The parts of a state that measured values and weights are taken from.
+_PARTS = {"q_m": "q", "qd_m": "qd", "qdd_m": "qdd", "w_u": "u", "w_qdd": "qdd"}
 
 
 def entry(given: Mapping[str, Sequence[Any]], load: Load) -> Any:

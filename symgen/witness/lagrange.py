@@ -9,7 +9,7 @@ import casadi
 from symgen.model.expressions.expression import Expression
 from symgen.model.kinematics.energy_form import energy_form
 from symgen.model.model import Model
-from symgen.model.quantities import MEASURED_ARGUMENTS
+from symgen.model.quantities import MEASURED_ARGUMENTS, WEIGHT_ARGUMENTS
 from symgen.witness.translate import translate, with_definitions
 
 
@@ -36,6 +36,8 @@ class Lagrange:
     q_m: casadi.SX  # measured coordinates
     qd_m: casadi.SX  # their rates
     qdd_m: casadi.SX  # their accelerations
+    w_u: casadi.SX  # weights of inputs
+    w_qdd: casadi.SX  # weights of accelerations
 
     @property
     def balance(self) -> casadi.SX:
@@ -96,6 +98,8 @@ def lagrange(
     shift = casadi.jacobian(momentum, q)
     jacobian = casadi.vertcat(casadi.jacobian(geometric, q), casadi.jacobian(nonholonomic, qd))
     q_m, qd_m, qdd_m = (casadi.SX.sym(name, measured) for name in MEASURED_ARGUMENTS)
+    counts = u.shape[0], q.shape[0]
+    w_u, w_qdd = (casadi.SX.sym(name, count) for name, count in zip(WEIGHT_ARGUMENTS, counts, strict=True))
     return Lagrange(
         q=q,
         qd=qd,
@@ -116,6 +120,8 @@ def lagrange(
         q_m=q_m,
         qd_m=qd_m,
         qdd_m=qdd_m,
+        w_u=w_u,
+        w_qdd=w_qdd,
     )
 
 

@@ -64,7 +64,15 @@ def derive(model: Model, s: Lagrange, ranks: ConfigurationRanks) -> dict[str, ca
     }
     if ranks.constraints == model.r and ranks.actuation == min(model.m, model.n - ranks.constraints):
         quantities["inverse_dynamics_jacobian"] = casadi.jacobian(u, casadi.vertcat(s.q, s.qd, s.qdd))
+        by = casadi.vertcat(s.q, s.qd, s.qdd)
+        quantities["inverse_dynamics_gradient"] = casadi.gradient(casadi.dot(s.w_u, u), by)
+        if model.parameters:
+            quantities["inverse_dynamics_parameter_jacobian"] = casadi.jacobian(u, s.p)
     if ranks.constraints == model.r:
+        by = casadi.vertcat(s.q, s.qd, s.u)
+        quantities["forward_dynamics_gradient"] = casadi.gradient(casadi.dot(s.w_qdd, acceleration), by)
+        if model.r:
+            quantities["multipliers_jacobian"] = casadi.jacobian(multipliers, casadi.vertcat(s.q, s.qd, s.u))
         quantities["forward_dynamics_jacobian"] = casadi.jacobian(acceleration, casadi.vertcat(s.q, s.qd, s.u))
     if ranks.constraints == model.r > 0:
         quantities["constraint_variations"] = _variations(s, ranks)

@@ -16,8 +16,10 @@ from symgen.mechanics.genericity import parameter_values
 from symgen.mechanics.system import System
 from symgen.model.load import load_model
 from symgen.model.model import Model
+from symgen.model.quantities import ROWS
 from symgen.quantities.select import Selection, derive_quantities
 from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.identity import every_identity_evaluated, same_values
 from symgen.verify.reference.reference import Reference, State
 
 Array = NDArray[np.float64]
@@ -90,11 +92,76 @@ def test_a_pendulum_on_a_cart_by_hand(tmp_path: Path) -> None:
     assert found["forward_dynamics_jacobian"][:, 1] == pytest.approx(by_a, rel=1e-12)
 
 
+def test_forces_of_a_pendulum_by_its_parameters_by_hand(tmp_path: Path) -> None:
+    name = "inverse_dynamics_parameter_jacobian"
+    model = loaded(tmp_path, PENDULUM.replace("OUTPUTS", f"[{name}]").replace("FLAG", "false"))
+    a, a_dot, x_dot, x_ddot, a_ddot = 0.4, -1.3, 0.5, 0.8, 2.1
+    point = {"x": 0.2, "a": a, "x_dot": x_dot, "a_dot": a_dot, "x_ddot": x_ddot, "a_ddot": a_ddot}
+    m, length, g, s, c = 0.5, 0.7, 9.81, math.sin(a), math.cos(a)
+    swing = c * a_ddot - s * a_dot**2
+    by_hand = [
+        [x_ddot, x_ddot + length * swing, m * swing, 0, x_dot],
+        [
+            0, length * (c * x_ddot + length * a_ddot - g * s), m * (c * x_ddot + 2 * length * a_ddot - g * s),
+            -m * length * s, 0,
+        ],
+    ]  # fmt: skip
+    assert values(derive_quantities(model, (name,)), point)[name] == pytest.approx(np.array(by_hand), rel=1e-13)
+
+
+def test_reactions_of_a_bead_by_hand(tmp_path: Path) -> None:
+    """On y = k x^2/2: lambda (1 + (k x)^2) = u_y - m g - m k x_dot^2 - k x u_x."""
+    text = """
+model: bead
+coordinates: {x: {unit: m}, y: {unit: m}}
+parameters: {m: {value: 1.3}, k: {value: 0.7}, g: {value: 9.81}}
+kinetic_energy: m*(x_dot**2 + y_dot**2)/2
+potential_energy: m*g*y
+constraints: {geometric: {wire: y - k*x**2/2}}
+inputs: {u_x: {acts_on: {x: 1}}, u_y: {acts_on: {y: 1}}}
+outputs: [multipliers_jacobian]
+"""
+    x, v, f_x, f_y, m, k, g = 0.6, -0.9, 2.0, -3.0, 1.3, 0.7, 9.81
+    point = {"x": x, "y": k * x**2 / 2, "x_dot": v, "y_dot": k * x * v, "u_x": f_x, "u_y": f_y}
+    found = values(derive_quantities(loaded(tmp_path, text), ("multipliers_jacobian",)), point)["multipliers_jacobian"]
+    over = 1 / (1 + (k * x) ** 2)
+    force = (f_y - m * g - m * k * v**2 - k * x * f_x) * over
+    by_hand = [-k * f_x * over - 2 * k**2 * x * force * over, 0, -2 * m * k * v * over, 0, -k * x * over, over]
+    assert found == pytest.approx(np.array([by_hand]), rel=1e-12, abs=1e-14)
+
+
+@pytest.mark.parametrize("name", ["rapkm_2rrr_rr", "front_car", "rolling_disc", "delta", "double_pendulum"])
+def test_gradients_are_weighted_rows_of_jacobians(name: str) -> None:
+    names = ("inverse_dynamics_gradient", "inverse_dynamics_jacobian"), (
+        "forward_dynamics_gradient", "forward_dynamics_jacobian",
+    )  # fmt: skip
+    selection = derive_quantities(shipped.model(name), tuple(one for pair in names for one in pair))
+    found = {derived.name: derived for derived in selection.quantities}
+    graph = selection.mechanics.graph
+    for (gradient, jacobian), weights in zip(names, selection.mechanics.weights, strict=True):
+        rows, columns = found[jacobian].shape
+        entries = found[jacobian].outputs
+        products = [
+            graph.sum(weights[i] * entries[columns * i + j] for i in range(rows)) for j in range(columns)
+        ]
+        with every_identity_evaluated():
+            same_values(gradient, products, found[gradient].outputs)
+
+
+def test_names_of_weights_are_free(tmp_path: Path) -> None:
+    text = PENDULUM.replace("OUTPUTS", "[inverse_dynamics_gradient]").replace("FLAG", "false")
+    model = loaded(tmp_path, text.replace("d: {value", "push_weight: {value").replace("-d*x_dot", "-push_weight*x_dot"))
+    assert model.weight_names == (("push_weight_", "twist_weight"), ("x_ddot_weight", "a_ddot_weight"))
+
+
 @pytest.mark.parametrize("flag", ["true", "false"])
 def test_all_takes_derivatives_where_the_model_says_so(flag: str, tmp_path: Path) -> None:
     model = loaded(tmp_path, PENDULUM.replace("OUTPUTS", "all").replace("FLAG", flag))
     made = {derived.name for derived in derive_quantities(model, model.outputs).quantities}
-    assert made & set(ALL) == (set(ALL[:2]) if flag == "true" else set())
+    # of a system without constraints
+    absent = {"constraint_variations", "multipliers_jacobian"}
+    derivatives = {row.name for row in ROWS.values() if row.is_derivative}
+    assert made & derivatives == (derivatives - absent if flag == "true" else set())
 
 
 def test_what_is_not_differentiable_beside_the_constraints_is_told(tmp_path: Path) -> None:

@@ -56,16 +56,16 @@ def test_unknown_cores_are_refused_with_the_known_ones(capsys: pytest.CaptureFix
 def test_states_are_packed_row_by_row() -> None:
     state = State((0.0, 2.0), (3.0, 4.0), (5.0, 6.0), (7.0,), (8.0,))
     data = pack_states([state, state], "float32")
-    count, *row = struct.unpack("<I12f", data[:52])
-    assert len(data) == 4 + 2 * 48
-    assert (count, row[:8]) == (2, [0, *map(float, range(2, 9))])
-    assert row[8:] == pytest.approx([0, 1, math.sin(2), math.cos(2)])
+    count, *row = struct.unpack("<I15f", data[:64])
+    assert len(data) == 4 + 2 * 60
+    assert (count, row[:7]) == (2, [0, *map(float, range(2, 8))])
+    assert row[10:] == pytest.approx([8, 0, 1, math.sin(2), math.cos(2)])
 
 
-def test_what_is_measured_stands_before_parameters() -> None:
+def test_what_is_measured_and_weights_stand_before_parameters() -> None:
     state = State((0.0, 2.0), (3.0, 4.0), (5.0, 6.0), (7.0,), (8.0,))
-    _, *row = struct.unpack("<I12d", pack_states([state], "float64", (1,))[: 4 + 12 * 8])
-    assert row[6:11] == [7, 2 + 4 / 1024, 4, 6, 8]
+    _, *row = struct.unpack("<I15d", pack_states([state], "float64", (1,))[: 4 + 15 * 8])
+    assert row[6:14] == [7, 2 + 4 / 1024, 4, 6, 7, 5, 6, 8]
 
 
 def test_results_are_read_back_and_short_files_refused() -> None:

@@ -18,6 +18,7 @@ from symgen.ir.kernel import Status
 from symgen.lowering.schedule import schedule
 from symgen.model.load import load_model, load_text
 from symgen.model.model import Model
+from symgen.model.quantities import QUANTITIES
 from symgen.quantities.select import derive_quantities
 from symgen.witness.casadi_derivation import witness_functions
 from symgen.witness.configurations import configurations
@@ -60,12 +61,12 @@ def states(model: Model, singularity: Any) -> list[State]:
         places = list(model.measured_places)
         moved = q[places] + generator.uniform(-1e-3, 1e-3, len(places))
         measured = {"q_m": moved, "qd_m": state["qd"][places], "qdd_m": state["qdd"][places]}
-        found.append(state | measured)
+        found.append(state | measured | {"w_u": state["u"], "w_qdd": state["qdd"]})
     return found
 
 
 # What `all` leaves out of models that do not say `derivatives`.
-DERIVATIVES = ("inverse_dynamics_jacobian", "forward_dynamics_jacobian", "constraint_variations")
+DERIVATIVES = tuple(quantity.name for quantity in QUANTITIES if quantity.is_derivative)
 
 
 class SympyWitness:

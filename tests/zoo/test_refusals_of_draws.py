@@ -23,6 +23,23 @@ STRETCHED = {
     "kinetic_energy": "x_dot**2 + y_dot**2 + z_dot**2",
     "constraints": {"geometric": {"one": "x**2 + y**2 - 1", "two": "(x - 2)**2 + y**2 - 1"}},
 }
+# a point mass on a ball joint whose place two rods hold: it turns about the line to itself, which rounding moves
+TOP = {
+    "model": "zoo",
+    "parameters": {"l": {"value": "0.41"}},
+    "joints": {"ball": {"type": "spherical", "coordinates": ["e", "f", "g", "h"]}},
+    "bodies": {"ball": {"mass": "6.7", "com": ["0", "l/2", "0"]}},
+    "points": {
+        "tip": {"frame": "ball", "at": ["0", "l", "0"]},
+        "one": {"at": ["0.166579892536308", "0.43273769590730166", "0.8307148228240236"]},
+        "two": {"at": ["0.04989510521339002", "0.41158643192067995", "0.32925239575096976"]},
+    },
+    "loops": {
+        "rod_1": {"type": "distance", "between": ["tip", "one"], "length": "0.5655993346961516"},
+        "rod_2": {"type": "distance", "between": ["tip", "two"], "length": "0.3077536707645474"},
+    },
+}
+TURNED = {"e": 0.8, "f": 0.6, "g": 0.0, "h": 0.0}
 # two branches that cross where the file starts, and are smooth elsewhere
 CROSSING = {**FREE, "constraints": {"geometric": {"both": "x**2 - y**2"}}}
 HELD = {"x": 0.2, "y": 0.2}
@@ -37,6 +54,7 @@ SINGULAR = "only singular configurations were found, such as x = #"
     [
         (MASSLESS, {"x": 0.3, "y": 0.2}, UNDETERMINED, True),
         (FREE, HELD, UNDETERMINED, False),
+        (TOP, TURNED, UNDETERMINED, True),
         (RIGID, HELD, IMMOBILE, True),
         (FREE, HELD, IMMOBILE, False),
         (STRETCHED, AT_ONE, SINGULAR, True),

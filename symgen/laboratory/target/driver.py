@@ -11,7 +11,7 @@ from typing import Any
 from symgen.backends.c.names import global_name
 from symgen.backends.render import render
 from symgen.backends.scalars import C_TYPE, file_stem
-from symgen.ir.kernel import Argument, Scalar, measured_arguments
+from symgen.ir.kernel import Argument, Scalar, measured_arguments, weight_arguments
 from symgen.laboratory.target.entries import Entries, Entry
 from symgen.model.model import Model
 from symgen.verify.given import entries
@@ -99,13 +99,17 @@ def driver_source(model: Model, entries: Mapping[Scalar, Entries]) -> str:
 def pack_states(states: Sequence[State], scalar: Scalar, measured: Sequence[int] = ()) -> bytes:
     """States as the driver reads them: their number, then rows; little-endian.
 
-    A row is q, qd, qdd, u, what is measured of the coordinates at those places, parameters, and the sine and cosine of
-    every coordinate for those who take them.
+    A row is q, qd, qdd, u, what is measured of the coordinates at those places, weights, parameters, and the sine and
+    cosine of every coordinate for those who take them.
     """
-    told = [[x for argument in measured_arguments(measured) for x in entries(s, argument)] for s in states]
-    pairs = zip(states, told, strict=True)
-    rows = [(*s.q, *s.qd, *s.qdd, *s.u, *also, *s.parameters, *_given(s.q)) for s, also in pairs]
+    rows = [_row(s, measured) for s in states]
     return struct.pack("<I", len(rows)) + b"".join(struct.pack(f"<{len(r)}{FORMAT[scalar]}", *r) for r in rows)
+
+
+def _row(state: State, measured: Sequence[int]) -> tuple[Any, ...]:
+    further = *measured_arguments(measured), *weight_arguments(len(state.u), len(state.q))
+    values = [x for argument in further for x in entries(state, argument)]
+    return (*state.q, *state.qd, *state.qdd, *state.u, *values, *state.parameters, *_given(state.q))
 
 
 def unpack_results(data: bytes, entries: Entries, states: int) -> Results:
@@ -137,7 +141,8 @@ def _group(model: Model, entries: Entries) -> GroupView:
 
     arrays: tuple[Argument | OwnArray, ...] = (
         Argument("q", model.n), Argument("qd", model.n), Argument("qdd", model.n), Argument("u", model.m),
-        *measured_arguments(model.measured_places), OwnArray("p", len(model.parameters)), OwnArray("sc", 2 * model.n),
+        *measured_arguments(model.measured_places), *weight_arguments(model.m, model.n),
+        OwnArray("p", len(model.parameters)), OwnArray("sc", 2 * model.n),
     )
     units = dict.fromkeys([file_stem(model.c_name, entries.scalar), *(entry.unit for entry in entries.functions)])
     return GroupView(

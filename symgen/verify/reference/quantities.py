@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from symgen.model.quantities import ROWS
 from symgen.verify.reference.allocation import allocated
 from symgen.verify.reference.arithmetic.linear import column, identity, right_pseudoinverse
 from symgen.verify.reference.evaluation import Evaluation
@@ -34,9 +35,24 @@ def _inverse_dynamics_jacobian(e: Evaluation) -> Any:
     return jacobian(e, _inverse_dynamics, ("q", "qd", "qdd"))
 
 
+def _inverse_dynamics_gradient(e: Evaluation) -> Any:
+    """J_u^T w, the weights being the numbers that are given as u."""
+    return _inverse_dynamics_jacobian(e).transpose() * column(e.u)
+
+
+def _inverse_dynamics_parameter_jacobian(e: Evaluation) -> Any:
+    """The derivatives of u by the parameters."""
+    return jacobian(e, _inverse_dynamics, ("parameters",))
+
+
 def _forward_dynamics_jacobian(e: Evaluation) -> Any:
     """The derivatives of qdd by (q, qd, u)."""
     return jacobian(e, lambda at: at.accelerations, ("q", "qd", "u"))
+
+
+def _forward_dynamics_gradient(e: Evaluation) -> Any:
+    """J_a^T w, the weights being the numbers that are given as qdd."""
+    return _forward_dynamics_jacobian(e).transpose() * column(e.qdd)
 
 
 def _constraint_acceleration(e: Evaluation) -> Any:
@@ -114,6 +130,11 @@ def _multipliers(e: Evaluation) -> Any:
     return e.inverse.transpose() * (e.force - e.at.mass * e.accelerations)
 
 
+def _multipliers_jacobian(e: Evaluation) -> Any:
+    """The derivatives of lambda by (q, qd, u)."""
+    return jacobian(e, _multipliers, ("q", "qd", "u"))
+
+
 def _energy(e: Evaluation) -> Any:
     return column(e.system.energies(e.q, e.qd, e.parameters, e.literals))
 
@@ -158,7 +179,11 @@ QUANTITIES: dict[str, Definition] = {
     "acceleration_from_measured": acceleration_from_measured,
     "inverse_dynamics": _inverse_dynamics,
     "inverse_dynamics_jacobian": _inverse_dynamics_jacobian,
+    "inverse_dynamics_gradient": _inverse_dynamics_gradient,
+    "inverse_dynamics_parameter_jacobian": _inverse_dynamics_parameter_jacobian,
     "forward_dynamics_jacobian": _forward_dynamics_jacobian,
+    "forward_dynamics_gradient": _forward_dynamics_gradient,
+    "multipliers_jacobian": _multipliers_jacobian,
     "constraint_variations": _constraint_variations,
     "inverse_dynamics_residual": _inverse_dynamics_residual,
     "actuator_velocity": lambda e: e.at.control.transpose() * e.rate,
@@ -172,7 +197,7 @@ QUANTITIES: dict[str, Definition] = {
     "point_jacobian": lambda e: e.points[1],
 }
 # Of two thirds of the digits that others have.
-DIFFERENCED = frozenset({"inverse_dynamics_jacobian", "forward_dynamics_jacobian", "constraint_variations"})
+DIFFERENCED = frozenset(row.name for row in ROWS.values() if row.is_derivative)
 # What no finite count of operations gives exactly.
 ITERATED = frozenset({"configuration_from_measured"})
 # The matrices whose rates these take; the others do with what a velocity adds to forces and accelerations.

@@ -14,15 +14,15 @@ from flint import arb, arb_mat, ctx
 
 from symgen.verify.reference.evaluation import Evaluation
 
-Part: TypeAlias = Literal["q", "qd", "qdd", "u"]
-# What depends on q alone, which a change of rates leaves as it is.
+Part: TypeAlias = Literal["q", "qd", "qdd", "u", "parameters"]
+# What depends on q and parameters alone, which a change of rates leaves as it is.
 AT_REST = (
     "at", "inverse", "projector_off", "projector", "projected_control", "driven", "control_inverse", "weighted",
 )  # fmt: skip
 
 
 def slopes(e: Evaluation, value: Callable[[Evaluation], Any], part: Part) -> list[Any]:
-    """The derivatives of a column by each entry of q, qd, qdd or u, a column each."""
+    """The derivatives of a column by each entry of q, qd, qdd, u or the parameters, a column each."""
     step = arb(2) ** -(ctx.prec // 3)
     value(e)  # what it takes of AT_REST is known from here on
     found = []
@@ -40,7 +40,7 @@ def _moved(e: Evaluation, part: Part, k: int, step: Any) -> Iterator[Evaluation]
         entries[k] = entries[k] + sign * step
         state: dict[str, Any] = {part: entries, "derivatives": {}}
         moved = replace(e, **state)
-        if part != "q":
+        if part not in ("q", "parameters"):
             moved.__dict__.update(at_rest)
         yield moved
 

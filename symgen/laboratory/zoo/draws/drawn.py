@@ -18,6 +18,8 @@ from symgen.laboratory.zoo.witness.tape import NodeProgram
 
 # what rounding leaves at a start that was measured in floats
 ROUNDING = 1e-9
+# the root of what rounding leaves of a mass beside the largest entry, ten times over
+MASSLESS = 1e-7
 PLACES, FURTHER = 6, 24
 
 
@@ -119,6 +121,6 @@ def _massless_motion(at: EquationValues) -> bool:
         return False
     # graded masses are masses: each direction in its own size
     sizes = np.sqrt(np.maximum(np.diag(along), 0))
-    if sizes.min() <= 1e-9 * np.sqrt(largest):
+    if sizes.min() <= MASSLESS * np.sqrt(largest):
         return True
     return bool(np.linalg.eigvalsh(along / np.outer(sizes, sizes)).min() < 1e-10)
