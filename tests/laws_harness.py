@@ -13,6 +13,7 @@ from symgen.lowering.schedule import schedule
 from symgen.model.load import load_text
 from symgen.model.model import Model
 from symgen.quantities.select import Selection, derive_quantities
+from symgen.verify.given import arrays
 from symgen.verify.reference.reference import Reference, State
 from symgen.verify.reference.system import parameters_from
 from symgen.verify.tolerance import FACTOR, expectations
@@ -61,7 +62,7 @@ class System:
 
     def run(self, name: str, state: State, scalar: Scalar = "float64") -> tuple[Status, list[float]]:
         program = self.program(scalar)
-        arguments = {"q": state.q, "qd": state.qd, "qdd": state.qdd, "u": state.u}
+        arguments = arrays(state, program.kernels)
         return Interpreter(program.sincos, scalar).run(self.kernel(name, scalar), arguments, state.parameters)
 
     def matrix(self, name: str, state: State, scalar: Scalar = "float64") -> list[list[float]]:

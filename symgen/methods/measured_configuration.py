@@ -89,7 +89,7 @@ class MeasuredConfiguration:
     def _by_rows(self) -> tuple[Vector, tuple[Guard, ...]]:
         """The step to what is measured that closes the rows by the other coordinates, to the first order."""
         mechanics, n = self._derivation.mechanics, self._derivation.n
-        rows = _HeldRows(self._graph, mechanics.geometric_jacobian, self._places, n)
+        rows = _SolvedRows(self._graph, mechanics.geometric_jacobian, self._places, n)
         self._orientation = rows.orientation
         steps = [x - self._q[k] for x, k in zip(self._given, self._places, strict=True)]
         return rows.solve(steps, [-x for x in mechanics.constraint_residual]), rows.guards
@@ -139,7 +139,7 @@ class MeasuredConfiguration:
         return tuple(substitute(self._graph, scalars, dict(zip(self._q, place, strict=True))))
 
 
-class _HeldRows:
+class _SolvedRows:
     """Rows solved for the coordinates that are not measured, where as many are as there are directions."""
 
     def __init__(self, graph: Graph, rows: Matrix, places: Sequence[int], n: int) -> None:

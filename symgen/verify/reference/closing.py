@@ -19,7 +19,7 @@ MOST_SLOW_STEPS = 6
 # Of the mean square of the slopes: a loop whose steps need more damping is given up.
 HIGHEST_DAMPING = 1e6
 # The same: where loops are wide open, and least.
-FIRST_DAMPING, LEAST_DAMPING = 1e-3, 1e-25
+FIRST_DAMPING, LAST_DAMPING = 1e-3, 1e-25
 # What rounded lengths leave open of a closed loop, relative to the rows' lengths.
 ROUNDED_GAP = 1e-13
 
@@ -91,7 +91,7 @@ class _PartIteration:
         self.size = norm(self.residual)
         self.ended = False
         # a loop that is all but closed takes full steps: beside a singular pose some slopes are far smaller than others
-        self._damping, self._slow = min(FIRST_DAMPING, max(self.size, LEAST_DAMPING)), 0
+        self._damping, self._slow = min(FIRST_DAMPING, max(self.size, LAST_DAMPING)), 0
 
     def trial(self) -> Any | None:
         """Where a step leads; None where that takes more damping first."""
@@ -110,7 +110,7 @@ class _PartIteration:
             self.ended = True
         elif size < self.size:
             self.q, self.residual, self.jacobian = trial, residual, jacobian
-            self._damping = max(self._damping * min(0.03, size / self.size), LEAST_DAMPING)
+            self._damping = max(self._damping * min(0.03, size / self.size), LAST_DAMPING)
             self.size = size
         else:
             self._damping *= 10
@@ -151,7 +151,7 @@ def admissible(
     moved, found = column(shift), []
     for part, units, (_, jacobian) in zip(system.loops, _units(system, geometry), geometry, strict=True):
         rows = powers(units) * jacobian.mid()
-        step = _step(rows * piece(moved, part.coordinates, (0,)), rows, LEAST_DAMPING)
+        step = _step(rows * piece(moved, part.coordinates, (0,)), rows, LAST_DAMPING)
         if step is not None:
             found.append((part.coordinates, (0,), step))
     return list((moved - placed(system.n, 1, found)).mid().entries())
