@@ -737,7 +737,7 @@ size_t rapkm_2rrr_rr_forward_dynamics_batch(size_t count, size_t stride, const d
             const double t294 = -t7;
             const double t295 = l_1 * t294;
             const double t296 = t295 / l_2;
-            const double t297 = t53 * t296;
+            const double t297 = t296 * t53;
             const double t298 = t293 - t297;
             const double t300 = t31 * t299;
             const double t301 = t31 * t300;
@@ -918,7 +918,7 @@ size_t rapkm_2rrr_rr_forward_dynamics_batch(size_t count, size_t stride, const d
             const double t477 = 5.0 * t475;
             const double t478 = t165 * t306;
             const double t479 = t165 * t478;
-            const double t480 = t53 * t299;
+            const double t480 = t299 * t53;
             const double t481 = t53 * t480;
             const double t482 = t302 * t329;
             const double t483 = t329 * t482;
@@ -1212,8 +1212,11 @@ size_t rapkm_2rrr_rr_forward_dynamics_batch(size_t count, size_t stride, const d
             const double t771 = t769 - t770;
             const double t772 = t771 - t754;
             double rest = (t748 - t748) * t751 * t754 + (t760 - t760) * t766 * t772;
-            rest += 1000000.0 >= J_2 ? 0.0 : 1.0;
-            rest += 17.0 >= size_of_m_payload ? 0.0 : 1.0;
+            rest += 5600.0 >= m_1 ? 0.0 : 1.0;
+            rest += 100.0 >= J_1 ? 0.0 : 1.0;
+            rest += 100000.0 >= J_2 ? 0.0 : 1.0;
+            rest += 170.0 >= J_motor ? 0.0 : 1.0;
+            rest += 170.0 >= size_of_m_payload ? 0.0 : 1.0;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += 100000.0 >= t2 ? 0.0 : 1.0;
             rest += 100000.0 >= t3 ? 0.0 : 1.0;
@@ -1653,7 +1656,7 @@ size_t rapkm_2rrr_rr_multipliers_batch(size_t count, size_t stride, const double
             const double t295 = l_1 * t294;
             const double t296 = t295 / l_2;
             const double t293 = t31 * t292;
-            const double t297 = t53 * t296;
+            const double t297 = t296 * t53;
             const double t298 = t293 - t297;
             const double t327 = t31 * t296;
             const double t328 = t53 * t292;
@@ -1974,7 +1977,7 @@ size_t rapkm_2rrr_rr_multipliers_batch(size_t count, size_t stride, const double
             const double t470 = t465 + t469;
             const double t474 = t472 * t473;
             const double t475 = t470 + t474;
-            const double t480 = t53 * t299;
+            const double t480 = t299 * t53;
             const double t481 = t53 * t480;
             const double t482 = t302 * t329;
             const double t483 = t329 * t482;
@@ -2026,7 +2029,7 @@ size_t rapkm_2rrr_rr_multipliers_batch(size_t count, size_t stride, const double
             const double t678 = t340 * t677;
             const double t679 = t671 - t678;
             double rest = (t679 - t679) * t677 * t669 + t663 - t663;
-            rest += 10.0 >= size_of_m_payload ? 0.0 : 1.0;
+            rest += 170.0 >= size_of_m_payload ? 0.0 : 1.0;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += 100000.0 >= t2 ? 0.0 : 1.0;
             rest += 100000.0 >= t3 ? 0.0 : 1.0;

@@ -724,7 +724,7 @@ size_t rapkm_2rrr_rr_forward_dynamics_batch_f(size_t count, size_t stride, const
             const float t294 = -t7;
             const float t295 = l_1 * t294;
             const float t296 = t295 / l_2;
-            const float t297 = t53 * t296;
+            const float t297 = t296 * t53;
             const float t298 = t293 - t297;
             const float t300 = t31 * t299;
             const float t301 = t31 * t300;
@@ -905,7 +905,7 @@ size_t rapkm_2rrr_rr_forward_dynamics_batch_f(size_t count, size_t stride, const
             const float t477 = 5.0f * t475;
             const float t478 = t165 * t306;
             const float t479 = t165 * t478;
-            const float t480 = t53 * t299;
+            const float t480 = t299 * t53;
             const float t481 = t53 * t480;
             const float t482 = t302 * t329;
             const float t483 = t329 * t482;
@@ -1199,8 +1199,11 @@ size_t rapkm_2rrr_rr_forward_dynamics_batch_f(size_t count, size_t stride, const
             const float t771 = t769 - t770;
             const float t772 = t771 - t754;
             float rest = (t748 - t748) * t751 * t754 + (t760 - t760) * t766 * t772;
-            rest += 310000.0f >= J_2 ? 0.0f : 1.0f;
-            rest += 17.0f >= size_of_m_payload ? 0.0f : 1.0f;
+            rest += 5600.0f >= m_1 ? 0.0f : 1.0f;
+            rest += 100.0f >= J_1 ? 0.0f : 1.0f;
+            rest += 17000.0f >= J_2 ? 0.0f : 1.0f;
+            rest += 170.0f >= J_motor ? 0.0f : 1.0f;
+            rest += 170.0f >= size_of_m_payload ? 0.0f : 1.0f;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += 100.0f >= t2 ? 0.0f : 1.0f;
             rest += 100.0f >= t3 ? 0.0f : 1.0f;
@@ -1640,7 +1643,7 @@ size_t rapkm_2rrr_rr_multipliers_batch_f(size_t count, size_t stride, const floa
             const float t295 = l_1 * t294;
             const float t296 = t295 / l_2;
             const float t293 = t31 * t292;
-            const float t297 = t53 * t296;
+            const float t297 = t296 * t53;
             const float t298 = t293 - t297;
             const float t327 = t31 * t296;
             const float t328 = t53 * t292;
@@ -1961,7 +1964,7 @@ size_t rapkm_2rrr_rr_multipliers_batch_f(size_t count, size_t stride, const floa
             const float t470 = t465 + t469;
             const float t474 = t472 * t473;
             const float t475 = t470 + t474;
-            const float t480 = t53 * t299;
+            const float t480 = t299 * t53;
             const float t481 = t53 * t480;
             const float t482 = t302 * t329;
             const float t483 = t329 * t482;
@@ -2013,7 +2016,7 @@ size_t rapkm_2rrr_rr_multipliers_batch_f(size_t count, size_t stride, const floa
             const float t678 = t340 * t677;
             const float t679 = t671 - t678;
             float rest = (t679 - t679) * t677 * t669 + t663 - t663;
-            rest += 10.0f >= size_of_m_payload ? 0.0f : 1.0f;
+            rest += 170.0f >= size_of_m_payload ? 0.0f : 1.0f;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += 100.0f >= t2 ? 0.0f : 1.0f;
             rest += 100.0f >= t3 ? 0.0f : 1.0f;

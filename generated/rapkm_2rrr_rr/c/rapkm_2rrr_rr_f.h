@@ -15,6 +15,8 @@
  *   u[0] drive_1 [N*m] torque of the drive at base joint 1
  *   u[1] drive_2 [N*m] torque of the drive at base joint 2
  *   u[2] drive_3 [N*m] torque of the drive at base joint 3
+ * Measured coordinates q_m (rates qd_m and accelerations qdd_m in the same order):
+ *   a_1, a_2, a_3
  *
  * Operations                          + -      *      /   sqrt sincos  other
  * mass_matrix                          15     18      0      0      3      0
@@ -46,6 +48,9 @@
  * admissible_velocity                 109    162      9      4      6      0
  * admissible_acceleration             192    271     13      4      6      0
  * projected_configuration             276    322     29     11     12      0
+ * configuration_from_measured        1299   1567     88     23     36      0
+ * velocity_from_measured               84    148      1      0      6      0
+ * acceleration_from_measured          204    311     14      4      6      0
  * inverse_dynamics                     51     79      3      0      5      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * forward_dynamics                    273    430     29      3      6      0
@@ -55,25 +60,28 @@
  * (changes of sign are not counted)
  *
  * Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:
- *   constraint_residual l_1 <= 3
  *   constraint_pseudoinverse 0.027 <= l_1
- *   nullspace_projector 0.027 <= l_1
- *   nullspace_projector_dot 0.027 <= l_1
- *   weighted_pseudoinverse l_2 <= 1.6
- *   weighted_nullspace_projector 0.027 <= l_1 <= 1.6, l_2 <= 3
- *   projected_control_matrix 0.027 <= l_1
- *   projected_control_pseudoinverse 0.027 <= l_1 <= 3, l_2 <= 16
- *   orthogonal_complement 2e-06 <= x_2
- *   projected_mass_matrix 0.027 <= l_1
- *   projected_coriolis_matrix 0.027 <= l_1 <= 3
- *   minimal_mass_matrix l_2 <= 3, 2e-06 <= x_2
- *   minimal_coriolis_matrix 0.027 <= l_1 <= 5.3, l_2 <= 1.6, 2e-06 <= x_2
- *   minimal_control_matrix 2e-06 <= x_2
- *   admissible_velocity 0.027 <= l_1
- *   admissible_acceleration 0.027 <= l_1 <= 3, l_2 <= 3
+ *   nullspace_projector 0.015 <= l_1
+ *   nullspace_projector_dot 0.015 <= l_1
+ *   weighted_pseudoinverse 0.015 <= l_1, l_2 <= 1.6
+ *   weighted_nullspace_projector 0.027 <= l_1 <= 3, l_2 <= 3
+ *   projected_control_matrix 0.015 <= l_1
+ *   projected_control_pseudoinverse 0.015 <= l_1 <= 3, l_2 <= 16
+ *   orthogonal_complement 3.5e-06 <= x_2
+ *   projected_mass_matrix 0.015 <= l_1
+ *   projected_coriolis_matrix 0.015 <= l_1
+ *   minimal_mass_matrix 0.015 <= l_1, l_2 <= 3, 3.5e-06 <= x_2, |m_payload| <= 10
+ *   minimal_coriolis_matrix 0.015 <= l_1 <= 3, l_2 <= 3, 3.5e-06 <= x_2
+ *   minimal_control_matrix 3.5e-06 <= x_2
+ *   admissible_velocity 0.015 <= l_1, l_2 <= 1.6
+ *   admissible_acceleration 0.015 <= l_1
  *   projected_configuration l_1 <= 3, l_2 <= 3
- *   forward_dynamics J_2 <= 310000, |m_payload| <= 17
- *   multipliers |m_payload| <= 10
+ *   configuration_from_measured l_2 <= 3
+ *   velocity_from_measured 0.015 <= l_1, l_2 <= 3
+ *   acceleration_from_measured 0.015 <= l_1
+ *   forward_dynamics m_1 <= 5600, J_1 <= 100, J_2 <= 17000, J_motor <= 170
+ *   forward_dynamics |m_payload| <= 170
+ *   multipliers |m_payload| <= 170
  *   singularity 0.027 <= l_1
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.
@@ -95,7 +103,10 @@ typedef enum {
     RAPKM_2RRR_RR_ACTUATION_RANK = 3, /* the inputs lose rank at this configuration */
     RAPKM_2RRR_RR_ANGLE_RANGE = 4, /* an angle is beyond the range of the sine and cosine */
     RAPKM_2RRR_RR_MASS_RANK = 5, /* the masses do not determine the acceleration although the constraints keep their rank */
-    RAPKM_2RRR_RR_PARAMETER_RANGE = 6 /* a parameter is so far from its value in the model file that the result would lose digits */
+    RAPKM_2RRR_RR_PARAMETER_RANGE = 6, /* a parameter is so far from its value in the model file that the result would lose digits */
+    RAPKM_2RRR_RR_MEASURED_RANK = 7, /* what is measured does not determine the rest at this configuration */
+    RAPKM_2RRR_RR_NOT_CLOSED = 8, /* Newton's method has not closed the loops from this start */
+    RAPKM_2RRR_RR_BRANCH = 9 /* the start is so far away that the result may belong to another assembly mode */
 } rapkm_2rrr_rr_status;
 #endif
 
@@ -204,6 +215,16 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_acceleration_f(const float q[6], c
 
 /* q − B⁺g: two Newton steps towards the configuration space; length 6 */
 rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float q_projected[6]);
+
+/* q(q_m): the configuration with the measured coordinates, or nearest to them, on the branch of q; length 6 */
+rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_measured_f(const float q_m[3], const float q[6], const rapkm_2rrr_rr_params_f *p, float q_found[6]);
+
+/* q̇(q̇_m): the admissible velocity with the measured rates, or nearest to them; length 6 */
+rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_measured_f(const float q[6], const float qd_m[3], const rapkm_2rrr_rr_params_f *p, float qd_found[6]);
+
+/* q̈(q̈_m): the admissible acceleration with the measured ones, or nearest to them, at the measured velocity;
+   length 6 */
+rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_measured_f(const float q[6], const float qd_m[3], const float qdd_m[3], const rapkm_2rrr_rr_params_f *p, float qdd_found[6]);
 
 /* u: the smallest inputs that produce the motion, (27); length 3 */
 rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_f(const float q[6], const float qd[6], const float qdd[6], const rapkm_2rrr_rr_params_f *p, float u[3]);

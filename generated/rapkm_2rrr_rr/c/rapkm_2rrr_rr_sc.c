@@ -282,13 +282,25 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_sc(const rapkm_2rrr_rr_trig 
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc(const rapkm_2rrr_rr_trig *sc, const double q[6], const double qd[6], const double u[3], const rapkm_2rrr_rr_params *p, double qdd[6]) {
     (void)q;
+    const double m_1 = p->m_1;
+    if (RAPKM_2RRR_RR_RARELY(!(5600.0 >= m_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const double J_1 = p->J_1;
+    if (RAPKM_2RRR_RR_RARELY(!(100.0 >= J_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double J_2 = p->J_2;
-    if (RAPKM_2RRR_RR_RARELY(!(1000000.0 >= J_2))) {
+    if (RAPKM_2RRR_RR_RARELY(!(100000.0 >= J_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const double J_motor = p->J_motor;
+    if (RAPKM_2RRR_RR_RARELY(!(170.0 >= J_motor))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
-    if (RAPKM_2RRR_RR_RARELY(!(17.0 >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY(!(170.0 >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double cos_a_2 = sc->cos_a_2;
@@ -557,11 +569,8 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc(const rapkm_2rrr_rr_trig 
     if (RAPKM_2RRR_RR_RARELY(!(J_elbow_1 > t246))) {
         return RAPKM_2RRR_RR_MASS_RANK;
     }
-    const double J_1 = p->J_1;
-    const double J_motor = p->J_motor;
     const double t247 = J_1 + J_motor;
     const double t248 = l_1 * l_1;
-    const double m_1 = p->m_1;
     const double t249 = 0.25 * m_1;
     const double t250 = m_2 + t249;
     const double t251 = t248 * t250;
@@ -619,7 +628,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc(const rapkm_2rrr_rr_trig 
     const double t294 = -sin_b_1;
     const double t295 = l_1 * t294;
     const double t296 = t295 / l_2;
-    const double t297 = t53 * t296;
+    const double t297 = t296 * t53;
     const double t298 = t293 - t297;
     const double t299 = 1.0 / J_elbow_1;
     const double t300 = t31 * t299;
@@ -802,7 +811,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc(const rapkm_2rrr_rr_trig 
     const double t477 = 5.0 * t475;
     const double t478 = t165 * t306;
     const double t479 = t165 * t478;
-    const double t480 = t53 * t299;
+    const double t480 = t299 * t53;
     const double t481 = t53 * t480;
     const double t482 = t302 * t329;
     const double t483 = t329 * t482;
@@ -1130,7 +1139,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_sc(const rapkm_2rrr_rr_trig *sc, 
     (void)q;
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
-    if (RAPKM_2RRR_RR_RARELY(!(10.0 >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY(!(170.0 >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double sin_a_1 = sc->sin_a_1;
@@ -1474,7 +1483,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_sc(const rapkm_2rrr_rr_trig *sc, 
     const double t295 = l_1 * t294;
     const double t296 = t295 / l_2;
     const double t293 = t31 * t292;
-    const double t297 = t53 * t296;
+    const double t297 = t296 * t53;
     const double t298 = t293 - t297;
     const double t327 = t31 * t296;
     const double t328 = t53 * t292;
@@ -1803,7 +1812,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_sc(const rapkm_2rrr_rr_trig *sc, 
     const double t470 = t465 + t469;
     const double t474 = t472 * t473;
     const double t475 = t470 + t474;
-    const double t480 = t53 * t299;
+    const double t480 = t299 * t53;
     const double t481 = t53 * t480;
     const double t482 = t302 * t329;
     const double t483 = t329 * t482;

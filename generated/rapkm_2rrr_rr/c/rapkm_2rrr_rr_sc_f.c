@@ -277,13 +277,25 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_sc_f(const rapkm_2rrr_rr_tri
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc_f(const rapkm_2rrr_rr_trig_f *sc, const float q[6], const float qd[6], const float u[3], const rapkm_2rrr_rr_params_f *p, float qdd[6]) {
     (void)q;
+    const float m_1 = p->m_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(5600.0f >= m_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float J_1 = p->J_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= J_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float J_2 = p->J_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(310000.0f >= J_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(17000.0f >= J_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float J_motor = p->J_motor;
+    if (RAPKM_2RRR_RR_RARELY_F(!(170.0f >= J_motor))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float m_payload = p->m_payload;
     const float size_of_m_payload = fabsf(m_payload);
-    if (RAPKM_2RRR_RR_RARELY_F(!(17.0f >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(170.0f >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float cos_a_2 = sc->cos_a_2;
@@ -552,11 +564,8 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc_f(const rapkm_2rrr_rr_tri
     if (RAPKM_2RRR_RR_RARELY_F(!(J_elbow_1 > t246))) {
         return RAPKM_2RRR_RR_MASS_RANK;
     }
-    const float J_1 = p->J_1;
-    const float J_motor = p->J_motor;
     const float t247 = J_1 + J_motor;
     const float t248 = l_1 * l_1;
-    const float m_1 = p->m_1;
     const float t249 = 0.25f * m_1;
     const float t250 = m_2 + t249;
     const float t251 = t248 * t250;
@@ -614,7 +623,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc_f(const rapkm_2rrr_rr_tri
     const float t294 = -sin_b_1;
     const float t295 = l_1 * t294;
     const float t296 = t295 / l_2;
-    const float t297 = t53 * t296;
+    const float t297 = t296 * t53;
     const float t298 = t293 - t297;
     const float t299 = 1.0f / J_elbow_1;
     const float t300 = t31 * t299;
@@ -797,7 +806,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc_f(const rapkm_2rrr_rr_tri
     const float t477 = 5.0f * t475;
     const float t478 = t165 * t306;
     const float t479 = t165 * t478;
-    const float t480 = t53 * t299;
+    const float t480 = t299 * t53;
     const float t481 = t53 * t480;
     const float t482 = t302 * t329;
     const float t483 = t329 * t482;
@@ -1125,7 +1134,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_sc_f(const rapkm_2rrr_rr_trig_f *
     (void)q;
     const float m_payload = p->m_payload;
     const float size_of_m_payload = fabsf(m_payload);
-    if (RAPKM_2RRR_RR_RARELY_F(!(10.0f >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(170.0f >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float sin_a_1 = sc->sin_a_1;
@@ -1469,7 +1478,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_sc_f(const rapkm_2rrr_rr_trig_f *
     const float t295 = l_1 * t294;
     const float t296 = t295 / l_2;
     const float t293 = t31 * t292;
-    const float t297 = t53 * t296;
+    const float t297 = t296 * t53;
     const float t298 = t293 - t297;
     const float t327 = t31 * t296;
     const float t328 = t53 * t292;
@@ -1798,7 +1807,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_sc_f(const rapkm_2rrr_rr_trig_f *
     const float t470 = t465 + t469;
     const float t474 = t472 * t473;
     const float t475 = t470 + t474;
-    const float t480 = t53 * t299;
+    const float t480 = t299 * t53;
     const float t481 = t53 * t480;
     const float t482 = t302 * t329;
     const float t483 = t329 * t482;

@@ -1017,6 +1017,118 @@ void eva_projected_configuration(void) {
     (void)status;
 }
 
+void eva_configuration_from_measured(void);
+
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t79, t83, t109, t155, t151, t199, t258, t255, t47, t304, t113, t205, t306, t580, t673, t748, t753, t779, t832, t863, t787, t840, t865, t1143, t1236, t1311, t1316, t1342, t1395, t1426, t1350, t1403, t1428, t1706, t1799, t1874, t1879, t1905, t1958, t1989, t1913, t1966, t1991, t2269, t2362, t2419, t2422, t2490, t2494, t2549, t2555, t2613, t2609, t2774, t2853. */
+void eva_configuration_from_measured(void) {
+    double q_m[3];
+    double q[6];
+    rapkm_2rrr_rr_params p;
+    double y[6];
+    q_m[0] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q_m[1] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q_m[2] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[0] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[1] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[2] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[3] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[4] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[5] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    p.l_1 = Frama_C_double_interval(0.15, 0.3);
+    p.l_2 = Frama_C_double_interval(0.15, 0.3);
+    p.x_1 = Frama_C_double_interval(-0.01, 0.01);
+    p.y_1 = Frama_C_double_interval(-0.01, 0.01);
+    p.x_2 = Frama_C_double_interval(0.35, 0.45);
+    p.y_2 = Frama_C_double_interval(-0.01, 0.01);
+    p.x_3 = Frama_C_double_interval(0.15, 0.25);
+    p.y_3 = Frama_C_double_interval(0.3, 0.4);
+    p.m_1 = Frama_C_double_interval(0.05, 1.0);
+    p.m_2 = Frama_C_double_interval(0.05, 1.0);
+    p.J_1 = Frama_C_double_interval(0.0001, 0.01);
+    p.J_2 = Frama_C_double_interval(0.0001, 0.01);
+    p.J_motor = Frama_C_double_interval(0.0001, 0.01);
+    p.m_payload = Frama_C_double_interval(0.0, 1.0);
+    rapkm_2rrr_rr_status status = rapkm_2rrr_rr_configuration_from_measured(q_m, q, &p, y);
+    //@ assert regular: status == RAPKM_2RRR_RR_OK || status == RAPKM_2RRR_RR_NOT_FINITE;
+    (void)status;
+}
+
+void eva_velocity_from_measured(void);
+
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t74. */
+void eva_velocity_from_measured(void) {
+    double q[6];
+    double qd_m[3];
+    rapkm_2rrr_rr_params p;
+    double y[6];
+    q[0] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[1] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[2] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[3] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[4] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[5] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    qd_m[0] = Frama_C_double_interval(-10.0, 10.0);
+    qd_m[1] = Frama_C_double_interval(-10.0, 10.0);
+    qd_m[2] = Frama_C_double_interval(-10.0, 10.0);
+    p.l_1 = Frama_C_double_interval(0.15, 0.3);
+    p.l_2 = Frama_C_double_interval(0.15, 0.3);
+    p.x_1 = Frama_C_double_interval(-0.01, 0.01);
+    p.y_1 = Frama_C_double_interval(-0.01, 0.01);
+    p.x_2 = Frama_C_double_interval(0.35, 0.45);
+    p.y_2 = Frama_C_double_interval(-0.01, 0.01);
+    p.x_3 = Frama_C_double_interval(0.15, 0.25);
+    p.y_3 = Frama_C_double_interval(0.3, 0.4);
+    p.m_1 = Frama_C_double_interval(0.05, 1.0);
+    p.m_2 = Frama_C_double_interval(0.05, 1.0);
+    p.J_1 = Frama_C_double_interval(0.0001, 0.01);
+    p.J_2 = Frama_C_double_interval(0.0001, 0.01);
+    p.J_motor = Frama_C_double_interval(0.0001, 0.01);
+    p.m_payload = Frama_C_double_interval(0.0, 1.0);
+    rapkm_2rrr_rr_status status = rapkm_2rrr_rr_velocity_from_measured(q, qd_m, &p, y);
+    //@ assert regular: status == RAPKM_2RRR_RR_OK || status == RAPKM_2RRR_RR_NOT_FINITE;
+    (void)status;
+}
+
+void eva_acceleration_from_measured(void);
+
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t47, t86, t95, t151, t157, t236, t314, t238. */
+void eva_acceleration_from_measured(void) {
+    double q[6];
+    double qd_m[3];
+    double qdd_m[3];
+    rapkm_2rrr_rr_params p;
+    double y[6];
+    q[0] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[1] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[2] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[3] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[4] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[5] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    qd_m[0] = Frama_C_double_interval(-10.0, 10.0);
+    qd_m[1] = Frama_C_double_interval(-10.0, 10.0);
+    qd_m[2] = Frama_C_double_interval(-10.0, 10.0);
+    qdd_m[0] = Frama_C_double_interval(-100.0, 100.0);
+    qdd_m[1] = Frama_C_double_interval(-100.0, 100.0);
+    qdd_m[2] = Frama_C_double_interval(-100.0, 100.0);
+    p.l_1 = Frama_C_double_interval(0.15, 0.3);
+    p.l_2 = Frama_C_double_interval(0.15, 0.3);
+    p.x_1 = Frama_C_double_interval(-0.01, 0.01);
+    p.y_1 = Frama_C_double_interval(-0.01, 0.01);
+    p.x_2 = Frama_C_double_interval(0.35, 0.45);
+    p.y_2 = Frama_C_double_interval(-0.01, 0.01);
+    p.x_3 = Frama_C_double_interval(0.15, 0.25);
+    p.y_3 = Frama_C_double_interval(0.3, 0.4);
+    p.m_1 = Frama_C_double_interval(0.05, 1.0);
+    p.m_2 = Frama_C_double_interval(0.05, 1.0);
+    p.J_1 = Frama_C_double_interval(0.0001, 0.01);
+    p.J_2 = Frama_C_double_interval(0.0001, 0.01);
+    p.J_motor = Frama_C_double_interval(0.0001, 0.01);
+    p.m_payload = Frama_C_double_interval(0.0, 1.0);
+    rapkm_2rrr_rr_status status = rapkm_2rrr_rr_acceleration_from_measured(q, qd_m, qdd_m, &p, y);
+    //@ assert regular: status == RAPKM_2RRR_RR_OK || status == RAPKM_2RRR_RR_NOT_FINITE;
+    (void)status;
+}
+
 void eva_inverse_dynamics(void);
 
 /* Intervals of the ideal operations alone do not keep these denominators from 0: t24, t51. */

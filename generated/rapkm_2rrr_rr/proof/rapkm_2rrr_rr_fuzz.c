@@ -48,9 +48,9 @@ enum { SUMS_EVERYWHERE = 0 };
 #endif
 enum { WAYS = 8, MORE_WAYS = 64 };
 
-enum { SINES = 4, ARRAYS = 5, LONGEST = 12, RESULT = 36, PARAMETERS = 14 };
+enum { SINES = 7, ARRAYS = 8, LONGEST = 12, RESULT = 36, PARAMETERS = 14 };
 
-/* One set of numbers, the same in both types: q, qd, qdd, u, sines and cosines, and the parameters. */
+/* One set of numbers, the same in both types: q, qd, qdd, u, q_m, qd_m, qdd_m, sines and cosines, and the parameters. */
 typedef struct {
     float x_f[ARRAYS][LONGEST];
     double x[ARRAYS][LONGEST];
@@ -65,7 +65,7 @@ typedef struct {
     const char *name;
     int (*run)(double *const *x, const rapkm_2rrr_rr_params *p, double *y);
     int (*run_f)(float *const *x, const rapkm_2rrr_rr_params_f *p, float *y);
-    int reads[ARRAYS]; /* of q, qd, qdd, u */
+    int reads[ARRAYS]; /* of q, qd, qdd, u, q_m, qd_m, qdd_m */
     size_t size;
     int held;  /* whether rule 4 is a failure, not only a figure */
     int given; /* whether sines and cosines come from the caller */
@@ -305,6 +305,30 @@ static int projected_configuration_32(float *const *x, const rapkm_2rrr_rr_param
     return (int)rapkm_2rrr_rr_projected_configuration_f(x[0], p, y);
 }
 
+static int configuration_from_measured_64(double *const *x, const rapkm_2rrr_rr_params *p, double *y) {
+    return (int)rapkm_2rrr_rr_configuration_from_measured(x[4], x[0], p, y);
+}
+
+static int configuration_from_measured_32(float *const *x, const rapkm_2rrr_rr_params_f *p, float *y) {
+    return (int)rapkm_2rrr_rr_configuration_from_measured_f(x[4], x[0], p, y);
+}
+
+static int velocity_from_measured_64(double *const *x, const rapkm_2rrr_rr_params *p, double *y) {
+    return (int)rapkm_2rrr_rr_velocity_from_measured(x[0], x[5], p, y);
+}
+
+static int velocity_from_measured_32(float *const *x, const rapkm_2rrr_rr_params_f *p, float *y) {
+    return (int)rapkm_2rrr_rr_velocity_from_measured_f(x[0], x[5], p, y);
+}
+
+static int acceleration_from_measured_64(double *const *x, const rapkm_2rrr_rr_params *p, double *y) {
+    return (int)rapkm_2rrr_rr_acceleration_from_measured(x[0], x[5], x[6], p, y);
+}
+
+static int acceleration_from_measured_32(float *const *x, const rapkm_2rrr_rr_params_f *p, float *y) {
+    return (int)rapkm_2rrr_rr_acceleration_from_measured_f(x[0], x[5], x[6], p, y);
+}
+
 static int inverse_dynamics_64(double *const *x, const rapkm_2rrr_rr_params *p, double *y) {
     return (int)rapkm_2rrr_rr_inverse_dynamics(x[0], x[1], x[2], p, y);
 }
@@ -497,6 +521,9 @@ static const Kernel kernels[] = {
     {"admissible_velocity", admissible_velocity_64, admissible_velocity_32, {1, 1, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
     {"admissible_acceleration", admissible_acceleration_64, admissible_acceleration_32, {1, 1, 1, 0, 0}, 6u, 0, 0, NULL, NULL},
     {"projected_configuration", projected_configuration_64, projected_configuration_32, {1, 0, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
+    {"configuration_from_measured", configuration_from_measured_64, configuration_from_measured_32, {1, 0, 0, 0, 1}, 6u, 0, 0, NULL, NULL},
+    {"velocity_from_measured", velocity_from_measured_64, velocity_from_measured_32, {1, 0, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
+    {"acceleration_from_measured", acceleration_from_measured_64, acceleration_from_measured_32, {1, 0, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
     {"inverse_dynamics", inverse_dynamics_64, inverse_dynamics_32, {1, 1, 1, 0, 0}, 3u, 1, 0, NULL, NULL},
     {"inverse_dynamics_residual", inverse_dynamics_residual_64, inverse_dynamics_residual_32, {1, 1, 1, 0, 0}, 6u, 0, 0, NULL, NULL},
     {"forward_dynamics", forward_dynamics_64, forward_dynamics_32, {1, 1, 0, 1, 0}, 6u, 1, 0, NULL, NULL},
@@ -508,9 +535,9 @@ static const Kernel kernels[] = {
     {"forward_dynamics_sc", forward_dynamics_sc_64, forward_dynamics_sc_32, {1, 1, 0, 1, 0}, 6u, 1, 1, NULL, NULL},
     {"multipliers_sc", multipliers_sc_64, multipliers_sc_32, {1, 1, 0, 1, 0}, 4u, 0, 1, NULL, NULL},
 };
-enum { KERNELS = 39 };
+enum { KERNELS = 42 };
 
-static const size_t sizes[ARRAYS] = {6u, 6u, 6u, 3u, 12u};
+static const size_t sizes[ARRAYS] = {6u, 6u, 6u, 3u, 3u, 3u, 3u, 12u};
 static const float ranges[][2] = {
     {-3.1415927f, 3.1415927f}, /* q[0] */
     {-3.1415927f, 3.1415927f}, /* q[1] */
@@ -533,6 +560,15 @@ static const float ranges[][2] = {
     {-1.0f, 1.0f}, /* u[0] */
     {-1.0f, 1.0f}, /* u[1] */
     {-1.0f, 1.0f}, /* u[2] */
+    {-3.1415927f, 3.1415927f}, /* q_m[0] */
+    {-3.1415927f, 3.1415927f}, /* q_m[1] */
+    {-3.1415927f, 3.1415927f}, /* q_m[2] */
+    {-10.0f, 10.0f}, /* qd_m[0] */
+    {-10.0f, 10.0f}, /* qd_m[1] */
+    {-10.0f, 10.0f}, /* qd_m[2] */
+    {-100.0f, 100.0f}, /* qdd_m[0] */
+    {-100.0f, 100.0f}, /* qdd_m[1] */
+    {-100.0f, 100.0f}, /* qdd_m[2] */
     {0.15f, 0.3f}, /* p[0] */
     {0.15f, 0.3f}, /* p[1] */
     {-0.01f, 0.01f}, /* p[2] */
@@ -690,7 +726,7 @@ static void fail(const Kernel *kernel, const State *s, const char *what) {
     fprintf(stderr, "%s: %s\n", kernel->name, what);
     for (size_t a = 0; a < ARRAYS; a++) {
         for (size_t i = 0; i < sizes[a]; i++) {
-            fprintf(stderr, "  %s[%u] = %.9g (%a)\n", (const char *[]){"q", "qd", "qdd", "u", "sc"}[a], (unsigned)i, s->x[a][i], s->x[a][i]);
+            fprintf(stderr, "  %s[%u] = %.9g (%a)\n", (const char *[]){"q", "qd", "qdd", "u", "q_m", "qd_m", "qdd_m", "sc"}[a], (unsigned)i, s->x[a][i], s->x[a][i]);
         }
     }
     fprintf(stderr, "  %s = %.9g\n", "l_1", s->p.l_1);
@@ -713,7 +749,7 @@ static void fail(const Kernel *kernel, const State *s, const char *what) {
 /* Rules 1, 2 and 5 in double; the status, and the result in y where it is 0. */
 static int check(const Kernel *kernel, const State *s, double y[RESULT], int *flags) {
     double x[ARRAYS][LONGEST];
-    double *arrays[ARRAYS] = {x[0], x[1], x[2], x[3], x[4]};
+    double *arrays[ARRAYS] = {x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7]};
     double before[RESULT];
     const size_t bytes = kernel->size * sizeof y[0];
     memcpy(x, s->x, sizeof x);
@@ -774,7 +810,7 @@ static int check(const Kernel *kernel, const State *s, double y[RESULT], int *fl
 /* Rules 1, 2 and 5 in float; the status, and the result in y where it is 0. */
 static int check_f(const Kernel *kernel, const State *s, float y[RESULT], int *flags) {
     float x[ARRAYS][LONGEST];
-    float *arrays[ARRAYS] = {x[0], x[1], x[2], x[3], x[4]};
+    float *arrays[ARRAYS] = {x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7]};
     float before[RESULT];
     const size_t bytes = kernel->size * sizeof y[0];
     memcpy(x, s->x_f, sizeof x);
