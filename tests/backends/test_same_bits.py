@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import random
 import subprocess
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 
@@ -38,7 +38,13 @@ def states(name: str, scalar: Scalar) -> list[dict[str, list[float]]]:
     drawn = [{kind: draw(kind) for kind in ("q", "qd", "qdd", "u")} for _ in range(STATES)]
     for value in (0.0, 1e30, float("nan")):
         drawn.append({kind: [float(np.dtype(scalar).type(value))] * len(numbers) for kind, numbers in drawn[0].items()})
-    return drawn
+    return [one | _measured(model.measured_places, one, scalar) for one in drawn]
+
+
+def _measured(places: Sequence[int], state: dict[str, list[float]], scalar: Scalar) -> dict[str, list[float]]:
+    """What encoders say a moment later."""
+    moved = [float(np.dtype(scalar).type(state["q"][k] + state["qd"][k] / 1024)) for k in places]
+    return {"q_m": moved, **{f"{kind}_m": [state[kind][k] for k in places] for kind in ("qd", "qdd")}}
 
 
 @cache

@@ -117,7 +117,8 @@ def test_u_is_the_same_and_shorter(name: str) -> None:
         at = state(model, seed)
         expected = Evaluator(apart.outputs)(at)
         assert Evaluator(twists.outputs)(at) == pytest.approx(expected, rel=1e-9, abs=1e-9 * max(map(abs, expected)))
-    assert cost(twists.outputs).weight < 0.85 * cost(apart.outputs).weight
+    # rows that are differentiated joint by joint gain a part of what twists do
+    assert cost(twists.outputs).weight < 0.87 * cost(apart.outputs).weight
 
 
 def test_the_cheapest_elimination_is_that_in_body_axes() -> None:
