@@ -24,14 +24,18 @@ STATUS_MEANING: dict[Status, str] = {
     Status.MEASURED_RANK: "what is measured does not determine the rest at this configuration",
     Status.NOT_CLOSED: "Newton's method has not closed the loops from this start",
     Status.BRANCH: "the start is so far away that the result may belong to another assembly mode",
+    Status.TASK_RANK: "the task does not determine the rest at this configuration",
 }
-# Those of models that name what is measured.
+# Those of models that name what is measured, and of models that have a task.
 _OF_MEASURED = frozenset({Status.MEASURED_RANK, Status.NOT_CLOSED, Status.BRANCH})
+_OF_TASK = frozenset({Status.TASK_RANK, Status.NOT_CLOSED, Status.BRANCH})
 
 
 def statuses_of(model: Model) -> tuple[Status, ...]:
     """The statuses that kernels of a model may have."""
-    return tuple(status for status in Status if model.measured or status not in _OF_MEASURED)
+    special = _OF_MEASURED | _OF_TASK
+    met = (_OF_MEASURED if model.measured else frozenset()) | (_OF_TASK if model.task else frozenset())
+    return tuple(status for status in Status if status not in special or status in met)
 
 
 def symbol_lines(model: Model) -> Iterator[str]:
@@ -46,6 +50,9 @@ def symbol_lines(model: Model) -> Iterator[str]:
     if model.measured:
         yield "Measured coordinates q_m (rates qd_m and accelerations qdd_m in the same order):"
         yield f"  {', '.join(model.measured)}"
+    if model.task:
+        yield "Coordinates of the task x_t (rates xd_t and accelerations xdd_t in the same order):"
+        yield f"  {', '.join(x.name for x in model.task)}"
     if model.allocation is not None:
         yield "How inverse_dynamics shares the work among the inputs:"
         yield from _allocation_lines(model.allocation)

@@ -10,7 +10,7 @@ from symgen.model.model import Model
 from symgen.naming import identifiers
 from symgen.records import dataclass
 
-ARGUMENT_NAMES = ("q", "qd", "qdd", "u", "q_m", "qd_m", "qdd_m", "w_u", "w_qdd", "p")
+ARGUMENT_NAMES = ("q", "qd", "qdd", "u", "q_m", "qd_m", "qdd_m", "x_t", "xd_t", "xdd_t", "w_u", "w_qdd", "p")
 
 @dataclass(frozen=True, slots=True)
 class Names:
@@ -54,7 +54,7 @@ def user_names(model: Model) -> tuple[str, ...]:
     """Every name of the model file that can become a local of a kernel."""
     coordinates = [name for c in model.coordinates for name in (c.name, c.rate, c.acceleration)]
     others = [item.name for group in (model.parameters, model.definitions, model.inputs) for item in group]
-    further = [name for level in (*model.measured_names, *model.weight_names) for name in level]
+    further = [name for argument in model.further_arguments for name in argument.names]
     return tuple(coordinates + others + further)
 
 

@@ -121,6 +121,5 @@ class RunnableKernels:
 
 def rounded_state(state: State, scalar: Scalar) -> State:
     """The state with every number rounded to the scalar type."""
-    parts = (state.q, state.qd, state.qdd, state.u, state.parameters)
-    doubles = State(*(tuple(float(x) for x in part) for part in parts))
+    doubles = State(*(tuple(float(x) for x in part) for part in state.parts))
     return in_scalar(doubles, scalar)

@@ -7,13 +7,13 @@ thresholds and the sine/cosine function differ between float64 and float32.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from enum import IntEnum
 from fractions import Fraction
 from typing import Literal as Choice
 from typing import TypeAlias
 
-from symgen.model.quantities import MEASURED_ARGUMENTS, WEIGHT_ARGUMENTS
+from symgen.model.quantities import Argument as ArgumentName
 from symgen.records import dataclass
 
 Scalar: TypeAlias = Choice["float64", "float32"]
@@ -33,6 +33,7 @@ class Status(IntEnum):
     MEASURED_RANK = 7
     NOT_CLOSED = 8
     BRANCH = 9
+    TASK_RANK = 10
 
 
 OperationName: TypeAlias = Choice[
@@ -96,11 +97,11 @@ Operand: TypeAlias = Local | Literal
 class Load:
     """`local = argument[index]`; `member` is the parameter in the struct `p`, the sine or cosine in the struct `sc`.
 
-    A measured value is that of the coordinate at `place`; so is a weight that of an input or acceleration.
+    `place` is that of the argument (`Argument`), for those that have places.
     """
 
     local: str
-    argument: Choice["q", "qd", "qdd", "u", "q_m", "qd_m", "qdd_m", "w_u", "w_qdd", "p", "sc"]
+    argument: ArgumentName | Choice["p", "sc"]
     index: int
     member: str = ""
     place: int = -1
@@ -152,23 +153,12 @@ class Check:
 class Argument:
     """An array argument of a kernel; arrays of length 0 are left out of signatures.
 
-    Measured values are those of the coordinates at `places`, weights those of inputs or accelerations.
+    In trials of a kernel the entries are what stands at `places`: measured values at those of their coordinates.
     """
 
-    name: Choice["q", "qd", "qdd", "u", "q_m", "qd_m", "qdd_m", "w_u", "w_qdd"]
+    name: ArgumentName
     length: int
     places: tuple[int, ...] = ()
-
-
-def measured_arguments(places: Sequence[int]) -> tuple[Argument, ...]:
-    """The array arguments that hold what is measured of the coordinates at some places."""
-    return tuple(Argument(name, len(places), tuple(places)) for name in MEASURED_ARGUMENTS)
-
-
-def weight_arguments(m: int, n: int) -> tuple[Argument, ...]:
-    """The array arguments that hold weights of so many inputs and accelerations."""
-    pairs = zip(WEIGHT_ARGUMENTS, (m, n), strict=True)
-    return tuple(Argument(name, count, tuple(range(count))) for name, count in pairs)
 
 
 @dataclass(frozen=True, slots=True)

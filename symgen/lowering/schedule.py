@@ -23,8 +23,6 @@ from symgen.ir.kernel import (
     Scalar,
     Statement,
     Status,
-    measured_arguments,
-    weight_arguments,
 )
 from symgen.ir.lifted import Kind, Lifted, Meant, same_kernel
 from symgen.ir.order import REGISTERS, relaxed, waits
@@ -47,6 +45,7 @@ ORDER = (
     Status.MASS_RANK,
     Status.ACTUATION_RANK,
     Status.MEASURED_RANK,
+    Status.TASK_RANK,
     Status.BRANCH,
     Status.NOT_CLOSED,
 )
@@ -230,9 +229,10 @@ def _meant(outputs: Sequence[Node], tests: Sequence[Test], image: Mapping[Node, 
 
 
 def _arguments(mechanics: System, quantity: str) -> tuple[Argument, ...]:
-    n, m, places = mechanics.n, mechanics.m, mechanics.model.measured_places
+    n, m = mechanics.n, mechanics.m
     sizes = Argument("q", n), Argument("qd", n), Argument("qdd", n), Argument("u", m)
-    every = {argument.name: argument for argument in (*sizes, *measured_arguments(places), *weight_arguments(m, n))}
+    further = (Argument(one.name, len(one.places), one.places) for one in mechanics.model.further_arguments)
+    every = {argument.name: argument for argument in (*sizes, *further)}
     return tuple(every[name] for name in ROWS[quantity].arguments if every[name].length)
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 
 from symgen.diagnostics import SymgenBug
 from symgen.ir.kernel import Block, Check, Literal, Load, Local, Operand, Statement, Status
 from symgen.mechanics.system import System
-from symgen.model.quantities import MEASURED_ARGUMENTS, WEIGHT_ARGUMENTS
+from symgen.model.quantities import Argument
 from symgen.records import dataclass
 from symgen.symbolic.scalar import Graph
 from symgen.symbolic.scalar import Scalar as Node
@@ -62,8 +62,9 @@ class ScalarWriter:
 
     def loads(self) -> tuple[Load, ...]:
         """The inputs used, arguments first, each in order of its index."""
-        order = {name: k for k, name in enumerate(("q", "qd", "qdd", "u", *MEASURED_ARGUMENTS, *WEIGHT_ARGUMENTS, "p"))}
-        return tuple(sorted(self._loads.values(), key=lambda load: (order[load.argument], load.index)))
+        # those of the model, argument by argument
+        order = {name: k for k, name in enumerate(self._symbols)}
+        return tuple(sorted(self._loads.values(), key=lambda load: order[load.local]))
 
     def operand(self, node: Node) -> Operand:
         """The operand of a node that has been written, or of a constant or an input."""
@@ -187,20 +188,18 @@ class ScalarWriter:
 
 
 def _symbol_loads(mechanics: System) -> dict[str, Load]:
+    """By name, in the order of signatures."""
     model = mechanics.model
-    loads: dict[str, Load] = {}
-    for i, c in enumerate(model.coordinates):
-        loads[c.name] = Load(c.name, "q", i)
-        loads[c.rate] = Load(c.rate, "qd", i)
-        loads[c.acceleration] = Load(c.acceleration, "qdd", i)
-    for argument, names in zip(MEASURED_ARGUMENTS, model.measured_names, strict=True):
-        for i, (name, place) in enumerate(zip(names, model.measured_places, strict=True)):
-            loads[name] = Load(name, argument, i, place=place)
-    for weights, names in zip(WEIGHT_ARGUMENTS, model.weight_names, strict=True):
-        for i, name in enumerate(names):
-            loads[name] = Load(name, weights, i, place=i)
-    for i, given in enumerate(model.inputs):
-        loads[given.name] = Load(given.name, "u", i)
+    arrays: tuple[tuple[Argument, Iterable[str]], ...] = (
+        ("q", (c.name for c in model.coordinates)),
+        ("qd", (c.rate for c in model.coordinates)),
+        ("qdd", (c.acceleration for c in model.coordinates)),
+        ("u", (given.name for given in model.inputs)),
+    )
+    loads = {name: Load(name, argument, i) for argument, names in arrays for i, name in enumerate(names)}
+    for further in model.further_arguments:
+        for i, (name, place) in enumerate(zip(further.names, further.places, strict=True)):
+            loads[name] = Load(name, further.name, i, place=place)
     for i, parameter in enumerate(model.parameters):
         loads[parameter.name] = Load(parameter.name, "p", i, parameter.name)
     return loads

@@ -6,7 +6,7 @@ because several quantities are evaluated along a projected velocity rather than 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 
 from symgen.mechanics.absolute_angles import AbsoluteAngles
@@ -19,6 +19,7 @@ from symgen.model.expressions.expression import Expression
 from symgen.model.kinematics.components import components_in, definitions_before_frames
 from symgen.model.kinematics.triples import Rows
 from symgen.model.model import Model
+from symgen.model.quantities import FurtherName
 from symgen.symbolic.calculus import derivative_along, gradient
 from symgen.symbolic.hidden_zeros import without_hidden_zeros
 from symgen.symbolic.matrix import Matrix, Vector, dot, matvec, subtract_vectors, transpose
@@ -55,7 +56,7 @@ class System:
         self.parameters: Vector = tuple(graph.symbol(p.name) for p in model.parameters)
         self.u: Vector = tuple(graph.symbol(i.name) for i in model.inputs)
         q, qd = (self.q, self.qd) if change is None else (change.relative(self.q), change.relative(self.qd))
-        self.measured = tuple(tuple(map(symbol, names)) for names in model.measured_names)
+        self.measured = self._further(symbol, ("q_m", "qd_m", "qdd_m"))
         self.names: dict[str, Scalar] = {
             **{c.name: node for c, node in zip(model.coordinates, q, strict=True)},
             **{c.rate: node for c, node in zip(model.coordinates, qd, strict=True)},
@@ -90,9 +91,29 @@ class System:
         return self.bodies.gravity if working else (zero, zero, zero)
 
     @cached_property
-    def weights(self) -> tuple[Vector, ...]:
-        """Of the inputs and of the accelerations."""
-        return tuple(tuple(map(self.graph.symbol, names)) for names in self.model.weight_names)
+    def weights(self) -> dict[str, Vector]:
+        """Of the inputs and of the accelerations, by argument."""
+        names: tuple[FurtherName, ...] = ("w_u", "w_qdd")
+        return dict(zip(names, self._further(self.graph.symbol, names), strict=True))
+
+    @cached_property
+    def task(self) -> tuple[Vector, ...]:
+        """Given coordinates of the task, their rates and accelerations."""
+        return self._further(self.graph.symbol, ("x_t", "xd_t", "xdd_t"))
+
+    @cached_property
+    def task_position(self) -> Vector:
+        """The coordinates of the task as functions of q."""
+        return tuple(translate(self.graph, x.expression, self.names) for x in self.model.task)
+
+    @cached_property
+    def task_jacobian(self) -> Matrix:
+        """Their derivatives, k x n."""
+        return tuple(tuple(gradient(self.graph, x, self.q)) for x in self.task_position)
+
+    def _further(self, symbol: Callable[[str], Scalar], arguments: Sequence[FurtherName]) -> tuple[Vector, ...]:
+        """The entries of arguments beside q, qd, qdd and u."""
+        return tuple(tuple(map(symbol, self.model.further_names(argument))) for argument in arguments)
 
     @property
     def motion(self) -> Vector:

@@ -27,9 +27,10 @@ from symgen.mechanics.system import System
 from symgen.methods.allocation import InputAllocation
 from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
 from symgen.methods.forward_dynamics.motion import Problem
+from symgen.methods.given import measured, task
+from symgen.methods.given_configuration import GivenConfiguration
+from symgen.methods.given_motion import GivenMotion
 from symgen.methods.least_inputs import least_inputs
-from symgen.methods.measured import MeasuredMotion
-from symgen.methods.measured_configuration import MeasuredConfiguration
 from symgen.symbolic.calculus import derivative_along, gradient, jacobian
 from symgen.symbolic.matrix import (
     Matrix,
@@ -212,17 +213,27 @@ class Derivation:
         guards = self.geometric_space.guards
         return (*guards, *(moved(guard, step) for guard in guards))
 
-    # from what is measured -------------------------------------------------------------------------------------------
+    # from what is given ----------------------------------------------------------------------------------------------
 
     @cached_property
-    def measured_motion(self) -> MeasuredMotion:
+    def measured_motion(self) -> GivenMotion:
         """What measured rates determine."""
-        return MeasuredMotion(self)
+        return GivenMotion(self, measured(self.mechanics))
 
     @cached_property
-    def measured_configuration(self) -> MeasuredConfiguration:
+    def measured_configuration(self) -> GivenConfiguration:
         """What measured coordinates determine."""
-        return MeasuredConfiguration(self)
+        return GivenConfiguration(self, measured(self.mechanics))
+
+    @cached_property
+    def task_motion(self) -> GivenMotion:
+        """What rates of the task determine."""
+        return GivenMotion(self, task(self.mechanics))
+
+    @cached_property
+    def task_configuration(self) -> GivenConfiguration:
+        """What coordinates of the task determine."""
+        return GivenConfiguration(self, task(self.mechanics))
 
     # projected equations (30) ----------------------------------------------------------------------------------------
 
@@ -351,7 +362,7 @@ class Derivation:
 
     def inverse_dynamics_gradient(self) -> Vector:
         """The derivatives of w^T u by q, q_dot and q_ddot, in one reverse sweep."""
-        weighted = dot(self.graph, self.mechanics.weights[0], self.inverse_dynamics)
+        weighted = dot(self.graph, self.mechanics.weights["w_u"], self.inverse_dynamics)
         return tuple(gradient(self.graph, weighted, self.mechanics.motion))
 
     @cached_property

@@ -8,6 +8,8 @@ from symgen.model.quantities import (
     MEASURED_PLACES,
     OF_INPUTS,
     PARTITION,
+    TASK_PLACES,
+    TASK_RATES,
     VARIATIONS,
     QuantityRow,
 )
@@ -23,6 +25,7 @@ def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actua
         "r": (model.r, "constraints"),
         "r_g": (geometric, "geometric constraints"),
         "m": (model.m, "inputs"),
+        "k": (len(model.task), "`task`"),
         "points": (len(model.mechanism.points), "points"),
         "parameters": (len(model.parameters), "parameters"),
         "delta": (delta, "degrees of freedom"),
@@ -30,6 +33,11 @@ def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actua
     for size, (count, what) in counts.items():
         if size in quantity.sizes and count == 0:
             return f"the model has no {what}"
+    if quantity.is_of_task and not model.task:
+        return "the model has no `task`"
+    if open_ := {TASK_RATES: model.task_leaves.rates, TASK_PLACES: model.task_leaves.places}.get(quantity.needs, 0):
+        left = f"{open_} direction{'s' if open_ > 1 else ''}"
+        return f"the task leaves {left} open: further entries, such as coordinates, determine the rest"
     if quantity.needs == PARTITION and not model.independent_velocities:
         return "the model names no `independent_velocities`"
     if quantity.is_of_measured and not model.measured:

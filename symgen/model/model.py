@@ -6,7 +6,7 @@ parameters, definitions (kept as names, in order of use), and in paths the time 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
@@ -14,6 +14,7 @@ from symgen.diagnostics import Notice, Span
 from symgen.model.configurations.assembly import Assembly
 from symgen.model.expressions.expression import Expression
 from symgen.model.mechanism import NO_MECHANISM, Mechanism
+from symgen.model.quantities import FurtherName
 from symgen.naming import c_name
 from symgen.records import dataclass
 
@@ -199,12 +200,42 @@ class Path:
 
 
 @dataclass(frozen=True, slots=True)
+class TaskCoordinate:
+    """A coordinate of the task: a function of the configuration, such as the place of a tool."""
+
+    name: str
+    expression: Expression
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class TaskLeaves:
+    """How many directions a task leaves open, of admissible rates and of configurations."""
+
+    rates: int = 0
+    places: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class FurtherArgument:
+    """An array argument of some kernels beside q, qd, qdd and u.
+
+    `names` are those of its entries.  In trials an entry is what stands at its place: measured values at that of their
+    coordinate.
+    """
+
+    name: FurtherName
+    places: tuple[int, ...]
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Model:
     """A mechanical system, complete: the input of every derivation.
 
     T and U are the energies written in the file plus those of `mechanism`; `assembly` is what loading found out about
     its configurations.  `row_units` are set where rows stand here times 2 to these powers (`quantities/row_units.py`).
-    What is `measured` leaves places open where rows hold rates alone (`measures_places`).
+    What is `measured` leaves places open where rows hold rates alone (`measures_places`); so may a `task`.
     `taken` are parameters of the file that are numbers here (`as_numbers`).
     """
 
@@ -236,6 +267,8 @@ class Model:
     derivatives: bool = False
     measured: tuple[str, ...] = ()
     measures_places: bool = True
+    task: tuple[TaskCoordinate, ...] = ()
+    task_leaves: TaskLeaves = TaskLeaves()
     assembly: Assembly | None = None
     row_units: tuple[int, ...] = ()
     taken: tuple[tuple[str, Fraction], ...] = ()
@@ -252,26 +285,37 @@ class Model:
         return tuple(names.index(name) for name in self.measured)
 
     @property
-    def measured_names(self) -> tuple[tuple[str, ...], ...]:
-        """What the measured values, rates and accelerations are called: names that nothing else has."""
-        coordinates = [self.coordinates[k] for k in self.measured_places]
-        levels = ([c.name for c in coordinates], [c.rate for c in coordinates], [c.acceleration for c in coordinates])
-        return self._with_ending(levels, "measured")
+    def further_arguments(self) -> tuple[FurtherArgument, ...]:
+        """Those of measured coordinates, of the task and of weights, in the order of signatures; some are empty.
 
-    @property
-    def weight_names(self) -> tuple[tuple[str, ...], ...]:
-        """What weights of the inputs and of the accelerations are called: names that nothing else has."""
-        levels = [control.name for control in self.inputs], [c.acceleration for c in self.coordinates]
-        return self._with_ending(levels, "weight")
-
-    def _with_ending(self, levels: Iterable[Sequence[str]], ending: str) -> tuple[tuple[str, ...], ...]:
+        In trials rates of the task are those of coordinates: what they are multiplied with does not depend on them.
+        """
+        n, places, task = self.n, self.measured_places, range(len(self.task))
+        coordinates, moving = [self.coordinates[k] for k in places], tuple(k % n for k in task) if n else ()
         taken = {name for c in self.coordinates for name in (c.name, c.rate, c.acceleration)}
         taken |= {item.name for group in (self.parameters, self.definitions, self.inputs) for item in group}
 
         def free(name: str) -> str:
             return free(name + "_") if name in taken else name
 
-        return tuple(tuple(free(f"{name}_{ending}") for name in level) for level in levels)
+        def one(argument: FurtherName, of: Iterable[int], names: Iterable[str]) -> FurtherArgument:
+            ending = {"q": "measured", "x": "task", "w": "weight"}[argument[0]]
+            return FurtherArgument(argument, tuple(of), tuple(free(f"{name}_{ending}") for name in names))
+
+        return (
+            one("q_m", places, (c.name for c in coordinates)),
+            one("qd_m", places, (c.rate for c in coordinates)),
+            one("qdd_m", places, (c.acceleration for c in coordinates)),
+            one("x_t", task, (x.name for x in self.task)),
+            one("xd_t", moving, (f"{x.name}_dot" for x in self.task)),
+            one("xdd_t", moving, (f"{x.name}_ddot" for x in self.task)),
+            one("w_u", range(self.m), (control.name for control in self.inputs)),
+            one("w_qdd", range(n), (c.acceleration for c in self.coordinates)),
+        )
+
+    def further_names(self, argument: FurtherName) -> tuple[str, ...]:
+        """What the entries of one of these arguments are called: names that nothing else has."""
+        return next(one.names for one in self.further_arguments if one.name == argument)
 
     @property
     def n(self) -> int:

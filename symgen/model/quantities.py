@@ -8,15 +8,16 @@ from typing import Literal, TypeAlias, cast
 
 from symgen.records import dataclass
 
-Argument: TypeAlias = Literal["q", "qd", "qdd", "u", "q_m", "qd_m", "qdd_m", "w_u", "w_qdd"]
-# Measured coordinates, rates and accelerations.
-MEASURED_ARGUMENTS: tuple[Literal["q_m", "qd_m", "qdd_m"], ...] = ("q_m", "qd_m", "qdd_m")
-# Weights of inputs and of accelerations, of whose sums there are gradients.
-WEIGHT_ARGUMENTS: tuple[Literal["w_u", "w_qdd"], ...] = ("w_u", "w_qdd")
+# What some models have beside q, qd, qdd and u: measured coordinates with their rates and accelerations, those of the
+# task, and weights of inputs and of accelerations, of whose sums there are gradients.
+FurtherName: TypeAlias = Literal["q_m", "qd_m", "qdd_m", "x_t", "xd_t", "xdd_t", "w_u", "w_qdd"]
+Argument: TypeAlias = Literal["q", "qd", "qdd", "u"] | FurtherName
 # What a model must have for some quantities.
 PARTITION, ACTUATORS, POINTS = "independent_velocities", "m = delta", "points"
 # What encoders determine: of rates, and of places.
 MEASURED, MEASURED_PLACES = "measured", "measured places"
+# A task, one that determines rates, and one that determines places.
+TASK, TASK_RATES, TASK_PLACES = "task", "task rates", "task places"
 # Those that `all` takes where the model says `derivatives` only; the latter two need more than constraints that do not
 # depend on each other.
 DERIVATIVES, OF_INPUTS, VARIATIONS = "derivatives", "derivatives of inputs", "derivatives along constraints"
@@ -27,9 +28,9 @@ class QuantityRow:
     """A quantity by the name used in `outputs`, C and Python; `equation` is the number in Müller's paper, or empty.
 
     `result` is what its array is called in C.  `shape` has its extents, sums of products of numbers and of sizes of the
-    system: n coordinates, m inputs, r rows, of these r_g geometric, delta degrees of freedom, points, parameters.  A
-    quantity exists where none of them is 0 and the model has what it `needs`.  The `main` ones are what the equations
-    of motion are solved for.
+    system: n coordinates, m inputs, r rows, of these r_g geometric, delta degrees of freedom, k coordinates of the
+    task, points, parameters.  A quantity exists where none of them is 0 and the model has what it `needs`.  The `main`
+    ones are what the equations of motion are solved for.
     """
 
     name: str
@@ -56,6 +57,11 @@ class QuantityRow:
     def is_of_measured(self) -> bool:
         """Whether it is found from measured coordinates."""
         return self.needs in (MEASURED, MEASURED_PLACES)
+
+    @property
+    def is_of_task(self) -> bool:
+        """Whether it is one of a task."""
+        return self.needs in (TASK, TASK_RATES, TASK_PLACES)
 
     def extents(self, sizes: Mapping[str, int]) -> tuple[int, ...]:
         """Its shape in numbers."""
@@ -127,6 +133,15 @@ QUANTITIES: tuple[QuantityRow, ...] = (
          "the admissible velocity with the measured rates, or nearest to them", MEASURED),
     _row("acceleration_from_measured", "q̈(q̈_m)", "", "qdd_found", "q qd_m qdd_m", "n",
          "the admissible acceleration with the measured ones, or nearest to them, at the measured velocity", MEASURED),
+    _row("task_position", "x", "", "x", "q", "k", "coordinates of the task", TASK),
+    _row("task_velocity", "ẋ", "", "xd", "q qd", "k", "their rates", TASK),
+    _row("task_jacobian", "J_x", "", "x_q", "q", "k n", "derivatives of the coordinates of the task by q", TASK),
+    _row("configuration_from_task", "q(x)", "", "q_found", "x_t q", "n",
+         "the configuration with these coordinates of the task, or nearest to them, on the branch of q", TASK_PLACES),
+    _row("velocity_from_task", "q̇(ẋ)", "", "qd_found", "q xd_t", "n",
+         "the admissible velocity with these rates of the task, or nearest to them", TASK_RATES),
+    _row("acceleration_from_task", "q̈(ẍ)", "", "qdd_found", "q xd_t xdd_t", "n",
+         "the admissible acceleration with these ones of the task, or nearest to them, at that velocity", TASK_RATES),
     _row("inverse_dynamics", "u", "(27)", "u", "q qd qdd", "m", "the smallest inputs that produce the motion",
          main=True),
     _row("inverse_dynamics_jacobian", "J_u", "", "u_x", "q qd qdd", "m 3*n",

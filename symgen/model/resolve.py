@@ -18,6 +18,7 @@ from symgen.model.blocks.joint_forms import JointCoordinate, read_joints
 from symgen.model.blocks.loops import LoopRows
 from symgen.model.blocks.paths import read_paths
 from symgen.model.blocks.published import read_published
+from symgen.model.blocks.task import read_task
 from symgen.model.checks.all_checks import check_mechanics, notice_efforts, notice_empty_outputs
 from symgen.model.checks.dimensions import check_units
 from symgen.model.configurations.mechanics import default_values
@@ -94,6 +95,7 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
         outputs=_outputs(tree.get("outputs"), bool(inputs)),
         independent_velocities=_coordinate_list(scope, tree, "independent_velocities", names),
         measured=_coordinate_list(scope, tree, "measured", names) or _driven(tree.get("outputs"), inputs),
+        task=read_task(scope, tree),
         derivatives=text_of(tree.get("derivatives")) == "true",
         configuration=_configuration(scope, tree.get("configuration"), names, joint_coordinates),
         constraint_rank_tolerance=_tolerance(scope, tolerances, "constraint_rank"),

@@ -16,7 +16,6 @@ from symgen.ir.kernel import Kernel, Program, Status
 from symgen.ir.sincos import ANGLE_LIMIT
 from symgen.ir.wide_functions import works_with_pairs
 from symgen.model.model import Model, Range
-from symgen.model.quantities import MEASURED_ARGUMENTS, WEIGHT_ARGUMENTS
 from symgen.naming import macro_name
 from symgen.package.single_header import implementation_macro
 
@@ -94,8 +93,7 @@ def _order(model: Model, argument: str) -> str:
         "qdd": [c.acceleration for c in model.coordinates],
         "u": [control.name for control in model.inputs],
     }
-    names |= zip(MEASURED_ARGUMENTS, map(list, model.measured_names), strict=True)
-    names |= zip(WEIGHT_ARGUMENTS, map(list, model.weight_names), strict=True)
+    names |= {further.name: list(further.names) for further in model.further_arguments}
     return ", ".join(names[argument])
 
 

@@ -8,7 +8,7 @@ from symgen.backends.defaults import default_values
 from symgen.ir.kernel import Kernel, Load, Local
 from symgen.model.model import Model, Range
 
-# Inputs and weights have no range in a model file: one unit, as for all else that has none.
+# Inputs, tasks and weights have no range in a model file: one unit, as for all else that has none.
 _UNIT: Range = (Fraction(-1), Fraction(1))
 
 
@@ -26,6 +26,7 @@ def box(model: Model) -> dict[str, tuple[Range, ...]]:
         "q_m": tuple(model.coordinates[k].range for k in model.measured_places),
         "qd_m": tuple(model.coordinates[k].rate_range for k in model.measured_places),
         "qdd_m": tuple(model.coordinates[k].acceleration_range for k in model.measured_places),
+        **{argument: (_UNIT,) * len(model.task) for argument in ("x_t", "xd_t", "xdd_t")},
         "w_u": (_UNIT,) * model.m,
         "w_qdd": (_UNIT,) * model.n,
         "p": tuple(p.range or (values[p.name], values[p.name]) for p in model.parameters),

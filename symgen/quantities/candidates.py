@@ -24,7 +24,7 @@ from symgen.methods.selection import FACTORING_LIMIT, Methods, cheapest
 from symgen.methods.spaces import derivations
 from symgen.methods.system import MethodInput
 from symgen.model.model import Model
-from symgen.model.quantities import PARTITION, WEIGHT_ARGUMENTS
+from symgen.model.quantities import PARTITION
 from symgen.quantities.catalogue import BY_NAME, CatalogueEntry, by_blocks, derive, derived_from, sizes
 from symgen.quantities.everything import WorkBudget
 from symgen.runtime.activity import working
@@ -136,8 +136,7 @@ class Candidates:
         if one is None:
             return {}
         values = one.derived.outputs
-        weights = dict(zip(WEIGHT_ARGUMENTS, seen.weights, strict=True))
-        if given := [weights[name] for name in entry.row.arguments if name in weights]:
+        if given := [seen.weights[name] for name in entry.row.arguments if name in seen.weights]:
             values = tuple(dot(graph, one, values) for one in given)
         outputs = flatten(jacobian(graph, values, by))
         shape = entry.shape(sizes(seen.model, self._generic))

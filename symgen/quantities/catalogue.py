@@ -14,7 +14,7 @@ from symgen.model.availability import lacking
 from symgen.model.model import Model
 from symgen.model.quantities import QUANTITIES, QuantityRow
 from symgen.records import dataclass
-from symgen.symbolic.matrix import Vector, flatten
+from symgen.symbolic.matrix import Vector, flatten, matvec
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,6 +130,12 @@ _DERIVED: dict[str, tuple[Callable[[Derivation], Vector] | None, Callable[[Deriv
     ),
     "velocity_from_measured": (lambda d: d.measured_motion.velocity, lambda d: d.measured_motion.guards),
     "acceleration_from_measured": (lambda d: d.measured_motion.acceleration, lambda d: d.measured_motion.guards),
+    "task_position": (lambda d: d.mechanics.task_position, _none),
+    "task_velocity": (lambda d: matvec(d.graph, d.mechanics.task_jacobian, d.mechanics.qd), _none),
+    "task_jacobian": (lambda d: flatten(d.mechanics.task_jacobian), _none),
+    "configuration_from_task": (lambda d: d.task_configuration.outputs, lambda d: d.task_configuration.guards),
+    "velocity_from_task": (lambda d: d.task_motion.velocity, lambda d: d.task_motion.guards),
+    "acceleration_from_task": (lambda d: d.task_motion.acceleration, lambda d: d.task_motion.guards),
     "inverse_dynamics": _BY_METHODS,
     "inverse_dynamics_jacobian": (lambda d: flatten(d.inverse_dynamics_jacobian(d.mechanics.motion)), _inputs),
     "inverse_dynamics_gradient": (lambda d: d.inverse_dynamics_gradient(), _inputs),
@@ -160,6 +166,7 @@ def sizes(model: Model, generic: Genericity) -> dict[str, int]:
     """The sizes of a system, which shapes are made of."""
     geometric = sum(row.kind == "geometric" for row in model.constraints)
     of_system = {"n": generic.n, "r": generic.r, "r_g": geometric, "m": generic.m, "delta": generic.delta}
+    of_system["k"] = len(model.task)
     return {**of_system, "points": len(model.mechanism.points), "parameters": len(model.parameters)}
 
 

@@ -93,11 +93,13 @@ def requested(model: Model, generic: Genericity, outputs: Sequence[str]) -> tupl
 
 def _is_meant(entry: CatalogueEntry, model: Model) -> bool:
     """Whether `all` asks a system for a quantity: for places of points where it has some, derivatives where it says,
-    what is measured where it names that."""
+    what is measured and what is of a task where it names that."""
     if entry.row.is_derivative:
         return model.derivatives
     if entry.row.is_of_measured:
         return bool(model.measured)
+    if entry.row.is_of_task:
+        return bool(model.task)
     return entry.needs != POINTS or bool(model.mechanism.points)
 
 

@@ -29,6 +29,7 @@ from symgen.verify.running.compile import Outcome
 from symgen.verify.sampling.loops_in_lanes import CLOSED_IN_LANES, LoopsInLanes
 from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, ranked_parts
 from symgen.verify.sampling.rates_in_lanes import RatesInLanes
+from symgen.verify.sampling.task_ahead import TaskInLanes
 from symgen.verify.tolerance import FACTOR, is_beyond
 
 # Powers of ten by which a parameter is away at most: they are looked at one by one.
@@ -72,7 +73,8 @@ class FarParameters:
 
     def __init__(self, expected: Expected) -> None:
         self._reference, self._drawn = expected.reference, expected.drawn
-        self._loops = LoopsInLanes(expected.reference.system, [float(x) for x in expected.reference.literals()])
+        system, literals = expected.reference.system, [float(x) for x in expected.reference.literals()]
+        self._loops, self._task = LoopsInLanes(system, literals), TaskInLanes(system, literals)
         self._parts = ranked_parts(expected.reference.system, expected.reference.ranks)
         self._rates = RatesInLanes(expected.reference.system, self._parts, self._loops)
 
@@ -105,6 +107,8 @@ class FarParameters:
         given["p"][np.arange(len(which)), which] *= 10.0**far
         given["q"] = configurations[side, step, which, place]
         given["qd"], given["qdd"], finite = self._rates.admissible(given)
+        with np.errstate(all="ignore"):
+            given["task"] = self._task.ahead(given)
         return Far(which, far, given, self._regular(given)).only(finite)
 
     def _regular(self, given: Mapping[str, Lanes]) -> Lanes:
@@ -132,7 +136,8 @@ class FarParameters:
 
     def tried(self, kernel: Kernel, program: Program, far: Far) -> list[_Tried]:
         """What a kernel gives at states in seven digits."""
-        states = [State(*(tuple(given[name]) for name in ("q", "qd", "qdd", "u", "p"))) for given in far.rounded]
+        order = ("q", "qd", "qdd", "u", "p", "task")
+        states = [State(*(tuple(given[name]) for name in order)) for given in far.rounded]
         return list(map(_Tried, states, outcomes(kernel, program.sincos, program.scalar, states)))
 
     def is_lost(self, quantity: str, scalar: Scalar, tried: _Tried) -> bool:

@@ -2,7 +2,8 @@
 
 Where the machine is then it has not been seen, which is what measured values are good for: a configuration is looked
 for from the one before.  Rates and accelerations are measured as they are.  Weights are the numbers that the inputs and
-accelerations of a state are, on which what is weighted does not depend.
+accelerations of a state are, on which what is weighted does not depend; rates and accelerations of the task are those
+of coordinates likewise.
 """
 
 from __future__ import annotations
@@ -12,11 +13,13 @@ from typing import Any
 
 from symgen.backends.locals import array_arguments
 from symgen.ir.kernel import Argument, Kernel, Load
-from symgen.verify.reference.measured import MOMENT
+from symgen.verify.reference.given import MOMENT
 from symgen.verify.reference.reference import State
 
-# The parts of a state that measured values and weights are taken from.
-_PARTS = {"q_m": "q", "qd_m": "qd", "qdd_m": "qdd", "w_u": "u", "w_qdd": "qdd"}
+# The parts of a state that further arguments are taken from.
+_PARTS = {
+    "q_m": "q", "qd_m": "qd", "qdd_m": "qdd", "x_t": "task", "xd_t": "qd", "xdd_t": "qdd", "w_u": "u", "w_qdd": "qdd",
+}  # fmt: skip
 
 
 def entry(given: Mapping[str, Sequence[Any]], load: Load) -> Any:
@@ -29,7 +32,8 @@ def entry(given: Mapping[str, Sequence[Any]], load: Load) -> Any:
 
 def parts_of(state: State) -> dict[str, Sequence[Any]]:
     """The parts of a state by name."""
-    return {"q": state.q, "qd": state.qd, "qdd": state.qdd, "u": state.u, "p": state.parameters}
+    q, qd, qdd, u, parameters, task = state.parts
+    return {"q": q, "qd": qd, "qdd": qdd, "u": u, "p": parameters, "task": task}
 
 
 def loaded(given: Mapping[str, Any], load: Load) -> Any:

@@ -114,7 +114,7 @@ def _estimates(
     yield made()
     generator = random.Random(seed)
     with precision(PERTURBED_BITS):
-        state = State(*(tuple(map(ball, part)) for part in (state.q, state.qd, state.qdd, state.u, state.parameters)))
+        state = State(*(tuple(map(ball, part)) for part in state.parts))
     for signs in _signs(reference, state, generator):
         results: dict[str, Any] = {}
         for names, whole in kinds:
@@ -132,7 +132,7 @@ def perturbed(
 ) -> tuple[State, list[Any]]:
     """The state and the literals with every number x moved by +-eps |x| (rounded to the working precision).
 
-    `signs` are 1 for outwards and 0 for inwards, one a number: q, q_dot, q_ddot, u, parameters, literals.  Literals
+    `signs` are 1 for outwards and 0 for inwards, one a number: those of the state, then literals.  Literals
     that the scalar type holds stay as they are unless `all_literals` move.
     """
     eps = ball(UNIT_ROUNDOFF[scalar])
@@ -142,7 +142,7 @@ def perturbed(
     def move(values: Sequence[Any]) -> tuple[Any, ...]:
         return tuple((ball(x) * factors[next(sign)]).mid() for x in values)
 
-    parts = [move(part) for part in _parts(state)]
+    parts = [move(part) for part in state.parts]
     held = [
         not (all_literals or isinstance(literal, Pi)) and _is_held(literal.value, scalar)
         for literal in reference.system.literals
@@ -161,17 +161,13 @@ def _is_held(value: Fraction, scalar: Scalar) -> bool:
         return False
 
 
-def _parts(state: State) -> tuple[Sequence[Any], ...]:
-    return state.q, state.qd, state.qdd, state.u, state.parameters
-
-
 def _signs(reference: Reference, state: State, generator: random.Random) -> list[list[int]]:
     """Random signs for each perturbation, with which no two numbers of equal size move together every time.
 
     By chance one pair in 256 does.  What vanishes where the two are equal, as on a parallelogram, then shows no
     change at all, and there is no unit of error.
     """
-    parts = _parts(state)
+    parts = state.parts
     count = sum(map(len, parts)) + len(reference.literals())
     drawn = [[generator.getrandbits(1) for _ in range(count)] for _ in range(PERTURBATIONS)]
     begin = 0

@@ -29,7 +29,8 @@ def witness_functions(model: Model) -> dict[str, casadi.Function]:
 
 
 def _function(quantity: QuantityRow, value: casadi.SX, lagrange: Lagrange) -> casadi.Function:
-    symbols = {name: getattr(lagrange, name) for name in quantity.arguments}
+    symbols = {name: lagrange.further[name] if name in lagrange.further else getattr(lagrange, name)
+               for name in quantity.arguments}  # fmt: skip
     names = [argument for argument in quantity.arguments if symbols[argument].shape[0]]
     inputs = [symbols[argument] for argument in names]
     return casadi.Function(quantity.name, [*inputs, lagrange.p], [value], [*names, "p"], ["value"])

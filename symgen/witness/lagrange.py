@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import casadi
@@ -9,7 +10,6 @@ import casadi
 from symgen.model.expressions.expression import Expression
 from symgen.model.kinematics.energy_form import energy_form
 from symgen.model.model import Model
-from symgen.model.quantities import MEASURED_ARGUMENTS, WEIGHT_ARGUMENTS
 from symgen.witness.translate import translate, with_definitions
 
 
@@ -33,11 +33,8 @@ class Lagrange:
     jacobian: casadi.SX  # B (1), r×n
     jacobian_dot: casadi.SX  # Ḃ along q̇, r×n
     control: casadi.SX  # M (3), n×m
-    q_m: casadi.SX  # measured coordinates
-    qd_m: casadi.SX  # their rates
-    qdd_m: casadi.SX  # their accelerations
-    w_u: casadi.SX  # weights of inputs
-    w_qdd: casadi.SX  # weights of accelerations
+    task: casadi.SX  # coordinates of the task as functions of q, k
+    further: Mapping[str, casadi.SX]  # arguments of some quantities beside q, qd, qdd and u, by name
 
     @property
     def balance(self) -> casadi.SX:
@@ -74,7 +71,8 @@ def differentiate(model: Model) -> Lagrange:
         column(*(row.expression for row in model.constraints if row.kind == "nonholonomic")),
         control,
         applied,
-        len(model.measured),
+        column(*(x.expression for x in model.task)),
+        {one.name: casadi.SX.sym(one.name, len(one.places)) for one in model.further_arguments},
     )
 
 
@@ -86,20 +84,15 @@ def lagrange(
     nonholonomic: casadi.SX,
     control: casadi.SX,
     applied: casadi.SX,
-    measured: int = 0,
+    task: casadi.SX,
+    further: Mapping[str, casadi.SX],
 ) -> Lagrange:
-    """All of `Lagrange` from T, U, the columns of rows, M and Q_a; `symbols` are q, qd, qdd, u, p.
-
-    So many coordinates are `measured`.
-    """
+    """All of `Lagrange` from T, U, the columns of rows, M, Q_a and the task; `symbols` are q, qd, qdd, u, p."""
     q, qd, qdd, u, p = symbols
     mass = casadi.densify(casadi.hessian(kinetic, qd)[0])
     momentum = mass @ qd
     shift = casadi.jacobian(momentum, q)
     jacobian = casadi.vertcat(casadi.jacobian(geometric, q), casadi.jacobian(nonholonomic, qd))
-    q_m, qd_m, qdd_m = (casadi.SX.sym(name, measured) for name in MEASURED_ARGUMENTS)
-    counts = u.shape[0], q.shape[0]
-    w_u, w_qdd = (casadi.SX.sym(name, count) for name, count in zip(WEIGHT_ARGUMENTS, counts, strict=True))
     return Lagrange(
         q=q,
         qd=qd,
@@ -117,11 +110,8 @@ def lagrange(
         jacobian=casadi.densify(jacobian),
         jacobian_dot=along(jacobian, q, qd),
         control=control,
-        q_m=q_m,
-        qd_m=qd_m,
-        qdd_m=qdd_m,
-        w_u=w_u,
-        w_qdd=w_qdd,
+        task=task,
+        further=further,
     )
 
 

@@ -7,9 +7,9 @@ import casadi
 from symgen.model.configurations.assembly import ConfigurationRanks
 from symgen.model.model import Model
 from symgen.witness.allocation import allocated
+from symgen.witness.given import quantities_of_given
 from symgen.witness.lagrange import Lagrange, along
 from symgen.witness.linear import compound, pseudoinverse, solve
-from symgen.witness.measured import measured_quantities
 
 # Newton steps towards V of the configuration that is projected.
 PROJECTION_STEPS = 2
@@ -65,18 +65,18 @@ def derive(model: Model, s: Lagrange, ranks: ConfigurationRanks) -> dict[str, ca
     if ranks.constraints == model.r and ranks.actuation == min(model.m, model.n - ranks.constraints):
         quantities["inverse_dynamics_jacobian"] = casadi.jacobian(u, casadi.vertcat(s.q, s.qd, s.qdd))
         by = casadi.vertcat(s.q, s.qd, s.qdd)
-        quantities["inverse_dynamics_gradient"] = casadi.gradient(casadi.dot(s.w_u, u), by)
+        quantities["inverse_dynamics_gradient"] = casadi.gradient(casadi.dot(s.further["w_u"], u), by)
         if model.parameters:
             quantities["inverse_dynamics_parameter_jacobian"] = casadi.jacobian(u, s.p)
     if ranks.constraints == model.r:
         by = casadi.vertcat(s.q, s.qd, s.u)
-        quantities["forward_dynamics_gradient"] = casadi.gradient(casadi.dot(s.w_qdd, acceleration), by)
+        quantities["forward_dynamics_gradient"] = casadi.gradient(casadi.dot(s.further["w_qdd"], acceleration), by)
         if model.r:
             quantities["multipliers_jacobian"] = casadi.jacobian(multipliers, casadi.vertcat(s.q, s.qd, s.u))
         quantities["forward_dynamics_jacobian"] = casadi.jacobian(acceleration, casadi.vertcat(s.q, s.qd, s.u))
     if ranks.constraints == model.r > 0:
         quantities["constraint_variations"] = _variations(s, ranks)
-    quantities |= measured_quantities(model, s, ranks)
+    quantities |= quantities_of_given(model, s, ranks)
     if model.independent_velocities:
         quantities |= _minimal(model, s, ranks)
     if 0 < model.m == model.n - ranks.constraints == ranks.actuation:

@@ -69,7 +69,7 @@ def _symgen(name: str, folder: Path) -> tuple[dict[str, int], int]:
     files = {path.rpartition("/")[2]: text for path, text in emit_c(model(name), program).items()}
     shop.write({**files, "driver.c": driver_source(model(name), {"float32": entries})})
     inputs = folder / states_file("float32")
-    inputs.write_bytes(pack_states(_states(name), "float32", model(name).measured_places))
+    inputs.write_bytes(pack_states(_states(name), "float32", model(name)))
     counter = build_counter(folder)
     found = {}
     for level in LEVELS:

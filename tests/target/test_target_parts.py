@@ -18,6 +18,7 @@ from symgen.laboratory.target.driver import Results, RunRecord, driver_source, p
 from symgen.laboratory.target.entries import Entries, plain_entries, with_companions
 from symgen.laboratory.target.selection import ALL, Share, beyond_pairs, selected, selection, share, small_kernels
 from symgen.laboratory.target.vectors import perturbed, vectors_of
+from symgen.model.load import load_text
 from symgen.verify.reference.reference import Reference, State
 
 
@@ -53,19 +54,31 @@ def test_unknown_cores_are_refused_with_the_known_ones(capsys: pytest.CaptureFix
     assert "cortex-m4f" in capsys.readouterr().err
 
 
+CART = """
+model: cart
+coordinates: {x: {}, a: {unit: rad}}
+parameters: {m: {value: 8}}
+kinetic_energy: m*x_dot**2 + a_dot**2
+inputs: {push: {acts_on: {x: 1}}}
+"""
+STATE = State((0.0, 2.0), (3.0, 4.0), (5.0, 6.0), (7.0,), (8.0,))
+
+
 def test_states_are_packed_row_by_row() -> None:
-    state = State((0.0, 2.0), (3.0, 4.0), (5.0, 6.0), (7.0,), (8.0,))
-    data = pack_states([state, state], "float32")
+    data = pack_states([STATE, STATE], "float32", load_text(CART, "cart.yaml"))
     count, *row = struct.unpack("<I15f", data[:64])
     assert len(data) == 4 + 2 * 60
     assert (count, row[:7]) == (2, [0, *map(float, range(2, 8))])
     assert row[10:] == pytest.approx([8, 0, 1, math.sin(2), math.cos(2)])
 
 
-def test_what_is_measured_and_weights_stand_before_parameters() -> None:
-    state = State((0.0, 2.0), (3.0, 4.0), (5.0, 6.0), (7.0,), (8.0,))
-    _, *row = struct.unpack("<I15d", pack_states([state], "float64", (1,))[: 4 + 15 * 8])
-    assert row[6:14] == [7, 2 + 4 / 1024, 4, 6, 7, 5, 6, 8]
+def test_what_is_measured_the_task_and_weights_stand_before_parameters() -> None:
+    given = load_text(CART + "measured: [x, a]\ntask: {tip: x + sin(a), x: x, turn: 2*a}\n", "cart.yaml")
+    data = pack_states([replace(STATE, task=(9.0, 10.0, 11.0))], "float64", given)
+    assert len(data) == 4 + 8 * (7 + 6 + 9 + 3 + 1 + 4)
+    _, *row = struct.unpack("<I30d", data)
+    measured, task, weights = [3 / 1024, 2 + 4 / 1024, 3, 4, 5, 6], [9, 10, 11, 3, 4, 3, 5, 6, 5], [7, 5, 6]
+    assert row[6:26] == [7, *measured, *task, *weights, 8]
 
 
 def test_results_are_read_back_and_short_files_refused() -> None:

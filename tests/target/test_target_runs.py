@@ -157,7 +157,7 @@ def test_fused_operations_would_be_noticed(tool: Callable[[str], str], tmp_path:
     shop.write({**files, "driver.c": driver_source(model("front_car"), {"float32": entries})})
     states = vectors_of(Reference(model("front_car"))).rounded("float32")
     inputs = tmp_path / states_file("float32")
-    inputs.write_bytes(pack_states(states, "float32"))
+    inputs.write_bytes(pack_states(states, "float32", model("front_car")))
     results = []
     for name, flags in (("plain", ()), ("fused", ("-std=gnu99", "-ffp-contract=fast"))):
         image = shop.link(name, [*shop.harness("driver.c", 0), shop.compile("front_car_f.c", "-O2", flags=flags)])

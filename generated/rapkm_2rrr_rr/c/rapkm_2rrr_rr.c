@@ -14929,14 +14929,14 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_measured(const double q_m[
     const double t3056 = t3047 + t3055;
     const double t3057 = fabs(x_2);
     const double t3058 = fabs(x_1);
-    const double t3059 = t3058 + t3049;
+    const double t3059 = t3049 + t3058;
     const double t3060 = t3049 + t3059;
     const double t3061 = t3057 + t3060;
     const double t3062 = t3056 + t3061;
     const double t3063 = t3062 * t3062;
     const double t3064 = fabs(y_2);
     const double t3065 = fabs(y_1);
-    const double t3066 = t3065 + t3049;
+    const double t3066 = t3049 + t3065;
     const double t3067 = t3049 + t3066;
     const double t3068 = t3064 + t3067;
     const double t3069 = t3056 + t3068;

@@ -14938,14 +14938,14 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_measured_f(const float q_m
     const float t3056 = t3047 + t3055;
     const float t3057 = fabsf(x_2);
     const float t3058 = fabsf(x_1);
-    const float t3059 = t3058 + t3049;
+    const float t3059 = t3049 + t3058;
     const float t3060 = t3049 + t3059;
     const float t3061 = t3057 + t3060;
     const float t3062 = t3056 + t3061;
     const float t3063 = t3062 * t3062;
     const float t3064 = fabsf(y_2);
     const float t3065 = fabsf(y_1);
-    const float t3066 = t3065 + t3049;
+    const float t3066 = t3049 + t3065;
     const float t3067 = t3049 + t3066;
     const float t3068 = t3064 + t3067;
     const float t3069 = t3056 + t3068;

@@ -11,7 +11,7 @@ from typing import Any
 from symgen.backends.c.names import global_name
 from symgen.backends.render import render
 from symgen.backends.scalars import C_TYPE, file_stem
-from symgen.ir.kernel import Argument, Scalar, measured_arguments, weight_arguments
+from symgen.ir.kernel import Argument, Scalar
 from symgen.laboratory.target.entries import Entries, Entry
 from symgen.model.model import Model
 from symgen.verify.given import entries
@@ -96,18 +96,22 @@ def driver_source(model: Model, entries: Mapping[Scalar, Entries]) -> str:
     return render("target/driver.c.jinja", TargetDriverView(tuple(_group(model, e) for e in entries.values())))
 
 
-def pack_states(states: Sequence[State], scalar: Scalar, measured: Sequence[int] = ()) -> bytes:
+def pack_states(states: Sequence[State], scalar: Scalar, model: Model) -> bytes:
     """States as the driver reads them: their number, then rows; little-endian.
 
-    A row is q, qd, qdd, u, what is measured of the coordinates at those places, weights, parameters, and the sine and
-    cosine of every coordinate for those who take them.
+    A row is q, qd, qdd, u, the further arguments of the model, parameters, and the sine and cosine of every coordinate
+    for those who take them.
     """
-    rows = [_row(s, measured) for s in states]
+    further = _further(model)
+    rows = [_row(s, further) for s in states]
     return struct.pack("<I", len(rows)) + b"".join(struct.pack(f"<{len(r)}{FORMAT[scalar]}", *r) for r in rows)
 
 
-def _row(state: State, measured: Sequence[int]) -> tuple[Any, ...]:
-    further = *measured_arguments(measured), *weight_arguments(len(state.u), len(state.q))
+def _further(model: Model) -> list[Argument]:
+    return [Argument(one.name, len(one.places), one.places) for one in model.further_arguments]
+
+
+def _row(state: State, further: Sequence[Argument]) -> tuple[Any, ...]:
     values = [x for argument in further for x in entries(state, argument)]
     return (*state.q, *state.qd, *state.qdd, *state.u, *values, *state.parameters, *_given(state.q))
 
@@ -141,7 +145,7 @@ def _group(model: Model, entries: Entries) -> GroupView:
 
     arrays: tuple[Argument | OwnArray, ...] = (
         Argument("q", model.n), Argument("qd", model.n), Argument("qdd", model.n), Argument("u", model.m),
-        *measured_arguments(model.measured_places), *weight_arguments(model.m, model.n),
+        *_further(model),
         OwnArray("p", len(model.parameters)), OwnArray("sc", 2 * model.n),
     )
     units = dict.fromkeys([file_stem(model.c_name, entries.scalar), *(entry.unit for entry in entries.functions)])

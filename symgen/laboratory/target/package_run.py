@@ -33,7 +33,7 @@ def run_package(
     for scalar in package.entries:
         inputs.append(folder / states_file(scalar))
         rows = [states[scalar][k] for k in chosen[scalar]]
-        inputs[-1].write_bytes(pack_states(rows, scalar, package.model.measured_places))
+        inputs[-1].write_bytes(pack_states(rows, scalar, package.model))
     stage(image, inputs)
     emulate(core, image)
     cells, failures = [], []

@@ -190,7 +190,7 @@ class _Bench:
         paths = []
         for scalar, rows in states.items():
             paths.append(self.folder / folder / states_file(scalar))
-            paths[-1].write_bytes(pack_states(rows, scalar, self.model.measured_places))
+            paths[-1].write_bytes(pack_states(rows, scalar, self.model))
         return paths
 
     def _units(self, scalar: Scalar, image: Path) -> Units:

@@ -14,6 +14,7 @@ from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
 from symgen.laboratory.stress.families import search
 from symgen.verify.reference.reference import Reference, State
 from symgen.verify.sampling.states import sample_states
+from symgen.verify.sampling.task_ahead import with_task
 
 FEWEST = 256
 CONFIGURATIONS = 64  # finding one on the constraints takes a mechanism of many links a tenth of a second
@@ -25,8 +26,8 @@ NEAR = (0.0, 1e-8)  # distances from a singular configuration
 FAR = (1e-3, 1e-6)  # angles of a thousand and a million
 PERTURBATIONS = 6
 
-Part: TypeAlias = Literal["q", "qd", "qdd", "u", "parameters"]
-PARTS: tuple[Part, ...] = ("q", "qd", "qdd", "u", "parameters")
+Part: TypeAlias = Literal["q", "qd", "qdd", "u", "parameters", "task"]
+PARTS: tuple[Part, ...] = ("q", "qd", "qdd", "u", "parameters", "task")
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +47,8 @@ def vectors_of(reference: Reference) -> Vectors:
     """Seeded and deterministic; raises VerificationError where hardly any state is found."""
     found = [sample.state for sample in sample_states(reference, (), CONFIGURATIONS, seed=2)]
     regular = tuple(islice(_mixed(found), FEWEST))
-    return Vectors(regular, (*_singular(reference), *_degenerate(regular[0])), tuple(_odd(regular[0])))
+    singular = (with_task(reference, state) for state in _singular(reference))
+    return Vectors(regular, (*singular, *_degenerate(regular[0])), tuple(_odd(regular[0])))
 
 
 def _mixed(states: Sequence[State]) -> Iterator[State]:

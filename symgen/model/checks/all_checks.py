@@ -10,7 +10,7 @@ from symgen.model.availability import lacking
 from symgen.model.checks.as_numbers import with_numbers
 from symgen.model.checks.bodies import check_bodies
 from symgen.model.checks.empty_rows import check_empty_rows, parameters_that_count
-from symgen.model.checks.feasibility import check_motion, measures_places
+from symgen.model.checks.feasibility import check_motion, left_by_task, measures_places
 from symgen.model.checks.redundancy import check_redundancy
 from symgen.model.checks.structure import check_domain, check_kinetic_energy, check_nonholonomic
 from symgen.model.checks.tied import tied_parameters
@@ -45,6 +45,8 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
     _add(scope, check_domain(mechanics, model.potential_energy, "the potential energy"))
     for row in model.constraints:
         _add(scope, check_domain(mechanics, row.expression, f"the constraint `{row.name}`"))
+    for x in model.task:
+        _add(scope, check_domain(mechanics, x.expression, f"`{x.name}` of the task"))
     for column in model.inputs:
         for coordinate, coefficient in column.acts_on:
             _add(scope, check_domain(mechanics, coefficient, f"the coefficient of `{column.name}` on `{coordinate}`"))
@@ -83,7 +85,8 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
             found = replace(found, tied=tied_parameters(written, mechanics, found))
             _add(scope, _notices_of_tied(model, found.tied))
             places = not model.measured or measures_places(mechanics, found, model.measured)
-            return replace(model, assembly=found, measures_places=places)
+            left = left_by_task(mechanics, found, model.task)
+            return replace(model, assembly=found, measures_places=places, task_leaves=left)
     return model
 
 

@@ -14,8 +14,8 @@ from symgen.model.model import Model, Parameter
 
 # what a model is made of that may name a parameter
 PARTS = (
-    "parameters", "definitions", "kinetic_energy", "potential_energy", "constraints", "inputs", "applied_forces",
-    "forces", "published", "paths", "mechanism",
+    "parameters", "definitions", "kinetic_energy", "potential_energy", "constraints", "task", "inputs",
+    "applied_forces", "forces", "published", "paths", "mechanism",
 )  # fmt: skip
 
 

@@ -75,6 +75,8 @@ def check_units(tree: MappingNode, model: Model, fits: tuple[Fit, ...] = ()) -> 
             inference.of(row.expression)
         else:
             inference.of_made(row.expression, row.span)
+    for x in model.task:
+        inference.of(x.expression)
     forces = {c.name: energy.times(units[c.name], -1) for c in model.coordinates if energy and c.name in units}
     for force in model.applied_forces:
         what = f"the applied force on `{force.coordinate}`"

@@ -15,7 +15,7 @@ from symgen.model.expressions.expression import Binary, Expression, Name, Power
 from symgen.model.expressions.names import counted, shown_names
 from symgen.model.expressions.walk import evaluate
 from symgen.model.mechanism import Quaternion
-from symgen.model.model import Coordinate
+from symgen.model.model import Coordinate, TaskCoordinate, TaskLeaves
 
 # Configurations at which masses are looked at.
 SAMPLES = 5
@@ -193,6 +193,21 @@ def measures_places(mechanics: NumericSystem, assembly: Assembly, measured: tupl
     known = [[float(name == other) for other in names] for name in measured]
     rows = (mechanics.jacobian(place.q)[: len(mechanics.geometric)] for place in assembly.places[:SAMPLES])
     return any(rank([*place, *known]) == len(names) for place in rows)
+
+
+def left_by_task(mechanics: NumericSystem, assembly: Assembly, task: Sequence[TaskCoordinate]) -> TaskLeaves:
+    """How many directions rows and a task leave open, of rates and of places, where they leave fewest."""
+    if not task:
+        return TaskLeaves()
+    n, geometric = len(mechanics.coordinates), len(mechanics.geometric)
+    known = []
+    for place in assembly.places[:SAMPLES]:
+        slopes = mechanics.gradients(place.q, [x.expression for x in task])
+        moved = [[row.get(j, 0.0) for j in range(n)] for row in slopes]
+        rows = mechanics.jacobian(place.q)
+        known.append((rank([*rows, *moved]), rank([*rows[:geometric], *moved])))
+    rates, places = (n - max(column) for column in zip(*known, strict=True))
+    return TaskLeaves(rates, places)
 
 
 def _check_measured(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from types import MappingProxyType
 
@@ -157,10 +157,18 @@ class NumericSystem:
 
     def residuals(self, q: Sequence[float], numbers: Sequence[int]) -> tuple[list[float], list[Row]]:
         """Values and gradients of the geometric rows with these numbers."""
-        values = {**self.defaults, **self._named(q)}
-        gradients = Gradients(values, self._index, self._definitions, self._kinematics(values).place, self.numbers)
+        gradients = self._gradients(q)
         found = [gradients.of(self.geometric[i].expression) for i in numbers]
         return [value for value, _ in found], [gradient for _, gradient in found]
+
+    def gradients(self, q: Sequence[float], expressions: Iterable[Expression]) -> list[Row]:
+        """Those of functions of the configuration."""
+        gradients = self._gradients(q)
+        return [gradients.of(expression)[1] for expression in expressions]
+
+    def _gradients(self, q: Sequence[float]) -> Gradients:
+        values = {**self.defaults, **self._named(q)}
+        return Gradients(values, self._index, self._definitions, self._kinematics(values).place, self.numbers)
 
     def rows(self, q: Sequence[float]) -> list[Row]:
         """B, r rows."""

@@ -342,6 +342,7 @@ MODEL = RecordShape(
         ),
         Key("independent_velocities", _NAMES, "coordinates whose rates serve in F and the minimal form"),
         Key("measured", _NAMES, "coordinates that encoders say, from which the others are found"),
+        Key("task", TableShape(ExpressionShape()), "what motions are planned in: functions of the configuration"),
         Key("derivatives", Word(("true", "false")), "whether `outputs: all` takes derivatives"),
         Key("configuration", TableShape(ExpressionShape()), "a start for Newton's method: the assembly mode"),
         Key("ranges", TableShape(_RANGE), "[lower, upper] of coordinates, rates, accelerations, parameters"),

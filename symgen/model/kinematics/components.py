@@ -18,11 +18,12 @@ from symgen.model.model import (
 
 
 def formulas(model: Model) -> Iterator[Expression]:
-    """Every formula of the motion equations, but for those that place frames and points."""
+    """Every formula of the motion equations and of the task, but for those that place frames and points."""
     yield from (definition.value for definition in model.definitions)
     yield model.kinetic_energy
     yield model.potential_energy
     yield from (row.expression for row in model.constraints)
+    yield from (x.expression for x in model.task)
     for control in model.inputs:
         yield from (entry for _, entry in control.acts_on)
         if control.velocity is not None:

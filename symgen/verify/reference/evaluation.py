@@ -52,6 +52,7 @@ class Evaluation:
     u: Sequence[Any]
     parameters: Sequence[Any]
     literals: Sequence[Any]
+    task: Sequence[Any] = ()
     derivatives: dict[tuple[str, int], tuple[Any, Any]] = field(default_factory=dict)
 
     @cached_property
@@ -145,6 +146,11 @@ class Evaluation:
     def constraints_dot(self, velocity: Any) -> Any:
         """d/dt B along a velocity."""
         return self.system.rates.constraints(self._at(velocity))
+
+    @_once_a_velocity
+    def task_jacobian_dot(self, velocity: Any) -> Any:
+        """The rates of the derivatives of the task along a velocity."""
+        return self.system.rates.task(self._at(velocity))
 
     def control_dot(self, velocity: Any) -> Any:
         """d/dt M along a velocity."""

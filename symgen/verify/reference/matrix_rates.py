@@ -41,6 +41,10 @@ class MatrixRates:
         """M_dot (n x m)."""
         return arb_mat(self._n, self._model.m, self._control.run(inputs))
 
+    def task(self, inputs: Sequence[Any]) -> Any:
+        """The rates of the derivatives of the task (k x n)."""
+        return arb_mat(len(self._model.task), self._n, self._task.run(inputs))
+
     def written_mass(self, inputs: Sequence[Any]) -> Any:
         """G_dot (n x n) of the energy that is written out."""
         return arb_mat(self._n, self._n, self._written_mass.run(inputs))
@@ -64,16 +68,22 @@ class MatrixRates:
 
     @cached_property
     def _constraints(self) -> Replay:
-        zero, n = self._tape.zero, self._n
         entries: list[Register] = []
         for row in self._model.constraints:
             if row.kind == "nonholonomic":
                 entries += self._coefficient_rates(row.expression)
             else:
-                g = self._places.polynomial(row.expression)
-                # of second degree in t and one coordinate, each twice along the line
-                entries += [g.get(((j, self._time), ()), zero) for j in range(n)]
+                entries += self._gradient_rates(row.expression)
         return replay_of(self._tape, entries)
+
+    @cached_property
+    def _task(self) -> Replay:
+        return replay_of(self._tape, [x for one in self._model.task for x in self._gradient_rates(one.expression)])
+
+    def _gradient_rates(self, function: Expression) -> list[Register]:
+        """Of second degree in t and one coordinate, each twice along the line."""
+        found = self._places.polynomial(function)
+        return [found.get(((j, self._time), ()), self._tape.zero) for j in range(self._n)]
 
     @cached_property
     def _control(self) -> Replay:

@@ -12,11 +12,7 @@ from symgen.model.quantities import ROWS
 from symgen.verify.reference.allocation import allocated
 from symgen.verify.reference.arithmetic.linear import column, identity, right_pseudoinverse
 from symgen.verify.reference.evaluation import Evaluation
-from symgen.verify.reference.measured import (
-    acceleration_from_measured,
-    configuration_from_measured,
-    velocity_from_measured,
-)
+from symgen.verify.reference.given import QUANTITIES_OF_GIVEN
 from symgen.verify.reference.measures import actuation_measure, constraint_measure
 from symgen.verify.reference.parts import placed
 from symgen.verify.reference.slopes import jacobian
@@ -174,9 +170,7 @@ QUANTITIES: dict[str, Definition] = {
     "admissible_velocity": lambda e: e.projected_rate,
     "admissible_acceleration": _admissible_acceleration,
     "projected_configuration": _projected_configuration,
-    "configuration_from_measured": configuration_from_measured,
-    "velocity_from_measured": velocity_from_measured,
-    "acceleration_from_measured": acceleration_from_measured,
+    **QUANTITIES_OF_GIVEN,
     "inverse_dynamics": _inverse_dynamics,
     "inverse_dynamics_jacobian": _inverse_dynamics_jacobian,
     "inverse_dynamics_gradient": _inverse_dynamics_gradient,
@@ -199,7 +193,7 @@ QUANTITIES: dict[str, Definition] = {
 # Of two thirds of the digits that others have.
 DIFFERENCED = frozenset(row.name for row in ROWS.values() if row.is_derivative)
 # What no finite count of operations gives exactly.
-ITERATED = frozenset({"configuration_from_measured"})
+ITERATED = frozenset({"configuration_from_measured", "configuration_from_task"})
 # The matrices whose rates these take; the others do with what a velocity adds to forces and accelerations.
 RATES = {
     "coriolis_matrix": ("mass",),

@@ -46,13 +46,20 @@ class ReferenceValueError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """One input of all kernels, as exact numbers (int, float, Fraction) or balls."""
+    """One input of all kernels, as exact numbers (int, float, Fraction) or balls; `task` is where its coordinates are
+    to be, of models that have one."""
 
     q: tuple[Exact, ...]
     qd: tuple[Exact, ...]
     qdd: tuple[Exact, ...]
     u: tuple[Exact, ...]
     parameters: tuple[Exact, ...]
+    task: tuple[Exact, ...] = ()
+
+    @property
+    def parts(self) -> tuple[tuple[Exact, ...], ...]:
+        """All of it, in the order of the constructor."""
+        return self.q, self.qd, self.qdd, self.u, self.parameters, self.task
 
 
 class Reference:
@@ -150,6 +157,7 @@ class Reference:
             qdd=[ball(x) for x in state.qdd],
             u=[ball(x) for x in state.u],
             parameters=[ball(x) for x in state.parameters],
+            task=[ball(x) for x in state.task],
             literals=self.literals() if literals is None else literals,
         )
 

@@ -206,6 +206,20 @@ class ReferenceSystem:
         r = self.r_geometric
         return arb_mat(r, 1, values[:r]), arb_mat(r, self.n, values[r:])
 
+    def task(self, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]) -> tuple[Any, Any]:
+        """The coordinates of the task (k x 1) and their derivatives (k x n) at q."""
+        values = self.task_replay.run([*q, *([None] * self.n), *parameters, *literals])
+        k = len(self.model.task)
+        return arb_mat(k, 1, values[:k]), arb_mat(k, self.n, values[k:])
+
+    @cached_property
+    def task_replay(self) -> Replay:
+        """Its coordinates, then their derivatives row by row."""
+        zero, given = self._tape.zero, self._translation(1, 0)
+        found = [given.polynomial(x.expression) for x in self.model.task]
+        slopes = [x.get(((j,), ()), zero) for x in found for j in range(self.n)]
+        return replay_of(self._tape, [*(x.get(CONSTANT, zero) for x in found), *slopes])
+
     def loop_geometry(
         self, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]
     ) -> list[tuple[Any, Any]]:

@@ -135,6 +135,7 @@ def _formulas(model: Model) -> Iterator[Expression]:
     yield model.kinetic_energy
     yield model.potential_energy
     yield from (row.expression for row in model.constraints)
+    yield from (x.expression for x in model.task)
     yield from (entry for control in model.inputs for _, entry in control.acts_on)
     yield from (force.expression for force in model.applied_forces)
     for control in model.inputs:

@@ -24,6 +24,7 @@ from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, measures
 from symgen.verify.sampling.rates_in_lanes import RatesInLanes
 from symgen.verify.sampling.reach import reachable, unstated_lengths
 from symgen.verify.sampling.states import Sample
+from symgen.verify.sampling.task_ahead import TaskInLanes
 
 # Shares of the ranges of coordinates: how far states are drawn from samples, and moved from where they are.
 REACH = 0.2
@@ -67,14 +68,14 @@ class Nearby:
     def state(self, place: int) -> State:
         """One of them, in seven digits: what is found does not depend on the last bits of NumPy's functions."""
         single = {name: values[place].astype(np.float32) for name, values in self.parts.items()}
-        q, qd, qdd, u = (tuple(map(float, single[name])) for name in ("q", "qd", "qdd", "u"))
-        return State(q, qd, qdd, u, tuple(map(float, self.parts["p"][place])))
+        q, qd, qdd, u, task = (tuple(map(float, single[name])) for name in ("q", "qd", "qdd", "u", "task"))
+        return State(q, qd, qdd, u, tuple(map(float, self.parts["p"][place])), task)
 
 
 def of_samples(samples: Sequence[Sample]) -> Nearby:
     """Samples as they are."""
     states = [sample.state for sample in samples]
-    parts = {name: _rows([getattr(state, name) for state in states]) for name in ("q", "qd", "qdd", "u")}
+    parts = {name: _rows([getattr(state, name) for state in states]) for name in ("q", "qd", "qdd", "u", "task")}
     parts["p"] = _rows([state.parameters for state in states])
     return Nearby(parts, np.array([sample.admissible for sample in samples]), np.arange(len(samples)))
 
@@ -93,7 +94,8 @@ class Surroundings:
         self, reference: Reference, samples: Sequence[Sample], modes: Sequence[Sequence[float]] = ()
     ) -> None:
         self._system, self._parts = reference.system, ranked_parts(reference.system, reference.ranks)
-        self._loops = LoopsInLanes(reference.system, [float(x) for x in reference.literals()])
+        literals = [float(x) for x in reference.literals()]
+        self._loops, self._task = LoopsInLanes(reference.system, literals), TaskInLanes(reference.system, literals)
         self._rates_in_lanes = RatesInLanes(reference.system, self._parts, self._loops)
         self.samples = of_samples(samples)
         parts = self.samples.parts
@@ -273,7 +275,9 @@ class Surroundings:
         qd, qdd, finite = self._rates_in_lanes.admissible(states.parts)
         on = states.admissible[:, None]
         rates = {name: np.where(on, made, states.parts[name]) for name, made in (("qd", qd), ("qdd", qdd))}
-        return Nearby({**states.parts, **rates}, states.admissible, states.origins).only(finite)
+        parts = {**states.parts, **rates}
+        parts["task"] = self._task.ahead(parts)
+        return Nearby(parts, states.admissible, states.origins).only(finite)
 
     def _matrices(self, q: Lanes, p: Lanes) -> list[tuple[Lanes, Lanes]]:
         """B and M of each part."""

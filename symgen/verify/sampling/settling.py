@@ -14,6 +14,7 @@ from symgen.verify.reference.system import ParameterValues
 from symgen.verify.sampling.plain_values import PROJECTED, SAMPLING_BITS, floats, settled, values_at
 from symgen.verify.sampling.regular import REGULAR_SHARE
 from symgen.verify.sampling.states import Sample
+from symgen.verify.sampling.task_ahead import with_task
 
 # Samples whose rows show how long rows are.
 TYPICAL = 8
@@ -64,6 +65,7 @@ class Settling:
             rates = settled(values["admissible_velocity"], [c.rate_range for c in model.coordinates])
             ranges = [c.acceleration_range for c in model.coordinates]
             state = replace(state, qd=tuple(rates), qdd=tuple(settled(values["admissible_acceleration"], ranges)))
+        state = with_task(reference, state)
         value = floats(reference.matrices(state, [quantity], SAMPLING_BITS)[quantity])
         return Sample(state, admissible, (first, second)) if all(map(isfinite, value)) else None
 

@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 from math import comb, isfinite
 from typing import Any
 
 from symgen.ir.kernel import Scalar
-from symgen.model.quantities import MEASURED_PLACES, PARTITION, ROWS
+from symgen.model.quantities import MEASURED_PLACES, PARTITION, ROWS, TASK_PLACES
 from symgen.runtime.activity import working
 from symgen.verify.reference.arithmetic.tape import precision
-from symgen.verify.reference.measured import USUAL_STEPS, is_near
+from symgen.verify.reference.evaluation import Evaluation
+from symgen.verify.reference.given import USUAL_STEPS, is_near_measured, is_near_task
 from symgen.verify.reference.quantities import DIFFERENCED, ITERATED, RATES
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.sampling.inertias import Inertias
 from symgen.verify.sampling.plain_values import SAMPLING_BITS, floats, measured, settled, values_at
 from symgen.verify.sampling.regular import FEWEST_STATES, REGULAR_SHARE, Regular, RegularStateSearch
+from symgen.verify.sampling.task_ahead import with_task
 
 # States of a verification, unless told otherwise.
 USUAL_STATES = 64
@@ -108,8 +110,7 @@ def in_scalar(state: State, scalar: Scalar) -> State:
     """The state with every number rounded to the scalar type."""
     if scalar == "float64":
         return state
-    parts = (state.q, state.qd, state.qdd, state.u, state.parameters)
-    return State(*(tuple(_single(x) for x in part) for part in parts))
+    return State(*(tuple(_single(x) for x in part) for part in state.parts))
 
 
 def _single(value: Any) -> float:
@@ -135,6 +136,7 @@ def _sample(
         if regular.shares:
             scale = 2 * max(1.0, *(abs(x) for x in values["inverse_dynamics"]))
             state = replace(state, u=tuple(scale * share for share in regular.shares))
+        state = with_task(reference, state)
         everything = reference.matrices(state, (*quantities, *inertias.names), SAMPLING_BITS)
     except ReferenceValueError:
         return None
@@ -142,8 +144,9 @@ def _sample(
         return None
     if any(ROWS[name].needs == PARTITION for name in quantities) and not _is_free(reference, state):
         return None
-    if any(ROWS[name].needs == MEASURED_PLACES for name in quantities) and not _is_followed(reference, state):
-        return None
+    for needs, is_near in _FOLLOWED.items():
+        if any(ROWS[name].needs == needs for name in quantities) and not _is_followed(reference, state, is_near):
+            return None
     if not inertias.is_regular(inertias.share(everything)):
         return None
     first, second = values["singularity"]
@@ -159,8 +162,11 @@ def _is_free(reference: Reference, state: State) -> bool:
     return max(map(abs, complement)) * REGULAR_SHARE < 1
 
 
-def _is_followed(reference: Reference, state: State) -> bool:
-    """Whether a configuration that is measured a moment later is near enough: kernels have a status elsewhere."""
+_FOLLOWED = {MEASURED_PLACES: is_near_measured, TASK_PLACES: is_near_task}
+
+
+def _is_followed(reference: Reference, state: State, is_near: Callable[[Evaluation], bool]) -> bool:
+    """Whether a configuration that is given a moment later is near enough: kernels have a status elsewhere."""
     try:
         return reference.regular(lambda: is_near(reference.evaluation(state)), SAMPLING_BITS)
     except ReferenceValueError:

@@ -169,6 +169,8 @@ def lagrange_by_frames(model: Model, world_axes: bool = False) -> Lagrange:
         _column(s.nonholonomic),
         control,
         _column(s.applied),
+        casadi.SX(0, 1),
+        {},
     )
 
 

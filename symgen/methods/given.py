@@ -1,0 +1,46 @@
+"""Functions of the configuration whose values are given: what encoders say, or the task that a motion is planned in."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from symgen.ir.kernel import Status
+from symgen.records import dataclass
+from symgen.symbolic.matrix import Matrix, Vector, identity
+
+if TYPE_CHECKING:
+    from symgen.mechanics.system import System
+
+
+@dataclass(frozen=True, slots=True)
+class Given:
+    """k functions with their derivatives (k x n), and the values, rates and accelerations that they are to have.
+
+    `places` are the numbers of the coordinates that stand there themselves, -1 for other functions; `status` is told
+    where they do not determine the rest.
+    """
+
+    functions: Vector
+    slopes: Matrix
+    places: tuple[int, ...]
+    values: Vector
+    rates: Vector
+    accelerations: Vector
+    status: Status
+
+
+def measured(mechanics: System) -> Given:
+    """What encoders say of some coordinates."""
+    places, units = mechanics.model.measured_places, identity(mechanics.graph, mechanics.n)
+    functions = tuple(mechanics.q[k] for k in places)
+    slopes = tuple(units[k] for k in places)
+    values, rates, accelerations = mechanics.measured
+    return Given(functions, slopes, places, values, rates, accelerations, Status.MEASURED_RANK)
+
+
+def task(mechanics: System) -> Given:
+    """The coordinates of the task."""
+    functions, order = mechanics.task_position, {x: k for k, x in enumerate(mechanics.q)}
+    places = tuple(order.get(x, -1) for x in functions)
+    values, rates, accelerations = mechanics.task
+    return Given(functions, mechanics.task_jacobian, places, values, rates, accelerations, Status.TASK_RANK)

@@ -1,0 +1,139 @@
+"""What measured coordinates or a task determine, from its definition.
+
+S has the derivatives of what is given by the coordinates; (S N)^+ is the least-squares solution among admissible rates.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import islice
+from typing import Any
+
+from flint import arb_mat, ctx
+
+from symgen.verify.reference.arithmetic.linear import column, identity, norm, right_pseudoinverse, rows_of
+from symgen.verify.reference.evaluation import Evaluation
+
+# Seconds after which encoders are read, or a task is to be met.
+MOMENT = 2.0**-10
+# Steps that all digits usually take, and those at most: each leaves a share of what is missing, by which the encoders
+# disagree.
+USUAL_STEPS, MOST_NEWTON_STEPS = 8, 200
+# Times by which steps grow shorter at first.
+QUICK = 8.0
+# Of the binary digits, what rounding may keep from standing still.
+RESTLESS = 24
+
+
+@dataclass(frozen=True)
+class GivenValues:
+    """What is given of functions of q: at a place their values and derivatives, how these turn along a velocity, and
+    the values, rates and accelerations that they are to have."""
+
+    at: Callable[[Sequence[Any]], tuple[Any, Any]]
+    turning: Callable[[Any], Any]
+    values: Any
+    rates: Any
+    accelerations: Any
+
+
+def _measured(e: Evaluation) -> GivenValues:
+    """A moment later, at rates and accelerations as they are."""
+    selected = rows_of(identity(e.system.n), e.system.model.measured_places)
+    still = arb_mat(selected.nrows(), e.system.n)
+    return GivenValues(
+        lambda q: (selected * column(q), selected),
+        lambda _: still,
+        selected * (column(e.q) + MOMENT * e.rate),
+        selected * e.rate,
+        selected * column(e.qdd),
+    )
+
+
+def _task(e: Evaluation) -> GivenValues:
+    """Coordinates of the task that come with the state; its rates and accelerations are numbers that stand there."""
+    rates, accelerations = (one.places for one in e.system.model.further_arguments if one.name in ("xd_t", "xdd_t"))
+    return GivenValues(
+        lambda q: e.system.task(q, e.parameters, e.literals),
+        e.task_jacobian_dot,
+        column(e.task),
+        column([e.qd[k] for k in rates]),
+        column([e.qdd[k] for k in accelerations]),
+    )
+
+
+def _inverse(e: Evaluation, given: GivenValues) -> Any:
+    """(S N)^+, of the rank of N."""
+    return right_pseudoinverse(given.at(e.q)[1] * e.projector, e.system.n - e.ranks.constraints)
+
+
+def _velocity(e: Evaluation, given: GivenValues) -> Any:
+    """The admissible rates that are nearest to those given."""
+    return _inverse(e, given) * given.rates
+
+
+def _acceleration(e: Evaluation, given: GivenValues) -> Any:
+    """The same of accelerations, at that velocity."""
+    velocity, inverse = _velocity(e, given), _inverse(e, given)
+    least = -(e.inverse * e.motion(velocity)[1])
+    left = given.accelerations - given.turning(velocity) * velocity
+    return least + inverse * (left - given.at(e.q)[1] * least)
+
+
+def _configuration(e: Evaluation, given: GivenValues) -> Any:
+    """By Gauss and Newton's method from q, until nothing moves any more.
+
+    Raises ZeroDivisionError where its steps grow: q is not near what they lead to.
+    """
+    first, before = 0.0, 0.0
+    for k, (q, length) in enumerate(islice(_places(e, given), MOST_NEWTON_STEPS)):
+        if length <= 2.0 ** (RESTLESS - ctx.prec) * (1 + norm(q)):
+            return q
+        if k and length > max(before, first) / 2:
+            break
+        first, before = first or length, length
+    raise ZeroDivisionError("the configuration is not near enough to one with what is given")
+
+
+def _places(e: Evaluation, given: GivenValues) -> Iterator[tuple[Any, float]]:
+    """Where Gauss and Newton's steps lead, and how long they are."""
+    q, n, rank = column(e.q), e.system.n, e.ranks.geometric
+    while True:
+        place = [x.mid() for x in q.entries()]
+        found, slopes = given.at(place)
+        residual, rows = e.system.geometry(place, e.parameters, e.literals)
+        inverse = right_pseudoinverse(rows, rank)
+        least = -(inverse * residual)
+        moving = slopes - (slopes * inverse) * rows
+        step = least + right_pseudoinverse(moving, n - rank) * (given.values - found - slopes * least)
+        q = column(place) + step
+        yield q, norm(step)
+
+
+def is_near_measured(e: Evaluation) -> bool:
+    """Whether Newton's method is quick from q on: the configuration is well within where it leads back."""
+    return _is_near(e, _measured(e))
+
+
+def is_near_task(e: Evaluation) -> bool:
+    """The same of the task."""
+    return _is_near(e, _task(e))
+
+
+def _is_near(e: Evaluation, given: GivenValues) -> bool:
+    (_, first), (_, second) = islice(_places(e, given), 2)
+    return second <= first / QUICK
+
+
+QUANTITIES_OF_GIVEN: dict[str, Callable[[Evaluation], Any]] = {
+    "configuration_from_measured": lambda e: _configuration(e, _measured(e)),
+    "velocity_from_measured": lambda e: _velocity(e, _measured(e)),
+    "acceleration_from_measured": lambda e: _acceleration(e, _measured(e)),
+    "task_position": lambda e: e.system.task(e.q, e.parameters, e.literals)[0],
+    "task_velocity": lambda e: e.system.task(e.q, e.parameters, e.literals)[1] * e.rate,
+    "task_jacobian": lambda e: e.system.task(e.q, e.parameters, e.literals)[1],
+    "configuration_from_task": lambda e: _configuration(e, _task(e)),
+    "velocity_from_task": lambda e: _velocity(e, _task(e)),
+    "acceleration_from_task": lambda e: _acceleration(e, _task(e)),
+}

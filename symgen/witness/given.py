@@ -1,0 +1,75 @@
+"""What measured coordinates or a task determine, from its definition: pseudoinverses of S N, and Newton's method."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi
+
+from symgen.model.configurations.assembly import ConfigurationRanks
+from symgen.model.model import Model
+from symgen.witness.lagrange import Lagrange, along
+from symgen.witness.linear import pseudoinverse
+
+# Steps, each of which leaves a share of what is missing by which the encoders disagree.
+SOLVING_STEPS = 8
+
+
+@dataclass(frozen=True)
+class GivenFunctions:
+    """Functions of q (k) with their derivatives (k x n), and symbols for their values, rates and accelerations."""
+
+    functions: casadi.SX
+    slopes: casadi.SX
+    values: casadi.SX
+    rates: casadi.SX
+    accelerations: casadi.SX
+
+
+def quantities_of_given(model: Model, s: Lagrange, ranks: ConfigurationRanks) -> dict[str, casadi.SX]:
+    """The quantities of a model that names what is measured or has a task; none of others."""
+    found: dict[str, casadi.SX] = {}
+    if model.measured:
+        S = casadi.SX.eye(model.n)[list(model.measured_places), :]
+        given = (s.further[name] for name in ("q_m", "qd_m", "qdd_m"))
+        found |= _determined(model, s, ranks, GivenFunctions(S @ s.q, S, *given), "measured")
+    if model.task:
+        slopes = casadi.densify(casadi.jacobian(s.task, s.q))
+        found |= {"task_position": s.task, "task_velocity": slopes @ s.qd, "task_jacobian": slopes}
+        given = (s.further[name] for name in ("x_t", "xd_t", "xdd_t"))
+        found |= _determined(model, s, ranks, GivenFunctions(s.task, slopes, *given), "task")
+    return found
+
+
+def _determined(
+    model: Model, s: Lagrange, ranks: ConfigurationRanks, given: GivenFunctions, of: str
+) -> dict[str, casadi.SX]:
+    n, slopes = model.n, given.slopes
+    k, rows = slopes.shape[0], s.residual.shape[0]
+    found = {}
+    B_plus = pseudoinverse(s.jacobian, ranks.constraints)
+    if k >= n - ranks.constraints:
+        inverse = pseudoinverse(slopes @ (casadi.SX.eye(n) - B_plus @ s.jacobian), n - ranks.constraints)
+        velocity = inverse @ given.rates
+        least = -B_plus @ (casadi.substitute(s.jacobian_dot, s.qd, velocity) @ velocity)
+        left = given.accelerations - along(slopes, s.q, velocity) @ velocity
+        found[f"velocity_from_{of}"] = velocity
+        found[f"acceleration_from_{of}"] = least + inverse @ (left - slopes @ least)
+    if k >= n - ranks.geometric and (rows == s.jacobian.shape[0] or k >= n - rows):
+        found[f"configuration_from_{of}"] = _configuration(s, given, ranks.geometric)
+    return found
+
+
+def _configuration(s: Lagrange, given: GivenFunctions, rank: int) -> casadi.SX:
+    """The closed configuration that is nearest to what is given, from q on."""
+    rows, n, S = s.residual.shape[0], s.q.shape[0], given.slopes
+    B = s.jacobian[:rows, :]
+    B_plus = pseudoinverse(B, rank)
+    least = -B_plus @ s.residual
+    moving = pseudoinverse(S @ (casadi.SX.eye(n) - B_plus @ B), n - rank)
+    after = s.q + least + moving @ (given.values - given.functions - S @ least)
+    step = casadi.Function("step", [s.q, given.values, s.p], [after])
+    result = s.q
+    for _ in range(SOLVING_STEPS):
+        result = step(result, given.values, s.p)
+    return result
