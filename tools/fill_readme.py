@@ -124,9 +124,9 @@ def quantities() -> str:
         "Names in `outputs:`, C and Python, with the symbols and equation numbers of the paper.",
         "τ = G q̈ + C q̇ + Q − Q_a. Matrices are row-major.",
         "",
-        "n coordinates, m inputs, r constraints, of these r_g geometric, δ degrees of freedom, k coordinates of a task, "
-        "p points; q_m, qd_m and qdd_m are measured coordinates, rates and accelerations, x_t, xd_t and xdd_t those of "
-        "a task; w_u and w_qdd are weights of u and q̈.",
+        "n coordinates, m inputs, r constraints, of these r_g geometric, δ degrees of freedom, k coordinates of a "
+        "task, p points; q_m, qd_m and qdd_m are measured coordinates, rates and accelerations, x_t, xd_t and xdd_t "
+        "those of a task; w_u and w_qdd are weights of u and q̈.",
         "",
         "| name | symbol | equation | what | arguments | shape |",
         "|---|---|---|---|---|---|",

@@ -1,0 +1,163 @@
+"""The configuration with given values of functions, in closed form: one unknown a row, or two links that meet.
+
+Rows that contain one unknown are solved for it, one after the other.  Where two rows share two unknowns x and y, and x
+turns both alike, (f_1, f_2) = R(x) a(y) + c(y) as a link that turns about its joint does, |c|^2 = |a|^2 is one row for
+y, and x is the turn from a to -c: chains of two links, four-bars, legs of parallel robots in the plane (Merlet,
+Parallel Robots, ch. 2; Craig, Introduction to Robotics, ch. 4).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import combinations, permutations
+from typing import TYPE_CHECKING
+
+from symgen.linear_algebra.guards import Guard
+from symgen.linear_algebra.sparser_rows import SparserRows
+from symgen.methods.given import Given
+from symgen.methods.row_solution import RowSolution, SolvableRow, solvable_row, solved, within_a_quarter
+from symgen.records import dataclass
+from symgen.symbolic.arcs import turn_of
+from symgen.symbolic.calculus import derivative_along
+from symgen.symbolic.matrix import Vector, dot
+from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.traverse import reached, substitute
+
+if TYPE_CHECKING:
+    from symgen.methods.derivation import Derivation
+
+
+@dataclass(frozen=True, slots=True)
+class TurnedPair:
+    """Two rows, an angle that turns both of them, their turning parts, and the row of the other unknown."""
+
+    rows: tuple[Scalar, Scalar]
+    angle: Scalar
+    arm: tuple[Scalar, Scalar]
+    backwards: bool
+    other: SolvableRow
+
+
+@dataclass(frozen=True, slots=True)
+class ClosedConfiguration:
+    """The configuration, and where it is none."""
+
+    outputs: Vector
+    guards: tuple[Guard, ...]
+
+
+def closed_configuration(derivation: Derivation, given: Given) -> ClosedConfiguration | None:
+    """In closed form; None where rows are not of these kinds, or not as many as there are unknowns."""
+    mechanics, graph = derivation.mechanics, derivation.graph
+    pairs = zip(given.places, given.values, strict=True)
+    known = {mechanics.q[place]: value for place, value in pairs if place >= 0}
+    others = [k for k, place in enumerate(given.places) if place < 0]
+    functions = [*mechanics.constraint_residual, *(given.functions[k] - given.values[k] for k in others)]
+    unknown = [x for x in mechanics.q if x not in known]
+    if len(functions) != len(unknown):
+        return None
+    slopes = (*mechanics.geometric_jacobian, *(given.slopes[k] for k in others))
+    columns = [k for k, x in enumerate(mechanics.q) if x not in known]
+    rows = SparserRows(tuple(tuple(row[k] for k in columns) for row in slopes)).of(functions)
+    steps = _steps(graph, rows, unknown)
+    if steps is None:
+        return None
+    solution = _Solution(graph, given, dict(known))
+    for step in steps:
+        if isinstance(step, SolvableRow):
+            solution.of_row(step)
+        else:
+            solution.of_pair(step)
+    return ClosedConfiguration(tuple(solution.known[x] for x in mechanics.q), tuple(dict.fromkeys(solution.guards)))
+
+
+def _steps(graph: Graph, rows: Sequence[Scalar], unknown: Sequence[Scalar]) -> list[SolvableRow | TurnedPair] | None:
+    """What is solved one after the other; None where it does not come to an end."""
+    left, open_ = {row: reached([row]).intersection(unknown) for row in rows}, set(unknown)
+    steps: list[SolvableRow | TurnedPair] = []
+    while left:
+        step = _next(graph, {row: found & open_ for row, found in left.items()}, unknown)
+        if step is None:
+            return None
+        done, solved_for = step
+        these = (done.value,) if isinstance(done, SolvableRow) else done.rows
+        steps.append(done)
+        open_ -= set(solved_for)
+        left = {row: found for row, found in left.items() if row not in these}
+    return steps
+
+
+def _next(
+    graph: Graph, left: Mapping[Scalar, set[Scalar]], order: Sequence[Scalar]
+) -> tuple[SolvableRow | TurnedPair, tuple[Scalar, ...]] | None:
+    """A row with one unknown, else two with two."""
+    for row, found in left.items():
+        if len(found) == 1:
+            (x,) = found
+            one = solvable_row(graph, row, x)
+            if one is not None:
+                return one, (x,)
+    for first, second in combinations(left, 2):
+        pair = [x for x in order if x in left[first] | left[second]]
+        if len(pair) == 2:
+            for angle, other in permutations(pair):
+                found_pair = _turned_pair(graph, (first, second), angle, other)
+                if found_pair is not None:
+                    return found_pair, (angle, other)
+    return None
+
+
+def _turned_pair(
+    graph: Graph, rows: tuple[Scalar, Scalar], angle: Scalar, other: Scalar
+) -> TurnedPair | None:
+    """The pair where the angle turns both rows alike, to either side, identically."""
+    along = {angle: graph.one}
+    slopes = derivative_along(graph, rows, along)
+    bends = derivative_along(graph, slopes, along)
+    x, y = (-bend for bend in bends)
+    if not (x + bends[0]).is_zero or x.is_zero:
+        return None
+    turned = [(slopes[0] + y, slopes[1] - x), (slopes[0] - y, slopes[1] + x)]
+    backwards = next((k for k, both in enumerate(turned) if all(one.is_zero for one in both)), None)
+    if backwards is None:
+        return None
+    rests = [row - part for row, part in zip(rows, (x, y), strict=True)]
+    difference = dot(graph, rests, rests) - dot(graph, (x, y), (x, y))
+    # it is the same at every angle, and shortest at 0
+    (difference,) = substitute(graph, [difference], {angle: graph.zero})
+    one = solvable_row(graph, difference, other)
+    return None if one is None else TurnedPair(rows, angle, (x, y), bool(backwards), one)
+
+
+class _Solution:
+    """What is known so far, at the start what is given."""
+
+    def __init__(self, graph: Graph, given: Given, known: dict[Scalar, Scalar]) -> None:
+        self._graph, self._given = graph, given
+        self.known, self.guards = known, list[Guard]()
+
+    def of_row(self, row: SolvableRow) -> None:
+        """One row, for its unknown."""
+        value, slope, bend = self._now(row.scalars)
+        one = solved(self._graph, row, (value, slope, bend), row.scalars, self._given.status)
+        self._take(row.unknown, one)
+
+    def of_pair(self, pair: TurnedPair) -> None:
+        """The other unknown, then the angle: the turn from its part of the rows to what is to balance it."""
+        graph = self._graph
+        self.of_row(pair.other)
+        x, y, first, second = self._now((*pair.arm, *pair.rows))
+        square = x * x + y * y
+        across = x * second - y * first
+        tangent = (across if pair.backwards else -across) / (2 * square - (x * first + y * second))
+        guards = Guard(self._given.status, square, 2), within_a_quarter(graph, tangent)
+        self._take(pair.angle, RowSolution(turn_of(graph, tangent), guards))
+
+    def _now(self, scalars: Sequence[Scalar]) -> list[Scalar]:
+        """With what is known in its place."""
+        return substitute(self._graph, scalars, self.known)
+
+    def _take(self, unknown: Scalar, one: RowSolution) -> None:
+        """A number from here on: there is no place for algebra with what led to it."""
+        self.known[unknown] = self._graph.rounded(unknown + one.change)
+        self.guards += one.guards
