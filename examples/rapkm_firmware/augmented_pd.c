@@ -34,7 +34,10 @@ rapkm_2rrr_rr_status control_step(float t, const float angles[DRIVES], const flo
     if (status != RAPKM_2RRR_RR_OK) {
         return status;
     }
-    trajectory(t, &p, wanted, wanted_rate, wanted_acceleration);
+    status = trajectory(t, &p, wanted, wanted_rate, wanted_acceleration);
+    if (status != RAPKM_2RRR_RR_OK) {
+        return status;
+    }
     status = rapkm_2rrr_rr_projected_potential_force_f(q, &p, force);
     if (status != RAPKM_2RRR_RR_OK) {
         return status;

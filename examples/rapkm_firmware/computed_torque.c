@@ -20,7 +20,10 @@ rapkm_2rrr_rr_status control_step(float t, const float angles[DRIVES], const flo
     if (status != RAPKM_2RRR_RR_OK) {
         return status;
     }
-    trajectory(t, &p, wanted, wanted_rate, qdd);
+    status = trajectory(t, &p, wanted, wanted_rate, qdd);
+    if (status != RAPKM_2RRR_RR_OK) {
+        return status;
+    }
     for (int i = 0; i < JOINTS; i++) {
         const float error = remainderf(wanted[i] - q[i], 6.28318531f);
         qdd[i] += DAMPING * (wanted_rate[i] - qd[i]) + STIFFNESS * error;

@@ -45,14 +45,11 @@ static void measure(const plant_t *plant, int step, float angles[DRIVES], float 
 }
 
 static double tracking_error(const plant_t *plant, const rapkm_2rrr_rr_params_f *p, float t) {
-    float wanted[JOINTS], rate[JOINTS], acceleration[JOINTS], q[JOINTS], here[2], there[2];
-    trajectory(t, p, wanted, rate, acceleration);
+    float q[JOINTS];
     for (int i = 0; i < JOINTS; i++) {
         q[i] = (float)plant->q[i];
     }
-    end_effector(p, q, here);
-    end_effector(p, wanted, there);
-    return hypot((double)here[0] - (double)there[0], (double)here[1] - (double)there[1]);
+    return (double)off_the_circle(t, p, q);
 }
 
 static void tell(const char *what, double value, int decimals, const char *unit) {
@@ -65,8 +62,7 @@ int main(void) {
     const rapkm_2rrr_rr_params_f p = rapkm_2rrr_rr_default_params_f();
     float q[JOINTS], qd[JOINTS], qdd[JOINTS], angles[DRIVES], rates[DRIVES], u[DRIVES] = {0};
     plant_t plant;
-    trajectory(0.0f, &p, q, qd, qdd);
-    bool good = plant_start(&plant, q);
+    bool good = trajectory(0.0f, &p, q, qd, qdd) == RAPKM_2RRR_RR_OK && plant_start(&plant, q);
     encoders_start(q);
     plant.p.m_payload = PAYLOAD;
     double largest = 0.0, squares = 0.0, worst = 0.0, torque = 0.0;

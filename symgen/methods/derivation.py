@@ -25,12 +25,11 @@ from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.mechanics.system import System
 from symgen.methods.allocation import InputAllocation
-from symgen.methods.closed_configuration import ClosedConfiguration
 from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
 from symgen.methods.forward_dynamics.motion import Problem
-from symgen.methods.given import measured, task
-from symgen.methods.given_configuration import GivenConfiguration, given_configuration
-from symgen.methods.given_motion import GivenMotion
+from symgen.methods.given.configuration import GivenConfiguration
+from symgen.methods.given.functions import measured, task
+from symgen.methods.given.motion import GivenMotion
 from symgen.methods.least_inputs import least_inputs
 from symgen.symbolic.calculus import derivative_along, gradient, jacobian
 from symgen.symbolic.matrix import (
@@ -222,9 +221,9 @@ class Derivation:
         return GivenMotion(self, measured(self.mechanics))
 
     @cached_property
-    def measured_configuration(self) -> ClosedConfiguration | GivenConfiguration:
+    def measured_configuration(self) -> GivenConfiguration:
         """What measured coordinates determine."""
-        return given_configuration(self, measured(self.mechanics))
+        return GivenConfiguration(self, measured(self.mechanics))
 
     @cached_property
     def task_motion(self) -> GivenMotion:
@@ -232,9 +231,9 @@ class Derivation:
         return GivenMotion(self, task(self.mechanics))
 
     @cached_property
-    def task_configuration(self) -> ClosedConfiguration | GivenConfiguration:
+    def task_configuration(self) -> GivenConfiguration:
         """What coordinates of the task determine."""
-        return given_configuration(self, task(self.mechanics))
+        return GivenConfiguration(self, task(self.mechanics))
 
     # projected equations (30) ----------------------------------------------------------------------------------------
 

@@ -58,6 +58,10 @@ def _method(
 
 
 _U, _MOTION, _PROJECTOR = ("inverse_dynamics",), ("forward_dynamics", "multipliers"), ("nullspace_projector",)
+_GIVEN_PLACES = ("configuration_from_measured", "configuration_from_task")
+_GIVEN_MOTIONS = (
+    "velocity_from_measured", "acceleration_from_measured", "velocity_from_task", "acceleration_from_task",
+)  # fmt: skip
 _WEIGHTED = ("weighted_pseudoinverse", "weighted_nullspace_projector")
 
 # Of methods that count alike the first is taken.
@@ -82,6 +86,8 @@ METHODS: tuple[MethodRow, ...] = (
     _method("articulated_by_bodies", _MOTION, "forward_dynamics.articulated", "BY_BODIES", Use.SPARE),
     _method("minor", _PROJECTOR, "projector", "MINOR", Use.ASKED),
     _method("householder", _PROJECTOR, "projector", "HOUSEHOLDER", Use.ASKED),
+    _method("closed", _GIVEN_PLACES, "given.closed", "CLOSED"),
+    _method("legs", _GIVEN_MOTIONS, "given.legs", "BY_LEGS"),
     _method("schur_qr", _WEIGHTED, "forward_dynamics.weighted_projection", "SCHUR_QR", Use.SPARE),
     _method("articulated", _WEIGHTED, "forward_dynamics.weighted_projection", "ARTICULATED", Use.SPARE),
 )

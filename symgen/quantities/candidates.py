@@ -23,6 +23,8 @@ from symgen.methods.quantity import scalars
 from symgen.methods.selection import FACTORING_LIMIT, Methods, cheapest
 from symgen.methods.spaces import derivations
 from symgen.methods.system import MethodInput
+from symgen.methods.table import Use
+from symgen.methods.table import methods as methods_of
 from symgen.model.model import Model
 from symgen.model.quantities import PARTITION
 from symgen.quantities.catalogue import BY_NAME, CatalogueEntry, by_blocks, derive, derived_from, sizes
@@ -83,13 +85,13 @@ class Candidates:
         if self._generic.rank == self._generic.r and 0 < costs.get("minors", 0) <= FACTORING_LIMIT:
             shorter = self._factored(made["minors"])
             costs[shorter.title] = cost(scalars(shorter.derived)).weight
-            # multiplied out, terms that vanish have cancelled exactly: worth a few operations more
-            if costs[shorter.title] <= costs[best.title] * (1 if entry.name in MOTIONS else MOST_WORTH):
+            # multiplied out, terms that vanish have cancelled exactly: worth a few operations more, but than methods
+            if costs[shorter.title] <= costs[best.title] * (1 if best.method else MOST_WORTH):
                 best = shorter
         return best, costs
 
     def _of(self, entry: CatalogueEntry) -> dict[str, Candidate]:
-        alone = self._alone.get(entry.name, {})
+        alone = self._alone.get(entry.name) or self._by_methods(entry.name)
         # where minors are not listed, no other method is derived to be counted: they grow faster than these
         if alone and self._generic.r > 0 and self._generic.delta > LARGEST_DELTA:
             return self._brought(alone)
@@ -161,6 +163,13 @@ class Candidates:
                 if isinstance(one, Candidate):
                     made[name] = replace(one, along=TITLES.get(name, name))
         return {made[name].along: made[name] for name in names if name in made}
+
+    def _by_methods(self, quantity: str) -> dict[str, Candidate]:
+        """What is not derived along null spaces alone, by methods that are chosen by themselves."""
+        if BY_NAME[quantity].outputs is None:
+            return {}
+        made = ((row.name, self._methods.candidate(quantity, row.name)) for row in methods_of(quantity, Use.CHOSEN))
+        return {name: replace(one, along=name) for name, one in made if isinstance(one, Candidate)}
 
     def _brought(self, made: dict[str, Candidate]) -> dict[str, Candidate]:
         """The same on the graph of the other quantities."""

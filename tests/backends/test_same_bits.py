@@ -21,6 +21,10 @@ from symgen.backends.locals import array_arguments
 from symgen.backends.python.module import emit_python
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Scalar, Status
+from symgen.model.model import Model
+from symgen.verify.reference.system import ReferenceSystem, default_parameters
+from symgen.verify.reference.translation import literal_values
+from symgen.verify.sampling.lane_replay import LaneReplay
 
 C_NUMBER = {"float64": ctypes.c_double, "float32": ctypes.c_float}
 STATES = 3
@@ -38,13 +42,26 @@ def states(name: str, scalar: Scalar) -> list[dict[str, list[float]]]:
     drawn = [{kind: draw(kind) for kind in ("q", "qd", "qdd", "u")} for _ in range(STATES)]
     for value in (0.0, 1e30, float("nan")):
         drawn.append({kind: [float(np.dtype(scalar).type(value))] * len(numbers) for kind, numbers in drawn[0].items()})
-    return [one | _measured(model.measured_places, one, scalar) for one in drawn]
+    return [one | _measured(model.measured_places, one, scalar) | _task(model, one, scalar) for one in drawn]
 
 
 def _measured(places: Sequence[int], state: dict[str, list[float]], scalar: Scalar) -> dict[str, list[float]]:
     """What encoders say a moment later."""
     moved = [float(np.dtype(scalar).type(state["q"][k] + state["qd"][k] / 1024)) for k in places]
     return {"q_m": moved, **{f"{kind}_m": [state[kind][k] for k in places] for kind in ("qd", "qdd")}}
+
+
+def _task(model: Model, state: dict[str, list[float]], scalar: Scalar) -> dict[str, list[float]]:
+    """Where the task is a moment later, at the default parameters."""
+    if not model.task:
+        return {}
+    system, count = ReferenceSystem(model), len(model.task)
+    places = [q + qd / 1024 for q, qd in zip(state["q"], state["qd"], strict=True)]
+    numbers = [float(x) for x in (*default_parameters(model), *literal_values(system.literals))]
+    with np.errstate(invalid="ignore"):
+        aim = LaneReplay(system.task_replay).run([*places, *([None] * model.n), *numbers], 1)[:count, 0]
+    aims = aim.astype(scalar).astype(float).tolist()
+    return {"x_t": aims, "xd_t": state["qd"][:count], "xdd_t": state["qdd"][:count]}
 
 
 @cache

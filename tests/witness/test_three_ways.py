@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import casadi
 import mpmath
 import numpy as np
 import pytest
@@ -42,6 +43,16 @@ REGULAR = 1e-3  # of both measures of `singularity`: rounding is not what these 
 State = dict[str, NDArray[np.float64]]
 
 
+def _task(model: Model, state: State) -> State:
+    """Where the task is a moment later, along rates as they are."""
+    if not model.task:
+        return {}
+    lagrange, moved = differentiate(model), state["q"] + 1e-3 * state["qd"]
+    aim = casadi.Function("aim", [lagrange.q, lagrange.p], [lagrange.task])(moved, state["p"])
+    places = [k % model.n for k in range(len(model.task))]
+    return {"x_t": aim.full().ravel(), "xd_t": state["qd"][places], "xdd_t": state["qdd"][places]}
+
+
 def states(model: Model, singularity: Any) -> list[State]:
     """Regular configurations with arbitrary rates, at the default parameters and at others within their ranges."""
     generator = np.random.default_rng(11)
@@ -60,7 +71,7 @@ def states(model: Model, singularity: Any) -> list[State]:
         places = list(model.measured_places)
         moved = q[places] + generator.uniform(-1e-3, 1e-3, len(places))
         measured = {"q_m": moved, "qd_m": state["qd"][places], "qdd_m": state["qdd"][places]}
-        found.append(state | measured | {"w_u": state["u"], "w_qdd": state["qdd"]})
+        found.append(state | measured | _task(model, state) | {"w_u": state["u"], "w_qdd": state["qdd"]})
     return found
 
 

@@ -18,6 +18,7 @@ constraints:
 inputs: {drive: {acts_on: {a: 1}}}
 configuration: {a: 1.5, b: 1.5, c: 1.5, x: 0.035, y: 0.499, turn: 0}
 measured: [b]
+task: {reach: x + y/2}
 outputs: all
 """
 
@@ -29,6 +30,7 @@ kinetic_energy: x_dot**2 + (2 + cos(y))*y_dot**2 + z_dot**2 + x_dot*y_dot*sin(z)
 potential_energy: x*z
 inputs: {pull: {acts_on: {x: 1, y: cos(z)}}, push: {acts_on: {x: 2, y: 2*cos(z)}}}
 applied_forces: {x: -y*x_dot}
+task: {first: x + sin(y), second: y - z*z, third: x*y + z}
 outputs: all
 """
 
@@ -52,6 +54,7 @@ constraints: {geometric: {level: hook.z - 0.2}}
 inputs: {turn: {joint: a}, slide: {joint: s}}
 configuration: {a: 0.3, b: 0.1, s: 0.4}
 measured: [a, s, b]
+task: {x: hook.x, y: hook.y, turn: a}
 outputs: all
 """
 

@@ -54,7 +54,7 @@ ALL = (
     "parameter that is zero", "parameters that are equal", "parameters 1e9 apart", "parameter with a range",
     *(f"names that hurt in {language}" for language in LEGAL_BY_LANGUAGE), "reserved name",
     "outputs chosen at random", "all outputs", "outputs by default", "start told", "start left out",
-    "independent velocities", "measured coordinates", "weights", "one preload", "preloads", "limits",
+    "independent velocities", "measured coordinates", "task", "weights", "one preload", "preloads", "limits",
     "wide range of angles",
     "spring", "damper", "friction", "force element", "rotor", "applied force", "skew axis", "fixed turn",
     "mistake on purpose",
@@ -166,6 +166,7 @@ def _of_elements(blocks: Mapping[str, Any]) -> Iterator[str]:
         "limits": "limits" in allocation,
         "independent velocities": "independent_velocities" in blocks,
         "measured coordinates": "measured" in blocks,
+        "task": "task" in blocks,
         "wide range of angles": blocks.get("trig_range") == "wide",
     }
     yield from (name for name, true in told.items() if true)

@@ -17,9 +17,10 @@ Fails = Callable[[Description], bool]
 OPTIONAL = (
     "description", "ranges", "tolerances", "allocation", "springs", "friction", "forces", "applied_forces",
     "rotor_inertias", "gravity", "potential_energy", "rolling", "loops", "inputs", "configuration", "outputs",
-    "independent_velocities", "measured",
+    "independent_velocities", "measured", "task",
 )  # fmt: skip
-ENTRIES = ("inputs", "loops", "rolling", "springs", "friction", "forces", "applied_forces", "rotor_inertias", "ranges")
+ENTRIES = ("inputs", "loops", "rolling", "springs", "friction", "forces", "applied_forces", "rotor_inertias", "ranges",
+           "task")  # fmt: skip
 
 
 def shrink(description: Description, fails: Fails, most: int = 80) -> Description:
@@ -130,7 +131,7 @@ def frozen(description: Description, name: str) -> Description:
             break
     else:
         gone = [name]
-    for chosen in ("independent_velocities", "measured"):
+    for chosen in ("independent_velocities", "measured", "task"):
         if chosen in blocks:
             # which of the others determine the rest now is not known
             blocks = _without(blocks, chosen)

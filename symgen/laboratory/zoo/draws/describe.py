@@ -14,7 +14,7 @@ ORDER = (
     "model", "description", "urdf", "coordinates", "parameters", "definitions", "gravity", "frames", "joints", "bodies",
     "rotor_inertias", "points", "loops", "rolling", "springs", "friction", "forces", "kinetic_energy",
     "potential_energy", "constraints", "inputs", "allocation", "applied_forces", "outputs", "independent_velocities",
-    "measured", "configuration", "ranges", "tolerances", "trig_range",
+    "measured", "task", "configuration", "ranges", "tolerances", "trig_range",
 )  # fmt: skip
 # the mark of a draw that must be refused
 MISTAKE = "mistake on purpose"

@@ -1,4 +1,4 @@
-"""What every drawn file ends with: outputs, start, ranges, independent velocities, what is measured."""
+"""What every drawn file ends with: outputs, start, ranges, independent velocities, what is measured, a task."""
 
 from __future__ import annotations
 
@@ -28,10 +28,14 @@ OTHERS = (
 )  # fmt: skip
 OF_POINTS = ("point_position", "point_jacobian")
 OF_MEASURED = ("configuration_from_measured", "velocity_from_measured", "acceleration_from_measured")
+OF_TASK = (
+    "task_position", "task_velocity", "task_jacobian", "configuration_from_task", "velocity_from_task",
+    "acceleration_from_task",
+)  # fmt: skip
 OF_INDEPENDENT = ("orthogonal_complement", "minimal_mass_matrix", "minimal_coriolis_matrix", "minimal_control_matrix")
 
-# Share of systems that measure.
-MEASURED_SHARE = 0.15
+# Shares of systems that measure, and that have a task.
+MEASURED_SHARE, TASK_SHARE = 0.15, 0.12
 
 
 def finish(sketch: Sketch) -> Description:
@@ -72,6 +76,9 @@ def finish(sketch: Sketch) -> Description:
         sketch.mark(MISTAKE)
     elif dice.chance(0.02):
         _mistake(sketch)
+    # drawn last, so that systems without one are what they were
+    if dice.chance(TASK_SHARE):
+        _task(sketch)
     return Description(sketch.family, blocks, dict(start), tuple(sketch.marks), sketch.files)
 
 
@@ -132,6 +139,29 @@ def allocate(sketch: Sketch) -> None:
         allocation["preload"] = {name: dice.choice(("5", "-3")) for name in chosen}
     if allocation:
         blocks["allocation"] = allocation
+
+
+def _task(sketch: Sketch) -> None:
+    """About as many functions of the configuration as there are directions: points, coordinates, sums of waves."""
+    dice, blocks, names = sketch.dice, sketch.blocks, list(sketch.start)
+    turns = [entry["coordinate"] for entry in (blocks.get("joints") or {}).values() if entry["type"] == "revolute"]
+    turns += [name for name, entry in (blocks.get("coordinates") or {}).items() if (entry or {}).get("unit") == "rad"]
+    points = list(blocks.get("points") or ())
+    freedom = DrawnEquations(expanded(blocks, sketch.files), sketch.start).freedom
+
+    def function() -> str:
+        if points and dice.chance(0.5):
+            return f"{dice.choice(points)}.{dice.choice('xyz')}"
+        if not turns or dice.chance(0.3):
+            return dice.choice(names)
+        one, other = dice.choice(turns), dice.choice(turns)
+        waves = f"{dice.length()}*cos({one}) + {dice.length()}*sin({one} + {other})"
+        return dice.choice((f"{one} - {dice.length()}*{other}", waves))
+
+    count = max(1, freedom + dice.choice((-1, 0, 0, 0, 0, 1)))
+    blocks["task"] = {f"{dice.choice(('x', 'aim', 'tip'))}_{k}": function() for k in range(count)}
+    if isinstance(outputs := blocks.get("outputs"), list):
+        blocks["outputs"] = [*outputs, *dice.sample(OF_TASK, dice.whole(1, len(OF_TASK)))]
 
 
 def measured(sketch: Sketch) -> list[str]:

@@ -44,3 +44,8 @@ def task(mechanics: System) -> Given:
     places = tuple(order.get(x, -1) for x in functions)
     values, rates, accelerations = mechanics.task
     return Given(functions, mechanics.task_jacobian, places, values, rates, accelerations, Status.TASK_RANK)
+
+
+def given_of(quantity: str, mechanics: System) -> Given:
+    """What the quantity of a name is found from."""
+    return measured(mechanics) if quantity.endswith("_from_measured") else task(mechanics)

@@ -10,21 +10,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import combinations, permutations
-from typing import TYPE_CHECKING
 
 from symgen.linear_algebra.guards import Guard
 from symgen.linear_algebra.sparser_rows import SparserRows
-from symgen.methods.given import Given
-from symgen.methods.row_solution import RowSolution, SolvableRow, solvable_row, solved, within_a_quarter
+from symgen.mechanics.system import System
+from symgen.methods.admission import ByTheorem
+from symgen.methods.given.functions import Given, given_of
+from symgen.methods.given.row_solution import RowSolution, SolvableRow, solvable_row, solved, within_a_quarter
+from symgen.methods.method import Candidate, Method
+from symgen.methods.quantity import Quantity
+from symgen.methods.system import MethodInput
+from symgen.methods.workspace import Workspace
 from symgen.records import dataclass
 from symgen.symbolic.arcs import turn_of
 from symgen.symbolic.calculus import derivative_along
 from symgen.symbolic.matrix import Vector, dot
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import reached, substitute
-
-if TYPE_CHECKING:
-    from symgen.methods.derivation import Derivation
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,9 +48,9 @@ class ClosedConfiguration:
     guards: tuple[Guard, ...]
 
 
-def closed_configuration(derivation: Derivation, given: Given) -> ClosedConfiguration | None:
+def closed_configuration(mechanics: System, given: Given) -> ClosedConfiguration | None:
     """In closed form; None where rows are not of these kinds, or not as many as there are unknowns."""
-    mechanics, graph = derivation.mechanics, derivation.graph
+    graph = mechanics.graph
     pairs = zip(given.places, given.values, strict=True)
     known = {mechanics.q[place]: value for place, value in pairs if place >= 0}
     others = [k for k, place in enumerate(given.places) if place < 0]
@@ -161,3 +163,22 @@ class _Solution:
         """A number from here on: there is no place for algebra with what led to it."""
         self.known[unknown] = self._graph.rounded(unknown + one.change)
         self.guards += one.guards
+
+
+@dataclass(frozen=True, slots=True)
+class _Closed(ByTheorem):
+    """`theorem` says why it is valid wherever rows and functions keep their rank together."""
+
+    theorem: str
+
+    def build(self, workspace: Workspace, quantity: str) -> Candidate | str:
+        """The configuration (n), or why there is none."""
+        system = MethodInput.fresh(workspace.model, workspace.generic)
+        found = closed_configuration(system.mechanics, given_of(quantity, system.mechanics))
+        if found is None:
+            return "its rows are no chains of two links, and hold more than one unknown"
+        tested = tuple(guard for guard in found.guards if guard.denominator.constant is None)
+        return Candidate(system, Quantity(quantity, (len(found.outputs),), found.outputs, tested))
+
+
+CLOSED: Method = _Closed("its roots multiplied are the determinant of the rows and of what is given together")

@@ -23,8 +23,7 @@ from symgen.linear_algebra.constrained_inverse import Cholesky
 from symgen.linear_algebra.guards import LEFT, Guard, magnitude, moved
 from symgen.linear_algebra.null_spaces import HouseholderSpace
 from symgen.linear_algebra.pivoted import reflected
-from symgen.methods.closed_configuration import ClosedConfiguration, closed_configuration
-from symgen.methods.given import Given
+from symgen.methods.given.functions import Given
 from symgen.symbolic.calculus import gradient, jacobian
 from symgen.symbolic.matrix import Matrix, Vector, dot, matmul, matvec, transpose
 from symgen.symbolic.scalar import Graph, Scalar
@@ -35,11 +34,6 @@ if TYPE_CHECKING:
 
 # A first step of 0.2 times the radius of convergence leaves 1e-22 of it after five.
 STEPS_TAKEN = 5
-
-
-def given_configuration(derivation: Derivation, given: Given) -> ClosedConfiguration | GivenConfiguration:
-    """In closed form where that exists, else by Newton's method."""
-    return closed_configuration(derivation, given) or GivenConfiguration(derivation, given)
 
 
 class GivenConfiguration:

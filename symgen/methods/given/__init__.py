@@ -1,0 +1,1 @@
+"""What measured coordinates or a task determine: configurations, rates and accelerations."""

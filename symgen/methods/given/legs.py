@@ -1,0 +1,111 @@
+"""Rates and accelerations from what is given, leg by leg: [B; X] q_dot = [0; x_dot], X the derivatives of x(q).
+
+As many functions as directions and rows that do not depend on each other make a square system.  Rows are added to each
+other where that leaves fewer entries, and what is left falls into blocks of a few unknowns each.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from symgen.linear_algebra.guards import Guard
+from symgen.linear_algebra.sparser_rows import SparserRows
+from symgen.linear_algebra.triangular_blocks import BlockwiseSolution, triangular_blocks
+from symgen.mechanics.system import System
+from symgen.methods.admission import ByTheorem
+from symgen.methods.given.functions import Given, given_of
+from symgen.methods.method import Candidate, Method
+from symgen.methods.quantity import Quantity
+from symgen.methods.spaces import along_minors, along_reflections
+from symgen.methods.system import MethodInput
+from symgen.methods.workspace import Workspace
+from symgen.records import dataclass
+from symgen.symbolic.calculus import derivative_along
+from symgen.symbolic.matrix import Matrix, Vector, dot, flatten
+from symgen.symbolic.scalar import Scalar
+from symgen.symbolic.traverse import cost
+
+
+@dataclass(frozen=True, slots=True)
+class LegMotion:
+    """The square system of rows and functions, combined and in blocks."""
+
+    mechanics: System
+    given: Given
+    rows: SparserRows
+    solution: BlockwiseSolution
+
+    @property
+    def velocity(self) -> Vector:
+        """q_dot with B q_dot = 0 and the given rates."""
+        return self.solution.solve(self.rows.of((*self._zeros, *self.given.rates)))
+
+    @property
+    def acceleration(self) -> Vector:
+        """q_ddot with B q_ddot + B_dot q_dot = 0 at that velocity and the given ones.
+
+        With what rows change by taken of their combinations, or of rows as they stand, whichever counts less.
+        """
+        velocity = self.velocity
+        motion = dict(zip(self.mechanics.q, velocity, strict=True))
+        bias = self.mechanics.constraint_acceleration_bias(velocity) if self.mechanics.r else ()
+        changes = self.rows.of((*bias, *self._bent(self.given.slopes, motion))), self._bent(self.rows.matrix, motion)
+        wanted = self.rows.of((*self._zeros, *self.given.accelerations))
+        found = (self.solution.solve([x - y for x, y in zip(wanted, one, strict=True)]) for one in changes)
+        return min(found, key=lambda one: cost(one).weight)
+
+    @property
+    def _zeros(self) -> Vector:
+        return (self.mechanics.graph.zero,) * self.mechanics.r
+
+    def _bent(self, rows: Matrix, motion: Mapping[Scalar, Scalar]) -> list[Scalar]:
+        """How rows change along a velocity, times it."""
+        graph = self.mechanics.graph
+        changes = iter(derivative_along(graph, flatten(rows), motion))
+        return [dot(graph, [next(changes) for _ in row], tuple(motion.values())) for row in rows]
+
+
+def leg_motion(system: MethodInput, given: Given) -> LegMotion | str:
+    """The motion leg by leg, or why there is none."""
+    mechanics = system.mechanics
+    if system.regular is not None:
+        return system.regular
+    if len(given.functions) + mechanics.r != mechanics.n:
+        return "more is given than determines the motion"
+    rows = SparserRows((*mechanics.constraint_jacobian, *given.slopes))
+    blocks = triangular_blocks([[not x.is_zero for x in row] for row in rows.matrix])
+    if blocks is None:
+        return "what is given does not determine the motion"
+    solution = BlockwiseSolution(mechanics.graph, rows.matrix, blocks, mechanics.factoring.cancelled)
+    return LegMotion(mechanics, given, rows, solution)
+
+
+@dataclass(frozen=True, slots=True)
+class _ByLegs(ByTheorem):
+    """`theorem` says why it is valid wherever rows and functions keep their rank together."""
+
+    theorem: str
+
+    def build(self, workspace: Workspace, quantity: str) -> Candidate | str:
+        """Rates or accelerations (n), or why there are none."""
+        system = MethodInput.fresh(workspace.model, workspace.generic)
+        given = given_of(quantity, system.mechanics)
+        found = leg_motion(system, given)
+        if isinstance(found, str):
+            return found
+        outputs = found.velocity if quantity.startswith("velocity") else found.acceleration
+        guards = found.solution.guards(given.status, _of_rows(system))
+        tested = tuple(guard for guard in guards if guard.denominator.constant is None)
+        return Candidate(system, Quantity(quantity, (len(outputs),), outputs, tested))
+
+
+def _of_rows(system: MethodInput) -> tuple[Guard, ...]:
+    """Where B itself loses rank, which is told first."""
+    for along in (along_minors, along_reflections):
+        derivation = along(system.mechanics, system.generic)
+        if not isinstance(derivation, str):
+            return derivation.space.guards
+    return ()
+
+
+BY_LEGS: Method = _ByLegs("its determinants multiplied are that of the rows and of what is given together")
