@@ -158,12 +158,23 @@ class Exact:
     @cached_property
     def actuations(self) -> tuple[Actuation, ...]:
         """Delta_J and v_L for every choice of rows, of M times its common denominator."""
+        return self._spanned(self.mechanics.control, self.control_scale, "the determinants of the input equations")
+
+    def determined_by(self, slopes: Matrix) -> list[PolyElement]:
+        """The determinants of delta functions at a time with B: where all vanish they do not determine the rates."""
+        columns = transpose(slopes)
+        scale = common_denominator(self.ring, [entry for row in columns for entry in row])
+        found = self._spanned(columns, scale, "the determinants of what is given")
+        return [value for one in found for value in one.determinants.values()]
+
+    def _spanned(self, columns: Matrix, scale: PolyElement, what: str) -> tuple[Actuation, ...]:
+        """Delta_J and v_L of columns (n x k) times their common denominator."""
         others = self.delta - 1
-        contractions = comb(self.model.m, others) * self.model.n * comb(self.model.n, others)
-        self._admit(contractions * len(self.minor_sets), "the determinants of the input equations")
-        scale = polynomial(self.ring, self.control_scale)
-        control = tuple(tuple((entry * scale).numerator for entry in row) for row in self.mechanics.control)
-        return tuple(actuation_minors(self.ring, minors, control, self.delta) for minors in self.minor_sets)
+        contractions = comb(len(columns[0]), others) * self.model.n * comb(self.model.n, others)
+        self._admit(contractions * len(self.minor_sets), what)
+        factor = polynomial(self.ring, scale)
+        whole = tuple(tuple((entry * factor).numerator for entry in row) for row in columns)
+        return tuple(actuation_minors(self.ring, minors, whole, self.delta) for minors in self.minor_sets)
 
     @cached_property
     def delta_squares(self) -> PolyElement:

@@ -87,6 +87,13 @@ class ExactSystem:
             return tuple(tuple(self.translator.derivative(v, rate) for rate in self._rates) for v in values)
 
     @cached_property
+    def task_jacobian(self) -> Matrix:
+        """The derivatives of the coordinates of the task, a row for each."""
+        with self.ring.work.limited("the derivatives of the task"):
+            values = [self.translator.value(x.expression) for x in self.model.task]
+            return tuple(tuple(self.translator.derivative(value, name) for name in self._names) for value in values)
+
+    @cached_property
     def jacobian(self) -> Matrix:
         """B (1): derivatives of geometric constraints by q, of non-holonomic ones by qd."""
         rows = []
@@ -130,6 +137,7 @@ def make_translator(model: Model, further: Iterable[Expression] = ()) -> Transla
     others = [model.kinetic_energy, model.potential_energy]
     others += [factor for control in model.inputs for _, factor in control.acts_on]
     others += [force.expression for force in model.applied_forces]
+    others += [x.expression for x in model.task]
     return Translator(variables, [c.name for c in model.coordinates], definitions, preferred, [*others, *further])
 
 

@@ -1,8 +1,11 @@
-"""Singular configurations: where constraints, actuation or chosen velocities lose rank, as factored determinants."""
+"""Singular configurations: where constraints, actuation or chosen velocities lose rank, as factored determinants.
+
+What is measured, and a task, have singularities of their own: where they do not determine the rest.
+"""
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, TypeAlias
 
 from sympy import Expr, Integer
 from sympy.polys.rings import PolyElement
@@ -16,12 +19,16 @@ from symgen.closedform.algebra.homogeneous import (
     parity_classes,
 )
 from symgen.closedform.algebra.limits import TooLargeError
+from symgen.closedform.algebra.matrices import identity
 from symgen.closedform.algebra.minors import common_denominator
+from symgen.closedform.algebra.quotient import Matrix
 from symgen.closedform.algebra.ring import TrigRing
 from symgen.closedform.exact import Exact
 from symgen.closedform.spelling import Speller
 from symgen.model.model import Model
 from symgen.records import dataclass
+
+Kind: TypeAlias = Literal["constraint", "input", "parameter", "measured", "task"]
 
 MOST_PRINTED = 30
 """More expressions than this are not listed."""
@@ -38,7 +45,7 @@ class SingularSet:
     out and `vanishing` is empty when there are too many expressions.
     """
 
-    kind: Literal["constraint", "input", "parameter"]
+    kind: Kind
     quantity: str
     vanishing: tuple[Expr, ...]
     decided: bool
@@ -69,6 +76,7 @@ def _collect(model: Model, exact: Exact, speller: Speller, sets: list[SingularSe
         text = "the degree of actuation drops"
         quantity = "projected_control_pseudoinverse"
         sets.append(_common_zeros(exact, speller, "input", quantity, deltas, exact.ring.one, text))
+    _collect_given(model, exact, speller, sets)
     if model.independent_velocities:
         complement = exact.complement(model.independent_velocities)
         if complement is not None:
@@ -77,6 +85,20 @@ def _collect(model: Model, exact: Exact, speller: Speller, sets: list[SingularSe
             sets.append(
                 _common_zeros(exact, speller, "parameter", "orthogonal_complement", [bottom], exact.ring.one, text)
             )
+
+
+def _collect_given(model: Model, exact: Exact, speller: Speller, sets: list[SingularSet]) -> None:
+    """Those of what is measured and of the task, where they determine the rest at all."""
+    given: list[tuple[Kind, str, Matrix]] = []
+    if model.measured:
+        units = identity(exact.ring, model.n)
+        given.append(("measured", "what is measured", tuple(units[k] for k in model.measured_places)))
+    if model.task and not model.task_leaves.rates:
+        given.append(("task", "the task", exact.mechanics.task_jacobian))
+    for kind, what, slopes in given:
+        values = exact.determined_by(slopes)
+        text = f"{what} does not determine the rest"
+        sets.append(_common_zeros(exact, speller, kind, f"velocity_from_{kind}", values, exact.ring.one, text))
 
 
 def essential_factors(ring: TrigRing, p: PolyElement) -> tuple[PolyElement, ...]:
@@ -99,7 +121,7 @@ def positive(ring: TrigRing, p: PolyElement) -> bool:
 def _common_zeros(
     exact: Exact,
     speller: Speller,
-    kind: Literal["constraint", "input", "parameter"],
+    kind: Kind,
     quantity: str,
     values: list[PolyElement],
     content: PolyElement,

@@ -8,7 +8,7 @@ import pytest
 import sympy
 from mpmath import mp
 from shipped import NAMES
-from sympy import Add, Matrix, Mul, Symbol, cos, sin
+from sympy import Add, Matrix, Mul, Symbol, cos, simplify, sin
 
 from symgen.closedform.algebra.substitution import substitute
 from symgen.closedform.forms import ClosedForm, ClosedForms, derive_closed_forms
@@ -183,6 +183,35 @@ def test_singular_sets_of_the_rear_car() -> None:
     assert found["constraint"] == ()
     assert found["input"] == (cos(Symbol("phi")),)
     assert found["parameter"] == (cos(Symbol("phi")) * cos(Symbol("theta")),)
+
+
+def test_singular_sets_of_what_is_measured_and_of_a_task() -> None:
+    """A five-bar's task fails where a leg is stretched, its encoders where both distal links are in line."""
+    _, forms = derive(
+        """
+model: five_bar
+coordinates: {a: {unit: rad}, b: {unit: rad}, c: {unit: rad}, e: {unit: rad}}
+kinetic_energy: (a_dot**2 + b_dot**2 + c_dot**2 + e_dot**2)/2
+constraints:
+  geometric:
+    close_x: cos(a) + 2*cos(b) - 3 - cos(c) - 2*cos(e)
+    close_y: sin(a) + 2*sin(b) - sin(c) - 2*sin(e)
+measured: [a, c]
+task: {x: cos(a) + 2*cos(b), y: sin(a) + 2*sin(b)}
+configuration: {a: 2.2, b: 0.9, c: 1, e: 2.2}
+"""
+    )
+    a, b, c, e = map(Symbol, "abce")
+    found = {s.kind: s for s in forms.singular_sets}
+    (measured,), (task,) = found["measured"].vanishing, found["task"].vanishing
+    assert found["measured"].decided
+    assert simplify(measured**2 - sin(b - e) ** 2) == 0
+    assert simplify(task**2 - (sin(a - b) * sin(c - e)) ** 2) == 0
+
+
+def test_a_task_that_leaves_directions_open_has_no_singular_set() -> None:
+    _, forms = derive("model: m\ncoordinates: {x: {}, y: {}}\nkinetic_energy: x_dot**2 + y_dot**2\ntask: {area: x*y}\n")
+    assert [s.kind for s in forms.singular_sets] == []
 
 
 UNDERACTUATED = """

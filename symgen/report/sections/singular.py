@@ -1,4 +1,4 @@
-"""The section on singular configurations: constraints, inputs, and the chosen velocities."""
+"""The section on singular configurations: constraints, inputs, what is given, and the chosen velocities."""
 
 from __future__ import annotations
 
@@ -14,6 +14,8 @@ OPENING = {
     "input": "At input singularities the degree of actuation drops and {} is not continuous",
     "parameter": "Where the chosen velocities depend on each other {} does not exist, a singularity of the "
     "parametrization alone",
+    "measured": "What is measured does not determine the other rates everywhere",
+    "task": "The task does not determine the rates everywhere",
 }
 # Symbols, numbers and operations of equations that are printed; of longer ones only the number is.
 LARGEST_LOCUS = 1500
@@ -48,6 +50,8 @@ def _one(context: Context, locus: SingularSet) -> list[Block]:
 
 
 def _slots(locus: SingularSet) -> list[Slot]:
+    if locus.kind in ("measured", "task"):
+        return []
     symbol = SYMBOLS[locus.quantity]
     if locus.kind != "constraint":
         return [symbol]
@@ -59,4 +63,6 @@ def _nowhere(kind: str) -> str:
         "constraint": "The rank of {} is the same in all configurations, so that {} exists everywhere.",
         "input": "There are no input singularities: {} exists in all configurations.",
         "parameter": "The chosen velocities are independent everywhere, and {} always exists.",
+        "measured": "What is measured determines the other rates in all configurations.",
+        "task": "The task determines the rates in all configurations.",
     }[kind]

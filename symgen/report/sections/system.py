@@ -43,6 +43,7 @@ from symgen.report.prose import (
     U,
     equals,
     lam,
+    listed,
     number,
     paragraph,
     q,
@@ -90,6 +91,7 @@ def system(context: Context) -> Section:
         blocks += [paragraph("These expressions have names of their own:"), displayed(tuple(packed(named)))]
     blocks += mechanism(context)
     blocks += [*_energies(context), *_constraints(context), *_inputs(context), *_applied_forces(context)]
+    blocks += _given(context.model)
     return Section(say("The system"), tuple(blocks))
 
 
@@ -208,6 +210,22 @@ def _constraints(context: Context) -> list[Block]:
     blocks.append(
         paragraph(f"{pattern}; their order is that of the rows of {{}} and of the multipliers {{}}.", *names, B, lam)
     )
+    return blocks
+
+
+def _given(model: Model) -> list[Block]:
+    """What is measured, and the task."""
+    blocks: list[Block] = []
+    if model.measured:
+        names = listed(tuple(name_layout(name) for name in model.measured))
+        blocks.append(paragraph("Measured are {}; the other coordinates are found from these.", names))
+    if model.task:
+        equations = tuple(equation(name_layout(x.name), expression_layout(x.expression)) for x in model.task)
+        one = len(model.task) == 1
+        blocks += [
+            paragraph(f"Motions are planned in {'this coordinate' if one else 'these coordinates'} of a task:"),
+            displayed(equations, "task"),
+        ]
     return blocks
 
 
