@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cache, cached_property
 
 import shipped
@@ -16,6 +17,7 @@ from symgen.quantities.select import Selection, derive_quantities
 from symgen.verify.given import arrays
 from symgen.verify.reference.reference import Reference, State
 from symgen.verify.reference.system import parameters_from
+from symgen.verify.sampling.task_ahead import with_task
 from symgen.verify.tolerance import FACTOR, expectations
 
 
@@ -58,12 +60,13 @@ class System:
         uneven = [0.71, -0.43, 0.37, 0.83, -0.59, 0.29, -0.97, 0.53, 0.61, -0.31, 0.47, -0.89]
         given = [float(x) for x in parameters_from(self.model, dict(parameters or {}))]
         parts = (q, qd or uneven[:n], qdd or uneven[-n:][::-1], u or uneven[2 : 2 + m], given)
-        return State(*(tuple(_float(x, scalar) for x in part) for part in parts))
+        state = State(*(tuple(_float(x, scalar) for x in part) for part in parts))
+        return replace(state, task=tuple(_float(x, scalar) for x in with_task(self.reference, state).task))
 
     def run(self, name: str, state: State, scalar: Scalar = "float64") -> tuple[Status, list[float]]:
         program = self.program(scalar)
-        arguments = arrays(state, program.kernels)
-        return Interpreter(program.sincos, scalar).run(self.kernel(name, scalar), arguments, state.parameters)
+        kernel = self.kernel(name, scalar)
+        return Interpreter(program.sincos, scalar).run(kernel, arrays(state, [kernel]), state.parameters)
 
     def matrix(self, name: str, state: State, scalar: Scalar = "float64") -> list[list[float]]:
         """A quantity as rows; a vector is one column."""

@@ -10,7 +10,9 @@ from fractions import Fraction
 
 from symgen.symbolic.scalar import Graph, Scalar
 
-HALVINGS, TERMS = 2, 12
+# Halvings of the angle before the series is summed, and terms of the series.
+HALVINGS = 2
+TERMS = 12
 
 
 def turn_of(graph: Graph, tangent: Scalar) -> Scalar:

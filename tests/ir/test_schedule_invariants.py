@@ -16,6 +16,7 @@ pytestmark = pytest.mark.slow
 MODELS = ("skate", "rear_car", "rapkm_2rrr_rr", "slider_crank", "double_pendulum")
 ORDER = (
     Status.ANGLE_RANGE, Status.CONSTRAINT_RANK, Status.MASS_RANK, Status.ACTUATION_RANK, Status.MEASURED_RANK,
+    Status.TASK_RANK,
 )  # fmt: skip
 
 

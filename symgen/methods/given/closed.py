@@ -64,13 +64,13 @@ def closed_configuration(mechanics: System, given: Given) -> ClosedConfiguration
     steps = _steps(graph, rows, unknown)
     if steps is None:
         return None
-    solution = _Solution(graph, given, dict(known))
+    unknowns = _Unknowns(graph, given, dict(known))
     for step in steps:
         if isinstance(step, SolvableRow):
-            solution.of_row(step)
+            unknowns.of_row(step)
         else:
-            solution.of_pair(step)
-    return ClosedConfiguration(tuple(solution.known[x] for x in mechanics.q), tuple(dict.fromkeys(solution.guards)))
+            unknowns.of_pair(step)
+    return ClosedConfiguration(tuple(unknowns.known[x] for x in mechanics.q), tuple(dict.fromkeys(unknowns.guards)))
 
 
 def _steps(graph: Graph, rows: Sequence[Scalar], unknown: Sequence[Scalar]) -> list[SolvableRow | TurnedPair] | None:
@@ -131,8 +131,8 @@ def _turned_pair(
     return None if one is None else TurnedPair(rows, angle, (x, y), bool(backwards), one)
 
 
-class _Solution:
-    """What is known so far, at the start what is given."""
+class _Unknowns:
+    """Their values one after the other: what is known so far, at first what is given."""
 
     def __init__(self, graph: Graph, given: Given, known: dict[Scalar, Scalar]) -> None:
         self._graph, self._given = graph, given
