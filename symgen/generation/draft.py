@@ -183,7 +183,7 @@ def draft_of(model: Model, outputs: Sequence[str], options: Options) -> Draft:
 
 def _on_a_new_graph(derivations: Selection) -> Selection:
     """The same without what was derived on the way: of a large system ten times what is kept."""
-    mechanics = System(derivations.mechanics.model)
-    return replace(
-        derivations, mechanics=mechanics, quantities=tuple(moved(mechanics.graph, q) for q in derivations.quantities)
-    )
+    before, mechanics = derivations.mechanics.graph, System(derivations.mechanics.model)
+    quantities = tuple(moved(mechanics.graph, q) for q in derivations.quantities)
+    before.dissolve()
+    return replace(derivations, mechanics=mechanics, quantities=quantities)

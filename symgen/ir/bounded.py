@@ -7,6 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Statement, Status
+from symgen.ir.last_kernels import LastKernels
 from symgen.ir.split import names_in
 from symgen.records import dataclass
 
@@ -27,6 +28,16 @@ def bounded(kernel: Kernel, bounds: Sequence[Bound], parameters: Sequence[str], 
     may be a parameter that says where the coordinates are and that the kernel itself does not need; `parameters` are
     the names of all, in the order of the model.
     """
+    if not bounds:
+        return kernel
+    made = _BOUNDED.of(kernel, dict)
+    key = tuple(bounds), tuple(parameters), tuple(bound.parameter in positive for bound in bounds)
+    if key not in made:
+        made[key] = _bounded(kernel, bounds, parameters, positive)
+    return made[key]
+
+
+def _bounded(kernel: Kernel, bounds: Sequence[Bound], parameters: Sequence[str], positive: Container[str]) -> Kernel:
     locals_ = {load.member: load.local for load in kernel.loads if load.argument == "p"}
     taken = {load.local for load in kernel.loads}
     taken.update(target for statement in kernel.statements for target in statement.targets)
@@ -43,6 +54,10 @@ def bounded(kernel: Kernel, bounds: Sequence[Bound], parameters: Sequence[str], 
             size, statements = Local(name), (Statement((name,), "abs", (size,)),)
         blocks.append(Block(statements, tuple(_checks(size, bound))))
     return replace(kernel, loads=tuple(loads), blocks=(*blocks, *kernel.blocks))
+
+
+# One after another, the files of a model are made of the same kernels.
+_BOUNDED = LastKernels[dict[tuple[tuple[Bound, ...], tuple[str, ...], tuple[bool, ...]], Kernel]](4, statements=500_000)
 
 
 def bounds_of(kernel: Kernel) -> Iterator[tuple[Bound, bool]]:

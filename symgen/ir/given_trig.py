@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import lru_cache
 
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Operand, OperationName, Statement, Status
+from symgen.ir.last_kernels import LastKernels
 from symgen.ir.lifted import Lifted, same_kernel
 from symgen.ir.split import pruned
 from symgen.ir.wide_functions import works_with_pairs
@@ -33,12 +33,15 @@ class GivenTrig:
     coordinates: tuple[Load, ...]
 
 
-@lru_cache(maxsize=16)  # one kernel serves several files
 def given_trig(kernel: Kernel) -> GivenTrig | None:
     """The kernel with sines and cosines as an argument; None where it has none of a sum of coordinates.
 
     Beside operations on pairs of numbers a few sines are little, and given ones lack the digits.
     """
+    return _GIVEN.of(kernel, lambda: _given_trig(kernel))
+
+
+def _given_trig(kernel: Kernel) -> GivenTrig | None:
     if works_with_pairs(kernel):
         return None
     coordinates = {load.local: load for load in kernel.loads if load.argument == "q"}
@@ -56,6 +59,10 @@ def given_trig(kernel: Kernel) -> GivenTrig | None:
     made = pruned(changed)
     same_kernel(f"sines and cosines given to {kernel.name}", Lifted(kernel), Lifted(made))
     return GivenTrig(made, tuple(given))
+
+
+# One kernel serves several files.
+_GIVEN = LastKernels[GivenTrig | None](16)
 
 
 def _sums(kernel: Kernel, coordinates: Mapping[str, Load]) -> dict[Operand, Sum]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from enum import IntEnum
 from fractions import Fraction
+from itertools import chain
 from typing import Literal as Choice
 from typing import TypeAlias
 
@@ -181,7 +182,7 @@ class Kernel:
     @property
     def statements(self) -> tuple[Statement, ...]:
         """The statements on the way of a regular state."""
-        return tuple(statement for block in self.blocks for statement in block.statements)
+        return tuple(chain.from_iterable([block.statements for block in self.blocks]))
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ from symgen.linear_algebra.guards import Guard
 from symgen.methods.quantity import Quantity, scalars
 from symgen.methods.system import MethodInput
 from symgen.records import dataclass
+from symgen.runtime.garbage import cleared_with_the_rest
 from symgen.symbolic.angles.sharing import share_angles
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost, topological
@@ -69,6 +70,9 @@ def counted_weight(derived: Quantity) -> int:
 @lru_cache(maxsize=16)  # asked for again while candidates are compared
 def _weight(needed: tuple[Scalar, ...]) -> int:
     return cost(share_angles(needed[0].graph, needed)).weight
+
+
+cleared_with_the_rest(_weight.cache_clear)
 
 
 def solved_for_u(

@@ -13,7 +13,7 @@ from symgen.backends.scalars import C_TYPE, SUFFIX, file_stem
 from symgen.ir.kernel import Kernel, Load, Local, Program, Scalar, Status
 from symgen.model.model import Model, Range
 from symgen.proof.box import box, loaded_angles
-from symgen.proof.intervals import enclose
+from symgen.proof.reach import reach
 from symgen.proof.slices import slices
 
 # Runs of a kernel in one analysis: a few seconds.
@@ -119,7 +119,7 @@ def _driver(model: Model, program: Program, kernel: Kernel, members: dict[str, s
         entries=tuple(EntryView(place, *_texts(program.scalar, pair)) for place, pair in places),
         slices=cut,
         size=len(kernel.outputs),
-        doubtful=enclose(kernel, ranges).doubtful,
+        doubtful=reach(model, kernel).doubtful,
     )
 
 

@@ -11,12 +11,11 @@ from symgen.backends.statements import INFIX
 from symgen.ir.kernel import Kernel, Literal, Operand, Program
 from symgen.ir.wide_functions import works_with_pairs
 from symgen.model.model import Model
-from symgen.proof.box import box
 from symgen.proof.eva import MOST_RUNS, emit_eva
 from symgen.proof.fuzz import emit_fuzz
 from symgen.proof.gappa import QUANTITY, emit_gappa, obstacle
-from symgen.proof.intervals import enclose
 from symgen.proof.quadrants import overflowing_angles
+from symgen.proof.reach import reach
 
 # Characters of a value in terms of the inputs; a longer one is shown by its name.
 _LONGEST = 160
@@ -97,7 +96,7 @@ def _page(model: Model, programs: Sequence[Program], files: Sequence[str]) -> It
 
 
 def _doubtful(model: Model, kernel: Kernel) -> Iterator[str]:
-    yield from _row(kernel, enclose(kernel, box(model)).doubtful)
+    yield from _row(kernel, reach(model, kernel).doubtful)
 
 
 def _overflowing(model: Model, program: Program, kernel: Kernel) -> Iterator[str]:

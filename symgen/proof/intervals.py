@@ -30,6 +30,12 @@ class Enclosure:
     bounds: dict[str, Interval]
     doubtful: tuple[str, ...]
 
+    @property
+    def largest(self) -> float:
+        """The largest magnitude that a value may have, as far as bounds are numbers."""
+        sizes = [max(-low, high) for low, high in self.bounds.values()]
+        return max((size for size in sizes if not math.isnan(size)), default=0.0)
+
 
 def exact_pair(_: Operand, angle: Interval) -> tuple[Interval, ...]:
     """Sine and cosine as they are, whatever computes them."""

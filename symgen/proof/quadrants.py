@@ -12,7 +12,8 @@ from symgen.ir.kernel import Kernel, Local, Operand, Program, Scalar
 from symgen.model.model import Model
 from symgen.proof.box import box
 from symgen.proof.eva import cut_coordinates
-from symgen.proof.intervals import Enclosure, Interval, computed_pair, enclose, exact_pair
+from symgen.proof.intervals import Interval, computed_pair, enclose, exact_pair
+from symgen.proof.reach import reach
 
 LARGEST: dict[Scalar, float] = {"float32": (2 - 2.0**-23) * 2.0**127, "float64": (2 - 2.0**-52) * 2.0**1023}
 
@@ -22,21 +23,25 @@ def overflowing_angles(model: Model, program: Program, kernel: Kernel) -> tuple[
 
     None where sine and cosine are the library's, whose bounds Eva knows.
     """
-    function, ranges = program.sincos, box(model)
+    function, exact = program.sincos, reach(model, kernel)
     if function is None:
         return ()
     known = _of_cut_coordinates(kernel, cut_coordinates(model, program, kernel))
     loose: dict[str, None] = {}
 
+    def is_tight(angle: Operand, bounds: Interval) -> bool:
+        return not isinstance(angle, Local) or angle.name in known or _quadrants(bounds) == 1
+
     def pair(angle: Operand, bounds: Interval) -> tuple[Interval, ...]:
-        if not isinstance(angle, Local) or angle.name in known or _quadrants(bounds) == 1:
+        if not isinstance(angle, Local) or is_tight(angle, bounds):
             return exact_pair(angle, bounds)
         loose[angle.name] = None
         return computed_pair(function, bounds)
 
-    limit = LARGEST[program.scalar]
-    overflow = _exceed(enclose(kernel, ranges, pair), limit) and not _exceed(enclose(kernel, ranges), limit)
-    return tuple(loose) if overflow else ()
+    # without a loose angle nothing is wider than it is with exact pairs
+    if exact.largest > (limit := LARGEST[program.scalar]) or all(is_tight(*angle) for angle in exact.angles):
+        return ()
+    return tuple(loose) if enclose(kernel, box(model), pair).largest > limit else ()
 
 
 def _of_cut_coordinates(kernel: Kernel, cut: frozenset[int]) -> set[str]:
@@ -47,10 +52,6 @@ def _of_cut_coordinates(kernel: Kernel, cut: frozenset[int]) -> set[str]:
         if all(operand.name in known for operand in statement.operands if isinstance(operand, Local)):
             known.update(statement.targets)
     return known
-
-
-def _exceed(enclosure: Enclosure, limit: float) -> bool:
-    return any(max(-low, high) > limit for low, high in enclosure.bounds.values())
 
 
 def _quadrants(angle: Interval) -> int:

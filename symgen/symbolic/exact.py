@@ -38,6 +38,8 @@ MOST_DEGREE = 6
 
 _RING = frozenset({"add", "sub", "mul"})
 _SIGNS = {"add": (1, 1), "sub": (1, -1), "neg": (-1,)}
+# Half turns in what has none, which is most.
+_NO_TURN = Fraction(0)
 
 
 def _parts(a: Element) -> tuple[int, int]:
@@ -86,17 +88,21 @@ class ExactValues:
     are random numbers as other functions are.
 
     `unknown` holds the scalars of which nothing can be said: angles are numbers to the third inside of angles, and of
-    a constant such as 6 / pi, of which only the rational number is left, the half turns are not to be seen.
+    a constant such as 6 / pi, of which only the rational number is left, the half turns are not to be seen.  A point
+    `beside` this one knows the multiples of pi in angles already.
     """
 
-    def __init__(self, seed: int = 0, field: Field = FIELD, signs: bool = True) -> None:
+    def __init__(
+        self, seed: int = 0, field: Field = FIELD, signs: bool = True, beside: ExactValues | None = None
+    ) -> None:
         self._field, self._seed, self._signs = field, seed, signs
         self.unknown: set[Scalar] = set()
         self._any_root: set[Scalar] = set()
         self._known: dict[Scalar, Value] = {}
         # inside of angles, numbers are those of the field of angles
         self._inside = None if field.angles is None else ExactValues(seed, field.angles, signs)
-        self._turns: dict[Scalar, Fraction | None] = {}
+        # the same at every point
+        self._turns: dict[Scalar, Fraction | None] = {} if beside is None else beside._turns
         self._pairs: dict[Scalar, tuple[int, int] | None] = {}
 
     def waiting(self, outputs: Sequence[Scalar]) -> Sequence[Scalar]:
@@ -254,13 +260,19 @@ class ExactValues:
                 found[node] = half_turns(node.constant)
                 continue
             turns = [found[a] for a in node.args]
-            known = [t for t in turns if t is not None]
             if node.op in _SIGNS:
-                signs = _SIGNS[node.op]
-                found[node] = sum(map(mul, signs, known), Fraction(0)) if len(known) == len(turns) else None
+                found[node] = _sum_of_turns(_SIGNS[node.op], turns)
             elif node.op == "mul" and (number := node.args[0].constant) is not None:
-                found[node] = None if turns[1] is None else number * turns[1]
+                found[node] = turns[1] and number * turns[1]
             elif node.op == "div" and (number := node.args[1].constant):
-                found[node] = None if turns[0] is None else turns[0] / number
+                found[node] = turns[0] and turns[0] / number
             else:
-                found[node] = Fraction(0)
+                found[node] = _NO_TURN
+
+
+def _sum_of_turns(signs: Sequence[int], turns: Sequence[Fraction | None]) -> Fraction | None:
+    """None where one of them is; most are 0."""
+    known = [t for t in turns if t is not None]
+    if len(known) < len(turns):
+        return None
+    return sum(map(mul, signs, known), _NO_TURN) if any(known) else _NO_TURN

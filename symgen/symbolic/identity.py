@@ -110,5 +110,5 @@ def _point_of(graph: Graph, seed: int) -> ExactValues:
     """The point of a seed; the values that are known there stay with the graph, as most scalars are met again."""
     points = graph.points
     if seed not in points:
-        points[seed] = ExactValues(seed, signs=seed > 0)
+        points[seed] = ExactValues(seed, signs=seed > 0, beside=next(iter(points.values()), None))
     return points[seed]

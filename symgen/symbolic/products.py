@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Set
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -83,11 +83,13 @@ class Products:
             return 1, a
         return -1, opposite
 
-    def forget(self, stays: Callable[[Scalar], bool]) -> None:
+    def forget(self, gone: Set[Scalar]) -> None:
         """Lets go of scalars, see `Graph.forget`; factors of a product that stays stay with it."""
-        self._known = {a: found for a, found in self._known.items() if stays(a) and all(map(stays, found[1]))}
+        self._known = {
+            a: found for a, found in self._known.items() if a not in gone and gone.isdisjoint(found[1])
+        }
         self._turning = {a for a in self._turning if a in self._known}
-        self._sums = {value: a for value, a in self._sums.items() if stays(a)}
+        self._sums = {value: a for value, a in self._sums.items() if a not in gone}
 
     def combined(self, a: Scalar, b: Scalar, sign: int) -> Scalar | None:
         """a + sign * b where the two are products that differ in constants or in two sines and cosines only."""

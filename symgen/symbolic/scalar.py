@@ -8,7 +8,7 @@ combine by the addition theorem.  The graph knows no mechanics.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Set
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -175,26 +175,29 @@ class Graph:
         """Where scalars and their keys stand that are made from now on."""
         return len(self._serials), len(self._nodes)
 
-    def forget(self, mark: tuple[int, int], stays: Callable[[Scalar], bool]) -> None:
-        """Lets go of the scalars since the mark that do not stay; see `symgen.symbolic.passes.forgetting`."""
+    def forget(self, mark: tuple[int, int], stays: Callable[[Scalar], bool]) -> Set[Scalar]:
+        """Lets go of the scalars since the mark that do not stay, and tells which these were.
+
+        See `symgen.symbolic.passes.forgetting`.
+        """
         first, keys = mark
+        gone = {node for node in self._serials[first:] if node is not None and not stays(node)}
         kept = []
         # keys stand in the order in which they were made, and hold operands, too
         while len(self._nodes) > keys:
             key, node = self._nodes.popitem()
             args = key[2] if key[0] == "raw" else key[1]
             assert isinstance(args, tuple)
-            if stays(node) and all(map(stays, args)):
+            if node not in gone and gone.isdisjoint(args):
                 kept.append((key, node))
         self._nodes.update(reversed(kept))
-        self._by_value = {value: node for value, node in self._by_value.items() if stays(node)}
-        self._angles.forget(stays)
+        self._by_value = {value: node for value, node in self._by_value.items() if node not in gone}
+        self._angles.forget(gone)
         self.points.clear()
-        self.products.forget(stays)
-        for serial in range(first, len(self._serials)):
-            node_there = self._serials[serial]
-            if node_there is not None and not stays(node_there):
-                self._serials[serial] = None
+        self.products.forget(gone)
+        for node in gone:
+            self._serials[node.serial] = None
+        return gone
 
     def dissolve(self) -> None:
         """Lets go of all scalars but those that somebody holds; nothing is made on this graph any more.
@@ -204,8 +207,7 @@ class Graph:
         for known in (self._nodes, self._constants, self._serials, self._by_value):
             known.clear()
         self.points.clear()
-        self._angles.forget(lambda _: False)
-        self.products.forget(lambda _: False)
+        self._angles, self.products = Angles(self), Products(self)
 
     def lift(self, value: Number) -> Scalar:
         """A scalar of this graph from a scalar, an integer or a rational number."""

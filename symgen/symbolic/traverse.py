@@ -9,6 +9,7 @@ from functools import lru_cache
 from itertools import chain
 
 from symgen.records import dataclass
+from symgen.runtime.garbage import cleared_with_the_rest
 from symgen.symbolic.scalar import Graph, Scalar
 
 # What counts as arithmetic, as an angle, or not at all; every other operation is a function.
@@ -31,6 +32,9 @@ def topological(outputs: Iterable[Scalar], known: Container[Scalar] = ()) -> Seq
 @lru_cache(maxsize=16)
 def _whole_order(outputs: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
     return tuple(_order(outputs, ()))
+
+
+cleared_with_the_rest(_whole_order.cache_clear)
 
 
 def forget_orders() -> None:

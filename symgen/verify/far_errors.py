@@ -20,7 +20,7 @@ from symgen.ir.wide_functions import works_with_pairs
 from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.many_states import run_many
 from symgen.verify.sampling.lanes import RoundingErrors
-from symgen.verify.single_precision import in_single_precision, with_numbers_of_float32
+from symgen.verify.single_precision import in_single_precision
 
 
 @dataclass(frozen=True)
@@ -56,8 +56,6 @@ class FarErrors:
         self._programs, self._kernels, self._in_pairs = programs, kernels, plain is not None
         self._estimates = RoundingErrors(plain or kernels["float64"])
         self._single = kernels.get("float32")
-        if self._single is not None:
-            self._beside = with_numbers_of_float32(self._single)
 
     def units(self, far: Far) -> dict[Scalar, Lanes]:
         """By scalar type, a number for each state; 0 where a kernel refuses with reason.
@@ -101,7 +99,7 @@ class FarErrors:
     def _measured(self, kernel: Kernel, far: Far) -> Lanes:
         """How far float32 is off; infinitely where it refuses without a reason, or what float64 does not."""
         given, programs = far.rounded, self._programs
-        exact = run_many(self._beside, programs["float64"].sincos, "float64", given)
+        exact = run_many(kernel, programs["float64"].sincos, "float64", given, numbers="float32")
         made = run_many(kernel, programs["float32"].sincos, "float32", given)
         off = [
             0.0 if refused and not _is_unfounded(status, regular) else inf if status else dist(y, z)

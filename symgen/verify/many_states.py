@@ -33,28 +33,41 @@ _Places: TypeAlias = Any
 
 
 def run_many(
-    kernel: Kernel, sincos: Function | None, scalar: Scalar, arguments: Sequence[Mapping[str, Sequence[float]]]
+    kernel: Kernel,
+    sincos: Function | None,
+    scalar: Scalar,
+    arguments: Sequence[Mapping[str, Sequence[float]]],
+    numbers: Scalar | None = None,
 ) -> list[tuple[Status, list[float]]]:
-    """The status of each state and, where it is OK, the outputs; `arguments` hold the parameters `p`, too."""
+    """The status of each state and, where it is OK, the outputs; `arguments` hold the parameters `p`, too.
+
+    With `numbers` the literals are those of this scalar type, so that they make no difference between the types.
+    """
     if not arguments:
         return []
     with np.errstate(all="ignore"):
-        return _KernelRun(kernel, sincos, scalar, arguments).outcomes()
+        return _KernelRun(kernel, sincos, scalar, arguments, numbers or scalar).outcomes()
 
 
 class _KernelRun:
     """Values stand in a row for each local and each number."""
 
     def __init__(
-        self, kernel: Kernel, sincos: Function | None, scalar: Scalar, given: Sequence[Mapping[str, Sequence[float]]]
+        self,
+        kernel: Kernel,
+        sincos: Function | None,
+        scalar: Scalar,
+        given: Sequence[Mapping[str, Sequence[float]]],
+        numbers: Scalar,
     ) -> None:
         self._arithmetic, self._count = LaneArithmetic(scalar, sincos), len(given)
         self._plan = plan = _PLANS.of(kernel, lambda: _Plan(kernel))
         self._values = np.empty((plan.rows, len(given)), TYPES[scalar])
+        parts: dict[str, Lanes] = {name: np.array([one[name] for one in given], float).T for name in given[0]}
         for load in kernel.loads:
-            self._values[plan.loaded[load.local]] = [entry(one, load) for one in given]
-        places, numbers = plan.rounded(scalar)
-        self._values[places] = numbers[:, None]
+            self._values[plan.loaded[load.local]] = entry(parts, load)
+        rounded = plan.numbers(numbers)
+        self._values[plan.rows - len(rounded) :] = rounded[:, None]
 
     def outcomes(self) -> list[tuple[Status, list[float]]]:
         """Of all states."""
@@ -70,7 +83,7 @@ class _KernelRun:
         """The first status of each state."""
         values = self._values
         for group in block.groups:
-            made = self._arithmetic.apply(group.operation, [values[places] for places in group.operands])
+            made = self._arithmetic.apply(group.operation, [values.take(places, 0) for places in group.operands])
             for places, result in zip(group.targets, made, strict=True):
                 values[places] = result
         status = np.zeros(self._count, dtype=int)
@@ -89,11 +102,12 @@ class _KernelRun:
 
 @dataclass(frozen=True)
 class _StatementGroup:
-    """Statements of one operation: places of their first operands, of their second ones; likewise targets."""
+    """Statements of one operation: places of their first operands, of their second ones; likewise targets, which stand
+    one after the other."""
 
     operation: OperationName
     operands: tuple[_Places, ...]
-    targets: tuple[_Places, ...]
+    targets: tuple[slice, ...]
 
 
 @dataclass(frozen=True)
@@ -112,16 +126,16 @@ class _BlockPlan:
 
 
 class _Plan:
-    """Where values stand, and what runs together."""
+    """Where values stand, and what runs together: numbers have negative places, they stand behind all else."""
 
     def __init__(self, kernel: Kernel) -> None:
         # of each place, how many groups of its block come before it at least
-        self._depth: list[int] = []
-        self._numbers: list[tuple[int, Literal]] = []
-        self._rounded: dict[Scalar, tuple[_Places, Lanes]] = {}
+        self._depth: list[int] = [0] * len(kernel.loads)
+        self._numbers: list[Literal] = []
+        self._rounded: dict[Scalar, Lanes] = {}
         # by identity: the values of numbers take longer to compare than to store twice
         self._placed: dict[int, int] = {}
-        self.loaded = {load.local: self._new(0) for load in kernel.loads}
+        self.loaded = {load.local: place for place, load in enumerate(kernel.loads)}
         known = dict(self.loaded)
         self.blocks = [self._block(block, known) for block in kernel.blocks]
         self.outputs = [self._place(output, known) for output in kernel.outputs]
@@ -129,27 +143,21 @@ class _Plan:
     @property
     def rows(self) -> int:
         """How many there are."""
-        return len(self._depth)
+        return len(self._depth) + len(self._numbers)
 
-    def rounded(self, scalar: Scalar) -> tuple[_Places, Lanes]:
-        """Where numbers stand, and what they are in a scalar type."""
+    def numbers(self, scalar: Scalar) -> Lanes:
+        """What the last rows are in a scalar type."""
         if scalar not in self._rounded:
-            numbers = [number(literal, scalar) for _, literal in self._numbers]
-            places = [place for place, _ in self._numbers]
-            self._rounded[scalar] = np.array(places, int), np.array(numbers, TYPES[scalar])
+            self._rounded[scalar] = np.array([number(one, scalar) for one in reversed(self._numbers)], TYPES[scalar])
         return self._rounded[scalar]
-
-    def _new(self, depth: int) -> int:
-        self._depth.append(depth)
-        return len(self._depth) - 1
 
     def _place(self, operand: Operand, known: Mapping[str, int]) -> int:
         if not isinstance(operand, Literal):
             return known[operand.name]
         place = self._placed.get(id(operand))
         if place is None:
-            place = self._placed[id(operand)] = self._new(0)
-            self._numbers.append((place, operand))
+            self._numbers.append(operand)
+            place = self._placed[id(operand)] = -len(self._numbers)
         return place
 
     def _block(self, block: Block, known: dict[str, int]) -> _BlockPlan:
@@ -158,23 +166,38 @@ class _Plan:
         return _BlockPlan(groups, tuple(self._check(check, known) for check in block.checks))
 
     def _groups(self, statements: Iterable[Statement], known: dict[str, int]) -> tuple[_StatementGroup, ...]:
+        """Targets get their places group by group, so that each result is written as one piece."""
+        found: dict[tuple[int, OperationName], list[Statement]] = {}
+        levels: dict[str, int] = {}
         depth = self._depth
-        found: dict[tuple[int, OperationName], list[tuple[list[int], list[int]]]] = {}
         for statement in statements:
-            operands = [
-                known[o.name] if o.__class__ is Local else self._place(o, known) for o in statement.operands
-            ]
-            level = 1 + max([depth[place] for place in operands])
-            targets = []
+            level = 0
+            for operand in statement.operands:
+                if operand.__class__ is Local:
+                    name = operand.name
+                    above = levels[name] if name in levels else depth[known[name]]
+                    if above > level:
+                        level = above
             for target in statement.targets:
-                known[target] = len(depth)
-                targets.append(len(depth))
-                depth.append(level)
-            found.setdefault((level, statement.operation), []).append((operands, targets))
+                levels[target] = level + 1
+            key = level + 1, statement.operation
+            if key in found:
+                found[key].append(statement)
+            else:
+                found[key] = [statement]
         groups = []
-        for (_, operation), members in sorted(found.items(), key=lambda item: item[0]):
-            read, made = (tuple(np.array(places).T) for places in zip(*members, strict=True))
-            groups.append(_StatementGroup(operation, read, made))
+        for (level, operation), members in sorted(found.items(), key=lambda item: item[0]):
+            read = [
+                [known[o.name] if o.__class__ is Local else self._place(o, known) for o in one.operands]
+                for one in members
+            ]
+            made = []
+            for targets in zip(*(one.targets for one in members), strict=True):
+                first = len(depth)
+                known |= zip(targets, range(first, first + len(targets)), strict=True)
+                depth += [level] * len(targets)
+                made.append(slice(first, len(depth)))
+            groups.append(_StatementGroup(operation, tuple(np.array(read).T), tuple(made)))
         return tuple(groups)
 
     def _check(self, check: Check, known: Mapping[str, int]) -> _CheckPlan:

@@ -5,7 +5,7 @@ A leaf is a coordinate, or whatever is not a sum.  Signs are pulled out, so that
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping, Set
 from typing import TYPE_CHECKING
 
 from symgen.symbolic.fingerprint import angle_pair, leaf_pair
@@ -43,10 +43,10 @@ class Angles:
             known = self._residues[angle] = angle_pair(form, self._of_leaves)
         return known
 
-    def forget(self, stays: Callable[[Scalar], bool]) -> None:
+    def forget(self, gone: Set[Scalar]) -> None:
         """Lets go of scalars, see `Graph.forget`."""
-        self._upright = {angle: one for angle, one in self._upright.items() if stays(angle) and stays(one[1])}
-        self._residues = {angle: pair for angle, pair in self._residues.items() if stays(angle)}
+        self._upright = {angle: one for angle, one in self._upright.items() if not (angle in gone or one[1] in gone)}
+        self._residues = {angle: pair for angle, pair in self._residues.items() if angle not in gone}
 
     def _turned(self, form: Mapping[Scalar, int]) -> tuple[bool, Scalar]:
         """Whether the first leaf counts negative, and the sum of the leaves in their order with all signs turned so."""

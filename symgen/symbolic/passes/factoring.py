@@ -41,9 +41,9 @@ class Factoring:
 
     def forget(self, mark: tuple[int, int], needed: Iterable[Scalar]) -> None:
         """Lets go of what was made since the mark of the graph and is not needed, see `forgetting`."""
-        stays = forgetting(self.graph, mark, needed)
-        if stays is not None:
-            self._fixed = {node: fixed for node, fixed in self._fixed.items() if stays(node)}
+        gone = forgetting(self.graph, mark, needed)
+        if gone is not None:
+            self._fixed = {node: fixed for node, fixed in self._fixed.items() if node not in gone}
             self._multipliers.clear()
 
     def multiplier(self, whole: Callable[[Scalar], bool]) -> Multiplier:

@@ -6,13 +6,11 @@ them: they are what most of the memory of a derivation goes to.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from typing import TypeAlias
+from collections.abc import Iterable, Set
 
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import forget_orders
 
-Stays: TypeAlias = Callable[[Scalar], bool]
 # Scalars that are forgotten together at least: fewer are met again, and looking for those that are needed takes time,
 # too.
 FEWEST_FORGOTTEN = 10_000
@@ -20,10 +18,10 @@ FEWEST_FORGOTTEN = 10_000
 START = (0, 0)
 
 
-def forgetting(graph: Graph, mark: tuple[int, int], needed: Iterable[Scalar]) -> Stays | None:
+def forgetting(graph: Graph, mark: tuple[int, int], needed: Iterable[Scalar]) -> Set[Scalar] | None:
     """Lets the graph go of what was made since the mark (`Graph.mark`), but for what `needed` scalars hold.
 
-    Tells which scalars stay, to those who remember scalars themselves; None where too little was made to look.  What is
+    Tells which scalars went, to those who remember scalars themselves; None where too little was made to look.  What is
     forgotten is made again where it is met again, with another serial number.
     """
     first = mark[0]
@@ -37,9 +35,6 @@ def forgetting(graph: Graph, mark: tuple[int, int], needed: Iterable[Scalar]) ->
                 live.add(argument)
                 stack.append(argument)
 
-    def stays(node: Scalar) -> bool:
-        return node.serial < first or node in live or node.constant is not None
-
-    graph.forget(mark, stays)
+    gone = graph.forget(mark, lambda node: node in live or node.constant is not None)
     forget_orders()
-    return stays
+    return gone

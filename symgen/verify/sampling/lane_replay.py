@@ -40,5 +40,5 @@ class LaneReplay:
         for place, source in enumerate(self._inputs, first):
             registers[place] = inputs[source]
         for function, made, read in self._groups:
-            registers[made] = function(*(registers[rows] for rows in read))
+            function(*(registers.take(rows, 0) for rows in read), out=registers[made])
         return registers[self._outputs]

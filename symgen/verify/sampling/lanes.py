@@ -49,8 +49,8 @@ class RoundingErrors:
         self._blocks = blocks
         self._outputs = [self._place(output) for output in kernel.outputs]
 
-    def at(self, given: Mapping[str, Lanes], tangents: Lanes | None = None) -> Lanes:
-        """The estimates, and 0 where the kernel refuses.
+    def with_units(self, given: Mapping[str, Lanes], tangents: Lanes | None = None) -> tuple[Lanes, Lanes]:
+        """The errors and their units, both for a roundoff of 1; 0 and infinite where the kernel refuses.
 
         `given` holds the arguments and the parameters `p`, a row for each state.  d is that of the kernel itself for
         arguments and parameters; what literals of the model add is left out, so that this is more than there is rather
@@ -59,11 +59,6 @@ class RoundingErrors:
         function than what it stands for.  Along V coordinates move together, and one that all but vanishes by more than
         a share of itself.
         """
-        own, unit = self.with_units(given, tangents)
-        return own / unit
-
-    def with_units(self, given: Mapping[str, Lanes], tangents: Lanes | None = None) -> tuple[Lanes, Lanes]:
-        """The errors and their units, both for a roundoff of 1; 0 and infinite where the kernel refuses."""
         count = len(next(iter(given.values())))
         with np.errstate(all="ignore"):
             values, regular = self._values(given, count)
@@ -79,9 +74,11 @@ class RoundingErrors:
     def indefinite(self, given: Mapping[str, Lanes]) -> Lanes:
         """Where a pivot of masses is below 0, by more than rounding leaves of one that is 0."""
         count = len(next(iter(given.values())))
+        found = np.zeros(count, dtype=bool)
+        if not any(check.status is Status.MASS_RANK for block in self._kernel.blocks for check in block.checks):
+            return found
         with np.errstate(all="ignore"):
             values, _ = self._values(given, count)
-            found = np.zeros(count, dtype=bool)
             for block, (_, checks) in zip(self._kernel.blocks, self._blocks, strict=True):
                 for check, (_, value, limit) in zip(block.checks, checks, strict=True):
                     if check.status is Status.MASS_RANK:

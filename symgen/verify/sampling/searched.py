@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain, islice
 from math import dist
@@ -52,6 +53,21 @@ JUDGED, SETTLED = 8, 32
 MEASURED = 4
 
 
+@dataclass(frozen=True)
+class _Estimates:
+    """States, the rounding errors that are estimated there, the unit of d + eps |y| for a roundoff of 1, and where
+    nothing speaks against a regular state: elsewhere errors are 0, others would take the places of these."""
+
+    states: Nearby
+    units: Lanes
+    unit: Lanes
+    regular: Lanes
+
+    def __add__(self, other: _Estimates) -> _Estimates:
+        pairs = (self.units, other.units), (self.unit, other.unit), (self.regular, other.regular)
+        return _Estimates(joined(self.states, other.states), *map(np.concatenate, pairs))
+
+
 class WorstStateSearch:
     """The worst states of the quantities of a model, those of every method that was looked at."""
 
@@ -63,14 +79,15 @@ class WorstStateSearch:
     def look(self, kernel: Kernel) -> None:
         """Adds the worst states of a kernel of plain numbers."""
         with working(f"where {kernel.name} is worst"):
-            self._add(kernel, *self._estimated(kernel))
+            errors = RoundingErrors(kernel)
+            self._add(kernel, errors, self._estimated(kernel, errors))
 
-    def _add(self, kernel: Kernel, states: Nearby, units: Lanes) -> None:
-        samples = self._brought(kernel, states, units, SETTLED)
-        found = self._worst_of(kernel, samples) if len(samples) > JUDGED else samples
+    def _add(self, kernel: Kernel, errors: RoundingErrors, made: _Estimates) -> None:
+        samples = self._brought(kernel, made.states, made.units, SETTLED)
+        found = self._worst_of(kernel, errors, samples) if len(samples) > JUDGED else samples
         if "float32" in self._expected.scalars:
             # beside those that estimates tell of, not in their places
-            found += self._brought(kernel, states, self._measured(kernel, states), MEASURED)
+            found += self._brought(kernel, made.states, _measured(kernel, made), MEASURED)
         known = self._states[kernel.name]
         known += [sample for sample in dict.fromkeys(found) if sample not in known]
 
@@ -83,13 +100,13 @@ class WorstStateSearch:
         )
         return [sample for sample in tried if sample is not None]
 
-    def _worst_of(self, kernel: Kernel, samples: Sequence[Sample]) -> list[Sample]:
+    def _worst_of(self, kernel: Kernel, errors: RoundingErrors, samples: Sequence[Sample]) -> list[Sample]:
         """Those that a kernel of plain numbers does worst at, half of them in each scalar type.
 
         Estimates are what rounding may do; what it does is measured beside twice the digits, or beside float64.
         """
         states = of_samples(samples)
-        unit = RoundingErrors(kernel).with_units(states.parts, self._tangents(states))[1]
+        unit = errors.with_units(states.parts, self._tangents(states))[1]
         double, single = ([rounded(sample, scalar).state for sample in samples] for scalar in UNIT_ROUNDOFF)
         made, exact = (outcomes(one, None, "float64", double) for one in (kernel, paired(kernel, "float64")))
         short, long = (outcomes(kernel, None, scalar, single) for scalar in ("float32", "float64"))
@@ -121,41 +138,34 @@ class WorstStateSearch:
                 self._values[key] = None
         return self._values[key]
 
-    def _estimated(self, kernel: Kernel) -> tuple[Nearby, Lanes]:
-        """States, and the rounding errors that are estimated there."""
+    def _estimated(self, kernel: Kernel, errors: RoundingErrors) -> _Estimates:
+        """What is estimated at states near those of the verification."""
         count = NUMBERS // (len(kernel.statements) + 1)
         states = self._beside_singular if kernel.name in MAIN else self._drawn
         if len(states) > count:
             samples = len(self._surroundings.samples)
             others = np.linspace(samples, len(states), max(0, count - samples), endpoint=False).astype(int)
             states = states.only(np.append(np.arange(samples), others))
-        errors, least = RoundingErrors(kernel), self._settling(kernel.name).measures
-        units = self._units(errors, states, least)
+        least = self._settling(kernel.name).measures
+        made = self._units(errors, states, least)
         going = min(self._affordable(KEPT * DIRECTIONS), max(count, DIRECTIONS))
-        for step in range(STEPS_FURTHER if units.max() > DOUBTFUL else 0):
-            worst = states.only(_worst(units, KEPT))
+        for step in range(STEPS_FURTHER if made.units.max() > DOUBTFUL else 0):
+            worst = made.states.only(_worst(made.units, KEPT))
             starts = worst.only(np.arange(len(worst)).repeat(DIRECTIONS)[:going])
             further = self._surroundings.moved(starts, f"{kernel.name} {step}")
             if len(further):
-                states, units = joined(states, further), np.append(units, self._units(errors, further, least))
-        return states, units
+                made += self._units(errors, further, least)
+        return made
 
     def _tangents(self, states: Nearby) -> Lanes | None:
         """Of V, where rows depend on each other."""
         reference = self._expected.reference
         return self._surroundings.tangents(states) if reference.ranks.constraints < reference.system.r else None
 
-    def _units(self, errors: RoundingErrors, states: Nearby, least: Sequence[float]) -> Lanes:
-        """What is estimated where nothing speaks against a regular state: others would take the places of these."""
-        units, measures = errors.at(states.parts, self._tangents(states)), self._surroundings.measures(states)
-        return np.where((measures >= least).all(axis=1), units, 0.0)
-
-    def _measured(self, kernel: Kernel, states: Nearby) -> Lanes:
-        """What float32 loses there, in units, however large the estimates are."""
-        unit = RoundingErrors(kernel).with_units(states.parts, self._tangents(states))[1]
-        measures, least = self._surroundings.measures(states), self._settling(kernel.name).measures
-        units = lost_in_float32(kernel, states.parts) / (unit * float(UNIT_ROUNDOFF["float32"]))
-        return np.where((measures >= least).all(axis=1), units, 0.0)
+    def _units(self, errors: RoundingErrors, states: Nearby, least: Sequence[float]) -> _Estimates:
+        own, unit = errors.with_units(states.parts, self._tangents(states))
+        regular = (self._surroundings.measures(states) >= least).all(axis=1)
+        return _Estimates(states, np.where(regular, own / unit, 0.0), unit, regular)
 
     @cached_property
     def _surroundings(self) -> Surroundings:
@@ -192,6 +202,12 @@ class WorstStateSearch:
         """For other quantities, and for the main ones."""
         reference, samples = self._expected.reference, self._expected.drawn
         return Settling(reference, samples), Settling(reference, samples, NEARER)
+
+
+def _measured(kernel: Kernel, made: _Estimates) -> Lanes:
+    """What float32 loses at states, in units, however large the estimates are."""
+    units = lost_in_float32(kernel, made.states.parts) / (made.unit * float(UNIT_ROUNDOFF["float32"]))
+    return np.where(made.regular, units, 0.0)
 
 
 def _worst(units: Lanes, count: int) -> Lanes:

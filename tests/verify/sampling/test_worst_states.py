@@ -81,7 +81,8 @@ def test_estimates_are_shares_of_roundings_in_units_of_what_inputs_do() -> None:
     rounded = [1e6 * a, x + 1e6 * a, (1e6 - 1) * a, x + a]
     unit = (x + a) + 1.5 * (x**2 + a**2) ** 0.5
     state = {"q": np.array([[x, a], [2 * x, 2 * a]])}
-    assert RoundingErrors(DETOUR).at(state) == pytest.approx([np.linalg.norm(rounded) / unit] * 2)
+    own, size = RoundingErrors(DETOUR).with_units(state)
+    assert own / size == pytest.approx([np.linalg.norm(rounded) / unit] * 2)
 
 
 def test_where_rows_depend_configurations_move_along_v_alone() -> None:
@@ -129,7 +130,7 @@ def test_of_doubtful_states_the_worst_are_judged() -> None:
         exact = Fraction(x) + Fraction(a)
         return float(abs(Fraction(made) - exact)) / (float(exact) + 1.5 * np.hypot(x, a))
 
-    judged = WorstStateSearch(expected)._worst_of(DETOUR_OF_LADDER, samples)
+    judged = WorstStateSearch(expected)._worst_of(DETOUR_OF_LADDER, RoundingErrors(DETOUR_OF_LADDER), samples)
     assert len(judged) == 8
     for scalar in ("float64", "float32"):
         ordered = sorted(samples, key=lambda sample: -units(sample, scalar))
@@ -207,8 +208,8 @@ def test_lengths_without_a_range_are_looked_at_further_out() -> None:
     for bounds in ("", ", range: [-1, 1]"):
         model = load_text(CART.replace("x: {unit: m", "x: {unit: m" + bounds), "cart.yaml")
         expected = Expected(model, ["inverse_dynamics"], 16, lambda _: None)
-        states, units = WorstStateSearch(expected)._estimated(FAR_DETOUR)
-        worst[bounds] = states.parts["q"][:, 0], units.max()
+        made = WorstStateSearch(expected)._estimated(FAR_DETOUR, RoundingErrors(FAR_DETOUR))
+        worst[bounds] = made.states.parts["q"][:, 0], made.units.max()
     near, found = worst[", range: [-1, 1]"]
     assert np.abs(near).max() < 1.02
     assert found < FACTOR
