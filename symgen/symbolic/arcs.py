@@ -10,8 +10,9 @@ from fractions import Fraction
 
 from symgen.symbolic.scalar import Graph, Scalar
 
-# Halvings of the angle before the series is summed, and terms of the series.
+# Halvings of the angle before the series is summed.
 HALVINGS = 2
+# Terms of the series.
 TERMS = 12
 
 

@@ -38,8 +38,6 @@ MOST_DEGREE = 6
 
 _RING = frozenset({"add", "sub", "mul"})
 _SIGNS = {"add": (1, 1), "sub": (1, -1), "neg": (-1,)}
-# Half turns in what has none, which is most.
-_NO_TURN = Fraction(0)
 
 
 def _parts(a: Element) -> tuple[int, int]:
@@ -254,7 +252,7 @@ class ExactValues:
 
     def _add_turns(self, angles: Sequence[Scalar]) -> None:
         """The multiples of pi that are added in sums and in multiples of them; what stands in products is a number."""
-        found = self._turns
+        found, none = self._turns, Fraction(0)
         for node in topological(angles, found):
             if node.constant is not None:
                 found[node] = half_turns(node.constant)
@@ -267,7 +265,7 @@ class ExactValues:
             elif node.op == "div" and (number := node.args[1].constant):
                 found[node] = turns[0] and turns[0] / number
             else:
-                found[node] = _NO_TURN
+                found[node] = none
 
 
 def _sum_of_turns(signs: Sequence[int], turns: Sequence[Fraction | None]) -> Fraction | None:
@@ -275,4 +273,4 @@ def _sum_of_turns(signs: Sequence[int], turns: Sequence[Fraction | None]) -> Fra
     known = [t for t in turns if t is not None]
     if len(known) < len(turns):
         return None
-    return sum(map(mul, signs, known), _NO_TURN) if any(known) else _NO_TURN
+    return sum(map(mul, signs, known), Fraction(0)) if any(known) else Fraction(0)
