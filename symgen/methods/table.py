@@ -62,6 +62,7 @@ _GIVEN_PLACES = ("configuration_from_measured", "configuration_from_task")
 _GIVEN_MOTIONS = (
     "velocity_from_measured", "acceleration_from_measured", "velocity_from_task", "acceleration_from_task",
 )  # fmt: skip
+_GRADIENTS = ("inverse_dynamics_gradient", "forward_dynamics_gradient")
 _WEIGHTED = ("weighted_pseudoinverse", "weighted_nullspace_projector")
 
 # Of methods that count alike the first is taken.
@@ -88,6 +89,7 @@ METHODS: tuple[MethodRow, ...] = (
     _method("householder", _PROJECTOR, "projector", "HOUSEHOLDER", Use.ASKED),
     _method("closed", _GIVEN_PLACES, "given.closed", "CLOSED"),
     _method("legs", _GIVEN_MOTIONS, "given.legs", "BY_LEGS"),
+    _method("weighted_jacobian", _GRADIENTS, "weighted_jacobian", "WEIGHTED_JACOBIAN", Use.SPARE),
     _method("schur_qr", _WEIGHTED, "forward_dynamics.weighted_projection", "SCHUR_QR", Use.SPARE),
     _method("articulated", _WEIGHTED, "forward_dynamics.weighted_projection", "ARTICULATED", Use.SPARE),
 )
