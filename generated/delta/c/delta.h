@@ -16,11 +16,16 @@
  *   u[2] u_3 [N*m] torque of motor 3
  * Measured coordinates q_m (rates qd_m and accelerations qdd_m in the same order):
  *   a_1, a_2, a_3
+ * Coordinates of the task x_t (rates xd_t and accelerations xdd_t in the same order):
+ *   x, y, z
  *
  * Operations                      + -      *      /   sqrt sincos  other
  * configuration_from_measured     352    436     29     10      6      0
- * velocity_from_measured           63    126      1      0      3      0
- * acceleration_from_measured      144    275      2      0      3      0
+ * velocity_from_measured           47     81      3      0      3      0
+ * acceleration_from_measured       89    155      6      0      3      0
+ * configuration_from_task         221    253     15      0     18      0
+ * velocity_from_task               30     43      3      0      3      0
+ * acceleration_from_task           69    105      6      0      3      0
  * inverse_dynamics                 52     71      1      0      3      0
  * forward_dynamics                173    287     11      2      3      0
  * multipliers                     163    268     11      2      3      0
@@ -57,7 +62,8 @@ typedef enum {
     DELTA_PARAMETER_RANGE = 6, /* a parameter is so far from its value in the model file that the result would lose digits */
     DELTA_MEASURED_RANK = 7, /* what is measured does not determine the rest at this configuration */
     DELTA_NOT_CLOSED = 8, /* Newton's method has not closed the loops from this start */
-    DELTA_BRANCH = 9 /* the start is so far away that the result may belong to another assembly mode */
+    DELTA_BRANCH = 9, /* the start is so far away that the result may belong to another assembly mode */
+    DELTA_TASK_RANK = 10 /* the task does not determine the rest at this configuration */
 } delta_status;
 #endif
 
@@ -85,6 +91,15 @@ delta_status delta_velocity_from_measured(const double q[6], const double qd_m[3
 /* q̈(q̈_m): the admissible acceleration with the measured ones, or nearest to them, at the measured velocity;
    length 6 */
 delta_status delta_acceleration_from_measured(const double q[6], const double qd_m[3], const double qdd_m[3], const delta_params *p, double qdd_found[6]);
+
+/* q(x): the configuration with these coordinates of the task, or nearest to them, on the branch of q; length 6 */
+delta_status delta_configuration_from_task(const double x_t[3], const double q[6], const delta_params *p, double q_found[6]);
+
+/* q̇(ẋ): the admissible velocity with these rates of the task, or nearest to them; length 6 */
+delta_status delta_velocity_from_task(const double q[6], const double xd_t[3], const delta_params *p, double qd_found[6]);
+
+/* q̈(ẍ): the admissible acceleration with these ones of the task, or nearest to them, at that velocity; length 6 */
+delta_status delta_acceleration_from_task(const double q[6], const double xd_t[3], const double xdd_t[3], const delta_params *p, double qdd_found[6]);
 
 /* u: the smallest inputs that produce the motion, (27); length 3 */
 delta_status delta_inverse_dynamics(const double q[6], const double qd[6], const double qdd[6], const delta_params *p, double u[3]);

@@ -16,11 +16,16 @@
  *   u[2] u_3 [N*m] torque of motor 3
  * Measured coordinates q_m (rates qd_m and accelerations qdd_m in the same order):
  *   a_1, a_2, a_3
+ * Coordinates of the task x_t (rates xd_t and accelerations xdd_t in the same order):
+ *   x, y, z
  *
  * Operations                      + -      *      /   sqrt sincos  other
  * configuration_from_measured     352    436     29     10      6      0
- * velocity_from_measured           63    126      1      0      3      0
- * acceleration_from_measured      144    275      2      0      3      0
+ * velocity_from_measured           47     81      3      0      3      0
+ * acceleration_from_measured       89    155      6      0      3      0
+ * configuration_from_task         221    253     15      0     18      0
+ * velocity_from_task               30     43      3      0      3      0
+ * acceleration_from_task           69    105      6      0      3      0
  * inverse_dynamics                 52     71      1      0      3      0
  * forward_dynamics                173    287     11      2      3      0
  * multipliers                     163    268     11      2      3      0
@@ -29,8 +34,11 @@
  *
  * Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:
  *   configuration_from_measured r <= 0.39, 1.4e-06 <= l_2 <= 4.7
- *   velocity_from_measured 1.4e-05 <= l_2 <= 8.5
- *   acceleration_from_measured 2.4e-05 <= l_2 <= 8.5
+ *   velocity_from_measured 1.4e-07 <= l_2 <= 8.5
+ *   acceleration_from_measured 1.4e-07 <= l_2 <= 8.5
+ *   configuration_from_task 0.0026 <= l_1, l_2 <= 8.5
+ *   velocity_from_task 1.4e-07 <= l_2
+ *   acceleration_from_task 1.4e-07 <= l_2
  *   inverse_dynamics l_1 <= 3.5, 0.14 <= l_2 <= 8.5
  *   forward_dynamics J_a <= 2, J_m <= 0.88
  *   multipliers 7.5e-08 <= l_2, m_r <= 5
@@ -57,7 +65,8 @@ typedef enum {
     DELTA_PARAMETER_RANGE = 6, /* a parameter is so far from its value in the model file that the result would lose digits */
     DELTA_MEASURED_RANK = 7, /* what is measured does not determine the rest at this configuration */
     DELTA_NOT_CLOSED = 8, /* Newton's method has not closed the loops from this start */
-    DELTA_BRANCH = 9 /* the start is so far away that the result may belong to another assembly mode */
+    DELTA_BRANCH = 9, /* the start is so far away that the result may belong to another assembly mode */
+    DELTA_TASK_RANK = 10 /* the task does not determine the rest at this configuration */
 } delta_status;
 #endif
 
@@ -85,6 +94,15 @@ delta_status delta_velocity_from_measured_f(const float q[6], const float qd_m[3
 /* q̈(q̈_m): the admissible acceleration with the measured ones, or nearest to them, at the measured velocity;
    length 6 */
 delta_status delta_acceleration_from_measured_f(const float q[6], const float qd_m[3], const float qdd_m[3], const delta_params_f *p, float qdd_found[6]);
+
+/* q(x): the configuration with these coordinates of the task, or nearest to them, on the branch of q; length 6 */
+delta_status delta_configuration_from_task_f(const float x_t[3], const float q[6], const delta_params_f *p, float q_found[6]);
+
+/* q̇(ẋ): the admissible velocity with these rates of the task, or nearest to them; length 6 */
+delta_status delta_velocity_from_task_f(const float q[6], const float xd_t[3], const delta_params_f *p, float qd_found[6]);
+
+/* q̈(ẍ): the admissible acceleration with these ones of the task, or nearest to them, at that velocity; length 6 */
+delta_status delta_acceleration_from_task_f(const float q[6], const float xd_t[3], const float xdd_t[3], const delta_params_f *p, float qdd_found[6]);
 
 /* u: the smallest inputs that produce the motion, (27); length 3 */
 delta_status delta_inverse_dynamics_f(const float q[6], const float qd[6], const float qdd[6], const delta_params_f *p, float u[3]);

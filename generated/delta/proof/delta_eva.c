@@ -163,6 +163,151 @@ void eva_acceleration_from_measured(void) {
     }
 }
 
+void eva_configuration_from_task(void);
+
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t21, t101, t122, t143, t44, t200, t228, t256, t61, t315, t342, t369, t159, t277, t390. */
+void eva_configuration_from_task(void) {
+    static const double low_0[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
+    static const double high_0[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
+    static const double low_1[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
+    static const double high_1[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
+    static const double low_2[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
+    static const double high_2[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
+    double x_t[3];
+    double q[6];
+    delta_params p;
+    double y[6];
+    x_t[0] = Frama_C_double_interval(-1.0, 1.0);
+    x_t[1] = Frama_C_double_interval(-1.0, 1.0);
+    x_t[2] = Frama_C_double_interval(-1.0, 1.0);
+    q[3] = Frama_C_double_interval(-0.25, 0.25);
+    q[4] = Frama_C_double_interval(-0.25, 0.25);
+    q[5] = Frama_C_double_interval(-0.9, -0.5);
+    p.R = Frama_C_double_interval(0.15, 0.25);
+    p.r = Frama_C_double_interval(0.04, 0.07);
+    p.l_1 = Frama_C_double_interval(0.25, 0.35);
+    p.l_2 = Frama_C_double_interval(0.75, 0.85);
+    p.m_a = Frama_C_double_interval(0.3, 2.0);
+    p.J_a = Frama_C_double_interval(0.001, 0.02);
+    p.m_r = Frama_C_double_interval(0.05, 0.5);
+    p.m_p = Frama_C_double_interval(0.2, 3.0);
+    p.J_m = Frama_C_double_interval(0.005, 0.05);
+    p.g = Frama_C_double_interval(9.81, 9.81);
+    //@ loop unroll 8;
+    for (int i_0 = 0; i_0 < 8; i_0++) {
+    q[0] = Frama_C_double_interval(low_0[i_0], high_0[i_0]);
+    //@ loop unroll 8;
+    for (int i_1 = 0; i_1 < 8; i_1++) {
+    q[1] = Frama_C_double_interval(low_1[i_1], high_1[i_1]);
+    //@ loop unroll 8;
+    for (int i_2 = 0; i_2 < 8; i_2++) {
+    q[2] = Frama_C_double_interval(low_2[i_2], high_2[i_2]);
+    delta_status status = delta_configuration_from_task(x_t, q, &p, y);
+    //@ assert regular: status == DELTA_OK || status == DELTA_NOT_FINITE;
+    (void)status;
+    }
+    }
+    }
+}
+
+void eva_velocity_from_task(void);
+
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t17, t248, t470. */
+void eva_velocity_from_task(void) {
+    static const double low_0[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
+    static const double high_0[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
+    static const double low_1[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
+    static const double high_1[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
+    static const double low_2[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
+    static const double high_2[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
+    double q[6];
+    double xd_t[3];
+    delta_params p;
+    double y[6];
+    q[3] = Frama_C_double_interval(-0.25, 0.25);
+    q[4] = Frama_C_double_interval(-0.25, 0.25);
+    q[5] = Frama_C_double_interval(-0.9, -0.5);
+    xd_t[0] = Frama_C_double_interval(-1.0, 1.0);
+    xd_t[1] = Frama_C_double_interval(-1.0, 1.0);
+    xd_t[2] = Frama_C_double_interval(-1.0, 1.0);
+    p.R = Frama_C_double_interval(0.15, 0.25);
+    p.r = Frama_C_double_interval(0.04, 0.07);
+    p.l_1 = Frama_C_double_interval(0.25, 0.35);
+    p.l_2 = Frama_C_double_interval(0.75, 0.85);
+    p.m_a = Frama_C_double_interval(0.3, 2.0);
+    p.J_a = Frama_C_double_interval(0.001, 0.02);
+    p.m_r = Frama_C_double_interval(0.05, 0.5);
+    p.m_p = Frama_C_double_interval(0.2, 3.0);
+    p.J_m = Frama_C_double_interval(0.005, 0.05);
+    p.g = Frama_C_double_interval(9.81, 9.81);
+    //@ loop unroll 8;
+    for (int i_0 = 0; i_0 < 8; i_0++) {
+    q[0] = Frama_C_double_interval(low_0[i_0], high_0[i_0]);
+    //@ loop unroll 8;
+    for (int i_1 = 0; i_1 < 8; i_1++) {
+    q[1] = Frama_C_double_interval(low_1[i_1], high_1[i_1]);
+    //@ loop unroll 8;
+    for (int i_2 = 0; i_2 < 8; i_2++) {
+    q[2] = Frama_C_double_interval(low_2[i_2], high_2[i_2]);
+    delta_status status = delta_velocity_from_task(q, xd_t, &p, y);
+    //@ assert regular: status == DELTA_OK || status == DELTA_NOT_FINITE;
+    (void)status;
+    }
+    }
+    }
+}
+
+void eva_acceleration_from_task(void);
+
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t17, t248, t470. */
+void eva_acceleration_from_task(void) {
+    static const double low_0[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
+    static const double high_0[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
+    static const double low_1[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
+    static const double high_1[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
+    static const double low_2[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
+    static const double high_2[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
+    double q[6];
+    double xd_t[3];
+    double xdd_t[3];
+    delta_params p;
+    double y[6];
+    q[3] = Frama_C_double_interval(-0.25, 0.25);
+    q[4] = Frama_C_double_interval(-0.25, 0.25);
+    q[5] = Frama_C_double_interval(-0.9, -0.5);
+    xd_t[0] = Frama_C_double_interval(-1.0, 1.0);
+    xd_t[1] = Frama_C_double_interval(-1.0, 1.0);
+    xd_t[2] = Frama_C_double_interval(-1.0, 1.0);
+    xdd_t[0] = Frama_C_double_interval(-1.0, 1.0);
+    xdd_t[1] = Frama_C_double_interval(-1.0, 1.0);
+    xdd_t[2] = Frama_C_double_interval(-1.0, 1.0);
+    p.R = Frama_C_double_interval(0.15, 0.25);
+    p.r = Frama_C_double_interval(0.04, 0.07);
+    p.l_1 = Frama_C_double_interval(0.25, 0.35);
+    p.l_2 = Frama_C_double_interval(0.75, 0.85);
+    p.m_a = Frama_C_double_interval(0.3, 2.0);
+    p.J_a = Frama_C_double_interval(0.001, 0.02);
+    p.m_r = Frama_C_double_interval(0.05, 0.5);
+    p.m_p = Frama_C_double_interval(0.2, 3.0);
+    p.J_m = Frama_C_double_interval(0.005, 0.05);
+    p.g = Frama_C_double_interval(9.81, 9.81);
+    //@ loop unroll 8;
+    for (int i_0 = 0; i_0 < 8; i_0++) {
+    q[0] = Frama_C_double_interval(low_0[i_0], high_0[i_0]);
+    //@ loop unroll 8;
+    for (int i_1 = 0; i_1 < 8; i_1++) {
+    q[1] = Frama_C_double_interval(low_1[i_1], high_1[i_1]);
+    //@ loop unroll 8;
+    for (int i_2 = 0; i_2 < 8; i_2++) {
+    q[2] = Frama_C_double_interval(low_2[i_2], high_2[i_2]);
+    delta_status status = delta_acceleration_from_task(q, xd_t, xdd_t, &p, y);
+    //@ assert regular: status == DELTA_OK || status == DELTA_NOT_FINITE;
+    (void)status;
+    }
+    }
+    }
+}
+
 void eva_inverse_dynamics(void);
 
 /* Intervals of the ideal operations alone do not keep these denominators from 0: t47. */

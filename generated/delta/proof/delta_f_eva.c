@@ -163,6 +163,151 @@ void eva_acceleration_from_measured(void) {
     }
 }
 
+void eva_configuration_from_task(void);
+
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t21, t101, t122, t143, t44, t200, t228, t256, t61, t315, t342, t369, t159, t277, t390. */
+void eva_configuration_from_task(void) {
+    static const float low_0[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
+    static const float high_0[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
+    static const float low_1[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
+    static const float high_1[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
+    static const float low_2[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
+    static const float high_2[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
+    float x_t[3];
+    float q[6];
+    delta_params_f p;
+    float y[6];
+    x_t[0] = Frama_C_float_interval(-1.0f, 1.0f);
+    x_t[1] = Frama_C_float_interval(-1.0f, 1.0f);
+    x_t[2] = Frama_C_float_interval(-1.0f, 1.0f);
+    q[3] = Frama_C_float_interval(-0.25f, 0.25f);
+    q[4] = Frama_C_float_interval(-0.25f, 0.25f);
+    q[5] = Frama_C_float_interval(-0.9f, -0.5f);
+    p.R = Frama_C_float_interval(0.15f, 0.25f);
+    p.r = Frama_C_float_interval(0.04f, 0.07f);
+    p.l_1 = Frama_C_float_interval(0.25f, 0.35f);
+    p.l_2 = Frama_C_float_interval(0.75f, 0.85f);
+    p.m_a = Frama_C_float_interval(0.3f, 2.0f);
+    p.J_a = Frama_C_float_interval(0.001f, 0.02f);
+    p.m_r = Frama_C_float_interval(0.05f, 0.5f);
+    p.m_p = Frama_C_float_interval(0.2f, 3.0f);
+    p.J_m = Frama_C_float_interval(0.005f, 0.05f);
+    p.g = Frama_C_float_interval(9.81f, 9.81f);
+    //@ loop unroll 8;
+    for (int i_0 = 0; i_0 < 8; i_0++) {
+    q[0] = Frama_C_float_interval(low_0[i_0], high_0[i_0]);
+    //@ loop unroll 8;
+    for (int i_1 = 0; i_1 < 8; i_1++) {
+    q[1] = Frama_C_float_interval(low_1[i_1], high_1[i_1]);
+    //@ loop unroll 8;
+    for (int i_2 = 0; i_2 < 8; i_2++) {
+    q[2] = Frama_C_float_interval(low_2[i_2], high_2[i_2]);
+    delta_status status = delta_configuration_from_task_f(x_t, q, &p, y);
+    //@ assert regular: status == DELTA_OK || status == DELTA_NOT_FINITE;
+    (void)status;
+    }
+    }
+    }
+}
+
+void eva_velocity_from_task(void);
+
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t17, t248, t470. */
+void eva_velocity_from_task(void) {
+    static const float low_0[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
+    static const float high_0[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
+    static const float low_1[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
+    static const float high_1[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
+    static const float low_2[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
+    static const float high_2[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
+    float q[6];
+    float xd_t[3];
+    delta_params_f p;
+    float y[6];
+    q[3] = Frama_C_float_interval(-0.25f, 0.25f);
+    q[4] = Frama_C_float_interval(-0.25f, 0.25f);
+    q[5] = Frama_C_float_interval(-0.9f, -0.5f);
+    xd_t[0] = Frama_C_float_interval(-1.0f, 1.0f);
+    xd_t[1] = Frama_C_float_interval(-1.0f, 1.0f);
+    xd_t[2] = Frama_C_float_interval(-1.0f, 1.0f);
+    p.R = Frama_C_float_interval(0.15f, 0.25f);
+    p.r = Frama_C_float_interval(0.04f, 0.07f);
+    p.l_1 = Frama_C_float_interval(0.25f, 0.35f);
+    p.l_2 = Frama_C_float_interval(0.75f, 0.85f);
+    p.m_a = Frama_C_float_interval(0.3f, 2.0f);
+    p.J_a = Frama_C_float_interval(0.001f, 0.02f);
+    p.m_r = Frama_C_float_interval(0.05f, 0.5f);
+    p.m_p = Frama_C_float_interval(0.2f, 3.0f);
+    p.J_m = Frama_C_float_interval(0.005f, 0.05f);
+    p.g = Frama_C_float_interval(9.81f, 9.81f);
+    //@ loop unroll 8;
+    for (int i_0 = 0; i_0 < 8; i_0++) {
+    q[0] = Frama_C_float_interval(low_0[i_0], high_0[i_0]);
+    //@ loop unroll 8;
+    for (int i_1 = 0; i_1 < 8; i_1++) {
+    q[1] = Frama_C_float_interval(low_1[i_1], high_1[i_1]);
+    //@ loop unroll 8;
+    for (int i_2 = 0; i_2 < 8; i_2++) {
+    q[2] = Frama_C_float_interval(low_2[i_2], high_2[i_2]);
+    delta_status status = delta_velocity_from_task_f(q, xd_t, &p, y);
+    //@ assert regular: status == DELTA_OK || status == DELTA_NOT_FINITE;
+    (void)status;
+    }
+    }
+    }
+}
+
+void eva_acceleration_from_task(void);
+
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t17, t248, t470. */
+void eva_acceleration_from_task(void) {
+    static const float low_0[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
+    static const float high_0[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
+    static const float low_1[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
+    static const float high_1[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
+    static const float low_2[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
+    static const float high_2[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
+    float q[6];
+    float xd_t[3];
+    float xdd_t[3];
+    delta_params_f p;
+    float y[6];
+    q[3] = Frama_C_float_interval(-0.25f, 0.25f);
+    q[4] = Frama_C_float_interval(-0.25f, 0.25f);
+    q[5] = Frama_C_float_interval(-0.9f, -0.5f);
+    xd_t[0] = Frama_C_float_interval(-1.0f, 1.0f);
+    xd_t[1] = Frama_C_float_interval(-1.0f, 1.0f);
+    xd_t[2] = Frama_C_float_interval(-1.0f, 1.0f);
+    xdd_t[0] = Frama_C_float_interval(-1.0f, 1.0f);
+    xdd_t[1] = Frama_C_float_interval(-1.0f, 1.0f);
+    xdd_t[2] = Frama_C_float_interval(-1.0f, 1.0f);
+    p.R = Frama_C_float_interval(0.15f, 0.25f);
+    p.r = Frama_C_float_interval(0.04f, 0.07f);
+    p.l_1 = Frama_C_float_interval(0.25f, 0.35f);
+    p.l_2 = Frama_C_float_interval(0.75f, 0.85f);
+    p.m_a = Frama_C_float_interval(0.3f, 2.0f);
+    p.J_a = Frama_C_float_interval(0.001f, 0.02f);
+    p.m_r = Frama_C_float_interval(0.05f, 0.5f);
+    p.m_p = Frama_C_float_interval(0.2f, 3.0f);
+    p.J_m = Frama_C_float_interval(0.005f, 0.05f);
+    p.g = Frama_C_float_interval(9.81f, 9.81f);
+    //@ loop unroll 8;
+    for (int i_0 = 0; i_0 < 8; i_0++) {
+    q[0] = Frama_C_float_interval(low_0[i_0], high_0[i_0]);
+    //@ loop unroll 8;
+    for (int i_1 = 0; i_1 < 8; i_1++) {
+    q[1] = Frama_C_float_interval(low_1[i_1], high_1[i_1]);
+    //@ loop unroll 8;
+    for (int i_2 = 0; i_2 < 8; i_2++) {
+    q[2] = Frama_C_float_interval(low_2[i_2], high_2[i_2]);
+    delta_status status = delta_acceleration_from_task_f(q, xd_t, xdd_t, &p, y);
+    //@ assert regular: status == DELTA_OK || status == DELTA_NOT_FINITE;
+    (void)status;
+    }
+    }
+    }
+}
+
 void eva_inverse_dynamics(void);
 
 /* Intervals of the ideal operations alone do not keep these denominators from 0: t47. */

@@ -48,9 +48,9 @@ enum { SUMS_EVERYWHERE = 0 };
 #endif
 enum { WAYS = 8, MORE_WAYS = 64 };
 
-enum { SINES = 7, ARRAYS = 8, LONGEST = 6, RESULT = 6, PARAMETERS = 10 };
+enum { SINES = 10, ARRAYS = 11, LONGEST = 6, RESULT = 6, PARAMETERS = 10 };
 
-/* One set of numbers, the same in both types: q, qd, qdd, u, q_m, qd_m, qdd_m, sines and cosines, and the parameters. */
+/* One set of numbers, the same in both types: q, qd, qdd, u, q_m, qd_m, qdd_m, x_t, xd_t, xdd_t, sines and cosines, and the parameters. */
 typedef struct {
     float x_f[ARRAYS][LONGEST];
     double x[ARRAYS][LONGEST];
@@ -65,7 +65,7 @@ typedef struct {
     const char *name;
     int (*run)(double *const *x, const delta_params *p, double *y);
     int (*run_f)(float *const *x, const delta_params_f *p, float *y);
-    int reads[ARRAYS]; /* of q, qd, qdd, u, q_m, qd_m, qdd_m */
+    int reads[ARRAYS]; /* of q, qd, qdd, u, q_m, qd_m, qdd_m, x_t, xd_t, xdd_t */
     size_t size;
     int held;  /* whether rule 4 is a failure, not only a figure */
     int given; /* whether sines and cosines come from the caller */
@@ -95,6 +95,30 @@ static int acceleration_from_measured_64(double *const *x, const delta_params *p
 
 static int acceleration_from_measured_32(float *const *x, const delta_params_f *p, float *y) {
     return (int)delta_acceleration_from_measured_f(x[0], x[5], x[6], p, y);
+}
+
+static int configuration_from_task_64(double *const *x, const delta_params *p, double *y) {
+    return (int)delta_configuration_from_task(x[7], x[0], p, y);
+}
+
+static int configuration_from_task_32(float *const *x, const delta_params_f *p, float *y) {
+    return (int)delta_configuration_from_task_f(x[7], x[0], p, y);
+}
+
+static int velocity_from_task_64(double *const *x, const delta_params *p, double *y) {
+    return (int)delta_velocity_from_task(x[0], x[8], p, y);
+}
+
+static int velocity_from_task_32(float *const *x, const delta_params_f *p, float *y) {
+    return (int)delta_velocity_from_task_f(x[0], x[8], p, y);
+}
+
+static int acceleration_from_task_64(double *const *x, const delta_params *p, double *y) {
+    return (int)delta_acceleration_from_task(x[0], x[8], x[9], p, y);
+}
+
+static int acceleration_from_task_32(float *const *x, const delta_params_f *p, float *y) {
+    return (int)delta_acceleration_from_task_f(x[0], x[8], x[9], p, y);
 }
 
 static int inverse_dynamics_64(double *const *x, const delta_params *p, double *y) {
@@ -211,6 +235,9 @@ static const Kernel kernels[] = {
     {"configuration_from_measured", configuration_from_measured_64, configuration_from_measured_32, {1, 0, 0, 0, 1}, 6u, 0, 0, NULL, NULL},
     {"velocity_from_measured", velocity_from_measured_64, velocity_from_measured_32, {1, 0, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
     {"acceleration_from_measured", acceleration_from_measured_64, acceleration_from_measured_32, {1, 0, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
+    {"configuration_from_task", configuration_from_task_64, configuration_from_task_32, {1, 0, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
+    {"velocity_from_task", velocity_from_task_64, velocity_from_task_32, {1, 0, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
+    {"acceleration_from_task", acceleration_from_task_64, acceleration_from_task_32, {1, 0, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
     {"inverse_dynamics", inverse_dynamics_64, inverse_dynamics_32, {1, 1, 1, 0, 0}, 3u, 1, 0, NULL, NULL},
     {"forward_dynamics", forward_dynamics_64, forward_dynamics_32, {1, 1, 0, 1, 0}, 6u, 1, 0, NULL, NULL},
     {"multipliers", multipliers_64, multipliers_32, {1, 1, 0, 1, 0}, 3u, 0, 0, NULL, NULL},
@@ -220,9 +247,9 @@ static const Kernel kernels[] = {
     {"forward_dynamics_sc", forward_dynamics_sc_64, forward_dynamics_sc_32, {1, 1, 0, 1, 0}, 6u, 1, 1, NULL, NULL},
     {"multipliers_sc", multipliers_sc_64, multipliers_sc_32, {1, 1, 0, 1, 0}, 3u, 0, 1, NULL, NULL},
 };
-enum { KERNELS = 11 };
+enum { KERNELS = 14 };
 
-static const size_t sizes[ARRAYS] = {6u, 6u, 6u, 3u, 3u, 3u, 3u, 6u};
+static const size_t sizes[ARRAYS] = {6u, 6u, 6u, 3u, 3u, 3u, 3u, 3u, 3u, 3u, 6u};
 static const float ranges[][2] = {
     {-0.6f, 1.2f}, /* q[0] */
     {-0.6f, 1.2f}, /* q[1] */
@@ -254,6 +281,15 @@ static const float ranges[][2] = {
     {-1.0f, 1.0f}, /* qdd_m[0] */
     {-1.0f, 1.0f}, /* qdd_m[1] */
     {-1.0f, 1.0f}, /* qdd_m[2] */
+    {-1.0f, 1.0f}, /* x_t[0] */
+    {-1.0f, 1.0f}, /* x_t[1] */
+    {-1.0f, 1.0f}, /* x_t[2] */
+    {-1.0f, 1.0f}, /* xd_t[0] */
+    {-1.0f, 1.0f}, /* xd_t[1] */
+    {-1.0f, 1.0f}, /* xd_t[2] */
+    {-1.0f, 1.0f}, /* xdd_t[0] */
+    {-1.0f, 1.0f}, /* xdd_t[1] */
+    {-1.0f, 1.0f}, /* xdd_t[2] */
     {0.15f, 0.25f}, /* p[0] */
     {0.04f, 0.07f}, /* p[1] */
     {0.25f, 0.35f}, /* p[2] */
@@ -393,7 +429,7 @@ static void fail(const Kernel *kernel, const State *s, const char *what) {
     fprintf(stderr, "%s: %s\n", kernel->name, what);
     for (size_t a = 0; a < ARRAYS; a++) {
         for (size_t i = 0; i < sizes[a]; i++) {
-            fprintf(stderr, "  %s[%u] = %.9g (%a)\n", (const char *[]){"q", "qd", "qdd", "u", "q_m", "qd_m", "qdd_m", "sc"}[a], (unsigned)i, s->x[a][i], s->x[a][i]);
+            fprintf(stderr, "  %s[%u] = %.9g (%a)\n", (const char *[]){"q", "qd", "qdd", "u", "q_m", "qd_m", "qdd_m", "x_t", "xd_t", "xdd_t", "sc"}[a], (unsigned)i, s->x[a][i], s->x[a][i]);
         }
     }
     fprintf(stderr, "  %s = %.9g\n", "R", s->p.R);
@@ -412,7 +448,7 @@ static void fail(const Kernel *kernel, const State *s, const char *what) {
 /* Rules 1, 2 and 5 in double; the status, and the result in y where it is 0. */
 static int check(const Kernel *kernel, const State *s, double y[RESULT], int *flags) {
     double x[ARRAYS][LONGEST];
-    double *arrays[ARRAYS] = {x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7]};
+    double *arrays[ARRAYS] = {x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], x[8], x[9], x[10]};
     double before[RESULT];
     const size_t bytes = kernel->size * sizeof y[0];
     memcpy(x, s->x, sizeof x);
@@ -473,7 +509,7 @@ static int check(const Kernel *kernel, const State *s, double y[RESULT], int *fl
 /* Rules 1, 2 and 5 in float; the status, and the result in y where it is 0. */
 static int check_f(const Kernel *kernel, const State *s, float y[RESULT], int *flags) {
     float x[ARRAYS][LONGEST];
-    float *arrays[ARRAYS] = {x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7]};
+    float *arrays[ARRAYS] = {x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], x[8], x[9], x[10]};
     float before[RESULT];
     const size_t bytes = kernel->size * sizeof y[0];
     memcpy(x, s->x_f, sizeof x);

@@ -17,6 +17,8 @@
  *   u[2] drive_3 [N*m] torque of the drive at base joint 3
  * Measured coordinates q_m (rates qd_m and accelerations qdd_m in the same order):
  *   a_1, a_2, a_3
+ * Coordinates of the task x_t (rates xd_t and accelerations xdd_t in the same order):
+ *   x, y
  *
  * Operations                          + -      *      /   sqrt sincos  other
  * mass_matrix                          15     18      0      0      3      0
@@ -51,6 +53,12 @@
  * configuration_from_measured        1299   1567     88     23     36      0
  * velocity_from_measured               84    148      1      0      6      0
  * acceleration_from_measured          204    311     14      4      6      0
+ * task_position                         5      4      0      0      2      0
+ * task_velocity                         4      6      0      0      2      0
+ * task_jacobian                         3      4      0      0      2      0
+ * configuration_from_task             172    188     18     15      9      0
+ * velocity_from_task                   18     42      6      0      6      0
+ * acceleration_from_task               39     69     12      0      6      0
  * inverse_dynamics                     51     79      3      0      5      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * forward_dynamics                    273    430     29      3      6      0
@@ -79,6 +87,8 @@
  *   configuration_from_measured l_2 <= 3
  *   velocity_from_measured 0.015 <= l_1, l_2 <= 3
  *   acceleration_from_measured 0.015 <= l_1
+ *   configuration_from_task l_1 <= 3000, l_2 <= 5300
+ *   acceleration_from_task l_2 <= 3
  *   forward_dynamics m_1 <= 5600, J_1 <= 100, J_2 <= 17000, J_motor <= 170
  *   forward_dynamics |m_payload| <= 170
  *   multipliers |m_payload| <= 170
@@ -106,7 +116,8 @@ typedef enum {
     RAPKM_2RRR_RR_PARAMETER_RANGE = 6, /* a parameter is so far from its value in the model file that the result would lose digits */
     RAPKM_2RRR_RR_MEASURED_RANK = 7, /* what is measured does not determine the rest at this configuration */
     RAPKM_2RRR_RR_NOT_CLOSED = 8, /* Newton's method has not closed the loops from this start */
-    RAPKM_2RRR_RR_BRANCH = 9 /* the start is so far away that the result may belong to another assembly mode */
+    RAPKM_2RRR_RR_BRANCH = 9, /* the start is so far away that the result may belong to another assembly mode */
+    RAPKM_2RRR_RR_TASK_RANK = 10 /* the task does not determine the rest at this configuration */
 } rapkm_2rrr_rr_status;
 #endif
 
@@ -225,6 +236,24 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_measured_f(const float q[6], co
 /* q̈(q̈_m): the admissible acceleration with the measured ones, or nearest to them, at the measured velocity;
    length 6 */
 rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_measured_f(const float q[6], const float qd_m[3], const float qdd_m[3], const rapkm_2rrr_rr_params_f *p, float qdd_found[6]);
+
+/* x: coordinates of the task; length 2 */
+rapkm_2rrr_rr_status rapkm_2rrr_rr_task_position_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float x[2]);
+
+/* ẋ: their rates; length 2 */
+rapkm_2rrr_rr_status rapkm_2rrr_rr_task_velocity_f(const float q[6], const float qd[6], const rapkm_2rrr_rr_params_f *p, float xd[2]);
+
+/* J_x: derivatives of the coordinates of the task by q; 2 x 6, row-major */
+rapkm_2rrr_rr_status rapkm_2rrr_rr_task_jacobian_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float x_q[12]);
+
+/* q(x): the configuration with these coordinates of the task, or nearest to them, on the branch of q; length 6 */
+rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_task_f(const float x_t[2], const float q[6], const rapkm_2rrr_rr_params_f *p, float q_found[6]);
+
+/* q̇(ẋ): the admissible velocity with these rates of the task, or nearest to them; length 6 */
+rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_task_f(const float q[6], const float xd_t[2], const rapkm_2rrr_rr_params_f *p, float qd_found[6]);
+
+/* q̈(ẍ): the admissible acceleration with these ones of the task, or nearest to them, at that velocity; length 6 */
+rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_task_f(const float q[6], const float xd_t[2], const float xdd_t[2], const rapkm_2rrr_rr_params_f *p, float qdd_found[6]);
 
 /* u: the smallest inputs that produce the motion, (27); length 3 */
 rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_f(const float q[6], const float qd[6], const float qdd[6], const rapkm_2rrr_rr_params_f *p, float u[3]);

@@ -1129,6 +1129,214 @@ void eva_acceleration_from_measured(void) {
     (void)status;
 }
 
+void eva_task_position(void);
+
+void eva_task_position(void) {
+    double q[6];
+    rapkm_2rrr_rr_params p;
+    double y[2];
+    q[0] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[1] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[2] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[3] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[4] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[5] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    p.l_1 = Frama_C_double_interval(0.15, 0.3);
+    p.l_2 = Frama_C_double_interval(0.15, 0.3);
+    p.x_1 = Frama_C_double_interval(-0.01, 0.01);
+    p.y_1 = Frama_C_double_interval(-0.01, 0.01);
+    p.x_2 = Frama_C_double_interval(0.35, 0.45);
+    p.y_2 = Frama_C_double_interval(-0.01, 0.01);
+    p.x_3 = Frama_C_double_interval(0.15, 0.25);
+    p.y_3 = Frama_C_double_interval(0.3, 0.4);
+    p.m_1 = Frama_C_double_interval(0.05, 1.0);
+    p.m_2 = Frama_C_double_interval(0.05, 1.0);
+    p.J_1 = Frama_C_double_interval(0.0001, 0.01);
+    p.J_2 = Frama_C_double_interval(0.0001, 0.01);
+    p.J_motor = Frama_C_double_interval(0.0001, 0.01);
+    p.m_payload = Frama_C_double_interval(0.0, 1.0);
+    rapkm_2rrr_rr_status status = rapkm_2rrr_rr_task_position(q, &p, y);
+    //@ assert regular: status == RAPKM_2RRR_RR_OK || status == RAPKM_2RRR_RR_NOT_FINITE;
+    (void)status;
+}
+
+void eva_task_velocity(void);
+
+void eva_task_velocity(void) {
+    double q[6];
+    double qd[6];
+    rapkm_2rrr_rr_params p;
+    double y[2];
+    q[0] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[1] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[2] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[3] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[4] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[5] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    qd[0] = Frama_C_double_interval(-10.0, 10.0);
+    qd[1] = Frama_C_double_interval(-10.0, 10.0);
+    qd[2] = Frama_C_double_interval(-10.0, 10.0);
+    qd[3] = Frama_C_double_interval(-10.0, 10.0);
+    qd[4] = Frama_C_double_interval(-10.0, 10.0);
+    qd[5] = Frama_C_double_interval(-10.0, 10.0);
+    p.l_1 = Frama_C_double_interval(0.15, 0.3);
+    p.l_2 = Frama_C_double_interval(0.15, 0.3);
+    p.x_1 = Frama_C_double_interval(-0.01, 0.01);
+    p.y_1 = Frama_C_double_interval(-0.01, 0.01);
+    p.x_2 = Frama_C_double_interval(0.35, 0.45);
+    p.y_2 = Frama_C_double_interval(-0.01, 0.01);
+    p.x_3 = Frama_C_double_interval(0.15, 0.25);
+    p.y_3 = Frama_C_double_interval(0.3, 0.4);
+    p.m_1 = Frama_C_double_interval(0.05, 1.0);
+    p.m_2 = Frama_C_double_interval(0.05, 1.0);
+    p.J_1 = Frama_C_double_interval(0.0001, 0.01);
+    p.J_2 = Frama_C_double_interval(0.0001, 0.01);
+    p.J_motor = Frama_C_double_interval(0.0001, 0.01);
+    p.m_payload = Frama_C_double_interval(0.0, 1.0);
+    rapkm_2rrr_rr_status status = rapkm_2rrr_rr_task_velocity(q, qd, &p, y);
+    //@ assert regular: status == RAPKM_2RRR_RR_OK || status == RAPKM_2RRR_RR_NOT_FINITE;
+    (void)status;
+}
+
+void eva_task_jacobian(void);
+
+void eva_task_jacobian(void) {
+    double q[6];
+    rapkm_2rrr_rr_params p;
+    double y[12];
+    q[0] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[1] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[2] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[3] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[4] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[5] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    p.l_1 = Frama_C_double_interval(0.15, 0.3);
+    p.l_2 = Frama_C_double_interval(0.15, 0.3);
+    p.x_1 = Frama_C_double_interval(-0.01, 0.01);
+    p.y_1 = Frama_C_double_interval(-0.01, 0.01);
+    p.x_2 = Frama_C_double_interval(0.35, 0.45);
+    p.y_2 = Frama_C_double_interval(-0.01, 0.01);
+    p.x_3 = Frama_C_double_interval(0.15, 0.25);
+    p.y_3 = Frama_C_double_interval(0.3, 0.4);
+    p.m_1 = Frama_C_double_interval(0.05, 1.0);
+    p.m_2 = Frama_C_double_interval(0.05, 1.0);
+    p.J_1 = Frama_C_double_interval(0.0001, 0.01);
+    p.J_2 = Frama_C_double_interval(0.0001, 0.01);
+    p.J_motor = Frama_C_double_interval(0.0001, 0.01);
+    p.m_payload = Frama_C_double_interval(0.0, 1.0);
+    rapkm_2rrr_rr_status status = rapkm_2rrr_rr_task_jacobian(q, &p, y);
+    //@ assert regular: status == RAPKM_2RRR_RR_OK || status == RAPKM_2RRR_RR_NOT_FINITE;
+    (void)status;
+}
+
+void eva_configuration_from_task(void);
+
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t85, t218, t346, t408, t422, t436. */
+void eva_configuration_from_task(void) {
+    double x_t[2];
+    double q[6];
+    rapkm_2rrr_rr_params p;
+    double y[6];
+    x_t[0] = Frama_C_double_interval(-1.0, 1.0);
+    x_t[1] = Frama_C_double_interval(-1.0, 1.0);
+    q[0] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[1] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[2] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[3] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[4] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[5] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    p.l_1 = Frama_C_double_interval(0.15, 0.3);
+    p.l_2 = Frama_C_double_interval(0.15, 0.3);
+    p.x_1 = Frama_C_double_interval(-0.01, 0.01);
+    p.y_1 = Frama_C_double_interval(-0.01, 0.01);
+    p.x_2 = Frama_C_double_interval(0.35, 0.45);
+    p.y_2 = Frama_C_double_interval(-0.01, 0.01);
+    p.x_3 = Frama_C_double_interval(0.15, 0.25);
+    p.y_3 = Frama_C_double_interval(0.3, 0.4);
+    p.m_1 = Frama_C_double_interval(0.05, 1.0);
+    p.m_2 = Frama_C_double_interval(0.05, 1.0);
+    p.J_1 = Frama_C_double_interval(0.0001, 0.01);
+    p.J_2 = Frama_C_double_interval(0.0001, 0.01);
+    p.J_motor = Frama_C_double_interval(0.0001, 0.01);
+    p.m_payload = Frama_C_double_interval(0.0, 1.0);
+    rapkm_2rrr_rr_status status = rapkm_2rrr_rr_configuration_from_task(x_t, q, &p, y);
+    //@ assert regular: status == RAPKM_2RRR_RR_OK || status == RAPKM_2RRR_RR_NOT_FINITE;
+    (void)status;
+}
+
+void eva_velocity_from_task(void);
+
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t406, t20, t215. */
+void eva_velocity_from_task(void) {
+    double q[6];
+    double xd_t[2];
+    rapkm_2rrr_rr_params p;
+    double y[6];
+    q[0] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[1] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[2] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[3] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[4] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[5] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    xd_t[0] = Frama_C_double_interval(-1.0, 1.0);
+    xd_t[1] = Frama_C_double_interval(-1.0, 1.0);
+    p.l_1 = Frama_C_double_interval(0.15, 0.3);
+    p.l_2 = Frama_C_double_interval(0.15, 0.3);
+    p.x_1 = Frama_C_double_interval(-0.01, 0.01);
+    p.y_1 = Frama_C_double_interval(-0.01, 0.01);
+    p.x_2 = Frama_C_double_interval(0.35, 0.45);
+    p.y_2 = Frama_C_double_interval(-0.01, 0.01);
+    p.x_3 = Frama_C_double_interval(0.15, 0.25);
+    p.y_3 = Frama_C_double_interval(0.3, 0.4);
+    p.m_1 = Frama_C_double_interval(0.05, 1.0);
+    p.m_2 = Frama_C_double_interval(0.05, 1.0);
+    p.J_1 = Frama_C_double_interval(0.0001, 0.01);
+    p.J_2 = Frama_C_double_interval(0.0001, 0.01);
+    p.J_motor = Frama_C_double_interval(0.0001, 0.01);
+    p.m_payload = Frama_C_double_interval(0.0, 1.0);
+    rapkm_2rrr_rr_status status = rapkm_2rrr_rr_velocity_from_task(q, xd_t, &p, y);
+    //@ assert regular: status == RAPKM_2RRR_RR_OK || status == RAPKM_2RRR_RR_NOT_FINITE;
+    (void)status;
+}
+
+void eva_acceleration_from_task(void);
+
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t406, t20, t215. */
+void eva_acceleration_from_task(void) {
+    double q[6];
+    double xd_t[2];
+    double xdd_t[2];
+    rapkm_2rrr_rr_params p;
+    double y[6];
+    q[0] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[1] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[2] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[3] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[4] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    q[5] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
+    xd_t[0] = Frama_C_double_interval(-1.0, 1.0);
+    xd_t[1] = Frama_C_double_interval(-1.0, 1.0);
+    xdd_t[0] = Frama_C_double_interval(-1.0, 1.0);
+    xdd_t[1] = Frama_C_double_interval(-1.0, 1.0);
+    p.l_1 = Frama_C_double_interval(0.15, 0.3);
+    p.l_2 = Frama_C_double_interval(0.15, 0.3);
+    p.x_1 = Frama_C_double_interval(-0.01, 0.01);
+    p.y_1 = Frama_C_double_interval(-0.01, 0.01);
+    p.x_2 = Frama_C_double_interval(0.35, 0.45);
+    p.y_2 = Frama_C_double_interval(-0.01, 0.01);
+    p.x_3 = Frama_C_double_interval(0.15, 0.25);
+    p.y_3 = Frama_C_double_interval(0.3, 0.4);
+    p.m_1 = Frama_C_double_interval(0.05, 1.0);
+    p.m_2 = Frama_C_double_interval(0.05, 1.0);
+    p.J_1 = Frama_C_double_interval(0.0001, 0.01);
+    p.J_2 = Frama_C_double_interval(0.0001, 0.01);
+    p.J_motor = Frama_C_double_interval(0.0001, 0.01);
+    p.m_payload = Frama_C_double_interval(0.0, 1.0);
+    rapkm_2rrr_rr_status status = rapkm_2rrr_rr_acceleration_from_task(q, xd_t, xdd_t, &p, y);
+    //@ assert regular: status == RAPKM_2RRR_RR_OK || status == RAPKM_2RRR_RR_NOT_FINITE;
+    (void)status;
+}
+
 void eva_inverse_dynamics(void);
 
 /* Intervals of the ideal operations alone do not keep these denominators from 0: t24, t51. */

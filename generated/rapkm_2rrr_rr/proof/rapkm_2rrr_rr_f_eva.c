@@ -1129,6 +1129,214 @@ void eva_acceleration_from_measured(void) {
     (void)status;
 }
 
+void eva_task_position(void);
+
+void eva_task_position(void) {
+    float q[6];
+    rapkm_2rrr_rr_params_f p;
+    float y[2];
+    q[0] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[1] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[2] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[3] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[4] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[5] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    p.l_1 = Frama_C_float_interval(0.15f, 0.3f);
+    p.l_2 = Frama_C_float_interval(0.15f, 0.3f);
+    p.x_1 = Frama_C_float_interval(-0.01f, 0.01f);
+    p.y_1 = Frama_C_float_interval(-0.01f, 0.01f);
+    p.x_2 = Frama_C_float_interval(0.35f, 0.45f);
+    p.y_2 = Frama_C_float_interval(-0.01f, 0.01f);
+    p.x_3 = Frama_C_float_interval(0.15f, 0.25f);
+    p.y_3 = Frama_C_float_interval(0.3f, 0.4f);
+    p.m_1 = Frama_C_float_interval(0.05f, 1.0f);
+    p.m_2 = Frama_C_float_interval(0.05f, 1.0f);
+    p.J_1 = Frama_C_float_interval(0.0001f, 0.01f);
+    p.J_2 = Frama_C_float_interval(0.0001f, 0.01f);
+    p.J_motor = Frama_C_float_interval(0.0001f, 0.01f);
+    p.m_payload = Frama_C_float_interval(0.0f, 1.0f);
+    rapkm_2rrr_rr_status status = rapkm_2rrr_rr_task_position_f(q, &p, y);
+    //@ assert regular: status == RAPKM_2RRR_RR_OK || status == RAPKM_2RRR_RR_NOT_FINITE;
+    (void)status;
+}
+
+void eva_task_velocity(void);
+
+void eva_task_velocity(void) {
+    float q[6];
+    float qd[6];
+    rapkm_2rrr_rr_params_f p;
+    float y[2];
+    q[0] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[1] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[2] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[3] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[4] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[5] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    qd[0] = Frama_C_float_interval(-10.0f, 10.0f);
+    qd[1] = Frama_C_float_interval(-10.0f, 10.0f);
+    qd[2] = Frama_C_float_interval(-10.0f, 10.0f);
+    qd[3] = Frama_C_float_interval(-10.0f, 10.0f);
+    qd[4] = Frama_C_float_interval(-10.0f, 10.0f);
+    qd[5] = Frama_C_float_interval(-10.0f, 10.0f);
+    p.l_1 = Frama_C_float_interval(0.15f, 0.3f);
+    p.l_2 = Frama_C_float_interval(0.15f, 0.3f);
+    p.x_1 = Frama_C_float_interval(-0.01f, 0.01f);
+    p.y_1 = Frama_C_float_interval(-0.01f, 0.01f);
+    p.x_2 = Frama_C_float_interval(0.35f, 0.45f);
+    p.y_2 = Frama_C_float_interval(-0.01f, 0.01f);
+    p.x_3 = Frama_C_float_interval(0.15f, 0.25f);
+    p.y_3 = Frama_C_float_interval(0.3f, 0.4f);
+    p.m_1 = Frama_C_float_interval(0.05f, 1.0f);
+    p.m_2 = Frama_C_float_interval(0.05f, 1.0f);
+    p.J_1 = Frama_C_float_interval(0.0001f, 0.01f);
+    p.J_2 = Frama_C_float_interval(0.0001f, 0.01f);
+    p.J_motor = Frama_C_float_interval(0.0001f, 0.01f);
+    p.m_payload = Frama_C_float_interval(0.0f, 1.0f);
+    rapkm_2rrr_rr_status status = rapkm_2rrr_rr_task_velocity_f(q, qd, &p, y);
+    //@ assert regular: status == RAPKM_2RRR_RR_OK || status == RAPKM_2RRR_RR_NOT_FINITE;
+    (void)status;
+}
+
+void eva_task_jacobian(void);
+
+void eva_task_jacobian(void) {
+    float q[6];
+    rapkm_2rrr_rr_params_f p;
+    float y[12];
+    q[0] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[1] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[2] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[3] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[4] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[5] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    p.l_1 = Frama_C_float_interval(0.15f, 0.3f);
+    p.l_2 = Frama_C_float_interval(0.15f, 0.3f);
+    p.x_1 = Frama_C_float_interval(-0.01f, 0.01f);
+    p.y_1 = Frama_C_float_interval(-0.01f, 0.01f);
+    p.x_2 = Frama_C_float_interval(0.35f, 0.45f);
+    p.y_2 = Frama_C_float_interval(-0.01f, 0.01f);
+    p.x_3 = Frama_C_float_interval(0.15f, 0.25f);
+    p.y_3 = Frama_C_float_interval(0.3f, 0.4f);
+    p.m_1 = Frama_C_float_interval(0.05f, 1.0f);
+    p.m_2 = Frama_C_float_interval(0.05f, 1.0f);
+    p.J_1 = Frama_C_float_interval(0.0001f, 0.01f);
+    p.J_2 = Frama_C_float_interval(0.0001f, 0.01f);
+    p.J_motor = Frama_C_float_interval(0.0001f, 0.01f);
+    p.m_payload = Frama_C_float_interval(0.0f, 1.0f);
+    rapkm_2rrr_rr_status status = rapkm_2rrr_rr_task_jacobian_f(q, &p, y);
+    //@ assert regular: status == RAPKM_2RRR_RR_OK || status == RAPKM_2RRR_RR_NOT_FINITE;
+    (void)status;
+}
+
+void eva_configuration_from_task(void);
+
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t85, t218, t346, t408, t422, t436. */
+void eva_configuration_from_task(void) {
+    float x_t[2];
+    float q[6];
+    rapkm_2rrr_rr_params_f p;
+    float y[6];
+    x_t[0] = Frama_C_float_interval(-1.0f, 1.0f);
+    x_t[1] = Frama_C_float_interval(-1.0f, 1.0f);
+    q[0] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[1] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[2] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[3] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[4] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[5] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    p.l_1 = Frama_C_float_interval(0.15f, 0.3f);
+    p.l_2 = Frama_C_float_interval(0.15f, 0.3f);
+    p.x_1 = Frama_C_float_interval(-0.01f, 0.01f);
+    p.y_1 = Frama_C_float_interval(-0.01f, 0.01f);
+    p.x_2 = Frama_C_float_interval(0.35f, 0.45f);
+    p.y_2 = Frama_C_float_interval(-0.01f, 0.01f);
+    p.x_3 = Frama_C_float_interval(0.15f, 0.25f);
+    p.y_3 = Frama_C_float_interval(0.3f, 0.4f);
+    p.m_1 = Frama_C_float_interval(0.05f, 1.0f);
+    p.m_2 = Frama_C_float_interval(0.05f, 1.0f);
+    p.J_1 = Frama_C_float_interval(0.0001f, 0.01f);
+    p.J_2 = Frama_C_float_interval(0.0001f, 0.01f);
+    p.J_motor = Frama_C_float_interval(0.0001f, 0.01f);
+    p.m_payload = Frama_C_float_interval(0.0f, 1.0f);
+    rapkm_2rrr_rr_status status = rapkm_2rrr_rr_configuration_from_task_f(x_t, q, &p, y);
+    //@ assert regular: status == RAPKM_2RRR_RR_OK || status == RAPKM_2RRR_RR_NOT_FINITE;
+    (void)status;
+}
+
+void eva_velocity_from_task(void);
+
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t406, t20, t215. */
+void eva_velocity_from_task(void) {
+    float q[6];
+    float xd_t[2];
+    rapkm_2rrr_rr_params_f p;
+    float y[6];
+    q[0] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[1] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[2] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[3] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[4] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[5] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    xd_t[0] = Frama_C_float_interval(-1.0f, 1.0f);
+    xd_t[1] = Frama_C_float_interval(-1.0f, 1.0f);
+    p.l_1 = Frama_C_float_interval(0.15f, 0.3f);
+    p.l_2 = Frama_C_float_interval(0.15f, 0.3f);
+    p.x_1 = Frama_C_float_interval(-0.01f, 0.01f);
+    p.y_1 = Frama_C_float_interval(-0.01f, 0.01f);
+    p.x_2 = Frama_C_float_interval(0.35f, 0.45f);
+    p.y_2 = Frama_C_float_interval(-0.01f, 0.01f);
+    p.x_3 = Frama_C_float_interval(0.15f, 0.25f);
+    p.y_3 = Frama_C_float_interval(0.3f, 0.4f);
+    p.m_1 = Frama_C_float_interval(0.05f, 1.0f);
+    p.m_2 = Frama_C_float_interval(0.05f, 1.0f);
+    p.J_1 = Frama_C_float_interval(0.0001f, 0.01f);
+    p.J_2 = Frama_C_float_interval(0.0001f, 0.01f);
+    p.J_motor = Frama_C_float_interval(0.0001f, 0.01f);
+    p.m_payload = Frama_C_float_interval(0.0f, 1.0f);
+    rapkm_2rrr_rr_status status = rapkm_2rrr_rr_velocity_from_task_f(q, xd_t, &p, y);
+    //@ assert regular: status == RAPKM_2RRR_RR_OK || status == RAPKM_2RRR_RR_NOT_FINITE;
+    (void)status;
+}
+
+void eva_acceleration_from_task(void);
+
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t406, t20, t215. */
+void eva_acceleration_from_task(void) {
+    float q[6];
+    float xd_t[2];
+    float xdd_t[2];
+    rapkm_2rrr_rr_params_f p;
+    float y[6];
+    q[0] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[1] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[2] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[3] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[4] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    q[5] = Frama_C_float_interval(-3.1415927f, 3.1415927f);
+    xd_t[0] = Frama_C_float_interval(-1.0f, 1.0f);
+    xd_t[1] = Frama_C_float_interval(-1.0f, 1.0f);
+    xdd_t[0] = Frama_C_float_interval(-1.0f, 1.0f);
+    xdd_t[1] = Frama_C_float_interval(-1.0f, 1.0f);
+    p.l_1 = Frama_C_float_interval(0.15f, 0.3f);
+    p.l_2 = Frama_C_float_interval(0.15f, 0.3f);
+    p.x_1 = Frama_C_float_interval(-0.01f, 0.01f);
+    p.y_1 = Frama_C_float_interval(-0.01f, 0.01f);
+    p.x_2 = Frama_C_float_interval(0.35f, 0.45f);
+    p.y_2 = Frama_C_float_interval(-0.01f, 0.01f);
+    p.x_3 = Frama_C_float_interval(0.15f, 0.25f);
+    p.y_3 = Frama_C_float_interval(0.3f, 0.4f);
+    p.m_1 = Frama_C_float_interval(0.05f, 1.0f);
+    p.m_2 = Frama_C_float_interval(0.05f, 1.0f);
+    p.J_1 = Frama_C_float_interval(0.0001f, 0.01f);
+    p.J_2 = Frama_C_float_interval(0.0001f, 0.01f);
+    p.J_motor = Frama_C_float_interval(0.0001f, 0.01f);
+    p.m_payload = Frama_C_float_interval(0.0f, 1.0f);
+    rapkm_2rrr_rr_status status = rapkm_2rrr_rr_acceleration_from_task_f(q, xd_t, xdd_t, &p, y);
+    //@ assert regular: status == RAPKM_2RRR_RR_OK || status == RAPKM_2RRR_RR_NOT_FINITE;
+    (void)status;
+}
+
 void eva_inverse_dynamics(void);
 
 /* Intervals of the ideal operations alone do not keep these denominators from 0: t24, t51. */

@@ -48,9 +48,9 @@ enum { SUMS_EVERYWHERE = 0 };
 #endif
 enum { WAYS = 8, MORE_WAYS = 64 };
 
-enum { SINES = 7, ARRAYS = 8, LONGEST = 12, RESULT = 36, PARAMETERS = 14 };
+enum { SINES = 10, ARRAYS = 11, LONGEST = 12, RESULT = 36, PARAMETERS = 14 };
 
-/* One set of numbers, the same in both types: q, qd, qdd, u, q_m, qd_m, qdd_m, sines and cosines, and the parameters. */
+/* One set of numbers, the same in both types: q, qd, qdd, u, q_m, qd_m, qdd_m, x_t, xd_t, xdd_t, sines and cosines, and the parameters. */
 typedef struct {
     float x_f[ARRAYS][LONGEST];
     double x[ARRAYS][LONGEST];
@@ -65,7 +65,7 @@ typedef struct {
     const char *name;
     int (*run)(double *const *x, const rapkm_2rrr_rr_params *p, double *y);
     int (*run_f)(float *const *x, const rapkm_2rrr_rr_params_f *p, float *y);
-    int reads[ARRAYS]; /* of q, qd, qdd, u, q_m, qd_m, qdd_m */
+    int reads[ARRAYS]; /* of q, qd, qdd, u, q_m, qd_m, qdd_m, x_t, xd_t, xdd_t */
     size_t size;
     int held;  /* whether rule 4 is a failure, not only a figure */
     int given; /* whether sines and cosines come from the caller */
@@ -329,6 +329,54 @@ static int acceleration_from_measured_32(float *const *x, const rapkm_2rrr_rr_pa
     return (int)rapkm_2rrr_rr_acceleration_from_measured_f(x[0], x[5], x[6], p, y);
 }
 
+static int task_position_64(double *const *x, const rapkm_2rrr_rr_params *p, double *y) {
+    return (int)rapkm_2rrr_rr_task_position(x[0], p, y);
+}
+
+static int task_position_32(float *const *x, const rapkm_2rrr_rr_params_f *p, float *y) {
+    return (int)rapkm_2rrr_rr_task_position_f(x[0], p, y);
+}
+
+static int task_velocity_64(double *const *x, const rapkm_2rrr_rr_params *p, double *y) {
+    return (int)rapkm_2rrr_rr_task_velocity(x[0], x[1], p, y);
+}
+
+static int task_velocity_32(float *const *x, const rapkm_2rrr_rr_params_f *p, float *y) {
+    return (int)rapkm_2rrr_rr_task_velocity_f(x[0], x[1], p, y);
+}
+
+static int task_jacobian_64(double *const *x, const rapkm_2rrr_rr_params *p, double *y) {
+    return (int)rapkm_2rrr_rr_task_jacobian(x[0], p, y);
+}
+
+static int task_jacobian_32(float *const *x, const rapkm_2rrr_rr_params_f *p, float *y) {
+    return (int)rapkm_2rrr_rr_task_jacobian_f(x[0], p, y);
+}
+
+static int configuration_from_task_64(double *const *x, const rapkm_2rrr_rr_params *p, double *y) {
+    return (int)rapkm_2rrr_rr_configuration_from_task(x[7], x[0], p, y);
+}
+
+static int configuration_from_task_32(float *const *x, const rapkm_2rrr_rr_params_f *p, float *y) {
+    return (int)rapkm_2rrr_rr_configuration_from_task_f(x[7], x[0], p, y);
+}
+
+static int velocity_from_task_64(double *const *x, const rapkm_2rrr_rr_params *p, double *y) {
+    return (int)rapkm_2rrr_rr_velocity_from_task(x[0], x[8], p, y);
+}
+
+static int velocity_from_task_32(float *const *x, const rapkm_2rrr_rr_params_f *p, float *y) {
+    return (int)rapkm_2rrr_rr_velocity_from_task_f(x[0], x[8], p, y);
+}
+
+static int acceleration_from_task_64(double *const *x, const rapkm_2rrr_rr_params *p, double *y) {
+    return (int)rapkm_2rrr_rr_acceleration_from_task(x[0], x[8], x[9], p, y);
+}
+
+static int acceleration_from_task_32(float *const *x, const rapkm_2rrr_rr_params_f *p, float *y) {
+    return (int)rapkm_2rrr_rr_acceleration_from_task_f(x[0], x[8], x[9], p, y);
+}
+
 static int inverse_dynamics_64(double *const *x, const rapkm_2rrr_rr_params *p, double *y) {
     return (int)rapkm_2rrr_rr_inverse_dynamics(x[0], x[1], x[2], p, y);
 }
@@ -524,6 +572,12 @@ static const Kernel kernels[] = {
     {"configuration_from_measured", configuration_from_measured_64, configuration_from_measured_32, {1, 0, 0, 0, 1}, 6u, 0, 0, NULL, NULL},
     {"velocity_from_measured", velocity_from_measured_64, velocity_from_measured_32, {1, 0, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
     {"acceleration_from_measured", acceleration_from_measured_64, acceleration_from_measured_32, {1, 0, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
+    {"task_position", task_position_64, task_position_32, {1, 0, 0, 0, 0}, 2u, 0, 0, NULL, NULL},
+    {"task_velocity", task_velocity_64, task_velocity_32, {1, 1, 0, 0, 0}, 2u, 0, 0, NULL, NULL},
+    {"task_jacobian", task_jacobian_64, task_jacobian_32, {1, 0, 0, 0, 0}, 12u, 0, 0, NULL, NULL},
+    {"configuration_from_task", configuration_from_task_64, configuration_from_task_32, {1, 0, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
+    {"velocity_from_task", velocity_from_task_64, velocity_from_task_32, {1, 0, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
+    {"acceleration_from_task", acceleration_from_task_64, acceleration_from_task_32, {1, 0, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
     {"inverse_dynamics", inverse_dynamics_64, inverse_dynamics_32, {1, 1, 1, 0, 0}, 3u, 1, 0, NULL, NULL},
     {"inverse_dynamics_residual", inverse_dynamics_residual_64, inverse_dynamics_residual_32, {1, 1, 1, 0, 0}, 6u, 0, 0, NULL, NULL},
     {"forward_dynamics", forward_dynamics_64, forward_dynamics_32, {1, 1, 0, 1, 0}, 6u, 1, 0, NULL, NULL},
@@ -535,9 +589,9 @@ static const Kernel kernels[] = {
     {"forward_dynamics_sc", forward_dynamics_sc_64, forward_dynamics_sc_32, {1, 1, 0, 1, 0}, 6u, 1, 1, NULL, NULL},
     {"multipliers_sc", multipliers_sc_64, multipliers_sc_32, {1, 1, 0, 1, 0}, 4u, 0, 1, NULL, NULL},
 };
-enum { KERNELS = 42 };
+enum { KERNELS = 48 };
 
-static const size_t sizes[ARRAYS] = {6u, 6u, 6u, 3u, 3u, 3u, 3u, 12u};
+static const size_t sizes[ARRAYS] = {6u, 6u, 6u, 3u, 3u, 3u, 3u, 2u, 2u, 2u, 12u};
 static const float ranges[][2] = {
     {-3.1415927f, 3.1415927f}, /* q[0] */
     {-3.1415927f, 3.1415927f}, /* q[1] */
@@ -569,6 +623,12 @@ static const float ranges[][2] = {
     {-100.0f, 100.0f}, /* qdd_m[0] */
     {-100.0f, 100.0f}, /* qdd_m[1] */
     {-100.0f, 100.0f}, /* qdd_m[2] */
+    {-1.0f, 1.0f}, /* x_t[0] */
+    {-1.0f, 1.0f}, /* x_t[1] */
+    {-1.0f, 1.0f}, /* xd_t[0] */
+    {-1.0f, 1.0f}, /* xd_t[1] */
+    {-1.0f, 1.0f}, /* xdd_t[0] */
+    {-1.0f, 1.0f}, /* xdd_t[1] */
     {0.15f, 0.3f}, /* p[0] */
     {0.15f, 0.3f}, /* p[1] */
     {-0.01f, 0.01f}, /* p[2] */
@@ -726,7 +786,7 @@ static void fail(const Kernel *kernel, const State *s, const char *what) {
     fprintf(stderr, "%s: %s\n", kernel->name, what);
     for (size_t a = 0; a < ARRAYS; a++) {
         for (size_t i = 0; i < sizes[a]; i++) {
-            fprintf(stderr, "  %s[%u] = %.9g (%a)\n", (const char *[]){"q", "qd", "qdd", "u", "q_m", "qd_m", "qdd_m", "sc"}[a], (unsigned)i, s->x[a][i], s->x[a][i]);
+            fprintf(stderr, "  %s[%u] = %.9g (%a)\n", (const char *[]){"q", "qd", "qdd", "u", "q_m", "qd_m", "qdd_m", "x_t", "xd_t", "xdd_t", "sc"}[a], (unsigned)i, s->x[a][i], s->x[a][i]);
         }
     }
     fprintf(stderr, "  %s = %.9g\n", "l_1", s->p.l_1);
@@ -749,7 +809,7 @@ static void fail(const Kernel *kernel, const State *s, const char *what) {
 /* Rules 1, 2 and 5 in double; the status, and the result in y where it is 0. */
 static int check(const Kernel *kernel, const State *s, double y[RESULT], int *flags) {
     double x[ARRAYS][LONGEST];
-    double *arrays[ARRAYS] = {x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7]};
+    double *arrays[ARRAYS] = {x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], x[8], x[9], x[10]};
     double before[RESULT];
     const size_t bytes = kernel->size * sizeof y[0];
     memcpy(x, s->x, sizeof x);
@@ -810,7 +870,7 @@ static int check(const Kernel *kernel, const State *s, double y[RESULT], int *fl
 /* Rules 1, 2 and 5 in float; the status, and the result in y where it is 0. */
 static int check_f(const Kernel *kernel, const State *s, float y[RESULT], int *flags) {
     float x[ARRAYS][LONGEST];
-    float *arrays[ARRAYS] = {x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7]};
+    float *arrays[ARRAYS] = {x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], x[8], x[9], x[10]};
     float before[RESULT];
     const size_t bytes = kernel->size * sizeof y[0];
     memcpy(x, s->x_f, sizeof x);
