@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -18,7 +19,7 @@ def by_energies(model: Model) -> Model:
     taken = {c.name for c in given.coordinates} | {p.name for p in given.parameters} | {i.name for i in given.inputs}
     plain: dict[str, str] = {}
     for definition in given.definitions:
-        name = definition.name.replace(".", "_")
+        name = re.sub(r"\W", "_", definition.name)
         while name in taken:
             name += "_"
         taken.add(name)
@@ -39,6 +40,7 @@ def with_names(model: Model, names: Mapping[str, Expression]) -> Model:
         kinetic_energy=at(model.kinetic_energy),
         potential_energy=at(model.potential_energy),
         constraints=tuple(replace(c, expression=at(c.expression)) for c in model.constraints),
+        task=tuple(replace(x, expression=at(x.expression)) for x in model.task),
         inputs=tuple(replace(i, acts_on=tuple((name, at(value)) for name, value in i.acts_on)) for i in model.inputs),
         applied_forces=tuple(replace(f, expression=at(f.expression)) for f in model.applied_forces),
     )
