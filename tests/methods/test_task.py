@@ -162,6 +162,26 @@ def test_what_a_task_leaves_open_is_said(tmp_path: Path, capsys: pytest.CaptureF
     assert "def velocity_from_task" not in made
 
 
+@pytest.mark.parametrize(("least", "code"), [("1", 1), ("0.01", 0)])
+def test_a_task_has_values_where_its_function_has(
+    least: str, code: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A root of what is never positive where the rows hold is a mistake; one of what is now and then is not."""
+    text = f"""
+model: bars
+coordinates: {{a: {{unit: rad, range: [-0.4, 0.4]}}, b: {{unit: rad, range: [-0.4, 0.4]}}}}
+kinetic_energy: (a_dot**2 + b_dot**2)/2
+constraints: {{geometric: {{alike: a - b}}}}
+inputs: {{u: {{acts_on: {{a: 1}}}}}}
+task: {{x: sqrt(a - b + 0.2*a - {least})}}
+outputs: [velocity_from_task]
+"""
+    path = tmp_path / "bars.yaml"
+    path.write_text(text, encoding="utf-8")
+    assert main([str(path), "--only", "python", "--no-verify", "--out", str(tmp_path)]) == code
+    assert ("`x` of the task has no finite value" in capsys.readouterr().err) is bool(code)
+
+
 def test_a_coordinate_of_the_task_that_is_one_of_the_model_is_taken_as_it_is(tmp_path: Path) -> None:
     """The third link of an arm is told its angle, the others a place; the names clash with those of the model."""
     text = ARM.replace("rad}}", "rad}, x: {unit: rad}}").replace("b_dot**2)", "b_dot**2 + x_dot**2)")

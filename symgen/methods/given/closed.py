@@ -86,7 +86,7 @@ def _steps(graph: Graph, rows: Sequence[Scalar], unknown: Sequence[Scalar]) -> l
         steps.append(done)
         open_ -= set(solved_for)
         left = {row: found for row, found in left.items() if row not in these}
-    return steps
+    return None if open_ else steps
 
 
 def _next(

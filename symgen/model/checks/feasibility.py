@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 
 from symgen.diagnostics import Mistake, Notice, Span
 from symgen.model.checks.masses import check_masses
@@ -200,13 +201,15 @@ def left_by_task(mechanics: NumericSystem, assembly: Assembly, task: Sequence[Ta
     if not task:
         return TaskLeaves()
     n, geometric = len(mechanics.coordinates), len(mechanics.geometric)
-    known = []
+    rates, places = n, n
     for place in assembly.places[:SAMPLES]:
-        slopes = mechanics.gradients(place.q, [x.expression for x in task])
-        moved = [[row.get(j, 0.0) for j in range(n)] for row in slopes]
-        rows = mechanics.jacobian(place.q)
-        known.append((rank([*rows, *moved]), rank([*rows[:geometric], *moved])))
-    rates, places = (n - max(column) for column in zip(*known, strict=True))
+        # a function may have no value at some of them
+        with suppress(ArithmeticError, ValueError):
+            slopes = mechanics.gradients(place.q, [x.expression for x in task])
+            moved = [[row.get(j, 0.0) for j in range(n)] for row in slopes]
+            rows = mechanics.jacobian(place.q)
+            rates = min(rates, n - rank([*rows, *moved]))
+            places = min(places, n - rank([*rows[:geometric], *moved]))
     return TaskLeaves(rates, places)
 
 
