@@ -55,6 +55,25 @@ def test_chains_of_two_are_solved_in_closed_form(task_of: str) -> None:
     assert made(task_of)
 
 
+COLUMN = "x: ({0})*cos(a), y: ({0})*sin(a), z: l*sin(b) + k*sin({1})"
+
+
+@pytest.mark.parametrize(
+    ("task_of", "coordinates"),
+    [
+        (COLUMN.format("l*cos(b) + k*cos(c)", "c"), "a b c"),  # two links on a column
+        (COLUMN.format("0.1 + l*cos(b) + k*cos(b - c)", "b - c"), "a b c"),  # by relative angles, with an offset
+        (COLUMN.format("l*cos(b) + k*cos(c)", "c") + ", gear: b - 2*d", "a b c d"),  # with a gear behind
+        ("x: l*cos(a) + k*cos(b) + cos(c), y: l*sin(a) + k*sin(b) + sin(c), turn: c", "a b c"),  # a hand's own angle
+        ("x: l*cos(a) + k*cos(a + b) + cos(a + b + c), y: l*sin(a) + k*sin(a + b) + sin(a + b + c), turn: a + b + c",
+         "a b c"),  # by relative angles
+        ("x: l*cos(a) + k*cos(b) + cos(c), y: l*sin(a) + k*sin(b) + sin(c), turn: c - b - a", "a b c"),
+    ],
+)  # fmt: skip
+def test_arms_of_more_joints_fall_into_such_chains(task_of: str, coordinates: str) -> None:
+    assert made(task_of, coordinates)
+
+
 @pytest.mark.parametrize(
     ("task_of", "coordinates"),
     [
@@ -62,6 +81,7 @@ def test_chains_of_two_are_solved_in_closed_form(task_of: str) -> None:
         ("x: a*a*a, y: b", "a b"),
         ("x: exp(a), y: b", "a b"),
         ("x: a + b, y: a - 2*cos(b)", "a b"),
+        ("x: (l*cos(b) - d)*cos(a), y: (l*cos(b) - d)*sin(a), z: l*sin(b) + k*d, gear: b - 2*d", "a b d"),
         ("x: l*cos(a) + k*cos(b), y: l*sin(a) + k*sin(2*b)", "a b"),
         ("x: cos(a) + cos(b), y: sin(a) + sin(b), z: cos(c) + a*c", "a b c"),
         ("x: cos(a) + cos(b) + cos(c), y: sin(a) + sin(b) + sin(c), z: cos(a + b + c)", "a b c"),

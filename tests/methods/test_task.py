@@ -132,6 +132,41 @@ def test_a_five_bar_is_where_two_circles_meet(tmp_path: Path) -> None:
     assert np.abs(turned_to(wanted, found) - found)[kept].max() < 1e-12
 
 
+@pytest.mark.parametrize("over", [1.0, -1.0])
+def test_an_arm_on_a_column_keeps_its_sides(over: float, tmp_path: Path) -> None:
+    """A hand kept level by a row of numbers; reaching out before the column and over its back, elbow up and down."""
+    text = f"""
+model: column
+coordinates: {{a: {{unit: rad}}, b: {{unit: rad}}, c: {{unit: rad}}, d: {{unit: rad}}}}
+kinetic_energy: (a_dot**2 + b_dot**2 + c_dot**2 + d_dot**2)/2
+constraints: {{geometric: {{level: b + c + d}}}}
+definitions: {{reach: {L1}*cos(b) + {L2}*cos(b + c) + 0.1*cos(b + c + d)}}
+inputs: {{u: {{acts_on: {{a: 1}}}}}}
+task: {{x: reach*cos(a), y: reach*sin(a), z: {L1}*sin(b) + {L2}*sin(b + c) + 0.1*sin(b + c + d)}}
+configuration: {{a: 0.3, b: 0.8, c: 0.5, d: -1.3}}
+{ALL}
+"""
+    module, random = kernels(text, tmp_path), np.random.default_rng(4)
+    a, b = random.uniform(-3, 3, 3000), random.uniform(0.2, 1.2, 3000)
+    c = random.choice((-1, 1), 3000) * random.uniform(0.3, 1.0, 3000)
+    if over < 0:
+        b = np.pi - b
+    before = np.stack((a, b, c, -b - c), axis=1)
+    moved = before.copy()
+    moved[:, :3] += 10.0 ** random.uniform(-4, -1, (3000, 1)) * random.normal(size=(3000, 3))
+    moved[:, 3] = -moved[:, 1] - moved[:, 2]
+    aim = module.task_position(moved)
+    found = module.configuration_from_task(aim, before)
+    kept = np.isfinite(found).all(axis=1)
+    same = (np.sin(moved[:, 2]) * np.sin(c) > 0) & (np.abs(moved - before).max(axis=1) < 0.5)
+    reach = [L1 * np.cos(q[:, 1]) + L2 * np.cos(q[:, 1] + q[:, 2]) + 0.1 for q in (before, moved)]
+    same &= (reach[0] * reach[1] > 0) & (np.abs(reach).min(axis=0) > 1e-3)
+    assert same.mean() > 0.9
+    assert kept[same].mean() > 0.99
+    assert np.abs(found - moved)[kept & same].max() < 1e-9
+    assert np.median(np.abs(found - moved)[kept & same].max(axis=1)) < 1e-15
+
+
 def test_of_too_many_coordinates_the_nearest_configuration_is_taken(tmp_path: Path) -> None:
     text = ARM.replace("l_1*sin(a) + l_2*sin(a + b)}", "l_1*sin(a) + l_2*sin(a + b), turn: a + b/2}")
     module, q = kernels(text, tmp_path), np.array([0.5, 0.9])

@@ -1,13 +1,15 @@
 """Rates and accelerations from what is given, leg by leg: [B; X] q_dot = [0; x_dot], X the derivatives of x(q).
 
-As many functions as directions and rows that do not depend on each other make a square system.  Rows are added to each
-other where that leaves fewer entries, and what is left falls into blocks of a few unknowns each.
+As many functions as directions and rows that do not depend on each other make a square system.  Rows of numbers are
+solved first, the others are added to each other where that leaves fewer entries, and what is left falls into blocks of
+a few unknowns each.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
+from symgen.linear_algebra.constant_rows import ConstantRows
 from symgen.linear_algebra.guards import Guard
 from symgen.linear_algebra.sparser_rows import SparserRows
 from symgen.linear_algebra.triangular_blocks import BlockwiseSolution, triangular_blocks
@@ -28,17 +30,19 @@ from symgen.symbolic.traverse import cost
 
 @dataclass(frozen=True, slots=True)
 class LegMotion:
-    """The square system of rows and functions, combined and in blocks."""
+    """The square system of rows and functions: without rows of numbers, combined, and in blocks."""
 
     mechanics: System
     given: Given
+    numbers: ConstantRows
     rows: SparserRows
     solution: BlockwiseSolution
 
     @property
     def velocity(self) -> Vector:
         """q_dot with B q_dot = 0 and the given rates."""
-        return self.solution.solve(self.rows.of((*self._zeros, *self.given.rates)))
+        right = (*self._zeros, *self.given.rates)
+        return self.numbers.completed(self.solution.solve(self.rows.of(self.numbers.of(right))), right)
 
     @property
     def acceleration(self) -> Vector:
@@ -49,20 +53,22 @@ class LegMotion:
         velocity = self.velocity
         motion = dict(zip(self.mechanics.q, velocity, strict=True))
         bias = self.mechanics.constraint_acceleration_bias(velocity) if self.mechanics.r else ()
-        changes = self.rows.of((*bias, *self._bent(self.given.slopes, motion))), self._bent(self.rows.matrix, motion)
-        wanted = self.rows.of((*self._zeros, *self.given.accelerations))
+        apart = self.numbers.of((*bias, *self._bent(self.given.slopes, motion, velocity)))
+        right = (*self._zeros, *self.given.accelerations)
+        wanted = self.rows.of(self.numbers.of(right))
+        changes = self.rows.of(apart), self._bent(self.rows.matrix, motion, self.numbers.kept(velocity))
         found = (self.solution.solve([x - y for x, y in zip(wanted, one, strict=True)]) for one in changes)
-        return min(found, key=lambda one: cost(one).weight)
+        return self.numbers.completed(min(found, key=lambda one: cost(one).weight if one else 0), right)
 
     @property
     def _zeros(self) -> Vector:
         return (self.mechanics.graph.zero,) * self.mechanics.r
 
-    def _bent(self, rows: Matrix, motion: Mapping[Scalar, Scalar]) -> list[Scalar]:
-        """How rows change along a velocity, times it."""
+    def _bent(self, rows: Matrix, motion: Mapping[Scalar, Scalar], velocity: Sequence[Scalar]) -> list[Scalar]:
+        """How rows change along a motion, times the velocity of their unknowns."""
         graph = self.mechanics.graph
         changes = iter(derivative_along(graph, flatten(rows), motion))
-        return [dot(graph, [next(changes) for _ in row], tuple(motion.values())) for row in rows]
+        return [dot(graph, [next(changes) for _ in row], velocity) for row in rows]
 
 
 def leg_motion(system: MethodInput, given: Given) -> LegMotion | str:
@@ -72,12 +78,13 @@ def leg_motion(system: MethodInput, given: Given) -> LegMotion | str:
         return system.regular
     if len(given.functions) + mechanics.r != mechanics.n:
         return "more is given than determines the motion"
-    rows = SparserRows((*mechanics.constraint_jacobian, *given.slopes))
+    numbers = ConstantRows((*mechanics.constraint_jacobian, *given.slopes))
+    rows = SparserRows(numbers.matrix)
     blocks = triangular_blocks([[not x.is_zero for x in row] for row in rows.matrix])
     if blocks is None:
         return "what is given does not determine the motion"
     solution = BlockwiseSolution(mechanics.graph, rows.matrix, blocks, mechanics.factoring.cancelled)
-    return LegMotion(mechanics, given, rows, solution)
+    return LegMotion(mechanics, given, numbers, rows, solution)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,91 @@
+"""Rows of numbers, such as gears and what keeps a hand level, solved for one unknown each before anything else is.
+
+With the unknown replaced in all other rows, what its link does and what undoes it cancel there: of the rows of an arm
+whose hand stays level nothing of the hand is left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+from symgen.records import dataclass
+from symgen.symbolic.matrix import Matrix, Vector, flatten
+from symgen.symbolic.scalar import Scalar
+from symgen.symbolic.traverse import cost
+
+# Unknowns of a row up to which each is tried as the one that it is solved for.
+MOST_PIVOTS_TRIED = 6
+
+
+@dataclass(frozen=True, slots=True)
+class _Replaced:
+    """A row and the column of the unknown that it was solved for, in the numbers of what was left then."""
+
+    row: int
+    column: int
+    coefficients: tuple[Fraction, ...]
+    beside: Vector
+
+
+class ConstantRows:
+    """The system without the unknowns that rows of numbers give; `matrix` is what is left of it."""
+
+    def __init__(self, matrix: Matrix) -> None:
+        self._steps: list[_Replaced] = []
+        self.matrix = matrix
+        while (step := _next(self.matrix)) is not None:
+            self._steps.append(step)
+            self.matrix = _reduced(self.matrix, step)
+
+    def of(self, right: Sequence[Scalar]) -> list[Scalar]:
+        """The right-hand sides of what is left."""
+        found = list(right)
+        for step in self._steps:
+            given = found.pop(step.row) * (1 / step.coefficients[step.column])
+            found = [x - factor * given for x, factor in zip(found, step.beside, strict=True)]
+        return found
+
+    def completed(self, values: Sequence[Scalar], right: Sequence[Scalar]) -> Vector:
+        """All unknowns, from those that are left."""
+        given, sides = list(right), []
+        for step in self._steps:
+            sides.append(given[step.row])
+            own = given.pop(step.row) * (1 / step.coefficients[step.column])
+            given = [x - factor * own for x, factor in zip(given, step.beside, strict=True)]
+        found = list(values)
+        for step, side in zip(reversed(self._steps), reversed(sides), strict=True):
+            others = [c for k, c in enumerate(step.coefficients) if k != step.column]
+            rest = side.graph.sum(x * c for x, c in zip(found, others, strict=True) if c)
+            found.insert(step.column, (side - rest) * (1 / step.coefficients[step.column]))
+        return tuple(found)
+
+    def kept(self, values: Sequence[Scalar]) -> list[Scalar]:
+        """Of the unknowns those that are left."""
+        found = list(values)
+        for step in self._steps:
+            del found[step.column]
+        return found
+
+
+def _next(matrix: Matrix) -> _Replaced | None:
+    """A row of numbers with the unknown whose replacement leaves least."""
+    for i, row in enumerate(matrix):
+        numbers = [x.constant for x in row]
+        coefficients = tuple(x for x in numbers if x is not None)
+        if len(coefficients) < len(numbers) or not any(coefficients):
+            continue
+        pivots = [j for j, x in enumerate(coefficients) if x][:MOST_PIVOTS_TRIED]
+        steps = [
+            _Replaced(i, j, coefficients, tuple(other[j] for k, other in enumerate(matrix) if k != i)) for j in pivots
+        ]
+        return min(steps, key=lambda step: cost(flatten(_reduced(matrix, step)) or (matrix[0][0],)).weight)
+    return None
+
+
+def _reduced(matrix: Matrix, step: _Replaced) -> Matrix:
+    """The other rows without the unknown."""
+    pivot = step.coefficients[step.column]
+    shares = [(k, c / pivot) for k, c in enumerate(step.coefficients) if k != step.column]
+    rows = (row for i, row in enumerate(matrix) if i != step.row)
+    return tuple(tuple(row[k] - row[step.column] * c if c else row[k] for k, c in shares) for row in rows)

@@ -1,0 +1,176 @@
+"""In which steps rows are solved for their unknowns in closed form, found by identities of their derivatives.
+
+A row with one unknown is solved for it (`row_solution`).  Where an angle x turns two rows alike,
+(f_1, f_2) = R(x) a + c as a link that turns about its joint does, x is the turn from a to -c once the rest is known,
+and |a| = |c| is the row that is left of them: chains of two links, four-bars, the column of an arm (Merlet, Parallel
+Robots, ch. 2; Craig, Introduction to Robotics, ch. 4).  A row of numbers, such as a gear or what keeps a hand level,
+gives one unknown by the others.  What is replaced so is worked out last.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import combinations
+from typing import TypeAlias
+
+from symgen.linear_algebra.sparser_rows import SparserRows
+from symgen.methods.given.row_solution import SolvableRow, solvable_row
+from symgen.records import dataclass
+from symgen.symbolic.calculus import derivative_along, gradient
+from symgen.symbolic.matrix import dot
+from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.traverse import cost, reached, substitute
+
+
+@dataclass(frozen=True, slots=True)
+class Turned:
+    """Two rows, an angle that turns both of them, and their turning parts; `backwards` if to the other side."""
+
+    rows: tuple[Scalar, Scalar]
+    angle: Scalar
+    arm: tuple[Scalar, Scalar]
+    backwards: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Replaced:
+    """An unknown as a function of others."""
+
+    unknown: Scalar
+    value: Scalar
+
+
+Last: TypeAlias = Turned | Replaced
+
+
+@dataclass(frozen=True, slots=True)
+class Steps:
+    """Rows that are solved one after the other, and then what was replaced, in this order.
+
+    `sides` are signs that are those of functions at the start, by the symbols that stand for them.
+    """
+
+    rows: tuple[SolvableRow, ...]
+    last: tuple[Last, ...]
+    sides: dict[Scalar, Scalar]
+
+
+def steps(graph: Graph, rows: Sequence[Scalar], unknown: Sequence[Scalar]) -> Steps | None:
+    """The steps for as many rows as unknowns; None where they do not come to an end."""
+    found = _Reduction(graph, rows, unknown)
+    return found.steps() if len(rows) == len(unknown) else None
+
+
+class _Reduction:
+    """Rows and unknowns that are left."""
+
+    def __init__(self, graph: Graph, rows: Sequence[Scalar], unknown: Sequence[Scalar]) -> None:
+        self._graph, self._rows, self._open = graph, list(rows), list(unknown)
+        self._solved: list[SolvableRow] = []
+        self._last: list[Last] = []
+        self._sides: dict[Scalar, Scalar] = {}
+
+    def steps(self) -> Steps | None:
+        """Those that leave nothing."""
+        while self._replace_by_numbers():
+            pass
+        self._combine()
+        while self._open:
+            if not (self._solve_one() or self._replace_by_numbers() or self._turn_two()):
+                return None
+        return Steps(tuple(self._solved), tuple(reversed(self._last)), self._sides)
+
+    def _held(self, row: Scalar) -> list[Scalar]:
+        """The unknowns in a row."""
+        found = reached([row])
+        return [x for x in self._open if x in found]
+
+    def _combine(self) -> None:
+        """Rows added to each other where fewer unknowns are left in them."""
+        slopes = tuple(tuple(gradient(self._graph, row, self._open)) for row in self._rows)
+        self._rows = SparserRows(slopes).of(self._rows)
+
+    def _solve_one(self) -> bool:
+        """A row with one unknown."""
+        for row in self._rows:
+            held = self._held(row)
+            one = solvable_row(self._graph, row, held[0]) if len(held) == 1 else None
+            if one is not None:
+                self._solved.append(one)
+                self._let_go([row], one.unknown)
+                return True
+        return False
+
+    def _replace_by_numbers(self) -> bool:
+        """A row of two unknowns or more whose slopes are numbers, by the unknown whose replacement leaves least."""
+        for row in self._rows:
+            held = self._held(row)
+            slopes = gradient(self._graph, row, held)
+            numbers = [slope.constant for slope in slopes]
+            if len(held) < 2 or not all(numbers):
+                continue
+            others = [other for other in self._rows if other is not row]
+            found = []
+            for x, number in zip(held, numbers, strict=True):
+                assert number is not None
+                (rest,) = substitute(self._graph, [row], {x: self._graph.zero})
+                one = Replaced(x, rest * (-1 / number))
+                found.append((one, substitute(self._graph, others, {x: one.value})))
+            best, left = min(found, key=lambda pair: cost(pair[1]).weight if pair[1] else 0)
+            self._last.append(best)
+            self._let_go([row], best.unknown)
+            self._rows = list(left)
+            return True
+        return False
+
+    def _turn_two(self) -> bool:
+        """An angle that turns two rows alike and stands in no others, and the row that is left of these."""
+        for x in self._open:
+            holding = [row for row in self._rows if x in self._held(row)]
+            if len(holding) == 2 and self._turn(holding[0], holding[1], x):
+                return True
+        # other angles of the two rows of a chain, of which either may be the one
+        for first, second in combinations(self._rows, 2):
+            pair = [x for x in self._open if x in {*self._held(first), *self._held(second)}]
+            if len(pair) == 2 and any(self._turn(first, second, x) for x in pair):
+                return True
+        return False
+
+    def _turn(self, first: Scalar, second: Scalar, angle: Scalar) -> bool:
+        graph, rows = self._graph, (first, second)
+        turned = _turned(graph, rows, angle)
+        if turned is None:
+            return False
+        # lengths are the same at every angle, and shortest at 0
+        rests = [row - part for row, part in zip(rows, turned.arm, strict=True)]
+        x, y, *apart = substitute(graph, [*turned.arm, *rests], {angle: graph.zero})
+        along = y if x.is_zero else x if y.is_zero else None
+        if along is not None and not any(map(self._held, apart)):
+            side = graph.stand_in(f"side {len(self._sides)}")
+            self._sides[side] = graph.function("copysign", (graph.one, along))
+            left = along - side * graph.function("sqrt", (dot(graph, apart, apart),))
+        else:
+            left = dot(graph, apart, apart) - dot(graph, (x, y), (x, y))
+        if not self._held(left):
+            return False
+        self._last.append(turned)
+        self._let_go(rows, angle)
+        self._rows.append(left)
+        return True
+
+    def _let_go(self, rows: Iterable[Scalar], unknown: Scalar) -> None:
+        gone = list(rows)
+        self._rows = [row for row in self._rows if not any(row is one for one in gone)]
+        self._open.remove(unknown)
+
+
+def _turned(graph: Graph, rows: tuple[Scalar, Scalar], angle: Scalar) -> Turned | None:
+    """The rows where the angle turns both of them alike, to either side, identically."""
+    along = {angle: graph.one}
+    slopes = derivative_along(graph, rows, along)
+    x, y = (-bend for bend in derivative_along(graph, slopes, along))
+    if x.is_zero:
+        return None
+    turned = [(slopes[0] + y, slopes[1] - x), (slopes[0] - y, slopes[1] + x)]
+    side = next((k for k, both in enumerate(turned) if all(one.is_zero for one in both)), None)
+    return None if side is None else Turned(rows, angle, (x, y), bool(side))
