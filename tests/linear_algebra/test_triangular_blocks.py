@@ -1,4 +1,4 @@
-"""Square systems in blocks, and rows added to each other: against plain numbers, exactly."""
+"""Square systems in blocks, rows of numbers, turned and added to each other: against plain numbers, exactly."""
 
 from __future__ import annotations
 
@@ -9,11 +9,14 @@ import numpy as np
 import pytest
 
 from symgen.ir.kernel import Status
+from symgen.linear_algebra.constant_rows import ConstantRows
 from symgen.linear_algebra.sparser_rows import SparserRows
 from symgen.linear_algebra.triangular_blocks import BlockwiseSolution, triangular_blocks
+from symgen.linear_algebra.turned_rows import TurnedRows
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.matrix import Matrix
 from symgen.symbolic.scalar import Graph
+from symgen.symbolic.traverse import reached
 
 
 def numbered(graph: Graph, pattern: list[str]) -> Matrix:
@@ -94,6 +97,62 @@ def test_rows_that_have_nothing_to_give_stay() -> None:
     a, b = graph.symbol("a"), graph.symbol("b")
     matrix = ((a, b), (b, a))
     rows = SparserRows(matrix)
+    assert rows.matrix == matrix
+    assert rows.of((graph.one, graph.zero)) == [graph.one, graph.zero]
+
+
+def plain(graph_values: dict[str, float], rows: Matrix) -> np.ndarray:
+    found = Evaluator([x for row in rows for x in row])(graph_values)
+    return np.array(found).reshape(len(rows), -1)
+
+
+def test_rows_of_numbers_are_solved_first() -> None:
+    """A hand that a row keeps level: nothing of it is left in the others, and all unknowns come back."""
+    graph = Graph()
+    b, c, d = (graph.symbol(name) for name in "bcd")
+    one, zero = graph.one, graph.zero
+    tip = graph.trig("sin", b + c + d)
+    arm = [-graph.trig("sin", b) - graph.trig("sin", b + c), -graph.trig("sin", b + c), zero]
+    lift = [graph.trig("cos", b) + graph.trig("cos", b + c), graph.trig("cos", b + c), zero]
+    matrix = ((one, one, one), tuple(x - tip for x in arm), tuple(x + 3 * tip for x in lift))
+    rows = ConstantRows(matrix)
+    assert len(rows.matrix) == 2
+    assert not any(tip in reached([x]) for row in rows.matrix for x in row)
+    right = [graph.symbol(f"r{k}") for k in range(3)]
+    values = {"b": 0.7, "c": -1.1, "d": 0.9, "r0": 0.3, "r1": -0.4, "r2": 0.8}
+    left = np.linalg.solve(plain(values, rows.matrix), Evaluator(rows.of(right))(values))
+    found = Evaluator(rows.completed([graph.const(Fraction(float(x))) for x in left], right))(values)
+    assert np.allclose(plain(values, matrix) @ found, [0.3, -0.4, 0.8], atol=1e-14)
+    assert np.allclose(Evaluator(rows.kept([graph.const(Fraction(float(x))) for x in found]))(values), left, atol=0)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_rows_that_an_angle_turns_are_taken_in_its_axes(side: int) -> None:
+    """A tip beside its column: across the arm the column alone moves it."""
+    graph = Graph()
+    a, b = graph.symbol("a"), graph.symbol("b")
+    c, s = graph.trig("cos", a), graph.trig("sin", a) * side
+    reach, slope, beside = graph.trig("cos", b) + 2, -graph.trig("sin", b), graph.const(Fraction(1, 5))
+    x = (side * (-reach * s - beside * c), slope * c)
+    y = (side * (reach * c - beside * s), slope * s)
+    rows = TurnedRows(graph, (x, y), (a, b))
+    assert [[not entry.is_zero for entry in row] for row in rows.matrix] == [[True, True], [True, False]]
+    assert not any(a in reached([entry]) for row in rows.matrix for entry in row)
+    values, rate, step = {"a": 0.6, "b": 1.9, "p": 0.3, "q": -0.7}, 0.8, 1e-5
+    p, q = graph.symbol("p"), graph.symbol("q")
+    turn = np.array([[np.cos(0.6), side * np.sin(0.6)], [-side * np.sin(0.6), np.cos(0.6)]])
+    assert np.allclose(plain(values, rows.matrix), turn @ plain(values, (x, y)), atol=1e-15)
+    assert np.allclose(Evaluator(rows.of((p, q)))(values), turn @ [0.3, -0.7], atol=1e-15)
+    change = Evaluator(rows.changes((p, q), {a: graph.const(Fraction(rate)), b: graph.zero}))(values)
+    moved = [Evaluator(rows.of((p, q)))({**values, "a": 0.6 + k * step * rate}) for k in (1, -1)]
+    assert np.allclose(change, (np.array(moved[0]) - moved[1]) / (2 * step), atol=1e-9)
+
+
+def test_rows_in_which_the_angle_stays_are_not_turned() -> None:
+    graph = Graph()
+    a = graph.symbol("a")
+    matrix = ((graph.trig("cos", a), graph.trig("sin", 2 * a)), (graph.trig("sin", a), graph.one))
+    rows = TurnedRows(graph, matrix, (a,))
     assert rows.matrix == matrix
     assert rows.of((graph.one, graph.zero)) == [graph.one, graph.zero]
 

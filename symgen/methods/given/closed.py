@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from symgen.ir.kernel import Status
 from symgen.linear_algebra.guards import Guard
 from symgen.mechanics.system import System
 from symgen.methods.admission import ByTheorem
 from symgen.methods.given.functions import Given, given_of
 from symgen.methods.given.row_solution import RowSolution, SolvableRow, solved, within_a_quarter
-from symgen.methods.given.steps import Last, Replaced, Steps, Turned, steps
+from symgen.methods.given.steps import Last, Replaced, Side, Steps, Turned, steps
 from symgen.methods.method import Candidate, Method
 from symgen.methods.quantity import Quantity
 from symgen.methods.system import MethodInput
@@ -46,17 +47,29 @@ class _Unknowns:
     """Their values one after the other: what is known so far, at first what is given."""
 
     def __init__(self, graph: Graph, given: Given, known: dict[Scalar, Scalar], found: Steps) -> None:
-        self._graph, self._given, self._sides = graph, given, found.sides
+        self._graph, self._given = graph, given
+        self._signs = {one.sign: graph.function("copysign", (graph.one, one.start)) for one in found.sides}
         self.known, self.guards = dict(known), list[Guard]()
+        for side in found.sides:
+            self._on_its_side(side)
         for row in found.rows:
             self._of_row(row)
         for one in found.last:
             self._of_replaced(one)
 
+    def _on_its_side(self, side: Side) -> None:
+        """Neither the start nor what is given lies where both sides meet, and what is given is not beyond."""
+        square, size = self._now((side.square, side.size))
+        beyond = Guard(Status.NOT_CLOSED, -square, 2, scale=size, positive=True, small=True)
+        self.guards += [
+            Guard(self._given.status, side.start * side.start, 2),
+            Guard(self._given.status, square, 2, scale=size, first=(beyond,)),
+        ]
+
     def _of_row(self, row: SolvableRow) -> None:
         """One row, for its unknown."""
         value, slope, bend = self._now(row.scalars)
-        first = substitute(self._graph, row.scalars, self._sides)
+        first = substitute(self._graph, row.scalars, self._signs)
         start = first[0], first[1], first[2]
         self._take(row.unknown, solved(self._graph, row, (value, slope, bend), start, self._given.status))
 
@@ -79,7 +92,7 @@ class _Unknowns:
 
     def _now(self, scalars: Sequence[Scalar]) -> list[Scalar]:
         """With what is known in its place, and on the sides of the start."""
-        return substitute(self._graph, scalars, {**self._sides, **self.known})
+        return substitute(self._graph, scalars, {**self._signs, **self.known})
 
     def _take(self, unknown: Scalar, one: RowSolution) -> None:
         """A number from here on: there is no place for algebra with what led to it."""

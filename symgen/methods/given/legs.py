@@ -1,8 +1,8 @@
 """Rates and accelerations from what is given, leg by leg: [B; X] q_dot = [0; x_dot], X the derivatives of x(q).
 
 As many functions as directions and rows that do not depend on each other make a square system.  Rows of numbers are
-solved first, the others are added to each other where that leaves fewer entries, and what is left falls into blocks of
-a few unknowns each.
+solved first, the others are turned and added to each other where that leaves fewer entries, and what is left falls into
+blocks of a few unknowns each.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from symgen.linear_algebra.constant_rows import ConstantRows
 from symgen.linear_algebra.guards import Guard
 from symgen.linear_algebra.sparser_rows import SparserRows
 from symgen.linear_algebra.triangular_blocks import BlockwiseSolution, triangular_blocks
+from symgen.linear_algebra.turned_rows import TurnedRows
 from symgen.mechanics.system import System
 from symgen.methods.admission import ByTheorem
 from symgen.methods.given.functions import Given, given_of
@@ -30,11 +31,12 @@ from symgen.symbolic.traverse import cost
 
 @dataclass(frozen=True, slots=True)
 class LegMotion:
-    """The square system of rows and functions: without rows of numbers, combined, and in blocks."""
+    """The square system of rows and functions: without rows of numbers, turned, combined, and in blocks."""
 
     mechanics: System
     given: Given
     numbers: ConstantRows
+    turned: TurnedRows
     rows: SparserRows
     solution: BlockwiseSolution
 
@@ -42,7 +44,7 @@ class LegMotion:
     def velocity(self) -> Vector:
         """q_dot with B q_dot = 0 and the given rates."""
         right = (*self._zeros, *self.given.rates)
-        return self.numbers.completed(self.solution.solve(self.rows.of(self.numbers.of(right))), right)
+        return self.numbers.completed(self.solution.solve(self._of(right)), right)
 
     @property
     def acceleration(self) -> Vector:
@@ -53,12 +55,18 @@ class LegMotion:
         velocity = self.velocity
         motion = dict(zip(self.mechanics.q, velocity, strict=True))
         bias = self.mechanics.constraint_acceleration_bias(velocity) if self.mechanics.r else ()
-        apart = self.numbers.of((*bias, *self._bent(self.given.slopes, motion, velocity)))
         right = (*self._zeros, *self.given.accelerations)
-        wanted = self.rows.of(self.numbers.of(right))
-        changes = self.rows.of(apart), self._bent(self.rows.matrix, motion, self.numbers.kept(velocity))
+        apart = self._of((*bias, *self._bent(self.given.slopes, motion, velocity)))
+        together = self._bent(self.rows.matrix, motion, self.numbers.kept(velocity))
+        turning = self.rows.of(self.turned.changes(self.numbers.of((*self._zeros, *self.given.rates)), motion))
+        changes = apart, [x - y for x, y in zip(together, turning, strict=True)]
+        wanted = self._of(right)
         found = (self.solution.solve([x - y for x, y in zip(wanted, one, strict=True)]) for one in changes)
         return self.numbers.completed(min(found, key=lambda one: cost(one).weight if one else 0), right)
+
+    def _of(self, right: Sequence[Scalar]) -> list[Scalar]:
+        """The right-hand sides of the blocks."""
+        return self.rows.of(self.turned.of(self.numbers.of(right)))
 
     @property
     def _zeros(self) -> Vector:
@@ -79,12 +87,13 @@ def leg_motion(system: MethodInput, given: Given) -> LegMotion | str:
     if len(given.functions) + mechanics.r != mechanics.n:
         return "more is given than determines the motion"
     numbers = ConstantRows((*mechanics.constraint_jacobian, *given.slopes))
-    rows = SparserRows(numbers.matrix)
+    turned = TurnedRows(mechanics.graph, numbers.matrix, mechanics.q)
+    rows = SparserRows(turned.matrix)
     blocks = triangular_blocks([[not x.is_zero for x in row] for row in rows.matrix])
     if blocks is None:
         return "what is given does not determine the motion"
     solution = BlockwiseSolution(mechanics.graph, rows.matrix, blocks, mechanics.factoring.cancelled)
-    return LegMotion(mechanics, given, numbers, rows, solution)
+    return LegMotion(mechanics, given, numbers, turned, rows, solution)
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,6 +33,17 @@ class Turned:
 
 
 @dataclass(frozen=True, slots=True)
+class Side:
+    """A root whose sign is that of a function at the start: the symbol of the sign, the function, and the square with
+    what it is left of."""
+
+    sign: Scalar
+    start: Scalar
+    square: Scalar
+    size: Scalar
+
+
+@dataclass(frozen=True, slots=True)
 class Replaced:
     """An unknown as a function of others."""
 
@@ -45,14 +56,11 @@ Last: TypeAlias = Turned | Replaced
 
 @dataclass(frozen=True, slots=True)
 class Steps:
-    """Rows that are solved one after the other, and then what was replaced, in this order.
-
-    `sides` are signs that are those of functions at the start, by the symbols that stand for them.
-    """
+    """Rows that are solved one after the other, and then what was replaced, in this order."""
 
     rows: tuple[SolvableRow, ...]
     last: tuple[Last, ...]
-    sides: dict[Scalar, Scalar]
+    sides: tuple[Side, ...]
 
 
 def steps(graph: Graph, rows: Sequence[Scalar], unknown: Sequence[Scalar]) -> Steps | None:
@@ -68,7 +76,7 @@ class _Reduction:
         self._graph, self._rows, self._open = graph, list(rows), list(unknown)
         self._solved: list[SolvableRow] = []
         self._last: list[Last] = []
-        self._sides: dict[Scalar, Scalar] = {}
+        self._sides: list[Side] = []
 
     def steps(self) -> Steps | None:
         """Those that leave nothing."""
@@ -78,7 +86,7 @@ class _Reduction:
         while self._open:
             if not (self._solve_one() or self._replace_by_numbers() or self._turn_two()):
                 return None
-        return Steps(tuple(self._solved), tuple(reversed(self._last)), self._sides)
+        return Steps(tuple(self._solved), tuple(reversed(self._last)), tuple(self._sides))
 
     def _held(self, row: Scalar) -> list[Scalar]:
         """The unknowns in a row."""
@@ -144,13 +152,16 @@ class _Reduction:
         # lengths are the same at every angle, and shortest at 0
         rests = [row - part for row, part in zip(rows, turned.arm, strict=True)]
         x, y, *apart = substitute(graph, [*turned.arm, *rests], {angle: graph.zero})
-        along = y if x.is_zero else x if y.is_zero else None
-        if along is not None and not any(map(self._held, apart)):
-            side = graph.stand_in(f"side {len(self._sides)}")
-            self._sides[side] = graph.function("copysign", (graph.one, along))
-            left = along - side * graph.function("sqrt", (dot(graph, apart, apart),))
+        size = dot(graph, apart, apart)
+        along, across = (y, x) if not self._held(x) else (x, y)
+        if self._held(across) or self._held(size):
+            left = size - dot(graph, (x, y), (x, y))
         else:
-            left = dot(graph, apart, apart) - dot(graph, (x, y), (x, y))
+            # an arm that unknowns move along one line: its length there, with a sign
+            square = size - across * across
+            sign = graph.stand_in(f"side {len(self._sides)}")
+            self._sides.append(Side(sign, along, square, size))
+            left = along - sign * graph.function("sqrt", (square,))
         if not self._held(left):
             return False
         self._last.append(turned)
