@@ -1,7 +1,7 @@
-"""Two rows in axes that turn with an angle, where they hold that angle in no other way: orthogonal, so no digit is lost.
+"""Two rows in axes that turn with an angle which they hold in no other way: orthogonal, so no digit is lost.
 
-The place of an arm's tip turns with its column: along the arm the column moves it by what stands beside it alone, across
-it nothing else moves it.  What is worked out from sums in fixed axes and cancels is not there.
+The place of an arm's tip turns with its column: along the arm the column moves it by what stands beside it alone,
+across it nothing else moves it.  What is worked out from sums in fixed axes and cancels is not there.
 """
 
 from __future__ import annotations
