@@ -7,14 +7,14 @@ Sparse Linear Systems, ch. 7).  Only what a block divides by can vanish: its det
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.exterior import cross_product
 from symgen.linear_algebra.guards import Guard
 from symgen.linear_algebra.square import LARGEST_SQUARE_BY_MINORS, by_rows
 from symgen.records import dataclass
-from symgen.symbolic.matrix import Matrix, Vector
+from symgen.symbolic.matrix import Matrix, Vector, dot
 from symgen.symbolic.passes.factoring import LONGEST_CANCELLED
 from symgen.symbolic.scalar import Graph, Scalar
 
@@ -112,11 +112,18 @@ class BlockwiseSolution:
         for block in self._blocks:
             if len(block.rows) <= LARGEST_SQUARE_BY_MINORS:
                 determinant = self._bordered(block, [self._graph.zero] * len(block.rows))[-1]
-                found.append(Guard(status, determinant, 1, first, directions=len(block.rows)))
+                if determinant.op not in ("add", "sub"):
+                    # of a product the bounds of its factors are near
+                    found.append(Guard(status, determinant, 1, first, directions=len(block.rows)))
+                    continue
+                square = determinant * determinant
+                lengths: Iterable[Scalar] = (dot(self._graph, row, row) for row in self._entries(block))
             else:
                 one = by_rows(self._graph, self._entries(block), (self._graph.zero,) * len(block.rows))
-                square, bound = self._graph.product(one.squares), self._graph.product(one.lengths)
-                found.append(Guard(status, square, 2, first, bound, directions=len(block.rows)))
+                square, lengths = self._graph.product(one.squares), one.lengths
+            # no determinant is more than the lengths of its rows multiplied
+            bound = self._graph.product(lengths)
+            found.append(Guard(status, square, 2, first, bound, directions=len(block.rows)))
         return tuple(found)
 
     def _entries(self, block: DiagonalBlock) -> Matrix:

@@ -6,7 +6,7 @@ across it nothing else moves it.  What is worked out from sums in fixed axes and
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import combinations
 
 from symgen.linear_algebra.sparser_rows import MOST_ROWS_COMBINED
@@ -52,15 +52,6 @@ class TurnedRows:
         found = list(values)
         for turn in self._turns:
             found[turn.first], found[turn.second] = self._turned(turn, values[turn.first], values[turn.second])
-        return found
-
-    def changes(self, values: Sequence[Scalar], motion: Mapping[Scalar, Scalar]) -> list[Scalar]:
-        """What turned values change by along a motion because the axes turn."""
-        found = [self._graph.zero] * len(values)
-        for turn in self._turns:
-            first, second = self._turned(turn, values[turn.first], values[turn.second])
-            rate = motion[turn.angle] * turn.side
-            found[turn.first], found[turn.second] = rate * second, -(rate * first)
         return found
 
     def _turned(self, turn: _Turn, first: Scalar, second: Scalar) -> tuple[Scalar, Scalar]:

@@ -120,6 +120,36 @@ def test_rates_and_accelerations_are_those_of_the_motion(text: str, tmp_path: Pa
     assert np.allclose(module.acceleration_from_task(at(0.0), v, w), bend, atol=1e-7, rtol=0)
 
 
+@pytest.mark.parametrize("hand", ["c", "a + b + c"], ids=["absolute", "relative"])
+def test_rates_that_are_given_themselves_turn_the_others(hand: str, tmp_path: Path) -> None:
+    """A hand whose angle is given, as a coordinate or as a sum of three: what it moves the tip by is taken off."""
+    links = ("a", "b", "c") if hand == "c" else ("a", "a + b", "a + b + c")
+    x, y = (f"{L1}*{f}({links[0]}) + {L2}*{f}({links[1]}) + 0.2*{f}({links[2]})" for f in ("cos", "sin"))
+    text = f"""
+model: hand
+coordinates: {{a: {{unit: rad}}, b: {{unit: rad}}, c: {{unit: rad}}}}
+kinetic_energy: (a_dot**2 + b_dot**2 + c_dot**2)/2
+inputs: {{u: {{acts_on: {{a: 1}}}}}}
+task: {{x: {x}, y: {y}, turn: {hand}}}
+configuration: {{a: 0.3, b: 0.8, c: 0.5}}
+{ALL}
+"""
+    module = kernels(text, tmp_path)
+    aim, v, w = np.array([0.3, 0.5, 0.7]), np.array([0.1, -0.3, 1.2]), np.array([0.7, 0.2, -0.8])
+
+    def at(t: float) -> Array:
+        now = aim + v * t + w * t**2 / 2
+        wrist = now[:2] - 0.2 * np.array([np.cos(now[2]), np.sin(now[2])])
+        a, b = bent(wrist, L1, L2, 1.0)
+        return np.array([a, b, now[2]]) if hand == "c" else np.array([a, b - a, now[2] - b])
+
+    step = 1e-3
+    slope, bend = differences(tuple(at(k * step) for k in range(-2, 3)), step)
+    assert np.allclose(module.velocity_from_task(at(0.0), v), slope, atol=1e-10, rtol=0)
+    assert np.allclose(module.acceleration_from_task(at(0.0), v, w), bend, atol=1e-7, rtol=0)
+    assert np.allclose(module.configuration_from_task(aim, at(-0.05)), at(0.0), atol=1e-14, rtol=0)
+
+
 def test_a_five_bar_is_where_two_circles_meet(tmp_path: Path) -> None:
     module, random = kernels(FIVE_BAR, tmp_path), np.random.default_rng(2)
     x = np.stack((random.uniform(0.0, 0.3, 500), random.uniform(0.3, 0.42, 500)), axis=1)

@@ -58,8 +58,9 @@ class LegMotion:
         right = (*self._zeros, *self.given.accelerations)
         apart = self._of((*bias, *self._bent(self.given.slopes, motion, velocity)))
         together = self._bent(self.rows.matrix, motion, self.numbers.kept(velocity))
-        turning = self.rows.of(self.turned.changes(self.numbers.of((*self._zeros, *self.given.rates)), motion))
-        changes = apart, [x - y for x, y in zip(together, turning, strict=True)]
+        # the right-hand sides of combinations change, too, with what they were combined by
+        sides = derivative_along(self.mechanics.graph, self._of((*self._zeros, *self.given.rates)), motion)
+        changes = apart, [x - y for x, y in zip(together, sides, strict=True)]
         wanted = self._of(right)
         found = (self.solution.solve([x - y for x, y in zip(wanted, one, strict=True)]) for one in changes)
         return self.numbers.completed(min(found, key=lambda one: cost(one).weight if one else 0), right)
