@@ -150,6 +150,25 @@ configuration: {{a: 0.3, b: 0.8, c: 0.5}}
     assert np.allclose(module.configuration_from_task(aim, at(-0.05)), at(0.0), atol=1e-14, rtol=0)
 
 
+def test_rows_that_become_numbers_keep_what_they_change_by(tmp_path: Path) -> None:
+    """The end of a crank in coordinates of its own: with the angle given, its rows hold nothing but numbers."""
+    text = f"""
+model: crank
+coordinates: {{x: {{unit: m}}, y: {{unit: m}}, a: {{unit: rad}}}}
+kinetic_energy: (x_dot**2 + y_dot**2 + a_dot**2)/2
+constraints: {{geometric: {{across: x - {L1}*cos(a), up: y - {L1}*sin(a)}}}}
+inputs: {{u: {{acts_on: {{a: 1}}}}}}
+task: {{turn: a}}
+configuration: {{x: {L1}, y: 0, a: 0}}
+{ALL}
+"""
+    module, q = kernels(text, tmp_path), np.array([L1 * np.cos(0.7), L1 * np.sin(0.7), 0.7])
+    out, across = np.array([np.cos(0.7), np.sin(0.7)]), np.array([-np.sin(0.7), np.cos(0.7)])
+    found = module.acceleration_from_task(q, [1.3], [-0.4])
+    assert np.allclose(found[:2], L1 * (-0.4 * across - 1.3**2 * out), atol=1e-15, rtol=0)
+    assert np.allclose(module.velocity_from_task(q, [1.3]), [*(1.3 * L1 * across), 1.3], atol=1e-15, rtol=0)
+
+
 def test_a_five_bar_is_where_two_circles_meet(tmp_path: Path) -> None:
     module, random = kernels(FIVE_BAR, tmp_path), np.random.default_rng(2)
     x = np.stack((random.uniform(0.0, 0.3, 500), random.uniform(0.3, 0.42, 500)), axis=1)

@@ -54,15 +54,17 @@ class LegMotion:
         """
         velocity = self.velocity
         motion = dict(zip(self.mechanics.q, velocity, strict=True))
+        graph, zeros = self.mechanics.graph, self._zeros
         bias = self.mechanics.constraint_acceleration_bias(velocity) if self.mechanics.r else ()
-        right = (*self._zeros, *self.given.accelerations)
-        apart = self._of((*bias, *self._bent(self.given.slopes, motion, velocity)))
-        together = self._bent(self.rows.matrix, motion, self.numbers.kept(velocity))
+        bent = (*bias, *self._bent(self.given.slopes, motion, velocity))
+        given = (*zeros, *self.given.accelerations)
+        right = [x - y for x, y in zip(given, bent, strict=True)]
         # the right-hand sides of combinations change, too, with what they were combined by
-        sides = derivative_along(self.mechanics.graph, self._of((*self._zeros, *self.given.rates)), motion)
-        changes = apart, [x - y for x, y in zip(together, sides, strict=True)]
-        wanted = self._of(right)
-        found = (self.solution.solve([x - y for x, y in zip(wanted, one, strict=True)]) for one in changes)
+        together = self._bent(self.rows.matrix, motion, self.numbers.kept(velocity))
+        sides = derivative_along(graph, self._of((*zeros, *self.given.rates)), motion)
+        changes = (x - y for x, y in zip(sides, together, strict=True))
+        combined = [x + y for x, y in zip(self._of(given), changes, strict=True)]
+        found = map(self.solution.solve, (self._of(right), combined))
         return self.numbers.completed(min(found, key=lambda one: cost(one).weight if one else 0), right)
 
     def _of(self, right: Sequence[Scalar]) -> list[Scalar]:
