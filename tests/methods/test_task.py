@@ -154,7 +154,7 @@ def test_rows_that_become_numbers_keep_what_they_change_by(tmp_path: Path) -> No
     """The end of a crank in coordinates of its own: with the angle given, its rows hold nothing but numbers."""
     text = f"""
 model: crank
-coordinates: {{x: {{unit: m}}, y: {{unit: m}}, a: {{unit: rad}}}}
+coordinates: {{x: {{}}, y: {{}}, a: {{unit: rad}}}}
 kinetic_energy: (x_dot**2 + y_dot**2 + a_dot**2)/2
 constraints: {{geometric: {{across: x - {L1}*cos(a), up: y - {L1}*sin(a)}}}}
 inputs: {{u: {{acts_on: {{a: 1}}}}}}

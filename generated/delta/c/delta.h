@@ -21,8 +21,8 @@
  *
  * Operations                      + -      *      /   sqrt sincos  other
  * configuration_from_measured     352    436     29     10      6      0
- * velocity_from_measured           47     81      3      0      3      0
- * acceleration_from_measured       89    155      6      0      3      0
+ * velocity_from_measured           40     78      3      0      3      0
+ * acceleration_from_measured       80    150      6      0      3      0
  * configuration_from_task         221    253     15      0     18      0
  * velocity_from_task               30     43      3      0      3      0
  * acceleration_from_task           69    105      6      0      3      0

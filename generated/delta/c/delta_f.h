@@ -21,8 +21,8 @@
  *
  * Operations                      + -      *      /   sqrt sincos  other
  * configuration_from_measured     352    436     29     10      6      0
- * velocity_from_measured           47     81      3      0      3      0
- * acceleration_from_measured       89    155      6      0      3      0
+ * velocity_from_measured           40     78      3      0      3      0
+ * acceleration_from_measured       80    150      6      0      3      0
  * configuration_from_task         221    253     15      0     18      0
  * velocity_from_task               30     43      3      0      3      0
  * acceleration_from_task           69    105      6      0      3      0
@@ -34,8 +34,8 @@
  *
  * Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:
  *   configuration_from_measured r <= 0.39, 1.4e-06 <= l_2 <= 4.7
- *   velocity_from_measured 1.4e-07 <= l_2 <= 8.5
- *   acceleration_from_measured 1.4e-07 <= l_2 <= 8.5
+ *   velocity_from_measured 1.4e-05 <= l_2 <= 8.5
+ *   acceleration_from_measured 2.4e-05 <= l_2 <= 8.5
  *   configuration_from_task 0.0026 <= l_1, l_2 <= 8.5
  *   velocity_from_task 1.4e-07 <= l_2
  *   acceleration_from_task 1.4e-07 <= l_2

@@ -67,7 +67,7 @@ void eva_configuration_from_measured(void) {
 
 void eva_velocity_from_measured(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t56. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t326. */
 void eva_velocity_from_measured(void) {
     static const float low_0[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
     static const float high_0[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
@@ -114,7 +114,7 @@ void eva_velocity_from_measured(void) {
 
 void eva_acceleration_from_measured(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t57. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t303. */
 void eva_acceleration_from_measured(void) {
     static const float low_0[] = {-0x1.333334p-1f, -0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb8p-1f, 0x1.fc4310p-1f};
     static const float high_0[] = {-0x1.79f570p-2f, -0x1.1b08eep-3f, 0x1.7bb208p-4f, 0x1.4b5d7ap-2f, 0x1.1be73ap-1f, 0x1.921fb6p-1f, 0x1.fc4310p-1f, 0x1.333334p+0f};
