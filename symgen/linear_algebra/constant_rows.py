@@ -19,7 +19,7 @@ MOST_PIVOTS_TRIED = 6
 
 
 @dataclass(frozen=True, slots=True)
-class _Replaced:
+class _SolvedRow:
     """A row and the column of the unknown that it was solved for, in the numbers of what was left then."""
 
     row: int
@@ -32,7 +32,7 @@ class ConstantRows:
     """The system without the unknowns that rows of numbers give; `matrix` is what is left of it."""
 
     def __init__(self, matrix: Matrix) -> None:
-        self._steps: list[_Replaced] = []
+        self._steps: list[_SolvedRow] = []
         self.matrix = matrix
         while (step := _next(self.matrix)) is not None:
             self._steps.append(step)
@@ -68,7 +68,7 @@ class ConstantRows:
         return found
 
 
-def _next(matrix: Matrix) -> _Replaced | None:
+def _next(matrix: Matrix) -> _SolvedRow | None:
     """A row of numbers with the unknown whose replacement leaves least."""
     for i, row in enumerate(matrix):
         numbers = [x.constant for x in row]
@@ -77,13 +77,13 @@ def _next(matrix: Matrix) -> _Replaced | None:
             continue
         pivots = [j for j, x in enumerate(coefficients) if x][:MOST_PIVOTS_TRIED]
         steps = [
-            _Replaced(i, j, coefficients, tuple(other[j] for k, other in enumerate(matrix) if k != i)) for j in pivots
+            _SolvedRow(i, j, coefficients, tuple(other[j] for k, other in enumerate(matrix) if k != i)) for j in pivots
         ]
         return min(steps, key=lambda step: cost(flatten(_reduced(matrix, step)) or (matrix[0][0],)).weight)
     return None
 
 
-def _reduced(matrix: Matrix, step: _Replaced) -> Matrix:
+def _reduced(matrix: Matrix, step: _SolvedRow) -> Matrix:
     """The other rows without the unknown."""
     pivot = step.coefficients[step.column]
     shares = [(k, c / pivot) for k, c in enumerate(step.coefficients) if k != step.column]

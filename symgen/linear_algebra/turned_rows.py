@@ -18,7 +18,7 @@ from symgen.symbolic.traverse import reached, substitute
 
 
 @dataclass(frozen=True, slots=True)
-class _Turn:
+class _TurnedPair:
     """Two rows, the angle, and to which side."""
 
     first: int
@@ -32,14 +32,14 @@ class TurnedRows:
 
     def __init__(self, graph: Graph, matrix: Matrix, angles: Sequence[Scalar]) -> None:
         self._graph = graph
-        self._turns: list[_Turn] = []
+        self._turns: list[_TurnedPair] = []
         rows: list[Sequence[Scalar]] = list(matrix)
         pairs = combinations(range(len(rows)), 2) if len(rows) <= MOST_ROWS_COMBINED else ()
         for i, j in pairs:
             if any({i, j} & {turn.first, turn.second} for turn in self._turns):
                 continue
             held = reached([*rows[i], *rows[j]])
-            for turn in (_Turn(i, j, x, side) for x in angles if x in held for side in (1, -1)):
+            for turn in (_TurnedPair(i, j, x, side) for x in angles if x in held for side in (1, -1)):
                 made = self._shorter(turn, (rows[i], rows[j]))
                 if made is not None:
                     rows[i], rows[j] = made
@@ -54,12 +54,14 @@ class TurnedRows:
             found[turn.first], found[turn.second] = self._turned(turn, values[turn.first], values[turn.second])
         return found
 
-    def _turned(self, turn: _Turn, first: Scalar, second: Scalar) -> tuple[Scalar, Scalar]:
+    def _turned(self, turn: _TurnedPair, first: Scalar, second: Scalar) -> tuple[Scalar, Scalar]:
         c, s = (self._graph.trig(name, turn.angle) for name in ("cos", "sin"))
         s = s * turn.side
         return c * first + s * second, c * second - s * first
 
-    def _shorter(self, turn: _Turn, rows: tuple[Sequence[Scalar], Sequence[Scalar]]) -> tuple[list[Scalar], ...] | None:
+    def _shorter(
+        self, turn: _TurnedPair, rows: tuple[Sequence[Scalar], Sequence[Scalar]]
+    ) -> tuple[list[Scalar], ...] | None:
         """The rows in turned axes, where they do not hold the angle there and have fewer entries."""
         pairs = [self._turned(turn, a, b) for a, b in zip(*rows, strict=True)]
         entries = [x for pair in pairs for x in pair]

@@ -10,7 +10,7 @@ from symgen.mechanics.system import System
 from symgen.methods.admission import ByTheorem
 from symgen.methods.given.functions import Given, given_of
 from symgen.methods.given.row_solution import RowSolution, SolvableRow, solved, within_a_quarter
-from symgen.methods.given.steps import Last, Replaced, Side, Steps, Turned, steps
+from symgen.methods.given.steps import ClosedSteps, Last, ReplacedUnknown, Side, TurnedByAngle, steps
 from symgen.methods.method import Candidate, Method
 from symgen.methods.quantity import Quantity
 from symgen.methods.system import MethodInput
@@ -46,7 +46,7 @@ def closed_configuration(mechanics: System, given: Given) -> ClosedConfiguration
 class _Unknowns:
     """Their values one after the other: what is known so far, at first what is given."""
 
-    def __init__(self, graph: Graph, given: Given, known: dict[Scalar, Scalar], found: Steps) -> None:
+    def __init__(self, graph: Graph, given: Given, known: dict[Scalar, Scalar], found: ClosedSteps) -> None:
         self._graph, self._given = graph, given
         self._signs = {one.sign: graph.function("copysign", (graph.one, one.start)) for one in found.sides}
         self.known, self.guards = dict(known), list[Guard]()
@@ -74,13 +74,13 @@ class _Unknowns:
         self._take(row.unknown, solved(self._graph, row, (value, slope, bend), start, self._given.status))
 
     def _of_replaced(self, one: Last) -> None:
-        if isinstance(one, Replaced):
+        if isinstance(one, ReplacedUnknown):
             (value,) = self._now([one.value])
             self.known[one.unknown] = self._graph.rounded(value)
         else:
             self._of_angle(one)
 
-    def _of_angle(self, turned: Turned) -> None:
+    def _of_angle(self, turned: TurnedByAngle) -> None:
         """The turn from its part of the rows to what is to balance it."""
         graph = self._graph
         x, y, first, second = self._now((*turned.arm, *turned.rows))

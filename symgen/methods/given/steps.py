@@ -23,7 +23,7 @@ from symgen.symbolic.traverse import cost, reached, substitute
 
 
 @dataclass(frozen=True, slots=True)
-class Turned:
+class TurnedByAngle:
     """Two rows, an angle that turns both of them, and their turning parts; `backwards` if to the other side."""
 
     rows: tuple[Scalar, Scalar]
@@ -44,18 +44,18 @@ class Side:
 
 
 @dataclass(frozen=True, slots=True)
-class Replaced:
+class ReplacedUnknown:
     """An unknown as a function of others."""
 
     unknown: Scalar
     value: Scalar
 
 
-Last: TypeAlias = Turned | Replaced
+Last: TypeAlias = TurnedByAngle | ReplacedUnknown
 
 
 @dataclass(frozen=True, slots=True)
-class Steps:
+class ClosedSteps:
     """Rows that are solved one after the other, and then what was replaced, in this order."""
 
     rows: tuple[SolvableRow, ...]
@@ -63,7 +63,7 @@ class Steps:
     sides: tuple[Side, ...]
 
 
-def steps(graph: Graph, rows: Sequence[Scalar], unknown: Sequence[Scalar]) -> Steps | None:
+def steps(graph: Graph, rows: Sequence[Scalar], unknown: Sequence[Scalar]) -> ClosedSteps | None:
     """The steps for as many rows as unknowns; None where they do not come to an end."""
     found = _Reduction(graph, rows, unknown)
     return found.steps() if len(rows) == len(unknown) else None
@@ -78,7 +78,7 @@ class _Reduction:
         self._last: list[Last] = []
         self._sides: list[Side] = []
 
-    def steps(self) -> Steps | None:
+    def steps(self) -> ClosedSteps | None:
         """Those that leave nothing."""
         while self._replace_by_numbers():
             pass
@@ -86,7 +86,7 @@ class _Reduction:
         while self._open:
             if not (self._solve_one() or self._replace_by_numbers() or self._turn_two()):
                 return None
-        return Steps(tuple(self._solved), tuple(reversed(self._last)), tuple(self._sides))
+        return ClosedSteps(tuple(self._solved), tuple(reversed(self._last)), tuple(self._sides))
 
     def _held(self, row: Scalar) -> list[Scalar]:
         """The unknowns in a row."""
@@ -122,7 +122,7 @@ class _Reduction:
             for x, number in zip(held, numbers, strict=True):
                 assert number is not None
                 (rest,) = substitute(self._graph, [row], {x: self._graph.zero})
-                one = Replaced(x, rest * (-1 / number))
+                one = ReplacedUnknown(x, rest * (-1 / number))
                 found.append((one, substitute(self._graph, others, {x: one.value})))
             best, left = min(found, key=lambda pair: cost(pair[1]).weight if pair[1] else 0)
             self._last.append(best)
@@ -175,7 +175,7 @@ class _Reduction:
         self._open.remove(unknown)
 
 
-def _turned(graph: Graph, rows: tuple[Scalar, Scalar], angle: Scalar) -> Turned | None:
+def _turned(graph: Graph, rows: tuple[Scalar, Scalar], angle: Scalar) -> TurnedByAngle | None:
     """The rows where the angle turns both of them alike, to either side, identically."""
     along = {angle: graph.one}
     slopes = derivative_along(graph, rows, along)
@@ -184,4 +184,4 @@ def _turned(graph: Graph, rows: tuple[Scalar, Scalar], angle: Scalar) -> Turned 
         return None
     turned = [(slopes[0] + y, slopes[1] - x), (slopes[0] - y, slopes[1] + x)]
     side = next((k for k, both in enumerate(turned) if all(one.is_zero for one in both)), None)
-    return None if side is None else Turned(rows, angle, (x, y), bool(side))
+    return None if side is None else TurnedByAngle(rows, angle, (x, y), bool(side))
