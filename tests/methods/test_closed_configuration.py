@@ -66,6 +66,7 @@ COLUMN = "x: ({0})*cos(a), y: ({0})*sin(a), z: l*sin(b) + k*sin({1})"
         (COLUMN.format("l*cos(b) + k*cos(c)", "c") + ", gear: b - 2*d", "a b c d"),  # with a gear behind
         ("x: (l*cos(b) + k*cos(c))*cos(a) - 0.1*sin(a), y: (l*cos(b) + k*cos(c))*sin(a) + 0.1*cos(a),"
          " z: l*sin(b) + k*sin(c)", "a b c"),  # with a shoulder beside the column
+        ("x: l*cos(a) + k*cos(b), y: l*sin(a) + k*sin(b), z: cos(a)*cos(b) + sin(c)", "a b c"),  # others wait for both
         ("x: l*cos(a) + k*cos(b) + cos(c), y: l*sin(a) + k*sin(b) + sin(c), turn: c", "a b c"),  # a hand's own angle
         ("x: l*cos(a) + k*cos(a + b) + cos(a + b + c), y: l*sin(a) + k*sin(a + b) + sin(a + b + c), turn: a + b + c",
          "a b c"),  # by relative angles

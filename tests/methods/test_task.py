@@ -150,6 +150,17 @@ configuration: {{a: 0.3, b: 0.8, c: 0.5}}
     assert np.allclose(module.configuration_from_task(aim, at(-0.05)), at(0.0), atol=1e-14, rtol=0)
 
 
+def test_unknowns_that_others_wait_for_are_solved_before_them(tmp_path: Path) -> None:
+    """A third joint that is told together with both of the others."""
+    text = ARM.replace("rad}}", "rad}, c: {unit: rad}}").replace("b_dot**2)", "b_dot**2 + c_dot**2)")
+    text = text.replace("l_2*sin(a + b)}", "l_2*sin(a + b), z: sin(a)*sin(b) + 2*sin(c)}")
+    text = text.replace("b: 0.8}", "b: 0.8, c: 0}")
+    module, near = kernels(text, tmp_path), np.array([0.4, -1.1, 0.3])
+    q = near + np.array([0.2, 0.15, -0.1])
+    assert "sqrt" in (tmp_path / "arm" / "python" / "arm.py").read_text(encoding="utf-8")
+    assert np.allclose(module.configuration_from_task(module.task_position(q), near), q, atol=1e-14, rtol=0)
+
+
 def test_rows_that_become_numbers_keep_what_they_change_by(tmp_path: Path) -> None:
     """The end of a crank in coordinates of its own: with the angle given, its rows hold nothing but numbers."""
     text = f"""

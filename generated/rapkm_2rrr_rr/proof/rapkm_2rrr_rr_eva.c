@@ -1231,7 +1231,7 @@ void eva_task_jacobian(void) {
 
 void eva_configuration_from_task(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t247, t304, t356, t420, t433, t446. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t85, t300, t352, t414, t429, t442. */
 void eva_configuration_from_task(void) {
     double x_t[2];
     double q[6];

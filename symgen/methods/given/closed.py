@@ -52,10 +52,10 @@ class _Unknowns:
         self.known, self.guards = dict(known), list[Guard]()
         for side in found.sides:
             self._on_its_side(side)
-        for row in found.rows:
-            self._of_row(row)
-        for one in found.last:
-            self._of_replaced(one)
+        for one in found.first:
+            self._of_row(one) if isinstance(one, SolvableRow) else self._of_angle(one)
+        for last in found.last:
+            self._of_replaced(last)
 
     def _on_its_side(self, side: Side) -> None:
         """Neither the start nor what is given lies where both sides meet, and what is given is not beyond."""

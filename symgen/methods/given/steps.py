@@ -10,10 +10,10 @@ gives one unknown by the others.  What is replaced so is worked out last.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from itertools import combinations
+from itertools import combinations, permutations
 from typing import TypeAlias
 
-from symgen.linear_algebra.sparser_rows import SparserRows
+from symgen.linear_algebra.sparser_rows import MOST_ROWS_COMBINED, SparserRows
 from symgen.methods.given.row_solution import SolvableRow, solvable_row
 from symgen.records import dataclass
 from symgen.symbolic.calculus import derivative_along, gradient
@@ -56,17 +56,18 @@ Last: TypeAlias = TurnedByAngle | ReplacedUnknown
 
 @dataclass(frozen=True, slots=True)
 class ClosedSteps:
-    """Rows that are solved one after the other, and then what was replaced, in this order."""
+    """What is solved one after the other, and then what was replaced, in this order."""
 
-    rows: tuple[SolvableRow, ...]
+    first: tuple[SolvableRow | TurnedByAngle, ...]
     last: tuple[Last, ...]
     sides: tuple[Side, ...]
 
 
 def steps(graph: Graph, rows: Sequence[Scalar], unknown: Sequence[Scalar]) -> ClosedSteps | None:
-    """The steps for as many rows as unknowns; None where they do not come to an end."""
-    found = _Reduction(graph, rows, unknown)
-    return found.steps() if len(rows) == len(unknown) else None
+    """The steps for as many rows as unknowns; None where they do not come to an end, or are too many."""
+    if len(rows) != len(unknown) or len(rows) > MOST_ROWS_COMBINED:
+        return None
+    return _Reduction(graph, rows, unknown).steps()
 
 
 class _Reduction:
@@ -74,7 +75,7 @@ class _Reduction:
 
     def __init__(self, graph: Graph, rows: Sequence[Scalar], unknown: Sequence[Scalar]) -> None:
         self._graph, self._rows, self._open = graph, list(rows), list(unknown)
-        self._solved: list[SolvableRow] = []
+        self._solved: list[SolvableRow | TurnedByAngle] = []
         self._last: list[Last] = []
         self._sides: list[Side] = []
 
@@ -86,7 +87,9 @@ class _Reduction:
         while self._open:
             if not (self._solve_one() or self._replace_by_numbers() or self._turn_two()):
                 return None
-        return ClosedSteps(tuple(self._solved), tuple(reversed(self._last)), tuple(self._sides))
+        used = reached([one.value for one in self._solved if isinstance(one, SolvableRow)])
+        sides = tuple(side for side in self._sides if side.sign in used)
+        return ClosedSteps(tuple(self._solved), tuple(reversed(self._last)), sides)
 
     def _held(self, row: Scalar) -> list[Scalar]:
         """The unknowns in a row."""
@@ -135,39 +138,50 @@ class _Reduction:
         """An angle that turns two rows alike and stands in no others, and the row that is left of these."""
         for x in self._open:
             holding = [row for row in self._rows if x in self._held(row)]
-            if len(holding) == 2 and self._turn(holding[0], holding[1], x):
+            if len(holding) != 2:
+                continue
+            turned = _turned(self._graph, (holding[0], holding[1]), x)
+            left = None if turned is None else self._left_of(turned)
+            if turned is not None and left is not None:
+                self._last.append(turned)
+                self._let_go(holding, x)
+                self._rows.append(left)
                 return True
-        # other angles of the two rows of a chain, of which either may be the one
+        return self._turn_at_once()
+
+    def _turn_at_once(self) -> bool:
+        """Two rows with two unknowns that stand in others, too: both are solved for before those are looked at."""
         for first, second in combinations(self._rows, 2):
             pair = [x for x in self._open if x in {*self._held(first), *self._held(second)}]
-            if len(pair) == 2 and any(self._turn(first, second, x) for x in pair):
-                return True
+            for angle, other in permutations(pair) if len(pair) == 2 else ():
+                turned = _turned(self._graph, (first, second), angle)
+                left = None if turned is None else self._left_of(turned)
+                one = None if left is None else solvable_row(self._graph, left, other)
+                if turned is not None and one is not None:
+                    self._solved += [one, turned]
+                    self._let_go((first, second), angle)
+                    self._open.remove(other)
+                    return True
         return False
 
-    def _turn(self, first: Scalar, second: Scalar, angle: Scalar) -> bool:
-        graph, rows = self._graph, (first, second)
-        turned = _turned(graph, rows, angle)
-        if turned is None:
-            return False
+    def _left_of(self, turned: TurnedByAngle) -> Scalar | None:
+        """The row without the angle; None where nothing is left to solve it for."""
+        graph = self._graph
         # lengths are the same at every angle, and shortest at 0
-        rests = [row - part for row, part in zip(rows, turned.arm, strict=True)]
-        x, y, *apart = substitute(graph, [*turned.arm, *rests], {angle: graph.zero})
+        rests = [row - part for row, part in zip(turned.rows, turned.arm, strict=True)]
+        x, y, *apart = substitute(graph, [*turned.arm, *rests], {turned.angle: graph.zero})
         size = dot(graph, apart, apart)
         along, across = (y, x) if not self._held(x) else (x, y)
         if self._held(across) or self._held(size):
             left = size - dot(graph, (x, y), (x, y))
-        else:
-            # an arm that unknowns move along one line: its length there, with a sign
-            square = size - across * across
-            sign = graph.stand_in(f"side {len(self._sides)}")
-            self._sides.append(Side(sign, along, square, size))
-            left = along - sign * graph.function("sqrt", (square,))
-        if not self._held(left):
-            return False
-        self._last.append(turned)
-        self._let_go(rows, angle)
-        self._rows.append(left)
-        return True
+            return left if self._held(left) else None
+        if not self._held(along):
+            return None
+        # an arm that unknowns move along one line: its length there, with a sign
+        square = size - across * across
+        sign = graph.stand_in(f"side {len(self._sides)}")
+        self._sides.append(Side(sign, along, square, size))
+        return along - sign * graph.function("sqrt", (square,))
 
     def _let_go(self, rows: Iterable[Scalar], unknown: Scalar) -> None:
         gone = list(rows)
