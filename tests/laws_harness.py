@@ -15,8 +15,8 @@ from symgen.model.load import load_text
 from symgen.model.model import Model
 from symgen.quantities.select import Selection, derive_quantities
 from symgen.verify.given import arrays
+from symgen.verify.reference.parameter_values import parameters_from
 from symgen.verify.reference.reference import Reference, State
-from symgen.verify.reference.system import parameters_from
 from symgen.verify.sampling.task_ahead import with_task
 from symgen.verify.tolerance import FACTOR, expectations
 

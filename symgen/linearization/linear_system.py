@@ -19,8 +19,8 @@ from symgen.model.availability import lacking
 from symgen.model.model import Model
 from symgen.model.quantities import ROWS
 from symgen.verify.reference.arithmetic.tape import precision
+from symgen.verify.reference.parameter_values import default_parameters
 from symgen.verify.reference.reference import REFERENCE_BITS, Reference, ReferenceValueError, State
-from symgen.verify.reference.system import default_parameters
 
 Array: TypeAlias = NDArray[np.float64]
 Poles: TypeAlias = NDArray[np.complex128]

@@ -6,7 +6,7 @@ because several quantities are evaluated along a projected velocity rather than 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from functools import cached_property
 
 from symgen.mechanics.absolute_angles import AbsoluteAngles
@@ -19,7 +19,7 @@ from symgen.model.expressions.expression import Expression
 from symgen.model.kinematics.components import components_in, definitions_before_frames
 from symgen.model.kinematics.triples import Rows
 from symgen.model.model import Model
-from symgen.model.quantities import FurtherName
+from symgen.model.quantities import MEASURED_ARGUMENTS, FurtherName
 from symgen.symbolic.calculus import derivative_along, gradient
 from symgen.symbolic.hidden_zeros import without_hidden_zeros
 from symgen.symbolic.matrix import Matrix, Vector, dot, matvec, subtract_vectors, transpose
@@ -56,7 +56,8 @@ class System:
         self.parameters: Vector = tuple(graph.symbol(p.name) for p in model.parameters)
         self.u: Vector = tuple(graph.symbol(i.name) for i in model.inputs)
         q, qd = (self.q, self.qd) if change is None else (change.relative(self.q), change.relative(self.qd))
-        self.measured = self._further(symbol, ("q_m", "qd_m", "qdd_m"))
+        names = map(model.further_names, MEASURED_ARGUMENTS)
+        self.measured = tuple(tuple(map(symbol, level)) for level in names)
         self.names: dict[str, Scalar] = {
             **{c.name: node for c, node in zip(model.coordinates, q, strict=True)},
             **{c.rate: node for c, node in zip(model.coordinates, qd, strict=True)},
@@ -90,30 +91,9 @@ class System:
         zero, working = self.graph.zero, System(self.model).bodies.weights_work
         return self.bodies.gravity if working else (zero, zero, zero)
 
-    @cached_property
-    def weights(self) -> dict[str, Vector]:
-        """Of the inputs and of the accelerations, by argument."""
-        names: tuple[FurtherName, ...] = ("w_u", "w_qdd")
-        return dict(zip(names, self._further(self.graph.symbol, names), strict=True))
-
-    @cached_property
-    def task(self) -> tuple[Vector, ...]:
-        """Given coordinates of the task, their rates and accelerations."""
-        return self._further(self.graph.symbol, ("x_t", "xd_t", "xdd_t"))
-
-    @cached_property
-    def task_position(self) -> Vector:
-        """The coordinates of the task as functions of q."""
-        return tuple(translate(self.graph, x.expression, self.names) for x in self.model.task)
-
-    @cached_property
-    def task_jacobian(self) -> Matrix:
-        """Their derivatives, k x n."""
-        return tuple(tuple(gradient(self.graph, x, self.q)) for x in self.task_position)
-
-    def _further(self, symbol: Callable[[str], Scalar], arguments: Sequence[FurtherName]) -> tuple[Vector, ...]:
-        """The entries of arguments beside q, qd, qdd and u."""
-        return tuple(tuple(map(symbol, self.model.further_names(argument))) for argument in arguments)
+    def further(self, *arguments: FurtherName) -> tuple[Vector, ...]:
+        """The entries of arguments beside q, qd, qdd and u: of a task and of weights."""
+        return tuple(tuple(map(self.graph.symbol, self.model.further_names(argument))) for argument in arguments)
 
     @property
     def motion(self) -> Vector:

@@ -28,7 +28,7 @@ from symgen.methods.allocation import InputAllocation
 from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
 from symgen.methods.forward_dynamics.motion import Problem
 from symgen.methods.given.configuration import GivenConfiguration
-from symgen.methods.given.functions import measured, task
+from symgen.methods.given.functions import GivenBy
 from symgen.methods.given.motion import GivenMotion
 from symgen.methods.least_inputs import least_inputs
 from symgen.symbolic.calculus import derivative_along, gradient, jacobian
@@ -61,6 +61,8 @@ class Derivation:
         self.space = space
         self.graph = mechanics.graph
         self.n, self.r, self.m = mechanics.n, mechanics.r, mechanics.m
+        self._motions: dict[GivenBy, GivenMotion] = {}
+        self._configurations: dict[GivenBy, GivenConfiguration] = {}
 
     # shared parts ----------------------------------------------------------------------------------------------------
 
@@ -215,25 +217,17 @@ class Derivation:
 
     # from what is given ----------------------------------------------------------------------------------------------
 
-    @cached_property
-    def measured_motion(self) -> GivenMotion:
-        """What measured rates determine."""
-        return GivenMotion(self, measured(self.mechanics))
+    def given_motion(self, given_by: GivenBy) -> GivenMotion:
+        """What rates determine that are measured, or of a task."""
+        if given_by not in self._motions:
+            self._motions[given_by] = GivenMotion(self, given_by(self.mechanics))
+        return self._motions[given_by]
 
-    @cached_property
-    def measured_configuration(self) -> GivenConfiguration:
-        """What measured coordinates determine."""
-        return GivenConfiguration(self, measured(self.mechanics))
-
-    @cached_property
-    def task_motion(self) -> GivenMotion:
-        """What rates of the task determine."""
-        return GivenMotion(self, task(self.mechanics))
-
-    @cached_property
-    def task_configuration(self) -> GivenConfiguration:
-        """What coordinates of the task determine."""
-        return GivenConfiguration(self, task(self.mechanics))
+    def given_configuration(self, given_by: GivenBy) -> GivenConfiguration:
+        """What coordinates determine that are measured, or of a task."""
+        if given_by not in self._configurations:
+            self._configurations[given_by] = GivenConfiguration(self, given_by(self.mechanics))
+        return self._configurations[given_by]
 
     # projected equations (30) ----------------------------------------------------------------------------------------
 
@@ -362,7 +356,7 @@ class Derivation:
 
     def inverse_dynamics_gradient(self) -> Vector:
         """The derivatives of w^T u by q, q_dot and q_ddot, in one reverse sweep."""
-        weighted = dot(self.graph, self.mechanics.weights["w_u"], self.inverse_dynamics)
+        weighted = dot(self.graph, self.mechanics.further("w_u")[0], self.inverse_dynamics)
         return tuple(gradient(self.graph, weighted, self.mechanics.motion))
 
     @cached_property

@@ -12,12 +12,16 @@ from symgen.methods.admission import ByTheorem
 from symgen.methods.method import INPUTS, MOTIONS, Candidate, Method
 from symgen.methods.table import Use, methods
 from symgen.methods.workspace import Workspace
+from symgen.model.quantities import FurtherName
 from symgen.records import dataclass
 from symgen.symbolic.calculus import jacobian
 from symgen.symbolic.matrix import dot
 
 # Of what, by which symbols, and the argument that holds the weights.
-_OF = {"inverse_dynamics_gradient": (INPUTS, "w_u"), "forward_dynamics_gradient": (MOTIONS[0], "w_qdd")}
+_OF: dict[str, tuple[str, FurtherName]] = {
+    "inverse_dynamics_gradient": (INPUTS, "w_u"),
+    "forward_dynamics_gradient": (MOTIONS[0], "w_qdd"),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +47,7 @@ class _WeightedJacobian(ByTheorem):
         mechanics, graph = best.system.mechanics, best.system.mechanics.graph
         by = mechanics.motion if function == INPUTS else (*mechanics.q, *mechanics.qd, *mechanics.u)
         slopes = jacobian(graph, best.derived.outputs, by)
-        weights = mechanics.weights[argument]
+        (weights,) = mechanics.further(argument)
         outputs = tuple(dot(graph, [row[k] for row in slopes], weights) for k in range(len(by)))
         return replace(best, derived=replace(best.derived, name=quantity, shape=(len(by),), outputs=outputs))
 

@@ -11,6 +11,8 @@ from symgen.records import dataclass
 # What some models have beside q, qd, qdd and u: measured coordinates with their rates and accelerations, those of the
 # task, and weights of inputs and of accelerations, of whose sums there are gradients.
 FurtherName: TypeAlias = Literal["q_m", "qd_m", "qdd_m", "x_t", "xd_t", "xdd_t", "w_u", "w_qdd"]
+MEASURED_ARGUMENTS: tuple[FurtherName, ...] = ("q_m", "qd_m", "qdd_m")
+WEIGHT_ARGUMENTS: tuple[FurtherName, ...] = ("w_u", "w_qdd")
 Argument: TypeAlias = Literal["q", "qd", "qdd", "u"] | FurtherName
 # What a model must have for some quantities.
 PARTITION, ACTUATORS, POINTS = "independent_velocities", "m = delta", "points"

@@ -26,7 +26,7 @@ from symgen.methods.system import MethodInput
 from symgen.methods.table import Use
 from symgen.methods.table import methods as methods_of
 from symgen.model.model import Model
-from symgen.model.quantities import PARTITION
+from symgen.model.quantities import PARTITION, WEIGHT_ARGUMENTS
 from symgen.quantities.catalogue import BY_NAME, CatalogueEntry, by_blocks, derive, derived_from, sizes
 from symgen.quantities.everything import WorkBudget
 from symgen.runtime.activity import working
@@ -138,8 +138,8 @@ class Candidates:
         if one is None:
             return {}
         values = one.derived.outputs
-        if given := [seen.weights[name] for name in entry.row.arguments if name in seen.weights]:
-            values = tuple(dot(graph, one, values) for one in given)
+        if weights := seen.further(*(name for name in WEIGHT_ARGUMENTS if name in entry.row.arguments)):
+            values = tuple(dot(graph, one, values) for one in weights)
         outputs = flatten(jacobian(graph, values, by))
         shape = entry.shape(sizes(seen.model, self._generic))
         derived = replace(one.derived, name=entry.name, shape=shape, outputs=outputs)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import TypeAlias
 
 from symgen.linear_algebra.guards import Guard
 from symgen.linear_algebra.null_spaces import rests_on_rank
 from symgen.mechanics.genericity import Genericity
 from symgen.methods.derivation import Derivation
+from symgen.methods.given.functions import GivenBy, measured, task
 from symgen.methods.quantity import Quantity, is_fixed
 from symgen.methods.variations import constraint_variations
 from symgen.model.availability import lacking
@@ -87,8 +89,19 @@ def _variations(d: Derivation) -> tuple[Guard, ...]:
     return (*d.space.guards, *(g for g in d.geometric_space.guards if g not in d.space.guards))
 
 
+def _given(given_by: GivenBy) -> Callable[[Derivation], tuple[Guard, ...]]:
+    return lambda d: d.given_motion(given_by).guards
+
+
+_Derived: TypeAlias = tuple[Callable[[Derivation], Vector] | None, Callable[[Derivation], tuple[Guard, ...]]]
+
+
+def _configuration(given_by: GivenBy) -> _Derived:
+    return (lambda d: d.given_configuration(given_by).outputs, lambda d: d.given_configuration(given_by).guards)
+
+
 _BY_METHODS = (None, _none)
-_DERIVED: dict[str, tuple[Callable[[Derivation], Vector] | None, Callable[[Derivation], tuple[Guard, ...]]]] = {
+_DERIVED: dict[str, _Derived] = {
     "mass_matrix": (lambda d: flatten(d.mechanics.mass_matrix), _none),
     "coriolis_matrix": (lambda d: flatten(d.mechanics.coriolis_matrix(d.mechanics.qd)), _none),
     "coriolis_force": (lambda d: d.mechanics.coriolis_force, _none),
@@ -124,18 +137,15 @@ _DERIVED: dict[str, tuple[Callable[[Derivation], Vector] | None, Callable[[Deriv
     "admissible_velocity": (lambda d: d.admissible, _constraint),
     "admissible_acceleration": (lambda d: d.admissible_acceleration(), _constraint),
     "projected_configuration": (lambda d: d.projected_configuration(), lambda d: d.newton_guards),
-    "configuration_from_measured": (
-        lambda d: d.measured_configuration.outputs,
-        lambda d: d.measured_configuration.guards,
-    ),
-    "velocity_from_measured": (lambda d: d.measured_motion.velocity, lambda d: d.measured_motion.guards),
-    "acceleration_from_measured": (lambda d: d.measured_motion.acceleration, lambda d: d.measured_motion.guards),
-    "task_position": (lambda d: d.mechanics.task_position, _none),
-    "task_velocity": (lambda d: matvec(d.graph, d.mechanics.task_jacobian, d.mechanics.qd), _none),
-    "task_jacobian": (lambda d: flatten(d.mechanics.task_jacobian), _none),
-    "configuration_from_task": (lambda d: d.task_configuration.outputs, lambda d: d.task_configuration.guards),
-    "velocity_from_task": (lambda d: d.task_motion.velocity, lambda d: d.task_motion.guards),
-    "acceleration_from_task": (lambda d: d.task_motion.acceleration, lambda d: d.task_motion.guards),
+    "configuration_from_measured": _configuration(measured),
+    "velocity_from_measured": (lambda d: d.given_motion(measured).velocity, _given(measured)),
+    "acceleration_from_measured": (lambda d: d.given_motion(measured).acceleration, _given(measured)),
+    "task_position": (lambda d: task(d.mechanics).functions, _none),
+    "task_velocity": (lambda d: matvec(d.graph, task(d.mechanics).slopes, d.mechanics.qd), _none),
+    "task_jacobian": (lambda d: flatten(task(d.mechanics).slopes), _none),
+    "configuration_from_task": _configuration(task),
+    "velocity_from_task": (lambda d: d.given_motion(task).velocity, _given(task)),
+    "acceleration_from_task": (lambda d: d.given_motion(task).acceleration, _given(task)),
     "inverse_dynamics": _BY_METHODS,
     "inverse_dynamics_jacobian": (lambda d: flatten(d.inverse_dynamics_jacobian(d.mechanics.motion)), _inputs),
     "inverse_dynamics_gradient": (lambda d: d.inverse_dynamics_gradient(), _inputs),

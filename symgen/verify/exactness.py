@@ -22,9 +22,9 @@ from symgen.verify.expected import Expected
 from symgen.verify.given import entry, parts_of
 from symgen.verify.reference.arithmetic.tape import ball, precision
 from symgen.verify.reference.closing import onto_manifold
+from symgen.verify.reference.parameter_values import ParameterValues
 from symgen.verify.reference.quantities import ITERATED
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
-from symgen.verify.reference.system import ParameterValues
 
 # Binary digits that functions are compared in.
 EXACT_BITS = 256

@@ -141,7 +141,7 @@ def test_gradients_are_weighted_rows_of_jacobians(name: str) -> None:
     selection = derive_quantities(shipped.model(name), tuple(one for pair in names for one in pair))
     found = {derived.name: derived for derived in selection.quantities}
     graph = selection.mechanics.graph
-    for (gradient, jacobian), weights in zip(names, selection.mechanics.weights.values(), strict=True):
+    for (gradient, jacobian), weights in zip(names, selection.mechanics.further("w_u", "w_qdd"), strict=True):
         rows, columns = found[jacobian].shape
         entries = found[jacobian].outputs
         products = [

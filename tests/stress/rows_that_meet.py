@@ -9,8 +9,8 @@ from symgen.generation.runnable import rounded_state
 from symgen.ir.kernel import Scalar
 from symgen.model.load import load_text
 from symgen.model.model import Model
+from symgen.verify.reference.parameter_values import default_parameters
 from symgen.verify.reference.reference import Reference, State
-from symgen.verify.reference.system import default_parameters
 
 BITS = 256
 

@@ -15,8 +15,8 @@ from symgen.verify.reference.arithmetic.linear import column, norm
 from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.closing import onto_manifold
 from symgen.verify.reference.manifold import starts
+from symgen.verify.reference.parameter_values import default_parameters
 from symgen.verify.reference.reference import Reference
-from symgen.verify.reference.system import default_parameters
 
 BITS = 384
 STARTS = 16

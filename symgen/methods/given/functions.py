@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, TypeAlias
 
 from symgen.ir.kernel import Status
 from symgen.records import dataclass
+from symgen.symbolic.calculus import gradient
 from symgen.symbolic.matrix import Matrix, Vector, identity
+from symgen.symbolic.translate import translate
 
 if TYPE_CHECKING:
     from symgen.mechanics.system import System
@@ -29,6 +32,10 @@ class Given:
     status: Status
 
 
+GivenBy: TypeAlias = Callable[["System"], Given]
+"""What is given of a system: `measured` or `task`."""
+
+
 def measured(mechanics: System) -> Given:
     """What encoders say of some coordinates."""
     places, units = mechanics.model.measured_places, identity(mechanics.graph, mechanics.n)
@@ -40,10 +47,12 @@ def measured(mechanics: System) -> Given:
 
 def task(mechanics: System) -> Given:
     """The coordinates of the task."""
-    functions, order = mechanics.task_position, {x: k for k, x in enumerate(mechanics.q)}
+    graph, order = mechanics.graph, {x: k for k, x in enumerate(mechanics.q)}
+    functions = tuple(translate(graph, x.expression, mechanics.names) for x in mechanics.model.task)
+    slopes = tuple(tuple(gradient(graph, x, mechanics.q)) for x in functions)
     places = tuple(order.get(x, -1) for x in functions)
-    values, rates, accelerations = mechanics.task
-    return Given(functions, mechanics.task_jacobian, places, values, rates, accelerations, Status.TASK_RANK)
+    values, rates, accelerations = mechanics.further("x_t", "xd_t", "xdd_t")
+    return Given(functions, slopes, places, values, rates, accelerations, Status.TASK_RANK)
 
 
 def given_of(quantity: str, mechanics: System) -> Given:

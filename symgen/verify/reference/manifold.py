@@ -19,8 +19,9 @@ from symgen.verify.reference.arithmetic.linear import (
 )
 from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.closing import onto_manifold, powers
+from symgen.verify.reference.parameter_values import default_parameters
 from symgen.verify.reference.parts import piece, placed
-from symgen.verify.reference.system import ReferenceSystem, default_parameters
+from symgen.verify.reference.system import ReferenceSystem
 from symgen.verify.reference.translation import literal_values
 
 # Binary digits that ranks are told in.

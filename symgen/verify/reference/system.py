@@ -9,7 +9,7 @@ length.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -21,7 +21,7 @@ from symgen.model.expressions.expression import Expression
 from symgen.model.mechanism import component
 from symgen.model.model import Model
 from symgen.verify.reference.arithmetic.adjoints import shorter_gradients
-from symgen.verify.reference.arithmetic.tape import Register, Replay, Tape, ball, replay_of
+from symgen.verify.reference.arithmetic.tape import Register, Replay, Tape, replay_of
 from symgen.verify.reference.arithmetic.taylor import CONSTANT, Polynomial, Taylor
 from symgen.verify.reference.driven import blocks_of_inputs
 from symgen.verify.reference.matrix_rates import MatrixRates
@@ -30,38 +30,6 @@ from symgen.verify.reference.mechanism.frames import Frames
 from symgen.verify.reference.motion import DriftAlongRate
 from symgen.verify.reference.parts import parts, touched
 from symgen.verify.reference.translation import Translation, literals_of, translation, uses_components
-
-
-def default_parameters(model: Model) -> list[Any]:
-    """Default values of the parameters, as balls of the working precision."""
-    return parameters_from(model, {})
-
-
-def parameters_from(model: Model, chosen: Mapping[str, Any]) -> list[Any]:
-    """Parameter values: the `chosen` ones, and the others from their expressions of earlier parameters."""
-    return ParameterValues(model, list(chosen))(chosen)
-
-
-class ParameterValues:
-    """The values of all parameters when those named are chosen."""
-
-    def __init__(self, model: Model, names: Collection[str]) -> None:
-        self.model = model
-        self.names = tuple(parameter.name for parameter in model.parameters if parameter.name in names)
-        tape = Tape()
-        known: dict[str, Polynomial] = {}
-        translation = Translation(Taylor(tape, 0, 0), known, {}, {})
-        for parameter in model.parameters:
-            if parameter.name in names:
-                known[parameter.name] = {CONSTANT: tape.input(self.names.index(parameter.name))}
-            else:
-                known[parameter.name] = translation.polynomial(parameter.value)
-        registers = [known[parameter.name].get(CONSTANT, tape.zero) for parameter in model.parameters]
-        self._replay = replay_of(tape, registers)
-
-    def __call__(self, chosen: Mapping[str, Any]) -> list[Any]:
-        """Balls, the `chosen` values among them."""
-        return list(self._replay.run([ball(chosen[name]) for name in self.names]))
 
 
 @dataclass(frozen=True)

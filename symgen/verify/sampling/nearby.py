@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from symgen.verify.lane_arithmetic import Lanes
+from symgen.verify.reference.parameter_values import default_parameters
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
-from symgen.verify.reference.system import default_parameters
 from symgen.verify.sampling.loops_in_lanes import DEPENDENT, LoopsInLanes, lengths_of
 from symgen.verify.sampling.plain_values import values_at
 from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, measures, ranked_parts

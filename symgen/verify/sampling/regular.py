@@ -19,9 +19,9 @@ from symgen.model.expressions.names import shown_names
 from symgen.verify.reference.arithmetic.tape import ball
 from symgen.verify.reference.closing import admissible, closed
 from symgen.verify.reference.manifold import exceeds, starts
+from symgen.verify.reference.parameter_values import ParameterValues, default_parameters
 from symgen.verify.reference.parts import Part
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
-from symgen.verify.reference.system import ParameterValues, default_parameters
 from symgen.verify.sampling.plain_values import SAMPLING_BITS, floats, in_floats, measured, settled
 
 # Regular states that a verification needs.

@@ -9,8 +9,8 @@ from math import hypot, isfinite, sqrt
 from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.closing import onto_manifold
 from symgen.verify.reference.manifold import exceeds
+from symgen.verify.reference.parameter_values import ParameterValues
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
-from symgen.verify.reference.system import ParameterValues
 from symgen.verify.sampling.plain_values import PROJECTED, SAMPLING_BITS, floats, settled, values_at
 from symgen.verify.sampling.regular import REGULAR_SHARE
 from symgen.verify.sampling.states import Sample

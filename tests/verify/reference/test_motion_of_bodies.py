@@ -15,8 +15,8 @@ from symgen.model.load import load_model
 from symgen.verify.reference.arithmetic.linear import norm
 from symgen.verify.reference.arithmetic.tape import ball, precision
 from symgen.verify.reference.evaluation import Evaluation
+from symgen.verify.reference.parameter_values import default_parameters
 from symgen.verify.reference.reference import Reference, State
-from symgen.verify.reference.system import default_parameters
 
 ELEMENTS = Path(__file__).resolve().parents[2] / "mechanisms"
 

@@ -16,8 +16,8 @@ from symgen.verify.reference.arithmetic.linear import column, identity, norm, ps
 from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.closing import onto_manifold
 from symgen.verify.reference.manifold import ManifoldRanks, starts
+from symgen.verify.reference.parameter_values import default_parameters
 from symgen.verify.reference.reference import REFERENCE_DIGITS, Reference, ReferenceValueError, State
-from symgen.verify.reference.system import default_parameters
 
 BITS = 256
 
