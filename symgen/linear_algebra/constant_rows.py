@@ -40,25 +40,25 @@ class ConstantRows:
 
     def of(self, right: Sequence[Scalar]) -> list[Scalar]:
         """The right-hand sides of what is left."""
-        found = list(right)
-        for step in self._steps:
-            given = found.pop(step.row) * (1 / step.coefficients[step.column])
-            found = [x - factor * given for x, factor in zip(found, step.beside, strict=True)]
-        return found
+        return self._sides(right)[1]
 
     def completed(self, values: Sequence[Scalar], right: Sequence[Scalar]) -> Vector:
         """All unknowns, from those that are left."""
-        given, sides = list(right), []
-        for step in self._steps:
-            sides.append(given[step.row])
-            own = given.pop(step.row) * (1 / step.coefficients[step.column])
-            given = [x - factor * own for x, factor in zip(given, step.beside, strict=True)]
-        found = list(values)
+        found, sides = list(values), self._sides(right)[0]
         for step, side in zip(reversed(self._steps), reversed(sides), strict=True):
             others = [c for k, c in enumerate(step.coefficients) if k != step.column]
             rest = side.graph.sum(x * c for x, c in zip(found, others, strict=True) if c)
             found.insert(step.column, (side - rest) * (1 / step.coefficients[step.column]))
         return tuple(found)
+
+    def _sides(self, right: Sequence[Scalar]) -> tuple[list[Scalar], list[Scalar]]:
+        """The right-hand side of each row that was solved, as it was then, and those of what is left."""
+        sides, left = [], list(right)
+        for step in self._steps:
+            sides.append(left.pop(step.row))
+            own = sides[-1] * (1 / step.coefficients[step.column])
+            left = [x - factor * own for x, factor in zip(left, step.beside, strict=True)]
+        return sides, left
 
     def kept(self, values: Sequence[Scalar]) -> list[Scalar]:
         """Of the unknowns those that are left."""

@@ -12,7 +12,7 @@ rounding leaves of one that is 0.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
@@ -51,6 +51,11 @@ class Guard:
         """8 n eps for one direction, n eps for determinants of three or more; squared for sums of squares."""
         loss = LEFT if self.directions > 2 else POORER if self.directions == 2 else 1
         return (max(Fraction(LEFT * n, loss), Fraction(LEFT)) * unit_roundoff) ** self.degree
+
+
+def tested(guards: Iterable[Guard]) -> tuple[Guard, ...]:
+    """Those that a state can fail: a denominator that is a number is settled when code is made."""
+    return tuple(guard for guard in guards if guard.denominator.constant is None)
 
 
 def moved(guard: Guard, replacements: Mapping[Scalar, Scalar]) -> Guard:

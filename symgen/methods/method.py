@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, Protocol
 
-from symgen.linear_algebra.guards import Guard
+from symgen.linear_algebra.guards import Guard, tested
 from symgen.methods.quantity import Quantity, scalars
 from symgen.methods.system import MethodInput
 from symgen.records import dataclass
@@ -82,9 +82,8 @@ def solved_for_u(
 
     Its denominators are read off the graph, so that none can be forgotten.
     """
-    kept = tuple(guard for guard in guards if guard.denominator.constant is None)
     given = set(divisors(system.given if own is None else own))
-    derived = Quantity(INPUTS, (len(u),), tuple(u), kept)
+    derived = Quantity(INPUTS, (len(u),), tuple(u), tested(guards))
     return Candidate(system, derived, tuple(d for d in divisors(u) if d not in given))
 
 

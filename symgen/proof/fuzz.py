@@ -19,6 +19,7 @@ from symgen.ir.given_trig import GivenTrig, given_trig
 from symgen.ir.kernel import Kernel, Program
 from symgen.ir.prepare import prepare
 from symgen.model.model import Model, Range
+from symgen.model.quantities import MEASURED_ARGUMENTS
 from symgen.proof.box import box
 
 ARRAYS = ("q", "qd", "qdd", "u")
@@ -140,7 +141,7 @@ def _kernel(kernel: Kernel, ending: str, arrays: Sequence[str]) -> FuzzedFunctio
 def _arrays(model: Model, program: Program) -> tuple[str, ...]:
     """The array arguments that kernels of a model may have, and further ones where any has them."""
     taken = {argument.name for kernel in program.kernels for argument in array_arguments(kernel)}
-    measured = ("q_m", "qd_m", "qdd_m") if model.measured else ()
+    measured = MEASURED_ARGUMENTS if model.measured else ()
     further = (one.name for one in model.further_arguments if one.name in taken or one.name in measured)
     return (*ARRAYS, *further)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TypeAlias
 
-from symgen.linear_algebra.guards import Guard
+from symgen.linear_algebra.guards import Guard, tested
 from symgen.linear_algebra.null_spaces import rests_on_rank
 from symgen.mechanics.genericity import Genericity
 from symgen.methods.derivation import Derivation
@@ -203,5 +203,4 @@ def derived_from(
     shape = entry.shape(sizes(derivation.mechanics.model, derivation.generic))
     if is_fixed(outputs) and not rests_on_rank(derivation.space):
         return Quantity(entry.name, shape, outputs, ())
-    tested = tuple(guard for guard in guards(derivation) if guard.denominator.constant is None)
-    return Quantity(entry.name, shape, outputs, tested)
+    return Quantity(entry.name, shape, outputs, tested(guards(derivation)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from symgen.ir.kernel import Status
-from symgen.linear_algebra.guards import Guard
+from symgen.linear_algebra.guards import Guard, tested
 from symgen.mechanics.system import System
 from symgen.methods.admission import ByTheorem
 from symgen.methods.given.functions import Given, given_of
@@ -112,8 +112,7 @@ class _Closed(ByTheorem):
         found = closed_configuration(system.mechanics, given_of(quantity, system.mechanics))
         if found is None:
             return "its rows are no chains of two links, and hold more than one unknown"
-        tested = tuple(guard for guard in found.guards if guard.denominator.constant is None)
-        return Candidate(system, Quantity(quantity, (len(found.outputs),), found.outputs, tested))
+        return Candidate(system, Quantity(quantity, (len(found.outputs),), found.outputs, tested(found.guards)))
 
 
 CLOSED: Method = _Closed("its roots multiplied are the determinant of the rows and of what is given together")

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
 from symgen.ir.kernel import Status
 from symgen.records import dataclass
-from symgen.symbolic.calculus import gradient
-from symgen.symbolic.matrix import Matrix, Vector, identity
+from symgen.symbolic.calculus import derivative_along, gradient
+from symgen.symbolic.matrix import Matrix, Vector, dot, flatten, identity
+from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.translate import translate
 
 if TYPE_CHECKING:
@@ -53,6 +54,14 @@ def task(mechanics: System) -> Given:
     places = tuple(order.get(x, -1) for x in functions)
     values, rates, accelerations = mechanics.further("x_t", "xd_t", "xdd_t")
     return Given(functions, slopes, places, values, rates, accelerations, Status.TASK_RANK)
+
+
+def turning(
+    graph: Graph, rows: Matrix, motion: Mapping[Scalar, Scalar], velocity: Sequence[Scalar]
+) -> list[Scalar]:
+    """How rows change along a motion, times the velocity of their unknowns."""
+    changes = iter(derivative_along(graph, flatten(rows), motion))
+    return [dot(graph, [next(changes) for _ in row], velocity) for row in rows]
 
 
 def given_of(quantity: str, mechanics: System) -> Given:

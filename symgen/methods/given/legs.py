@@ -7,16 +7,16 @@ blocks of a few unknowns each.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from symgen.linear_algebra.constant_rows import ConstantRows
-from symgen.linear_algebra.guards import Guard
+from symgen.linear_algebra.guards import Guard, tested
 from symgen.linear_algebra.sparser_rows import SparserRows
 from symgen.linear_algebra.triangular_blocks import BlockwiseSolution, triangular_blocks
 from symgen.linear_algebra.turned_rows import TurnedRows
 from symgen.mechanics.system import System
 from symgen.methods.admission import ByTheorem
-from symgen.methods.given.functions import Given, given_of
+from symgen.methods.given.functions import Given, given_of, turning
 from symgen.methods.method import Candidate, Method
 from symgen.methods.quantity import Quantity
 from symgen.methods.spaces import along_minors, along_reflections
@@ -24,7 +24,7 @@ from symgen.methods.system import MethodInput
 from symgen.methods.workspace import Workspace
 from symgen.records import dataclass
 from symgen.symbolic.calculus import derivative_along
-from symgen.symbolic.matrix import Matrix, Vector, dot, flatten
+from symgen.symbolic.matrix import Vector
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost
 
@@ -56,11 +56,11 @@ class LegMotion:
         motion = dict(zip(self.mechanics.q, velocity, strict=True))
         graph, zeros = self.mechanics.graph, self._zeros
         bias = self.mechanics.constraint_acceleration_bias(velocity) if self.mechanics.r else ()
-        bent = (*bias, *self._bent(self.given.slopes, motion, velocity))
+        bent = (*bias, *turning(graph, self.given.slopes, motion, velocity))
         given = (*zeros, *self.given.accelerations)
         right = [x - y for x, y in zip(given, bent, strict=True)]
         # the right-hand sides of combinations change, too, with what they were combined by
-        together = self._bent(self.rows.matrix, motion, self.numbers.kept(velocity))
+        together = turning(graph, self.rows.matrix, motion, self.numbers.kept(velocity))
         sides = derivative_along(graph, self._of((*zeros, *self.given.rates)), motion)
         changes = (x - y for x, y in zip(sides, together, strict=True))
         combined = [x + y for x, y in zip(self._of(given), changes, strict=True)]
@@ -74,12 +74,6 @@ class LegMotion:
     @property
     def _zeros(self) -> Vector:
         return (self.mechanics.graph.zero,) * self.mechanics.r
-
-    def _bent(self, rows: Matrix, motion: Mapping[Scalar, Scalar], velocity: Sequence[Scalar]) -> list[Scalar]:
-        """How rows change along a motion, times the velocity of their unknowns."""
-        graph = self.mechanics.graph
-        changes = iter(derivative_along(graph, flatten(rows), motion))
-        return [dot(graph, [next(changes) for _ in row], velocity) for row in rows]
 
 
 def leg_motion(system: MethodInput, given: Given) -> LegMotion | str:
@@ -114,8 +108,7 @@ class _ByLegs(ByTheorem):
             return found
         outputs = found.velocity if quantity.startswith("velocity") else found.acceleration
         guards = found.solution.guards(given.status, _of_rows(system))
-        tested = tuple(guard for guard in guards if guard.denominator.constant is None)
-        return Candidate(system, Quantity(quantity, (len(outputs),), outputs, tested))
+        return Candidate(system, Quantity(quantity, (len(outputs),), outputs, tested(guards)))
 
 
 def _of_rows(system: MethodInput) -> tuple[Guard, ...]:

@@ -11,9 +11,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from symgen.linear_algebra.guards import Guard
-from symgen.methods.given.functions import Given
+from symgen.methods.given.functions import Given, turning
 from symgen.symbolic.calculus import derivative_along, gradient
-from symgen.symbolic.matrix import Vector, dot, flatten, matvec
+from symgen.symbolic.matrix import Vector, dot, matvec
 from symgen.symbolic.scalar import Scalar
 from symgen.validity.solvable import solvable
 
@@ -46,10 +46,9 @@ class GivenMotion:
         motion = dict(zip(mechanics.q, velocity, strict=True))
         if len(given.functions) == self._space.delta:
             # differentiated, what has been cancelled stays so
-            turning = derivative_along(graph, velocity, motion)
-            return tuple(a + b for a, b in zip(self._nearest(given.accelerations), turning, strict=True))
-        changes = iter(derivative_along(graph, flatten(given.slopes), motion))
-        bent = [dot(graph, [next(changes) for _ in row], velocity) for row in given.slopes]
+            change = derivative_along(graph, velocity, motion)
+            return tuple(a + b for a, b in zip(self._nearest(given.accelerations), change, strict=True))
+        bent = turning(graph, given.slopes, motion, velocity)
         left = [x - y for x, y in zip(given.accelerations, bent, strict=True)]
         if not mechanics.r:
             return self._nearest(left)
