@@ -13,7 +13,6 @@ status.
 from __future__ import annotations
 
 import math
-import random
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -25,17 +24,16 @@ from symgen.model.configurations.closing import CLOSED, Closer, KinematicLoop, r
 from symgen.model.configurations.dense import null_space
 from symgen.model.configurations.mechanics import NumericSystem
 from symgen.model.configurations.sparse import NEGLIGIBLE, PLAIN, Row, Scales, clear_rank, pivots, typical
+from symgen.model.configurations.starts import Starts
 from symgen.model.model import Input
 from symgen.records import dataclass
 
-# The seed of starts: the same model has the same configurations.
-BRANCH_SEED = 20120731
 # Configurations where no constraint holds any.
 FREE_POINTS = 6
 # Configurations, on the constraints or not, that tell how large entries of the rows usually are.
 TYPICAL_POINTS = 4
-# Starts at least and at most, and configurations that are enough where no rank can be greater than found.
-FEWEST_STARTS, MOST_STARTS, ENOUGH = 8, 40, 4
+# Starts at least, and configurations that are enough where no rank can be greater than found.
+FEWEST_STARTS, ENOUGH = 8, 4
 # Further starts, for loops that stay open where others close.
 RETRIES = 3
 # Rows evaluated on the way, and how many times as many as long as nothing regular is found.
@@ -72,11 +70,9 @@ def branches(mechanics: NumericSystem, inputs: Sequence[Input], start: dict[str,
 class _Search:
     def __init__(self, mechanics: NumericSystem, inputs: Sequence[Input], start: dict[str, float]) -> None:
         self._mechanics, self._inputs, self._start = mechanics, inputs, start
+        self._starts = Starts(mechanics, inputs, start)
         self._n, self._r_geometric = len(mechanics.coordinates), len(mechanics.geometric)
-        self._random = random.Random(BRANCH_SEED)
-        self._widths = [
-            1.0 if c.is_angle else max(float(c.range[1] - c.range[0]) / 2, 1e-300) for c in mechanics.coordinates
-        ]
+        self._widths = self._starts.widths
         samples = list(self._sampled())
         self._usable = bool(samples)
         sizes = self._without_noise(typical(rows for _, rows in samples), [q for q, _ in samples])
@@ -131,7 +127,7 @@ class _Search:
         """B and M at random configurations, whether they satisfy the constraints or not."""
         found = 0
         for _ in range(10 * TYPICAL_POINTS):
-            place = self._anywhere(whole=False)
+            place = self._starts.anywhere(whole=False)
             rows = self._rows(place)
             if rows is not None:
                 yield place, rows
@@ -179,65 +175,22 @@ class _Search:
             return None
         return ConfigurationRanks(constraints, geometric, together - constraints)
 
-    def _anywhere(self, whole: bool) -> list[float]:
-        """A random configuration in the ranges, angles from the whole circle if asked for."""
-        return [
-            self._random.uniform(-math.pi, math.pi)
-            if whole and c.is_angle
-            else self._random.uniform(float(c.range[0]), float(c.range[1]))
-            for c in self._mechanics.coordinates
-        ]
-
-    def _begin(self) -> list[float]:
-        """The start, completed with the middles of the ranges."""
-        return [self._start.get(c.name, float(sum(c.range)) / 2) for c in self._mechanics.coordinates]
-
     def _free(self) -> Iterator[tuple[float, ...]]:
-        found, q = 0, tuple(self._begin())
+        found, q = 0, tuple(self._starts.begin())
         for number in range(10 * FREE_POINTS):
-            q = tuple(self._anywhere(whole=False)) if number else q
+            q = tuple(self._starts.anywhere(whole=False)) if number else q
             if self._rows(q) is not None:
                 yield q
                 found += 1
             if found == FREE_POINTS:
                 return
 
-    def _guesses(self, places: Sequence[tuple[float, ...]]) -> Iterator[tuple[list[float], tuple[int, ...]]]:
-        """Starts, and coordinates that are held: the declared start, then in turn near it (or what was found first),
-        with coordinates moved that inputs act on, in the ranges, and over the whole circle."""
-        begin = self._begin()
-        yield begin, ()
-        driven = self._driven(begin)
-        for number in range(1, MOST_STARTS):
-            centre = places[0] if places else begin
-            match number % 4:
-                case 1:
-                    reach = 0.3 if number % 8 == 1 else 1.0
-                    shifts = (self._random.uniform(-reach, reach) * width for width in self._widths)
-                    yield [x + shift for x, shift in zip(centre, shifts, strict=True)], ()
-                case 2:
-                    held = driven[number // 4 % len(driven)]
-                    reach = self._random.choice((-1, 1)) * self._random.uniform(0.2, 1.2)
-                    shifts = (reach * width * (j in held) for j, width in enumerate(self._widths))
-                    yield [x + shift for x, shift in zip(centre, shifts, strict=True)], held
-                case other:
-                    yield self._anywhere(whole=other == 3), ()
-
-    def _driven(self, q: Sequence[float]) -> list[tuple[int, ...]]:
-        """The coordinates that each input acts on; each coordinate where there are no inputs."""
-        try:
-            columns = self._mechanics.columns(q, self._inputs)
-        except (ArithmeticError, ValueError):
-            columns = []
-        found = [tuple(j for j, value in column.items() if value) for column in columns]
-        return [these for these in found if these] or [(j,) for j in range(self._n)]
-
     def _closed(self) -> Iterator[tuple[float, ...]]:
         """Configurations on the geometric constraints, where the start leads first."""
         found: list[tuple[float, ...]] = []
         reached: list[ConfigurationRanks] = []
         regular = False
-        for number, (guess, held) in enumerate(self._guesses(found)):
+        for number, (guess, held) in enumerate(self._starts.guesses(found)):
             q = self._close(guess, held)
             if q is not None:
                 q = self._turned_back(q) if number else q
@@ -267,7 +220,7 @@ class _Search:
         for _ in range(RETRIES if len(closed.open) < len(self._closer.loops) else 0):
             if not closed.open:
                 break
-            anew, place = self._anywhere(whole=True), list(closed.q)
+            anew, place = self._starts.anywhere(whole=True), list(closed.q)
             for loop in closed.open:
                 for j in loop.coordinates:
                     place[j] = anew[j]
@@ -328,7 +281,7 @@ class _Search:
     def _is_regular(self, place: RankedConfiguration) -> bool:
         """Whether the ranks stay as they are where a step along an admissible direction leads."""
         q = place.q
-        direction = self._closer.along(q, [self._random.gauss(0, 1) for _ in q])
+        direction = self._closer.along(q, self._starts.direction())
         if direction is None:
             return False
         longest = max(map(abs, direction))
@@ -368,7 +321,7 @@ class _Search:
         """A walk along a branch, with shorter steps where it is bent more."""
         found, stride = [place], STRIDE
         for _ in range(3 * WALK):
-            direction = self._closer.along(found[-1].q, [self._random.gauss(0, 1) for _ in self._widths])
+            direction = self._closer.along(found[-1].q, self._starts.direction())
             longest = max(map(abs, direction or ()), default=0.0)
             if direction is None or longest < STRIDES[0] or len(found) == WALK:
                 break
@@ -391,9 +344,8 @@ class _Search:
 
     def _open(self) -> OpenLoop | None:
         """The widest gap at the nearest configuration, of a loop that never closes."""
-        self._random = random.Random(BRANCH_SEED)
         nearest: dict[KinematicLoop, tuple[float, list[float]]] = {}
-        for guess, _ in islice(self._guesses(()), FEWEST_STARTS):
+        for guess, _ in islice(Starts(self._mechanics, self._inputs, self._start).guesses(()), FEWEST_STARTS):
             closed = self._closer.close(guess)
             for loop in self._closer.loops:
                 gaps = self._closer.gaps(closed.q, loop) if loop in closed.open else [0.0]
