@@ -51,10 +51,11 @@ class System:
         mark = "" if change is None else " absolute"
         symbol = graph.symbol if change is None else graph.stand_in
         self.q: Vector = tuple(symbol(c.name + mark) for c in model.coordinates)
-        self.qd: Vector = tuple(symbol(c.rate + mark) for c in model.coordinates)
-        self.qdd: Vector = tuple(symbol(c.acceleration + mark) for c in model.coordinates)
+        # what only some kernels are given: where it cancels it must not come into those of others
+        self.qd: Vector = tuple(graph.stand_in(c.rate + mark) for c in model.coordinates)
+        self.qdd: Vector = tuple(graph.stand_in(c.acceleration + mark) for c in model.coordinates)
         self.parameters: Vector = tuple(graph.symbol(p.name) for p in model.parameters)
-        self.u: Vector = tuple(graph.symbol(i.name) for i in model.inputs)
+        self.u: Vector = tuple(graph.stand_in(i.name) for i in model.inputs)
         q, qd = (self.q, self.qd) if change is None else (change.relative(self.q), change.relative(self.qd))
         names = map(model.further_names, MEASURED_ARGUMENTS)
         self.measured = tuple(tuple(map(symbol, level)) for level in names)

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import pytest
+
+from symgen.mechanics.system import System
+from symgen.model.load import load_text
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.transplant import transplanted
 from symgen.symbolic.traverse import reached, substitute
@@ -45,3 +49,27 @@ def test_a_stand_in_stays_one_on_another_graph() -> None:
     graph, other = Graph(), Graph()
     transplanted(other, [graph.stand_in("held") + graph.symbol("p")])
     assert other.symbol("held").stands != 0
+
+
+CART = """
+model: cart
+coordinates: {x: {unit: m}, y: {unit: m}}
+parameters: {m: {value: 2}}
+kinetic_energy: 1/2*m*(x_dot**2 + y_dot**2)
+constraints:
+  geometric:
+    row: x - y
+inputs:
+  F: {acts_on: {x: 1}}
+outputs: [actuator_bias]
+"""
+
+
+@pytest.mark.parametrize("given", ["qd", "qdd", "u"])
+def test_what_only_some_kernels_are_given_does_not_come_into_those_of_others(given: str) -> None:
+    system = System(load_text(CART, "cart.yaml"))
+    argument = getattr(system, given)[0]
+    written = square(system.graph, argument)
+    assert str(argument.payload) in symbols(written)
+    # the same function, as long
+    assert symbols(square(system.graph, system.q[0])) <= {"p", "x"}

@@ -9,6 +9,7 @@ from symgen.diagnostics import Notice
 from symgen.model.expressions.combine import times
 from symgen.model.expressions.expression import Expression, Number, Pi
 from symgen.model.expressions.names import did_you_mean
+from symgen.model.expressions.walk import exact_value
 from symgen.model.file.reading import description_of, entries, items, member, text_of
 from symgen.model.file.scope import FRAME, PARAMETERS, Kind, Scope, a_kind
 from symgen.model.file.source import MappingNode, Node, ScalarNode, SequenceNode
@@ -16,6 +17,8 @@ from symgen.model.kinematics.fixed_angles import quarter_turns
 from symgen.model.mechanism import AXES, NO_VECTOR, WORLD, ZERO, Frame, Point, Quaternion, Turn, Vector3
 
 ONE = Number(ZERO.value + 1)
+# Of the largest component of a vector: smaller ones are what computing it left of 0, as 6e-17 of a cosine.
+REST_OF_ZERO = Fraction(1, 10**14)
 NEED_FRAME = "name the frame it belongs to, or put a frame there under `frames`"
 
 
@@ -60,10 +63,17 @@ def read_points(scope: Scope, tree: MappingNode) -> tuple[Point, ...]:
 
 
 def read_vector(scope: Scope, node: Node | None, what: str, allowed: frozenset[Kind]) -> Vector3 | None:
-    """Three expressions; a faulty entry counts as 0 (its mistake is recorded)."""
+    """Three expressions; a faulty entry counts as 0 (its mistake is recorded), as does what rounding left of 0."""
     if not isinstance(node, SequenceNode) or len(node.items) != 3:
         return None
-    x, y, z = (scope.expression(item, what, allowed) or ZERO for item in node.items)
+    written = [scope.expression(item, what, allowed) or ZERO for item in node.items]
+    sizes = [abs(exact_value(entry) or 0) for entry in written]
+    for i, item in enumerate(node.items):
+        if 0 < sizes[i] < REST_OF_ZERO * max(sizes):
+            written[i] = ZERO
+            message = f"`{text_of(item)}` in {what} is taken for 0, beside what it stands with"
+            scope.notices.append(Notice(message, item.span))
+    x, y, z = written
     return x, y, z
 
 
