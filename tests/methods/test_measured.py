@@ -34,6 +34,20 @@ measured: MEASURED
 configuration: {{a: 0.5, b: 0.6, c: 1.6}}
 outputs: [configuration_from_measured, velocity_from_measured, acceleration_from_measured]
 """
+# A slide on an arm, a link on the slide, and a rod that all but crosses the arm; a screw that nothing moves is measured, too.
+CROSSED = """
+model: crossed
+coordinates: {a: {}, s: {}, c: {}, w: {}}
+kinetic_energy: (a_dot**2 + s_dot**2 + c_dot**2 + w_dot**2)/2
+constraints:
+  geometric:
+    rod: (-0.7445 - (s + 0.18)*cos(a) - 0.6*cos(c))**2 + (-0.6614 - (s + 0.18)*sin(a) - 0.6*sin(c))**2 - 0.47836**2
+    screw: w - 0.5
+inputs: {u: {acts_on: {a: 1}}}
+measured: [a, c, w]
+configuration: {a: 2.65142, s: 0.58383, c: -1.35493, w: 0.5}
+outputs: [configuration_from_measured]
+"""
 CAR = """
 model: car
 coordinates: {x: {}, y: {}, theta: {unit: rad}, phi: {unit: rad}}
@@ -198,6 +212,19 @@ def test_no_move_ends_on_another_branch(name: str, measured: str, tmp_path: Path
         pairs = (module.constraint_jacobian(q)[:, :, free] for q in (start, found))
         first, second = (np.linalg.det(rows[loop]) for rows in pairs)
         assert (first * second > 0).all()
+
+
+def test_a_move_towards_a_singularity_is_followed_as_far_with_one_encoder_more(tmp_path: Path) -> None:
+    # what is still to be moved at the start must not bend the first step: it says nothing of what is left at the end
+    module = kernels(CROSSED, tmp_path)
+    text = CROSSED.replace("[a, c, w]", "[a, c]").replace("crossed", "enough")
+    (tmp_path / "enough").mkdir()
+    enough = kernels(text, tmp_path / "enough")
+    start = module.configuration_from_measured([2.65142, -1.35493, 0.5], [2.65142, 0.58383, -1.35493, 0.5])
+    for share in np.linspace(0.2, 1, 5):
+        a, c = start[[0, 2]] + 0.007 * share
+        place = module.configuration_from_measured([a, c, 0.5003], start)
+        assert place[:3] == pytest.approx(enough.configuration_from_measured([a, c], start)[:3], abs=1e-9)
 
 
 def test_a_rank_that_drops_has_its_own_status(tmp_path: Path) -> None:

@@ -25,7 +25,7 @@ from symgen.linear_algebra.null_spaces import HouseholderSpace
 from symgen.linear_algebra.pivoted import reflected
 from symgen.methods.given.functions import Given
 from symgen.symbolic.calculus import gradient, jacobian
-from symgen.symbolic.matrix import Matrix, Vector, dot, matmul, matvec, transpose
+from symgen.symbolic.matrix import Matrix, Vector, add, dot, matmul, matvec, transpose
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import substitute
 
@@ -51,11 +51,15 @@ class GivenConfiguration:
         self._rows: Matrix = (*derivation.mechanics.geometric_jacobian, *(given.slopes[k] for k in others))
         # on which side of their singularities the rows are, where they tell that
         self._orientation = self._graph.one
-        step, self._guards = self._by_rows() if determined else self._by_least_squares()
+        if determined:
+            step, self._last_guards = first, self._first_guards = self._by_rows()
+        else:
+            step, self._last_guards = self._by_least_squares(curved=True)
+            first, self._first_guards = self._by_least_squares(curved=False)
         self._iterates: list[Vector] = [self._q]
         self._steps: list[Vector] = []
-        for _ in range(STEPS_TAKEN):
-            self._steps.append(self._at(step, self._iterates[-1]))
+        for taken in range(STEPS_TAKEN):
+            self._steps.append(self._at(step, self._iterates[-1]) if taken else first)
             self._iterates.append(self._moved_by(self._steps[-1]))
 
     @property
@@ -83,17 +87,17 @@ class GivenConfiguration:
         longer, half = second - first / 4, Fraction(1, 2 * LEFT * self._derivation.n)
         before = self._iterates[-2]
         same_side = self._orientation * self._at([self._orientation], before)[0]
-        found = [
-            *self._guards,
-            *(moved(guard, dict(zip(self._q, before, strict=True))) for guard in self._guards),
+        guards = [
+            *self._first_guards,
+            *(moved(guard, dict(zip(self._q, before, strict=True))) for guard in self._last_guards),
             Guard(Status.BRANCH, longer, 1, scale=self._graph.one, positive=True, small=True),
             *self._closure,
             # half of the digits stood still in the last step: it has brought the others
             Guard(Status.NOT_CLOSED, last, 1, scale=self._graph.const(half), positive=True, small=True),
         ]
         if same_side.constant is None:
-            found.append(Guard(Status.BRANCH, same_side, 1, scale=self._graph.one, positive=True))
-        return tuple(found)
+            guards.append(Guard(Status.BRANCH, same_side, 1, scale=self._graph.one, positive=True))
+        return tuple(guards)
 
     def _by_rows(self) -> tuple[Vector, tuple[Guard, ...]]:
         """The step to what is given that closes the rows by the other coordinates, to the first order."""
@@ -107,21 +111,22 @@ class GivenConfiguration:
         """What is left of g, and of what is given besides."""
         return (*self._derivation.mechanics.constraint_residual, *self._open)
 
-    def _by_least_squares(self) -> tuple[Vector, tuple[Guard, ...]]:
-        """Newton's step for q and mu, with mu = (B^+)^T X^T (x - x(q)), X the derivatives of x."""
+    def _by_least_squares(self, curved: bool) -> tuple[Vector, tuple[Guard, ...]]:
+        """Newton's step for q and mu, with mu = (B^+)^T X^T (x - x(q)), X the derivatives of x.
+
+        Where it starts x - x(q) is the way to go, not what is left of it at the end: it would bend the first step the
+        wrong way, so that this one is Gauss and Newton's, not `curved` by mu.
+        """
         graph, mechanics, n, given = self._graph, self._derivation.mechanics, self._derivation.n, self._given
         space = self._space
         if not isinstance(space, HouseholderSpace):
             space = reflected(graph, mechanics.geometric_jacobian, n, self._derivation.generic.geometric_rank)
         beyond = self._differences(range(len(given.functions)))
         pull = tuple(-x for x in matvec(graph, transpose(given.slopes, n), beyond))
-        factors = (*space.lift_transposed(pull), *beyond)
-        held = [graph.symbol(f"multiplier {k}") for k in range(len(factors))]
-        curved = gradient(graph, dot(graph, held, (*mechanics.constraint_residual, *given.functions)), self._q)
-        bent = substitute(graph, [x for row in jacobian(graph, curved, self._q) for x in row],
-                          dict(zip(held, factors, strict=True)))  # fmt: skip
         along = [[row[j] for row in given.slopes] for j in range(n)]
-        hessian = tuple(tuple(bent[n * i + j] + dot(graph, along[i], along[j]) for j in range(n)) for i in range(n))
+        hessian = tuple(tuple(dot(graph, along[i], along[j]) for j in range(n)) for i in range(n))
+        if curved:
+            hessian = add(hessian, self._curvature((*space.lift_transposed(pull), *beyond)))
         basis, delta = space.basis, space.delta
         across = transpose(basis, delta)
         core = matmul(graph, across, matmul(graph, hessian, basis, delta), delta)
@@ -131,6 +136,15 @@ class GivenConfiguration:
         free = matvec(graph, basis, factor.solve(matvec(graph, across, tuple(rest))))
         steep = (replace(guard, status=given.status) for guard in factor.guards)
         return tuple(map(_sum, least, free)), (*space.guards, *steep)
+
+    def _curvature(self, factors: Vector) -> Matrix:
+        """The second derivatives of rows and functions, each times its factor."""
+        graph = self._graph
+        held = [graph.stand_in(f"multiplier {k}") for k in range(len(factors))]
+        functions = (*self._derivation.mechanics.constraint_residual, *self._given.functions)
+        slopes = jacobian(graph, gradient(graph, dot(graph, held, functions), self._q), self._q)
+        known = dict(zip(held, factors, strict=True))
+        return tuple(tuple(substitute(graph, row, known)) for row in slopes)
 
     @property
     def _steepest(self) -> Scalar:
