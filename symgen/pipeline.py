@@ -52,7 +52,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
     """
     progress("reading the model")
     model = load_model(path)
-    options, told = without_report(model, options)
+    options, report_notices = without_report(model, options)
     outputs = requested_outputs(model, options)
     draft: Draft | None = None
     trial: Trial | None = None
@@ -90,7 +90,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
                 with _literals_in_range(path):
                     files = files_of(draft, options, sources)
                 result = _finished(path, draft, options, files, certificate, reporting, progress)
-                return replace(result, notices=(*result.notices, *told))
+                return replace(result, notices=(*result.notices, *report_notices))
         # again: by other methods for what was rejected, or in the end without these quantities
         draft = other
         if not draft.program.kernels:
@@ -153,8 +153,8 @@ def _verified(
     if not c_sources and python_source is None:
         return None
     kernels = {scalar: program.kernels for scalar, program in draft.written.items()}
-    found = verify_expecting(expected, kernels, c_sources, python_source, progress)
-    return replace(found, left_out=draft.left_out)
+    certificate = verify_expecting(expected, kernels, c_sources, python_source, progress)
+    return replace(certificate, left_out=draft.left_out)
 
 
 def _reporting(model: Model, measured: bool) -> Background[ReportFiles]:

@@ -27,9 +27,9 @@ else:
 def _record(cls: type) -> type:
     """The class with slots and the methods of a frozen dataclass; methods that it has itself stay."""
     made: type = _standard(init=False, repr=False, eq=False, slots=True)(cls)
-    found = fields(made)
-    compared = _getter(field.name for field in found if field.compare)
-    hashed = _getter(field.name for field in found if (field.compare if field.hash is None else field.hash))
+    all_fields = fields(made)
+    compared = _getter(field.name for field in all_fields if field.compare)
+    hashed = _getter(field.name for field in all_fields if (field.compare if field.hash is None else field.hash))
 
     def same(self: Any, other: Any) -> bool:
         return compared(self) == compared(other) if other.__class__ is self.__class__ else NotImplemented

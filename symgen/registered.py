@@ -40,9 +40,9 @@ def words(text: str) -> frozenset[str]:
 @cache
 def words_of(backend: str) -> Words:
     """The words of a backend."""
-    found = import_module(f"symgen.backends.{backend}.reserved").WORDS
-    assert isinstance(found, Words)
-    return found
+    loaded = import_module(f"symgen.backends.{backend}.reserved").WORDS
+    assert isinstance(loaded, Words)
+    return loaded
 
 
 @cache

@@ -117,12 +117,12 @@ def summary_table(name: str, summary: Summary, width: int | None = None) -> str:
 def _folded(rows: Sequence[tuple[str, str]], width: int) -> list[tuple[str, str]]:
     """Rows of two sentences over several lines, which together have so many columns; long names stay whole."""
     left = min(max(len(what) for what, _ in rows), 2 * width // 5)
-    found: list[tuple[str, str]] = []
+    lines: list[tuple[str, str]] = []
     for what, why in rows:
         parts = textwrap.wrap(what, left, break_long_words=False)
         reasons = textwrap.wrap(why, width - left, break_long_words=False)
-        found += zip_longest(parts, reasons, fillvalue="")
-    return found
+        lines += zip_longest(parts, reasons, fillvalue="")
+    return lines
 
 
 def written_table(folder: Path, files: Sequence[Path]) -> str:

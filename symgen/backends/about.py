@@ -88,10 +88,10 @@ def count_lines(program: Program) -> Iterator[str]:
 
 def bound_lines(program: Program) -> Iterator[str]:
     """The bounds of parameters beyond which kernels refuse."""
-    found = {kernel.name: [_bound(*one) for one in bounds_of(kernel)] for kernel in program.kernels}
-    if any(found.values()):
+    by_kernel = {kernel.name: [_bound(*one) for one in bounds_of(kernel)] for kernel in program.kernels}
+    if any(by_kernel.values()):
         yield "Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:"
-        for name, bounds in found.items():
+        for name, bounds in by_kernel.items():
             lines = [bounds[start : start + BOUNDS_A_LINE] for start in range(0, len(bounds), BOUNDS_A_LINE)]
             yield from (f"  {name}  {', '.join(line)}" for line in lines)
 

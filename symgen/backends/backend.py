@@ -62,6 +62,6 @@ class Backend:
 
 def backend(name: str) -> Backend:
     """The backend of a name."""
-    found = import_module(f"symgen.backends.{name}.backend").BACKEND
-    assert isinstance(found, Backend)
-    return found
+    loaded = import_module(f"symgen.backends.{name}.backend").BACKEND
+    assert isinstance(loaded, Backend)
+    return loaded

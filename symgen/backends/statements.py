@@ -68,8 +68,8 @@ class Statements(ABC):
 
     def halves(self, targets: tuple[str, ...], angle: str) -> tuple[str, ...]:
         """A sine and a cosine as two functions."""
-        found = ((target, half) for target, half in zip(targets, ("sin", "cos"), strict=True) if target in self.used)
-        return tuple(self.declare((target,), f"{self.function(half)}({angle})") for target, half in found)
+        pairs = ((target, half) for target, half in zip(targets, ("sin", "cos"), strict=True) if target in self.used)
+        return tuple(self.declare((target,), f"{self.function(half)}({angle})") for target, half in pairs)
 
     def passes(self, check: Check) -> str:
         """The condition of a check, which NaN does not meet."""

@@ -25,9 +25,9 @@ class _OptionParser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """The message with the nearest option for each that is unknown."""
-        _, found, unknown = message.partition(UNKNOWN)
+        _, separator, unknown = message.partition(UNKNOWN)
         options = [option for action in self._actions for option in action.option_strings]
-        given = [word.partition("=")[0] for word in unknown.split() if word.startswith("--")] if found else []
+        given = [word.partition("=")[0] for word in unknown.split() if word.startswith("--")] if separator else []
         meant = {word: near for word in given if (near := nearest(word, options))}
         super().error(message + "".join(f"\n  did you mean `{near}` for `{word}`?" for word, near in meant.items()))
 
@@ -95,7 +95,7 @@ def _offered(quantity: str) -> str:
     by_label: dict[str, list[str]] = {}
     for method in NAMED_METHODS[quantity]:
         by_label.setdefault(label(quantity, method), []).append(method)
-    return ", ".join(f"{told} {_listed(methods)}".lstrip() for told, methods in by_label.items())
+    return ", ".join(f"{heading} {_listed(methods)}".lstrip() for heading, methods in by_label.items())
 
 
 def _listed(methods: Sequence[str]) -> str:
@@ -124,10 +124,10 @@ def chosen_methods(given: Sequence[tuple[str, str]]) -> dict[str, str]:
 
 def names(text: str) -> tuple[str, ...]:
     """`a,b`, each once."""
-    found = tuple(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
-    if not found:
+    distinct = tuple(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
+    if not distinct:
         raise argparse.ArgumentTypeError("expected names separated by commas")
-    return found
+    return distinct
 
 
 def parts(text: str) -> tuple[str, ...]:
@@ -159,13 +159,13 @@ def positive(text: str) -> float:
 
 def values(text: str) -> dict[str, float]:
     """`a=1,b=2` as a mapping."""
-    found: dict[str, float] = {}
+    by_name: dict[str, float] = {}
     for entry in filter(None, map(str.strip, text.split(","))):
         name, _, number = entry.partition("=")
-        found[name.strip()] = value = _number(number)
+        by_name[name.strip()] = value = _number(number)
         if not math.isfinite(value):
             raise argparse.ArgumentTypeError(f"{entry!r} is not of the form x=1")
-    return found
+    return by_name
 
 
 def _number(text: str) -> float:

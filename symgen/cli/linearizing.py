@@ -48,7 +48,7 @@ def explain_linear_system(path: Path, start: Mapping[str, float], weights: tuple
 
 def _weights(text: str) -> tuple[float, float]:
     """`1,0.1` as two positive numbers."""
-    found = [positive(part.strip()) for part in text.split(",")]
-    if len(found) != 2:
+    numbers = [positive(part.strip()) for part in text.split(",")]
+    if len(numbers) != 2:
         raise argparse.ArgumentTypeError(f"{text!r} are no two positive numbers, such as 1,0.1")
-    return found[0], found[1]
+    return numbers[0], numbers[1]

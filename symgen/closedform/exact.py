@@ -65,8 +65,8 @@ class Exact:
         work = sum(estimated_work(tuple(self.rows[i] for i in subset)) for subset in subsets)
         if work > WORK_LIMIT:
             raise TooLargeError(f"the minors of B need about {work} products of terms, more than {WORK_LIMIT}")
-        found = [kernel_minors(self.ring, tuple(self.rows[i] for i in subset), self.model.n) for subset in subsets]
-        return tuple(minors for minors in found if any(minors.values.values()))
+        all_minors = [kernel_minors(self.ring, tuple(self.rows[i] for i in subset), self.model.n) for subset in subsets]
+        return tuple(minors for minors in all_minors if any(minors.values.values()))
 
     @cached_property
     def phi_squares(self) -> PolyElement:
@@ -164,8 +164,8 @@ class Exact:
         """The determinants of delta functions at a time with B: where all vanish they do not determine the rates."""
         columns = transpose(slopes)
         scale = common_denominator(self.ring, [entry for row in columns for entry in row])
-        found = self._spanned(columns, scale, "the determinants of what is given")
-        return [value for one in found for value in one.determinants.values()]
+        spanned = self._spanned(columns, scale, "the determinants of what is given")
+        return [value for one in spanned for value in one.determinants.values()]
 
     def _spanned(self, columns: Matrix, scale: PolyElement, what: str) -> tuple[Actuation, ...]:
         """Delta_J and v_L of columns (n x k) times their common denominator."""

@@ -218,14 +218,14 @@ def _onto_constraints(model: Model, mechanics: ExactSystem, values: dict[str, mp
 
     with _working_precision():
         start = [flint.arb(values[name]) for name in names]
-        found = zero_beside(evaluate, start, 10.0**-POINT_DIGITS, MOST_STEPS, 1e-3)
-    return None if found is None else at(found)
+        zero = zero_beside(evaluate, start, 10.0**-POINT_DIGITS, MOST_STEPS, 1e-3)
+    return None if zero is None else at(zero)
 
 
 def _units(model: Model) -> tuple[int, ...]:
     """The powers of 2 that bring rows to ordinary size."""
-    found = () if model.assembly is None else model.assembly.units
-    return found or (0,) * model.r
+    units = () if model.assembly is None else model.assembly.units
+    return units or (0,) * model.r
 
 
 def _scaled(rows: list[list[flint.arb]], units: Sequence[int]) -> list[list[flint.arb]]:
@@ -236,7 +236,7 @@ def rank(matrix: Sequence[Sequence[mpf]]) -> int:
     """The numerical rank by elimination with complete pivoting."""
     rows = [list(row) for row in matrix]
     scale = max((abs(x) for row in rows for x in row), default=mpf(0))
-    found = 0
+    count = 0
     columns = list(range(len(rows[0]))) if rows else []
     while rows and columns:
         i, j = max(((i, j) for i in range(len(rows)) for j in columns), key=lambda at: abs(rows[at[0]][at[1]]))
@@ -246,5 +246,5 @@ def rank(matrix: Sequence[Sequence[mpf]]) -> int:
         head = rows.pop(i)
         rows = [[a - row[j] / pivot * b for a, b in zip(row, head, strict=True)] if row[j] else row for row in rows]
         columns.remove(j)
-        found += 1
-    return found
+        count += 1
+    return count

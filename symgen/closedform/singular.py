@@ -54,13 +54,13 @@ class SingularSet:
 
 def derive_singular_sets(model: Model, exact: Exact, speller: Speller) -> tuple[SingularSet, ...]:
     """Constraint singularities, input singularities, and those of the chosen independent velocities."""
-    found: list[SingularSet] = []
+    singular_sets: list[SingularSet] = []
     try:
         with exact.ring.work.limited("the singular configurations"):
-            _collect(model, exact, speller, found)
+            _collect(model, exact, speller, singular_sets)
     except TooLargeError as large:
-        found.append(SingularSet("constraint", "constraint_jacobian", (), False, f"not worked out: {large}"))
-    return tuple(found)
+        singular_sets.append(SingularSet("constraint", "constraint_jacobian", (), False, f"not worked out: {large}"))
+    return tuple(singular_sets)
 
 
 def _collect(model: Model, exact: Exact, speller: Speller, sets: list[SingularSet]) -> None:

@@ -81,15 +81,15 @@ class MachinePose:
     @cached_property
     def joints(self) -> tuple[DrawnJoint, ...]:
         """One for each frame, parents first."""
-        told: set[int] = set()
-        found = []
+        shown: set[int] = set()
+        drawn = []
         for frame in self.mechanism.frames:
-            joint = self._joint(frame, told)
-            told.update(self._names.index(name) for name in joint.coordinates)
-            found.append(joint)
-        return tuple(found)
+            joint = self._joint(frame, shown)
+            shown.update(self._names.index(name) for name in joint.coordinates)
+            drawn.append(joint)
+        return tuple(drawn)
 
-    def _joint(self, frame: Frame, told: set[int]) -> DrawnJoint:
+    def _joint(self, frame: Frame, shown: set[int]) -> DrawnJoint:
         own = self._kinematics.joint(frame.name)
         slides, turns = (self._directions(frame.parent, rates) for rates in (own.place_rate, own.turning_before))
         kind: Kind = "fixed"
@@ -98,7 +98,7 @@ class MachinePose:
         elif turns:
             kind = "turning" if len(turns) == 1 else "ball"
         moving = _coordinates(own.place_rate), _coordinates(own.turning_before)
-        names = tuple(self._names[i] for i in dict.fromkeys(i for part in moving for i in part) if i not in told)
+        names = tuple(self._names[i] for i in dict.fromkeys(i for part in moving for i in part) if i not in shown)
         acting = {one.name: {name for name, _ in one.acts_on} for one in self.model.inputs}
         driven = tuple(name for name, coordinates in acting.items() if coordinates and coordinates <= {*names})
         place = foot = self.places[frame.name]
@@ -110,15 +110,15 @@ class MachinePose:
 
     def _directions(self, parent: str, rates: Rates[Form]) -> tuple[Place, ...]:
         """Those of a rate that is given in the parent's axes, each once, in the axes of the world."""
-        found: list[Place] = []
+        directions: list[Place] = []
         for i in _coordinates(rates):
             x, y, z = (form.get(i, 0.0) for form in rates)
             vector = applied(self._kinematics.axes(parent), (x, y, z))
             if (length := math.hypot(*vector)) > NEXT_TO_NOTHING:
                 one = vector[0] / length, vector[1] / length, vector[2] / length
-                if all(math.hypot(*cross(one, other)) > NEXT_TO_NOTHING for other in found):
-                    found.append(one)
-        return tuple(found)
+                if all(math.hypot(*cross(one, other)) > NEXT_TO_NOTHING for other in directions):
+                    directions.append(one)
+        return tuple(directions)
 
 
 def _coordinates(rates: Rates[Form]) -> list[int]:

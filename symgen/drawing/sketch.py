@@ -121,18 +121,18 @@ class _Links:
 
     def strokes(self) -> Iterator[Stroke]:
         """Bars and hulls, the far ones first; rails of sliders."""
-        found = []
+        layers = []
         for frame, places in self._places.items():
             if frame == WORLD or len(places) < 2:
                 continue
             hull = _hull([self._view.flat(place) for place in places])
             depth = sum(map(self._view.depth, places)) / len(places)
-            found.append((depth, Stroke("link", tuple(hull), closed=len(hull) > 2)))
+            layers.append((depth, Stroke("link", tuple(hull), closed=len(hull) > 2)))
         for joint in self._joints.values():
             if joint.kind == "sliding" and not self._pose.is_same(joint.place, joint.foot):
                 ends = self._view.flat(joint.foot), self._view.flat(joint.place)
-                found.append((self._view.depth(joint.foot), Stroke("rail", ends)))
-        return (stroke for _, stroke in sorted(found, key=lambda pair: pair[0]))
+                layers.append((self._view.depth(joint.foot), Stroke("rail", ends)))
+        return (stroke for _, stroke in sorted(layers, key=lambda pair: pair[0]))
 
     def base(self) -> Iterator[Stroke]:
         """What carries an arm that stands above the origin of the world."""

@@ -87,8 +87,8 @@ def derivation_json(draft: Draft) -> str:
 def _bounds(draft: Draft, quantity: str) -> dict[str, Any]:
     """The bounds of parameters by type and name, where a kernel of the quantity has any."""
     bounds = {scalar: draft.bounds.get(scalar, {}).get(quantity, ()) for scalar in draft.kernels(quantity)}
-    found = {scalar: {bound.parameter: _ends(bound) for bound in own} for scalar, own in bounds.items()}
-    return {"bounds": found} if any(found.values()) else {}
+    by_scalar = {scalar: {bound.parameter: _ends(bound) for bound in own} for scalar, own in bounds.items()}
+    return {"bounds": by_scalar} if any(by_scalar.values()) else {}
 
 
 def _ends(bound: Bound) -> list[float | None]:

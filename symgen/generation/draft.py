@@ -91,8 +91,8 @@ class Draft:
 
     def kernels(self, quantity: str) -> dict[Scalar, Kernel]:
         """The kernels of a quantity by scalar type."""
-        found = ((scalar, kernel) for scalar, program in self.programs.items() for kernel in program.kernels)
-        return {scalar: kernel for scalar, kernel in found if kernel.name == quantity}
+        all_kernels = ((scalar, kernel) for scalar, program in self.programs.items() for kernel in program.kernels)
+        return {scalar: kernel for scalar, kernel in all_kernels if kernel.name == quantity}
 
     def kernels_along(self, alternative: Alternative, scalars: Sequence[Scalar]) -> dict[Scalar, Kernel]:
         """The kernels of a quantity by another method."""
@@ -107,10 +107,10 @@ class Draft:
             return kernels
         from symgen.ir.wide import widened, with_sharp_thresholds  # few models need it
 
-        found = {scalar: kernels[scalar] for scalar in scalars}
+        by_scalar = {scalar: kernels[scalar] for scalar in scalars}
         if "float32" in wide:
-            found["float32"] = with_sharp_thresholds(kernels["float32"], kernels["float64"])
-        return {scalar: widened(one, scalar) if scalar in wide else one for scalar, one in found.items()}
+            by_scalar["float32"] = with_sharp_thresholds(kernels["float32"], kernels["float64"])
+        return {scalar: widened(one, scalar) if scalar in wide else one for scalar, one in by_scalar.items()}
 
     def along(self, alternative: Alternative, kernels: Mapping[Scalar, Kernel]) -> Draft:
         """The draft with a quantity by another method, by kernels of `kernels_along`."""

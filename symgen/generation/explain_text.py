@@ -75,10 +75,10 @@ def _marks(quantity: str, name: str, choice: MethodChoice) -> list[str]:
 
 def _singular(report: ReportInput) -> list[str]:
     lines = []
-    for found in report.singular_sets:
-        where = ", ".join(render_text_math(zero, report.model) for zero in found.vanishing)
-        place = f"{where} = 0" if where else "nowhere" if found.decided else "not worked out"
-        lines.append(f"{found.kind} singularity of {found.quantity}: {place} ({found.explanation})")
+    for singular in report.singular_sets:
+        where = ", ".join(render_text_math(zero, report.model) for zero in singular.vanishing)
+        place = f"{where} = 0" if where else "nowhere" if singular.decided else "not worked out"
+        lines.append(f"{singular.kind} singularity of {singular.quantity}: {place} ({singular.explanation})")
     return lines
 
 

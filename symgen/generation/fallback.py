@@ -118,7 +118,7 @@ class Fallback:
 
     def _worst(self, draft: Draft, certificate: Certificate, expected: Expected) -> dict[str, tuple[Fault, ...]]:
         """What is wrong with quantities that nothing speaks against, at states where they are worst."""
-        found = {}
+        by_quantity = {}
         for quantity in (kernel.name for kernel in draft.program.kernels):
             kernels = draft.kernels(quantity)
             searched = self._searched.get(quantity)
@@ -129,8 +129,8 @@ class Fallback:
             errors = self._at_worst(draft, judged, plain_kernel(draft.taken(quantity), kernels)) if judged else {}
             self._searched[quantity] = Searched(kernels, max(errors.values(), default=0.0))
             if faults := faults_at_worst(quantity, errors):
-                found[quantity] = faults
-        return found
+                by_quantity[quantity] = faults
+        return by_quantity
 
     def _at_worst(self, draft: Draft, kernels: Kernels, plain: Kernel | None) -> dict[Scalar, float]:
         """The errors of kernels where they are worst, a `plain` one among them and others before."""
@@ -169,14 +169,14 @@ class Fallback:
         others = tuple(one for one in draft.left_out if one.quantity != quantity)
         if self._is_given_up(draft, quantity):
             return replace(draft.without(quantity, tuple(kernels), too_many_tried()), left_out=others)
-        found = self._next(draft, quantity, expected)
-        if found is None and quantity in self._too_wide:
+        replacement = self._next(draft, quantity, expected)
+        if replacement is None and quantity in self._too_wide:
             why = too_wide(self._too_wide[quantity])
             return replace(draft.without(quantity, tuple(kernels), why), left_out=others)
         draft = draft.rejecting(tuple(Rejection(quantity, method, why) for method, why in tried[known:]))
-        if found is not None:
-            draft = draft.along(found.alternative, found.kernels)
-        passed = () if found is None else found.scalars
+        if replacement is not None:
+            draft = draft.along(replacement.alternative, replacement.kernels)
+        passed = () if replacement is None else replacement.scalars
         without = tuple(scalar for scalar in kernels if scalar not in passed)
         if not without:
             return draft
@@ -195,8 +195,8 @@ class Fallback:
     def _next(self, draft: Draft, quantity: str, expected: Expected) -> Passing | None:
         """The next method that passes with a margin, or else the best of those that pass; others are noted."""
         passing, needed = self._passing[quantity], tuple(draft.kernels(quantity))
-        if (found := self._first_of(draft, quantity, expected, LONG_TRIED)) is not None:
-            return found
+        if (first := self._first_of(draft, quantity, expected, LONG_TRIED)) is not None:
+            return first
         for one in self._with_more_digits(draft, quantity, expected):
             # more digits in float64, too, are worth a margin only where next to none is left
             most = MARGIN if one.alternative.choice.wide == needed else NARROW
@@ -204,8 +204,8 @@ class Fallback:
                 return one
             if "float64" in one.scalars:
                 passing.append(one)
-        if not passing and (found := self._first_of(draft, quantity, expected, inf)) is not None:
-            return found
+        if not passing and (first := self._first_of(draft, quantity, expected, inf)) is not None:
+            return first
         while passing:
             best = min(passing, key=lambda one: (-len(one.scalars), one.largest))
             passing.remove(best)

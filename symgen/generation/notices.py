@@ -59,7 +59,7 @@ def _renamed(model: Model) -> tuple[Notice, ...]:
 
 def replaced(draft: Draft, quantities: Container[str] | None = None) -> tuple[Notice, ...]:
     """The quantities (None: all) that take another method than the cheapest, because verification rejected that."""
-    found = []
+    replacements = []
     left_out = {one.quantity for one in draft.left_out}
     for choice in draft.derivations.choices:
         if choice.quantity in left_out or (quantities is not None and choice.quantity not in quantities):
@@ -68,8 +68,8 @@ def replaced(draft: Draft, quantities: Container[str] | None = None) -> tuple[No
         if tried:
             others = ", ".join(tried)
             taken = choice.title + choice.digits
-            found.append(Notice(f"{choice.quantity} takes {taken}: verification speaks against {others}"))
-    return tuple(found)
+            replacements.append(Notice(f"{choice.quantity} takes {taken}: verification speaks against {others}"))
+    return tuple(replacements)
 
 
 def _short(draft: Draft) -> tuple[Notice, ...]:

@@ -20,15 +20,15 @@ class ParameterBounds:
 
     def of(self, draft: Draft) -> Draft:
         """The draft with the bounds of its kernels."""
-        found: dict[Scalar, dict[str, tuple[Bound, ...]]] = {scalar: {} for scalar in draft.programs}
+        by_scalar: dict[Scalar, dict[str, tuple[Bound, ...]]] = {scalar: {} for scalar in draft.programs}
         for name in (kernel.name for kernel in draft.program.kernels):
             kernels, known = draft.kernels(name), self._known.get(name)
             if known is None or any(kernel is not known[0].get(scalar) for scalar, kernel in kernels.items()):
                 known = self._known[name] = kernels, self._far.bounds(kernels, draft.programs, _plain(draft, name))
             for scalar in kernels:
                 if bounds := known[1].get(scalar):
-                    found[scalar][name] = bounds
-        return replace(draft, bounds=found)
+                    by_scalar[scalar][name] = bounds
+        return replace(draft, bounds=by_scalar)
 
 
 def _plain(draft: Draft, quantity: str) -> Kernel | None:

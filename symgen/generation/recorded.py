@@ -109,7 +109,7 @@ def _with_record(draft: Draft, record: _VerificationRecord, asked: Container[str
     """The draft with the methods of the record in place of rejected ones, but where one was `asked` for."""
     present = {choice.quantity for choice in draft.derivations.choices}
     bounds = {
-        scalar: {name: found for name, found in every.items() if name in present and name not in asked}
+        scalar: {name: own for name, own in every.items() if name in present and name not in asked}
         for scalar, every in record.bounds.items()
     }
     draft = replace(draft, bounds=bounds)

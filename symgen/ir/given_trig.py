@@ -90,8 +90,8 @@ def _sums(kernel: Kernel, coordinates: Mapping[str, Load]) -> dict[Operand, Sum]
         return None
 
     arguments = [s.operands[0] for block in kernel.blocks for s in block.all_statements() if s.operation == "sincos"]
-    found = {a: parts(a) for a in arguments}
-    return {a: p for a, p in found.items() if p and sum(map(abs, p.values())) <= LONGEST_SUM}
+    sums = {a: parts(a) for a in arguments}
+    return {a: p for a, p in sums.items() if p and sum(map(abs, p.values())) <= LONGEST_SUM}
 
 
 def _combined(a: Sum | None, times_a: int, b: Sum | None, times_b: int) -> Sum | None:

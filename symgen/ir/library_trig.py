@@ -25,9 +25,9 @@ def _without_range_tests(kernel: Kernel) -> Kernel:
 
 def _sizes(block: Block) -> set[str]:
     """The magnitudes that only range tests may look at."""
-    found = {c.value.name if isinstance(c.value, Local) else "" for c in block.checks if _is_range(c.status)}
-    found |= {c.limit.name for c in block.checks if _is_range(c.status) and isinstance(c.limit, Local)}
-    return found.union(*(_sizes(c.first) for c in block.checks if c.first is not None))
+    names = {c.value.name if isinstance(c.value, Local) else "" for c in block.checks if _is_range(c.status)}
+    names |= {c.limit.name for c in block.checks if _is_range(c.status) and isinstance(c.limit, Local)}
+    return names.union(*(_sizes(c.first) for c in block.checks if c.first is not None))
 
 
 def _without_checks(block: Block) -> Block:

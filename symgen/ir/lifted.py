@@ -59,8 +59,8 @@ def same_kernel(
     """
     quick = _residues(before) if isinstance(before, Lifted) else _values(before)
     quick = quick if whole else _plain(quick)
-    found = _residues(after)
-    if quick == found:
+    quick_after = _residues(after)
+    if quick == quick_after:
         return
     meant = _NodeReader().meant(before) if isinstance(before, Lifted) else before
     meant, exact = meant if whole else _plain(meant), _NodeReader().meant(after)
@@ -82,15 +82,15 @@ _READ = LastKernels[Meant[int]](8)
 def _values(meant: Meant[Node]) -> Meant[int]:
     """Fingerprints as statements have them, where nothing keeps a value that is rounded apart from what it was."""
     order = topological([*meant.outputs, *meant.compared])
-    found = {node: node.value for node in order}
+    residues = {node: node.value for node in order}
     if any(node.op == "rounded" for node in order):
         for node in order:
             if node.op == "rounded":
-                found[node] = found[node.args[0]]
+                residues[node] = residues[node.args[0]]
             # an angle of rounded values would be read by what it is made of: exact values decide
-            elif node.op not in ("sin", "cos") and any(found[a] != a.value for a in node.args):
-                found[node] = combine(node.op, [found[a] for a in node.args], node.payload)
-    return Meant(tuple(found[x] for x in meant.outputs), meant.kinds, tuple(found[x] for x in meant.compared))
+            elif node.op not in ("sin", "cos") and any(residues[a] != a.value for a in node.args):
+                residues[node] = combine(node.op, [residues[a] for a in node.args], node.payload)
+    return Meant(tuple(residues[x] for x in meant.outputs), meant.kinds, tuple(residues[x] for x in meant.compared))
 
 
 def _plain(meant: Meant[Value]) -> Meant[Value]:
@@ -143,13 +143,13 @@ class _StatementReader(Generic[Value]):
     def _operand(self, operand: Operand) -> Value:
         if isinstance(operand, Literal):
             return self._number(operand.value)
-        found = self._known.get(operand.name)
-        if found is None:
+        value = self._known.get(operand.name)
+        if value is None:
             # thresholds, which have a blank in their names, wait for the scalar type
             if " " not in operand.name:
                 raise SymgenBug(f"kernel: {operand.name} is read, and nothing has assigned it")
-            found = self._known[operand.name] = self._symbol(operand.name)
-        return found
+            value = self._known[operand.name] = self._symbol(operand.name)
+        return value
 
     def _block(self, block: Block, depth: int) -> list[tuple[Kind, Value, Value]]:
         """The tests of a block in their order."""
@@ -157,15 +157,15 @@ class _StatementReader(Generic[Value]):
         return [test for check in block.checks for test in self._check(check, depth)]
 
     def _check(self, check: Check, depth: int) -> list[tuple[Kind, Value, Value]]:
-        found: list[tuple[Kind, Value, Value]] = []
+        compared: list[tuple[Kind, Value, Value]] = []
         if check.status is not Status.ANGLE_RANGE:
             kind = check.status, check.inclusive, depth
-            found.append((kind, self._operand(check.value), self._operand(check.limit)))
+            compared.append((kind, self._operand(check.value), self._operand(check.limit)))
         if check.first is not None:
             saved = dict(self._known)
-            found += self._block(check.first, depth + 1)
+            compared += self._block(check.first, depth + 1)
             self._known = saved
-        return found
+        return compared
 
 
 class _NodeReader(_StatementReader[Node]):

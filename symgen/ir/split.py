@@ -76,16 +76,16 @@ def names_in(operands: Iterable[Operand]) -> set[str]:
 
 def names_of_blocks(blocks: Sequence[Block]) -> set[str]:
     """Every local that blocks refer to, what runs only when a check fails included."""
-    found: set[str] = set()
+    names: set[str] = set()
     for block in blocks:
         for statement in block.statements:
-            found |= names_in(statement.operands)
+            names |= names_in(statement.operands)
         for check in block.checks:
-            found |= names_of_check(check)
-    return found
+            names |= names_of_check(check)
+    return names
 
 
 def names_of_check(check: Check) -> set[str]:
     """Every local that a check refers to, what it evaluates on failure included."""
-    found = names_in((check.value, check.limit))
-    return found if check.first is None else found | names_of_blocks([check.first])
+    names = names_in((check.value, check.limit))
+    return names if check.first is None else names | names_of_blocks([check.first])

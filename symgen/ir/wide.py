@@ -62,18 +62,18 @@ def with_sharp_thresholds(single: Kernel, double: Kernel) -> Kernel:
 
 
 def _shape(kernel: Kernel) -> list[object]:
-    found: list[object] = []
+    shape: list[object] = []
 
     def add(block: Block) -> None:
-        found.extend((one.targets, one.operation, len(one.operands)) for one in block.statements)
+        shape.extend((one.targets, one.operation, len(one.operands)) for one in block.statements)
         for check in block.checks:
-            found.append((check.status, check.inclusive, check.first is None))
+            shape.append((check.status, check.inclusive, check.first is None))
             if check.first is not None:
                 add(check.first)
 
     for block in kernel.blocks:
         add(block)
-    return found
+    return shape
 
 
 class _Thresholds:
@@ -139,8 +139,8 @@ class _PairWriter:
     def rounded(self, outputs: Sequence[Operand]) -> tuple[tuple[Statement, ...], tuple[Operand, ...]]:
         """Statements that round outputs to numbers of the type, and what they are then."""
         self._lines = Lines(self._name)
-        found = {output: self._rounded(output) for output in dict.fromkeys(outputs)}
-        return tuple(self._lines.statements), tuple(found[output] for output in outputs)
+        by_output = {output: self._rounded(output) for output in dict.fromkeys(outputs)}
+        return tuple(self._lines.statements), tuple(by_output[output] for output in outputs)
 
     def _rounded(self, output: Operand) -> Operand:
         if isinstance(output, Literal) or self.rest(output) == ZERO:
@@ -363,8 +363,8 @@ _RULES: dict[OperationName, _Rule] = {
 
 def _targets(blocks: Sequence[Block]) -> set[str]:
     """Every local that is assigned, where a check fails too."""
-    found: set[str] = set()
+    targets: set[str] = set()
     for block in blocks:
-        found |= {target for statement in block.statements for target in statement.targets}
-        found |= _targets([check.first for check in block.checks if check.first is not None])
-    return found
+        targets |= {target for statement in block.statements for target in statement.targets}
+        targets |= _targets([check.first for check in block.checks if check.first is not None])
+    return targets

@@ -33,8 +33,8 @@ def multipliers_alone(rows: Sequence[Mapping[int, Scalar]], safe: Callable[[Scal
 def along_rates(graph: Graph, moments: Sequence[Mapping[int, Scalar]], turning: Rows[Scalar]) -> list[Coefficients]:
     """Three rows of moments along the rates a' of angles that turn a body by w = `turning` a'."""
     names = sorted({j for row in moments for j in row})
-    found = []
+    rows = []
     for column in transposed(turning):
         sums = {j: dot(graph, column, [row.get(j, graph.zero) for row in moments]) for j in names}
-        found.append({j: entry for j, entry in sums.items() if not entry.is_zero})
-    return found
+        rows.append({j: entry for j, entry in sums.items() if not entry.is_zero})
+    return rows

@@ -44,12 +44,12 @@ class ConstantRows:
 
     def completed(self, values: Sequence[Scalar], right: Sequence[Scalar]) -> Vector:
         """All unknowns, from those that are left."""
-        found, sides = list(values), self._sides(right)[0]
+        unknowns, sides = list(values), self._sides(right)[0]
         for step, side in zip(reversed(self._steps), reversed(sides), strict=True):
             others = [c for k, c in enumerate(step.coefficients) if k != step.column]
-            rest = side.graph.sum(x * c for x, c in zip(found, others, strict=True) if c)
-            found.insert(step.column, (side - rest) * (1 / step.coefficients[step.column]))
-        return tuple(found)
+            rest = side.graph.sum(x * c for x, c in zip(unknowns, others, strict=True) if c)
+            unknowns.insert(step.column, (side - rest) * (1 / step.coefficients[step.column]))
+        return tuple(unknowns)
 
     def _sides(self, right: Sequence[Scalar]) -> tuple[list[Scalar], list[Scalar]]:
         """The right-hand side of each row that was solved, as it was then, and those of what is left."""
@@ -62,10 +62,10 @@ class ConstantRows:
 
     def kept(self, values: Sequence[Scalar]) -> list[Scalar]:
         """Of the unknowns those that are left."""
-        found = list(values)
+        left = list(values)
         for step in self._steps:
-            del found[step.column]
-        return found
+            del left[step.column]
+        return left
 
 
 def _next(matrix: Matrix) -> _SolvedRow | None:

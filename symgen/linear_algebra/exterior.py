@@ -101,16 +101,16 @@ def _family_size(starts: Iterable[Iterable[int]], columns: Sequence[Vector], deg
         for subset in combinations(range(len(columns)), degree):
             masks = set(start)
             for k in subset:
-                found = set()
+                next_masks = set()
                 for mask in masks:
                     products += 1
                     for axis in places[k]:
                         if not mask >> axis & 1:
                             products += 1
-                            found.add(mask | 1 << axis)
+                            next_masks.add(mask | 1 << axis)
                     if products > most:
                         return None
-                masks = found
+                masks = next_masks
             size += len(masks)
     return size
 

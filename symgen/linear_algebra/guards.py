@@ -97,14 +97,14 @@ def where_negligible(graph: Graph, total: Scalar, values: Sequence[Scalar]) -> l
     roots = _roots(total)
     if any(node.op in ("div", "ratio_or_zero") for node in reached(values)):
         return list(values)
-    found = substitute(graph, values, dict.fromkeys(roots, graph.zero))
+    replaced = substitute(graph, values, dict.fromkeys(roots, graph.zero))
     for root in roots:
         if root.op == "sin":
             cosine = graph.trig("cos", root.args[0])
-            either = [substitute(graph, found, {cosine: sign}) for sign in (graph.one, -graph.one)]
+            either = [substitute(graph, replaced, {cosine: sign}) for sign in (graph.one, -graph.one)]
             if either[0] == either[1]:
-                found = either[0]
-    return found
+                replaced = either[0]
+    return replaced
 
 
 def _roots(total: Scalar) -> list[Scalar]:

@@ -49,19 +49,19 @@ def _of_block(graph: Graph, columns: Matrix, degree: int) -> list[Scalar]:
 
 def _two_diagonals(graph: Graph, columns: Matrix) -> list[Scalar]:
     """d_1^2, f_1^2, d_2^2, ... of a matrix, by reflections from both sides (Golub and Van Loan, 5.4)."""
-    found: list[Scalar] = []
+    squares: list[Scalar] = []
     left = list(columns)
     while left:
         turn = Reflections(graph, left[:1], len(left[0]), everywhere=True)
-        found += turn.pivots
+        squares += turn.pivots
         rows = transpose(tuple(map(turn.apply_transposed, left[1:])), len(left[0]))
         if not rows or not rows[0]:
             break
         turn = Reflections(graph, rows[:1], len(rows[0]), everywhere=True)
-        found += turn.pivots
+        squares += turn.pivots
         left = list(transpose(tuple(map(turn.apply_transposed, rows[1:])), len(rows[0])))
         left = [column for column in left if column]
-    return found
+    return squares
 
 
 def elementary_symmetric(graph: Graph, values: Sequence[Scalar], degree: int) -> Scalar:

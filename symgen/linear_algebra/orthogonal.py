@@ -81,19 +81,19 @@ class WeightedGramSchmidt:
 
     def shares(self, x: Vector) -> Vector:
         """What x, a combination of the columns, has of each direction."""
-        found = list[Scalar]()
+        amounts = list[Scalar]()
         for direction, weighted, inverse in zip(self._directions, self._weighted, self._inverses, strict=True):
-            found.append(dot(self._graph, weighted, x) * inverse)
-            x = _less(x, found[-1], direction)
-        return tuple(found)
+            amounts.append(dot(self._graph, weighted, x) * inverse)
+            x = _less(x, amounts[-1], direction)
+        return tuple(amounts)
 
     def combined(self, factors: Vector) -> Vector:
         """What the sum of the columns times these factors has of each direction."""
-        found = list(factors)
+        amounts = list(factors)
         for factor, column in zip(factors, self._upper, strict=True):
             for i, entry in enumerate(column):
-                found[i] = found[i] + entry * factor
-        return tuple(found)
+                amounts[i] = amounts[i] + entry * factor
+        return tuple(amounts)
 
     def given(self, amounts: Vector) -> Vector:
         """R^T `amounts`: what these amounts of the directions are along the columns."""

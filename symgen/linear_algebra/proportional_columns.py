@@ -99,7 +99,7 @@ def families(rows: Matrix, n: int) -> tuple[ColumnFamily, ...]:
             alike.setdefault(places, []).append(j)
     compared = [j for group in alike.values() if len(group) > 1 for j in group]
     values = dict(zip(compared, _values([columns[j] for j in compared]), strict=True))
-    found: list[dict[int, Fraction]] = []
+    column_families: list[dict[int, Fraction]] = []
     for places, group in alike.items():
         own: list[dict[int, Fraction]] = []
         for j in group:
@@ -111,9 +111,9 @@ def families(rows: Matrix, n: int) -> tuple[ColumnFamily, ...]:
                     break
             else:
                 own.append({j: Fraction(1)})
-        found += own
-    found.sort(key=lambda family: next(iter(family)))
-    return tuple(ColumnFamily(tuple(family), tuple(family.values())) for family in found)
+        column_families += own
+    column_families.sort(key=lambda family: next(iter(family)))
+    return tuple(ColumnFamily(tuple(family), tuple(family.values())) for family in column_families)
 
 
 def _values(columns: Sequence[Vector]) -> list[list[list[float]]]:
@@ -125,7 +125,7 @@ def _values(columns: Sequence[Vector]) -> list[list[list[float]]]:
     evaluate, r = Evaluator(flat), len(columns[0])
     points = range(POINTS_OF_RATIOS)
     at = [evaluate({name: random.Random(f"{k} {name}").uniform(0.1, 0.9) for name in names}) for k in points]
-    return [[list(found[j * r : (j + 1) * r]) for found in at] for j in range(len(columns))]
+    return [[list(entries[j * r : (j + 1) * r]) for entries in at] for j in range(len(columns))]
 
 
 def _factor(one: list[list[float]], other: list[list[float]], place: int) -> Fraction | None:
@@ -265,12 +265,12 @@ class FamilySpace(HouseholderSpace):
     def project(self, x: Vector) -> Vector:
         """N_B x."""
         graph = self.graph
-        found = self._back(self._own.project(self._along(x)))
+        projection = self._back(self._own.project(self._along(x)))
         for vector in self._constant:
             share = vector.dot(graph, x) / graph.const(vector.square)
             for j, w in vector.entries.items():
-                found[j] = found[j] + share * w
-        return tuple(found)
+                projection[j] = projection[j] + share * w
+        return tuple(projection)
 
     def lift(self, a: Vector) -> Vector:
         """B^+ a."""

@@ -59,15 +59,15 @@ class Reflections:
         are nearly parallel by far more than eps of a_k.  For columns of length 1 it is p_k^2 |R^-1 e_k|^2, so that the
         least share that a p_k^2 has of it is the square of the smallest singular value, or up to r times that.
         """
-        found = list(lengths)
+        squares = list(lengths)
         for k, column in enumerate(self.triangle):
             rest = list(column[:k])
             for j in reversed(range(k)):
                 if not rest[j].is_zero:
                     amount = rest[j] * self._inverse(self.triangle[j][j])
-                    found[k] = found[k] + amount * amount * lengths[j]
+                    squares[k] = squares[k] + amount * amount * lengths[j]
                     rest[:j] = (x - y * amount for x, y in zip(rest[:j], self.triangle[j], strict=False))
-        return found
+        return squares
 
     def _inverse(self, x: Scalar) -> Scalar:
         return self.graph.function("ratio_or_zero", (self.graph.one, x)) if self.everywhere else 1 / x

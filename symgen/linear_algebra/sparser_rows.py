@@ -32,10 +32,10 @@ class SparserRows:
 
     def of(self, values: Sequence[Scalar]) -> list[Scalar]:
         """The same combinations of other values, one a row."""
-        found = list(values)
+        combined = list(values)
         for i, j, sign in self._steps:
-            found[i] = _combined(found[i], found[j], sign)
-        return found
+            combined[i] = _combined(combined[i], combined[j], sign)
+        return combined
 
 
 def _best(rows: Sequence[Sequence[Scalar]], filled: Sequence[set[int]]) -> tuple[int, int, int] | None:

@@ -64,7 +64,7 @@ def _circles(below: dict[int, list[int]]) -> list[list[int]]:
     number: dict[int, int] = {}
     lowest: dict[int, int] = {}
     open_: list[int] = []
-    found: list[list[int]] = []
+    circles: list[list[int]] = []
 
     def visit(row: int) -> None:
         number[row] = lowest[row] = len(number)
@@ -76,13 +76,13 @@ def _circles(below: dict[int, list[int]]) -> list[list[int]]:
                 lowest[row] = min(lowest[row], lowest[other])
         if lowest[row] == number[row]:
             start = open_.index(row)
-            found.append(sorted(open_[start:]))
+            circles.append(sorted(open_[start:]))
             del open_[start:]
 
     for row in below:
         if row not in number:
             visit(row)
-    return found
+    return circles
 
 
 class BlockwiseSolution:
@@ -108,13 +108,13 @@ class BlockwiseSolution:
 
     def guards(self, status: Status, first: tuple[Guard, ...]) -> tuple[Guard, ...]:
         """Where a block is singular; `first` are causes that are told instead."""
-        found = []
+        of_blocks = []
         for block in self._blocks:
             if len(block.rows) <= LARGEST_SQUARE_BY_MINORS:
                 determinant = self._bordered(block, [self._graph.zero] * len(block.rows))[-1]
                 if determinant.op not in ("add", "sub"):
                     # of a product the bounds of its factors are near
-                    found.append(Guard(status, determinant, 1, first, directions=len(block.rows)))
+                    of_blocks.append(Guard(status, determinant, 1, first, directions=len(block.rows)))
                     continue
                 square = determinant * determinant
                 lengths: Iterable[Scalar] = (dot(self._graph, row, row) for row in self._entries(block))
@@ -123,8 +123,8 @@ class BlockwiseSolution:
                 square, lengths = self._graph.product(one.squares), one.lengths
             # no determinant is more than the lengths of its rows multiplied
             bound = self._graph.product(lengths)
-            found.append(Guard(status, square, 2, first, bound, directions=len(block.rows)))
-        return tuple(found)
+            of_blocks.append(Guard(status, square, 2, first, bound, directions=len(block.rows)))
+        return tuple(of_blocks)
 
     def _entries(self, block: DiagonalBlock) -> Matrix:
         return tuple(tuple(self._matrix[i][j] for j in block.columns) for i in block.rows)

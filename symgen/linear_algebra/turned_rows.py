@@ -49,10 +49,10 @@ class TurnedRows:
 
     def of(self, values: Sequence[Scalar]) -> list[Scalar]:
         """The same turns of other values, one a row."""
-        found = list(values)
+        turned = list(values)
         for turn in self._turns:
-            found[turn.first], found[turn.second] = self._turned(turn, values[turn.first], values[turn.second])
-        return found
+            turned[turn.first], turned[turn.second] = self._turned(turn, values[turn.first], values[turn.second])
+        return turned
 
     def _turned(self, turn: _TurnedPair, first: Scalar, second: Scalar) -> tuple[Scalar, Scalar]:
         c, s = (self._graph.trig(name, turn.angle) for name in ("cos", "sin"))
@@ -72,5 +72,5 @@ class TurnedRows:
         if not all(x.is_zero for x in slopes):
             return None
         # the same at every angle, and shortest at 0
-        found = substitute(self._graph, entries, {turn.angle: self._graph.zero})
-        return found[::2], found[1::2]
+        at_zero = substitute(self._graph, entries, {turn.angle: self._graph.zero})
+        return at_zero[::2], at_zero[1::2]

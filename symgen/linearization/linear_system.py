@@ -64,12 +64,12 @@ class LinearSystem:
         """The poles that no input moves (Popov, Belevitch and Hautus)."""
         size = len(self.a)
         scale = np.linalg.norm(np.hstack([self.a, self.b]), 2)
-        found = [
+        unmoved = [
             pole
             for pole in self.poles
             if np.linalg.svd(np.hstack([self.a - pole * np.eye(size), self.b]), compute_uv=False)[-1] < REACHED * scale
         ]
-        return np.array(found, dtype=complex)
+        return np.array(unmoved, dtype=complex)
 
 
 def linearized(model: Model, start: Mapping[str, float]) -> LinearSystem:
@@ -86,8 +86,8 @@ def linearized(model: Model, start: Mapping[str, float]) -> LinearSystem:
 
 def sorted_poles(matrix: Array) -> Poles:
     """The eigenvalues, the least stable first, conjugate ones beside each other."""
-    found: Poles = np.linalg.eigvals(matrix).astype(complex)
-    return found[np.lexsort((-found.imag, abs(found.imag).round(9), -found.real.round(9)))]
+    poles: Poles = np.linalg.eigvals(matrix).astype(complex)
+    return poles[np.lexsort((-poles.imag, abs(poles.imag).round(9), -poles.real.round(9)))]
 
 
 class _Equilibrium:
@@ -164,10 +164,10 @@ def _basis(projector: Array) -> Array:
     Each direction is along the coordinate that moves most freely beside those before it (Gram and Schmidt, pivoted), so
     that it is the same everywhere and most of its entries are 0.
     """
-    left, found = projector, list[Array]()
+    left, directions = projector, list[Array]()
     for _ in range(round(np.trace(projector))):
         place = int(np.argmax(np.diag(left).round(9)))
         direction = left[:, place] / np.sqrt(left[place, place])
-        found.append(np.where(abs(direction) < DIRECTION, 0.0, direction))
+        directions.append(np.where(abs(direction) < DIRECTION, 0.0, direction))
         left = left - np.outer(direction, direction)
-    return np.array(found).T.reshape(len(projector), len(found))
+    return np.array(directions).T.reshape(len(projector), len(directions))

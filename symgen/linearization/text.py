@@ -50,12 +50,12 @@ def linear_system_text(system: LinearSystem, held: Regulator | None) -> str:
 
 def _directions(basis: Array, names: Sequence[str]) -> list[str]:
     """Each direction as what moves with it."""
-    found = []
+    texts = []
     for column in basis.T:
         terms = [f"{_number(x)} {name}" for x, name in zip(column, names, strict=True) if x]
         several = f"({' + '.join(terms)})".replace("+ -", "- ")
-        found.append(names[int(np.argmax(column))] if len(terms) == 1 else several)
-    return found
+        texts.append(names[int(np.argmax(column))] if len(terms) == 1 else several)
+    return texts
 
 
 def _listed(head: str, items: Iterable[str]) -> list[str]:

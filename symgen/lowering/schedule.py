@@ -77,11 +77,11 @@ class _GuardTests:
 
     def values(self, scalar: Scalar) -> dict[str, Literal]:
         """The numbers behind the names for one scalar type."""
-        found = {
+        thresholds = {
             name: Literal(_threshold(self._mechanics, guard, scalar) * factor)
             for name, (guard, factor) in self._thresholds.items()
         }
-        return {ANGLE: Literal(angle_limit(scalar, self.wide)), **found}
+        return {ANGLE: Literal(angle_limit(scalar, self.wide)), **thresholds}
 
     def tests(self, guards: Sequence[Guard]) -> list[Test]:
         """The tests in the order in which statuses are reported."""

@@ -31,18 +31,18 @@ class AbsoluteAngles:
 
     def absolute(self, q: Vector) -> Vector:
         """y from q: S^-1 q."""
-        found: dict[int, int] = {}
+        visited: dict[int, int] = {}
         y = list(q)
         for j in range(len(q)):
             chain, place = [j], self.parents[j]
-            while place is not None and place not in found:
+            while place is not None and place not in visited:
                 chain.append(place)
                 place = self.parents[place]
             for k in reversed(chain):
                 parent = self.parents[k]
-                if k not in found and parent is not None:
+                if k not in visited and parent is not None:
                     y[k] = y[parent] + q[k]
-                found[k] = k
+                visited[k] = k
         return tuple(y)
 
     def forces(self, f: Vector) -> Vector:

@@ -161,20 +161,20 @@ class ArticulatedFactor:
         joint = self._bodies.kinematics.joint(name)
         moving = applied(transposed(joint.axes), joint.place_rate)
         columns = [gradient(self.graph, rate, self._bodies.qd) for rate in (*joint.turning, *moving)]
-        found = []
+        motions = []
         for j in range(len(self._bodies.q)):
             direction = tuple(column[j] for column in columns)
             if not all(entry.is_zero for entry in direction):
-                found.append((j, direction))
-        return found
+                motions.append((j, direction))
+        return motions
 
     def _rotor_inertias(self) -> dict[int, Scalar]:
         names = [str(symbol.payload) for symbol in self._bodies.q]
-        found: dict[int, Scalar] = {}
+        inertias: dict[int, Scalar] = {}
         for rotor in self._bodies.mechanism.rotor_inertias:
             j = names.index(rotor.coordinate)
-            found[j] = found.get(j, self.graph.zero) + self._bodies.scalars.value(rotor.inertia)
-        return found
+            inertias[j] = inertias.get(j, self.graph.zero) + self._bodies.scalars.value(rotor.inertia)
+        return inertias
 
     def children(self, name: str) -> list[str]:
         """The frames that hang on a frame."""

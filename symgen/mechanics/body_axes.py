@@ -72,14 +72,14 @@ class BodyAxes(System):
     @cached_property
     def _turning(self) -> dict[str, Rows[Scalar]]:
         """Angular velocity of each free body by the rates of its angles."""
-        found = {}
+        by_frame = {}
         for body in self.free:
             rates = [self.qd[j] for j in body.angles]
             x, y, z = (
                 triple(gradient(self.graph, w, rates)) for w in self.bodies.kinematics.twist(body.frame).angular
             )
-            found[body.frame] = (x, y, z)
-        return found
+            by_frame[body.frame] = (x, y, z)
+        return by_frame
 
     def _row(self, residual: Expression) -> Vector:
         """A row of B: slopes by the other coordinates, and the wrench of the held points."""

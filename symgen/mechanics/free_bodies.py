@@ -48,7 +48,7 @@ def free_bodies(mechanics: System) -> tuple[FreeBody, ...]:
         return ()
     parents = {frame.parent for frame in mechanics.bodies.mechanism.frames}
     frames = [frame.name for frame in mechanics.bodies.mechanism.frames if frame.name not in parents]
-    return tuple(found for name in frames if (found := _free_body(mechanics, name)) is not None)
+    return tuple(body for name in frames if (body := _free_body(mechanics, name)) is not None)
 
 
 def _free_body(mechanics: System, frame: str) -> FreeBody | None:
@@ -92,7 +92,7 @@ def _held_points(mechanics: System, frame: str) -> tuple[tuple[str, Vector3], ..
     """The points of the frame whose places are used; None where anything else of the frame is."""
     kinematics = mechanics.bodies.kinematics
     line = {*kinematics.lineage(frame)} - {WORLD}
-    found: dict[str, Vector3] = {}
+    points: dict[str, Vector3] = {}
     for name in components_in(mechanics.model):
         one = component(name)
         point = kinematics.points.get(one.owner)
@@ -102,8 +102,8 @@ def _held_points(mechanics: System, frame: str) -> tuple[tuple[str, Vector3], ..
         placed = (one.owner if point is None else point.frame) == frame and all(map(mechanics.factoring.fixed, at))
         if one.axes != WORLD or one.what not in ("x", "y", "z") or not placed:
             return None
-        found[one.owner] = at
-    return tuple(found.items())
+        points[one.owner] = at
+    return tuple(points.items())
 
 
 def _only_held(mechanics: System, body: FreeBody) -> bool:

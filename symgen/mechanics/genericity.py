@@ -88,10 +88,10 @@ def assembly_of(model: Model) -> Assembly:
         model.kinetic_energy,
         model.mechanism,
     )
-    found = branches(seen, model.inputs, {name: float(value) for name, value in model.configuration})
-    if not isinstance(found, Assembly):
+    assembly = branches(seen, model.inputs, {name: float(value) for name, value in model.configuration})
+    if not isinstance(assembly, Assembly):
         raise SymgenBug(f"genericity: no configuration of {model.name} satisfies its constraints")
-    return found
+    return assembly
 
 
 def configurations(mechanics: System, count: int = USUAL_CONFIGURATIONS) -> list[dict[str, float]]:
@@ -115,10 +115,10 @@ def rank(rows: Sequence[Sequence[float]], plain: float = PLAIN) -> int | None:
 
 def genericity(mechanics: System) -> Genericity:
     """The ranks kernels are made for: those of the branch that is meant."""
-    found = assembly_of(mechanics.model)
-    ranks, identical = found.ranks, (found.rank_is_identical, found.actuation_is_identical)
+    assembly = assembly_of(mechanics.model)
+    ranks, identical = assembly.ranks, (assembly.rank_is_identical, assembly.actuation_is_identical)
     sizes = mechanics.n, mechanics.r, mechanics.m
-    locked = _locked(mechanics, found.held)
+    locked = _locked(mechanics, assembly.held)
     return Genericity(*sizes, ranks.constraints, ranks.actuation, ranks.geometric, *identical, locked)
 
 
@@ -128,24 +128,24 @@ def _locked(mechanics: System, held: Sequence[int]) -> tuple[int, ...]:
     Such rows have as many columns as their rank, which is tested at run time: where they have it, nothing moves there.
     Others are held along this branch alone, and may move along another.
     """
-    found = families(mechanics.constraint_jacobian, mechanics.n)
-    gathered = any(len(family.members) > 1 for family in found)
+    column_families = families(mechanics.constraint_jacobian, mechanics.n)
+    gathered = any(len(family.members) > 1 for family in column_families)
     if not held and not gathered:
         return ()
-    rows = tuple(folded(row, found) for row in mechanics.constraint_jacobian)
-    evaluate, width = Evaluator([entry for row in rows for entry in row]), len(found)
+    rows = tuple(folded(row, column_families) for row in mechanics.constraint_jacobian)
+    evaluate, width = Evaluator([entry for row in rows for entry in row]), len(column_families)
     flat = [evaluate(point) for point in configurations(mechanics)]
     places = [[at[start : start + width] for start in range(0, len(at), width)] for at in flat]
     if gathered:
         still = [k for k in range(width) if all(_holds(at, k) for at in places)]
     else:
-        still = [k for k, family in enumerate(found) if family.members[0] in held]
+        still = [k for k, family in enumerate(column_families) if family.members[0] in held]
     own = [i for i, row in enumerate(rows) if _lies_in(row, still)]
     locked: list[int] = []
     for part in components(tuple(tuple(rows[i][k] for k in still) for i in own)):
         ranks = {rank([[at[own[i]][still[k]] for k in part.columns] for i in part.rows]) for at in places}
         if ranks == {len(part.columns)}:
-            locked += (found[still[k]].members[0] for k in part.columns)
+            locked += (column_families[still[k]].members[0] for k in part.columns)
     return tuple(sorted(locked))
 
 

@@ -82,7 +82,7 @@ class HeldComponents:
 
     def slopes(self, one: Component) -> dict[int, Scalar]:
         """The derivatives by the coordinates that it depends on."""
-        found: dict[int, Scalar] = {}
+        by_coordinate: dict[int, Scalar] = {}
         meeting, direction, arm = self._meeting(one), self._direction(one), self._arm(one)
         turns = one.is_direction
         at = arm if turns else minus(self._place(one), self._origin(self._frame(one), one))
@@ -93,10 +93,10 @@ class HeldComponents:
                 for motion in self._motions(name, meeting):
                     moved = cross(motion.turn, held)
                     slope = sign * inner(direction, moved if turns else plus(motion.slide, moved))
-                    found[motion.coordinate] = found.get(motion.coordinate, self._graph.zero) + slope
+                    by_coordinate[motion.coordinate] = by_coordinate.get(motion.coordinate, self._graph.zero) + slope
                 if not turns:
                     held = plus(held, self._offset(name, meeting))
-        return found
+        return by_coordinate
 
     def acceleration(self, one: Component) -> Scalar:
         """The second derivative by time while no rate changes, at the rates of the mechanism."""

@@ -76,14 +76,14 @@ class HeldRows:
         """The rows of B that stem from geometric constraints."""
         graph, n = self._graph, self._mechanics.n
         moved = [self._components.slopes(component(name)) for name in self.leaves]
-        found = []
+        rows = []
         for slopes in self._slopes:
             terms: list[list[Scalar]] = [[slope] for slope in slopes[:n]]
             for slope, by_coordinate in zip(slopes[n:], moved, strict=True):
                 for k, entry in by_coordinate.items() if not slope.is_zero else ():
                     terms[k].append(slope * entry)
-            found.append(tuple(substitute(graph, [graph.sum(entries) for entries in terms], self._values)))
-        return tuple(found)
+            rows.append(tuple(substitute(graph, [graph.sum(entries) for entries in terms], self._values)))
+        return tuple(rows)
 
     def bias(self, velocity: Vector) -> Vector:
         """B_dot v along v."""
@@ -92,13 +92,13 @@ class HeldRows:
         rates = derivative_along(graph, list(self._values.values()), dict(zip(mechanics.q, mechanics.qd, strict=True)))
         along, frozen = ([graph.stand_in(f"{x.serial} {word}") for x in self._variables] for word in ("rate", "frozen"))
         back = {**self._values, **dict(zip((*along, *frozen), (*mechanics.qd, *rates) * 2, strict=True))}
-        found = []
+        entries = []
         for slopes in self._slopes:
             moving = dict(zip(self._variables, along, strict=True))
             (turned,) = derivative_along(graph, [dot(graph, slopes, frozen)], moving)
-            found.append(turned + dot(graph, slopes[mechanics.n :], accelerations))
+            entries.append(turned + dot(graph, slopes[mechanics.n :], accelerations))
         # the velocity may depend on q, and stands still here all the same
-        made = substitute(graph, found, back)
+        made = substitute(graph, entries, back)
         return tuple(substitute(graph, made, dict(zip(mechanics.qd, velocity, strict=True))))
 
 

@@ -93,16 +93,16 @@ class HalfTurn:
     def _combined(self, terms: Iterable[tuple[Surd, Expression]]) -> Expression:
         """Sum of surds times expressions, numbers and equal expressions taken together."""
         number = NOTHING
-        found: dict[Expression, Surd] = {}
+        factors: dict[Expression, Surd] = {}
         for (p, q), expression in terms:
             value = exact_value(expression)
             if value is not None:
                 number = number[0] + p * value, number[1] + q * value
             else:
-                before = found.get(expression, NOTHING)
-                found[expression] = before[0] + p, before[1] + q
+                before = factors.get(expression, NOTHING)
+                factors[expression] = before[0] + p, before[1] + q
         total = _written(number, self.square)
-        for expression, factor in found.items():
+        for expression, factor in factors.items():
             total = combine.plus(total, combine.times(_written(factor, self.square), expression))
         return total
 

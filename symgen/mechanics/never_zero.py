@@ -93,15 +93,15 @@ class Definite:
 
     def _product(self, node: Scalar, a: Interval, b: Interval) -> Interval:
         """Of a product: one of even powers, as (m c) c with m > 0 is, is not negative whatever c is."""
-        found = _product(a, b)
-        if found.low >= 0:
-            return found
+        interval = _product(a, b)
+        if interval.low >= 0:
+            return interval
         coefficient, powers = self._graph.products.monomial(node)
         for factor, power in powers.items():
             bounds = self._known.get(factor)
             if bounds is None or power < 1 or (power % 2 and bounds.low < 0):
-                return found
-        return Interval(Fraction(0), found.high, found.nonzero) if coefficient > 0 else found
+                return interval
+        return Interval(Fraction(0), interval.high, interval.nonzero) if coefficient > 0 else interval
 
     def content(self, entries: list[Scalar]) -> Scalar:
         """The largest product of definite factors that divides every entry; 1 where there is none."""
@@ -138,8 +138,8 @@ def _negative(a: Interval) -> Interval:
 
 
 def _square(a: Interval) -> Interval:
-    found = _product(a, a)
-    return found if found.low >= 0 else Interval(Fraction(0), found.high, a.nonzero)
+    interval = _product(a, a)
+    return interval if interval.low >= 0 else Interval(Fraction(0), interval.high, a.nonzero)
 
 
 def _product(a: Interval, b: Interval) -> Interval:

@@ -163,20 +163,20 @@ class _Recursion:
         further in is that frame's from the start.  Turned into the axes of a wheel and back, a weight would leave a
         rounding of itself, which is all there is where the wheel hardly moves.
         """
-        found = {frame.name: Wrench(self.none, self.none) for frame in frames}
+        by_frame = {frame.name: Wrench(self.none, self.none) for frame in frames}
         for body in self.bodies.mechanism.bodies:
             if body.frame == WORLD:
                 continue
             name, com = (body.frame, None) if keeping is None else self._carrier(body, keeping)
             if com is None or name == body.frame:
-                found[name] = _sum(found[name], self._inertial(body, motions[name]))
+                by_frame[name] = _sum(by_frame[name], self._inertial(body, motions[name]))
                 continue
             turning = _turning_moment(self.bodies.inertia(body.name), motions[body.frame])
-            found[body.frame] = _sum(found[body.frame], Wrench(self.none, turning))
+            by_frame[body.frame] = _sum(by_frame[body.frame], Wrench(self.none, turning))
             if name != WORLD:
                 mass = self.bodies.scalars.value(body.mass)
-                found[name] = _sum(found[name], self._on_point(name, mass, com, motions[name]))
-        return found
+                by_frame[name] = _sum(by_frame[name], self._on_point(name, mass, com, motions[name]))
+        return by_frame
 
     def _carrier(self, body: Body, keeping: Collection[str]) -> tuple[str, Vector3]:
         """The innermost frame on which the centre of mass stands still, and where: balanced wheels stand on their axle.
@@ -325,9 +325,9 @@ def _about_shared_axis(w: Vector3, turning: Vector3, k: int, column: Vector3) ->
     Of what the frames' angular accelerations are, only the component k of `turning` is looked at.
     """
     i, j = (k + 1) % 3, (k + 2) % 3
-    found = list(turning)
-    found[i], found[j] = w[j] * w[k] - column[j], column[i] - w[i] * w[k]
-    return triple(found)
+    components = list(turning)
+    components[i], components[j] = w[j] * w[k] - column[j], column[i] - w[i] * w[k]
+    return triple(components)
 
 
 def _turning_moment(tensor: Rows[Scalar], motion: FrameMotion) -> Vector3:

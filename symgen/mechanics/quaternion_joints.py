@@ -58,11 +58,11 @@ class QuaternionJoint:
         """Forces of the coordinates: the moment, what works on the length, and the force, where each has its place."""
         given = [forces[j] for j in self.parts]
         moment = [self._turned(row, given) / 2 for row in TURNS]
-        found = dict(zip(self.parts, (self.along_length(given), *moment), strict=True))
+        by_coordinate = dict(zip(self.parts, (self.along_length(given), *moment), strict=True))
         if self.places:
             force = applied(self.along, triple([forces[j] for j in self.places]))
-            found |= dict(zip(self.places, force, strict=True))
-        return found
+            by_coordinate |= dict(zip(self.places, force, strict=True))
+        return by_coordinate
 
     def along_length(self, given: Sequence[Scalar]) -> Scalar:
         """e.f of forces of the four coordinates."""
@@ -71,15 +71,15 @@ class QuaternionJoint:
     def rates(self, twist: Sequence[Scalar]) -> dict[int, Scalar]:
         """The rates of the coordinates from what stands in their places."""
         stretched, *turning = (twist[j] for j in self.parts)
-        found = {}
+        by_coordinate = {}
         for i, (j, value) in enumerate(zip(self.parts, self.values, strict=True)):
             column = [row[i] for row in TURNS]
             turned = dot(value.graph, [self.values[k] * sign for k, sign in column], turning) / 2
-            found[j] = turned + value * stretched
+            by_coordinate[j] = turned + value * stretched
         if self.places:
             places = applied(transposed(self.along), triple([twist[j] for j in self.places]))
-            found |= dict(zip(self.places, places, strict=True))
-        return found
+            by_coordinate |= dict(zip(self.places, places, strict=True))
+        return by_coordinate
 
     def holds_length(self, row: Vector) -> bool:
         """Whether a row of B holds the length of the quaternion and nothing else: it is a multiple of e."""

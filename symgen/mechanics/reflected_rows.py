@@ -16,8 +16,8 @@ def reflected_rows(mechanics: System, generic: Genericity) -> HouseholderSpace:
     """
     graph, rows, n = mechanics.graph, mechanics.constraint_jacobian, mechanics.n
     locked = generic.locked if type(mechanics) is System and mechanics.change is None else ()
-    found = families(rows, n)
-    if all(len(family.members) == 1 for family in found):
+    column_families = families(rows, n)
+    if all(len(family.members) == 1 for family in column_families):
         return reflected(graph, rows, n, generic.rank, locked=locked)
-    first = [k for k, family in enumerate(found) if family.members[0] in locked]
-    return FamilySpace(graph, rows, n, generic.rank, found, first)
+    first = [k for k, family in enumerate(column_families) if family.members[0] in locked]
+    return FamilySpace(graph, rows, n, generic.rank, column_families, first)

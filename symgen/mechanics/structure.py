@@ -84,18 +84,18 @@ def _ranked(mechanics: System, generic: Genericity) -> tuple[tuple[ConstraintBlo
         for point in configurations(mechanics):
             values = evaluate(point)
             b = [values[i * n : (i + 1) * n] for i in range(r)]
-            found = [_rank(b, part) for part in parts]
-            if rank(b) == generic.rank == sum(found):
+            part_ranks = [_rank(b, part) for part in parts]
+            if rank(b) == generic.rank == sum(part_ranks):
                 spare = [i for i in range(r) if rank([*b[:i], *b[i + 1 :]]) == generic.rank]
-                ranks, dependent = found, tuple(rows[i] for i in spare)
+                ranks, dependent = part_ranks, tuple(rows[i] for i in spare)
                 break
     blocks = (named(part, rows, coordinates, its) for part, its in zip(parts, ranks, strict=True))
     return tuple(blocks), dependent
 
 
 def _rank(b: Sequence[Sequence[float]], part: ConnectedComponent) -> int:
-    found = rank([b[i] for i in part.rows])
-    return -1 if found is None else found
+    part_rank = rank([b[i] for i in part.rows])
+    return -1 if part_rank is None else part_rank
 
 
 def _constraint_decisions(

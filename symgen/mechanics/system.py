@@ -175,8 +175,8 @@ class System:
         slopes = []
         for q in self.q:
             places = moved.get(q, [])
-            found = without_hidden_zeros(derivative_along(graph, [upper[place] for place in places], {q: graph.one}))
-            slopes.append({place: x for place, x in zip(places, found, strict=True) if not x.is_zero})
+            entries = without_hidden_zeros(derivative_along(graph, [upper[place] for place in places], {q: graph.one}))
+            slopes.append({place: x for place, x in zip(places, entries, strict=True) if not x.is_zero})
         return tuple(slopes)
 
     @cached_property
@@ -343,11 +343,11 @@ class System:
             {name: translate(self.graph, value, self.names) for name, value in i.acts_on} for i in self.model.inputs
         ]
         given = (tuple(column.get(c.name, self.graph.zero) for c in self.model.coordinates) for column in columns)
-        found = [
+        input_columns = [
             self._components(column) if i.velocity is None else self._worked_on(i.velocity)
             for i, column in zip(self.model.inputs, given, strict=True)
         ]
-        return transpose(tuple(found), self.n)
+        return transpose(tuple(input_columns), self.n)
 
     def _worked_on(self, velocity: Expression) -> Vector:
         """The generalized force of a unit force that works on this rate: its coefficients."""

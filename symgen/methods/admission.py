@@ -121,11 +121,11 @@ class OfInputs:
 
     def validity(self, workspace: Workspace, candidate: Candidate, first_only: bool) -> Validity:
         """Whether it is valid at every regular state, in single precision too."""
-        found = validity_of(candidate, self.measures(workspace, candidate), first_only)
+        judgement = validity_of(candidate, self.measures(workspace, candidate), first_only)
         guards = candidate.derived.guards
-        if found.admitted and guards and not distinguishable(guards, workspace.generic.n, workspace.points):
-            return replace(found, lost=True)
-        return found
+        if judgement.admitted and guards and not distinguishable(guards, workspace.generic.n, workspace.points):
+            return replace(judgement, lost=True)
+        return judgement
 
     def least_cost(self, system: MethodInput) -> int:
         """What it cannot count less than."""
@@ -147,9 +147,9 @@ def validity_of(candidate: Candidate, measures: Sequence[Scalar], first_only: bo
             if proof.shown(divisor):
                 proved += 1  # a rank measure times a pivot that has been named already
                 continue
-            found = search.zero_of(divisor)
-            if found is not None:
-                state = tuple((name, round(value, DECIMALS)) for name, value in found.point)
+            zero = search.zero_of(divisor)
+            if zero is not None:
+                state = tuple((name, round(value, DECIMALS)) for name, value in zero.point)
                 singular.append(Singular(formula(divisor), state))
                 proof.add(factor * measure for measure in here for factor in (divisor, divisor * divisor))
                 if first_only:

@@ -133,8 +133,8 @@ class Derivation:
     def _solve_inputs(self, force: Vector) -> Vector:
         forms, restriction = self._actuation
         given, rest = self._taken_directly(force)
-        found = least_inputs(self.mechanics, self.generic, forms, restriction, rest)
-        return tuple(a + b for a, b in zip(given, found, strict=True))
+        inputs = least_inputs(self.mechanics, self.generic, forms, restriction, rest)
+        return tuple(a + b for a, b in zip(given, inputs, strict=True))
 
     def _taken_directly(self, force: Vector) -> tuple[Vector, Vector]:
         """Inputs p that take what loads the coordinates that they drive alone, and what is left, f - M p.

@@ -33,14 +33,14 @@ def where_inputs_act(model: Model, generic: Genericity) -> tuple[Model, Generici
     rows = [model.constraints[i] for i in kept]
     geometric = sum(row.kind == "geometric" for row in rows)  # the first ones
     evaluate, n = Evaluator([entry for i in kept for entry in b[i]]), mechanics.n
-    found = set[tuple[int | None, int | None]]()
+    ranks = set[tuple[int | None, int | None]]()
     for point in configurations(mechanics):
         values = evaluate(point)
         at = [values[k * n : (k + 1) * n] for k in range(len(kept))]
-        found.add((rank(at), rank(at[:geometric])))
-    if len(found) != 1:
+        ranks.add((rank(at), rank(at[:geometric])))
+    if len(ranks) != 1:
         return None
-    ((of_all, of_geometric),) = found
+    ((of_all, of_geometric),) = ranks
     if of_all is None or of_geometric is None:
         return None
     touched = {j for i in kept for j, entry in enumerate(b[i]) if not entry.is_zero}

@@ -16,7 +16,7 @@ def least_inputs(
     M~^+ M~ u = u.  Where inputs are idle and directions have no drive, u is solved for twice: beside V, inputs that
     on V load the constraints alone would answer to what no input moves.
     """
-    found = forms.solve(restriction(force))
+    inputs = forms.solve(restriction(force))
     if generic.alpha < min(generic.m, generic.delta):
-        found = forms.solve(restriction(matvec(mechanics.graph, mechanics.control_matrix, found)))
-    return found
+        inputs = forms.solve(restriction(matvec(mechanics.graph, mechanics.control_matrix, inputs)))
+    return inputs

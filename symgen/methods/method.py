@@ -89,9 +89,9 @@ def solved_for_u(
 
 def divisors(outputs: Iterable[Scalar]) -> tuple[Scalar, ...]:
     """Every scalar the outputs divide by, numbers left out, in the order of evaluation."""
-    found = {
+    denominators = {
         node.args[1]: None
         for node in topological(outputs)
         if node.op in ("div", "ratio_or_zero") and node.args[1].constant is None
     }
-    return tuple(found)
+    return tuple(denominators)

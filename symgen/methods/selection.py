@@ -92,11 +92,11 @@ class Methods:
         """The method asked for, or the cheapest valid one; why there is none by that name."""
         if name == AUTO:
             return self._cheapest(quantity)
-        found = self.candidate(quantity, name)
-        if isinstance(found, str):
-            return found
-        validity = self.validity(found)
-        return found, MethodChoice(name, validity, ((name, found.weight, validity.explanation),))
+        candidate = self.candidate(quantity, name)
+        if isinstance(candidate, str):
+            return candidate
+        validity = self.validity(candidate)
+        return candidate, MethodChoice(name, validity, ((name, candidate.weight, validity.explanation),))
 
     def failing(self) -> tuple[tuple[str, str], ...]:
         """The methods of u among those that are chosen by themselves that fail at regular states, and where each does.
@@ -109,7 +109,7 @@ class Methods:
             return ()
         made = [one for row in rows if isinstance(one := self.candidate(INPUTS, row.name), Candidate)]
         validities = [(one.method, self.validity(one)) for one in made if not self._is_admitted(one)]
-        return tuple((name, found.explanation) for name, found in validities if not found.admitted)
+        return tuple((name, validity.explanation) for name, validity in validities if not validity.admitted)
 
     def _is_admitted(self, candidate: Candidate) -> bool:
         """Whether it was found valid already."""
@@ -137,14 +137,14 @@ class Methods:
         weights = {name: one.weight for name, one in made.items()}
         best, validities = cheapest(made.values(), self._first_validity, lambda one: weights[one.method])
         remarks = dict.fromkeys(made, "not examined, because it is not cheaper")
-        remarks |= {name: found.explanation for name, found in validities.items()}
+        remarks |= {name: validity.explanation for name, validity in validities.items()}
         shorter = self._factored(best) if "minor" in made else None
         if shorter is not None:
             weights[FACTORED] = weight = shorter.weight
-            found = validities[FACTORED] = self.validity(shorter, first_only=True)
-            remarks[FACTORED] = found.explanation
+            validity = validities[FACTORED] = self.validity(shorter, first_only=True)
+            remarks[FACTORED] = validity.explanation
             worth = CANCELLATION_WORTH if best.method == "minor" else 0
-            if found.admitted and weight < weights[best.title] * (1 + worth):
+            if validity.admitted and weight < weights[best.title] * (1 + worth):
                 best = shorter
         others = tuple((name, weights[name], remarks[name]) for name in sorted(weights, key=lambda n: (weights[n], n)))
         return best, MethodChoice(best.title, validities[best.title], others)
@@ -225,13 +225,13 @@ def _factoring_limit(best: Candidate) -> int:
 def every_method(model: Model, quantities: Iterable[str]) -> list[tuple[str, System, list[Quantity]]]:
     """Every method that a system has by name: what it was derived on, and the quantities there."""
     made = Methods(model, genericity(System(model)))
-    found: list[tuple[str, System, list[Quantity]]] = []
+    by_method: list[tuple[str, System, list[Quantity]]] = []
     for row, quantity in ((row, quantity) for row in METHODS for quantity in quantities if quantity in row.quantities):
         one = made.candidate(quantity, row.name)
         if isinstance(one, str):
             continue
         mechanics = one.system.mechanics
-        if not found or found[-1][1] is not mechanics:
-            found.append((row.name, mechanics, []))
-        found[-1][2].append(derived_on(mechanics.graph, one))
-    return found
+        if not by_method or by_method[-1][1] is not mechanics:
+            by_method.append((row.name, mechanics, []))
+        by_method[-1][2].append(derived_on(mechanics.graph, one))
+    return by_method

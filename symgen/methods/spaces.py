@@ -43,5 +43,5 @@ SPACES = {"minors": along_minors, "householder": along_reflections, "blocks": al
 
 def derivations(mechanics: System, generic: Genericity) -> dict[str, Derivation]:
     """Those that a system has, by name, on one graph."""
-    found = {name: along(mechanics, generic) for name, along in SPACES.items()}
-    return {name: one for name, one in found.items() if isinstance(one, Derivation)}
+    by_name = {name: along(mechanics, generic) for name, along in SPACES.items()}
+    return {name: one for name, one in by_name.items() if isinstance(one, Derivation)}

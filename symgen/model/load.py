@@ -35,8 +35,8 @@ def load_text(text: str, file: str) -> Model:
     tree, mistakes = read_tree(text)
     if tree is None:
         raise ModelError(file, text, mistakes)
-    found = [*mistakes, *check_shape(MODEL, tree, "the model")]
-    scope = Scope(mistakes=found, attempted=attempted_names(tree, found))
+    all_mistakes = [*mistakes, *check_shape(MODEL, tree, "the model")]
+    scope = Scope(mistakes=all_mistakes, attempted=attempted_names(tree, all_mistakes))
     beside: dict[str, str] = {}
     if tree.get("urdf") is not None:
         if scope.mistakes:

@@ -29,8 +29,8 @@ class CompiledModel:
         if name.startswith("_"):
             raise AttributeError(name)
         for place in (self._functions, self._module):
-            if (found := getattr(place, name, None)) is not None:
-                made_of: Callable[..., Any] = found
+            if (function := getattr(place, name, None)) is not None:
+                made_of: Callable[..., Any] = function
                 return made_of
         raise AttributeError(f"{self._name} was compiled with {', '.join(self.quantities)}, without {name}")
 

@@ -55,8 +55,8 @@ def as_yaml(blocks: Mapping[str, Block]) -> str:
 
 def as_blocks(text: str) -> dict[str, Block]:
     """The blocks of a model file that has been read without mistakes."""
-    found: dict[str, Block] = yaml.load(text, Loader=yaml.BaseLoader)
-    return found
+    blocks: dict[str, Block] = yaml.load(text, Loader=yaml.BaseLoader)
+    return blocks
 
 
 class _MappingOnALine(dict[str, Block]):

@@ -51,9 +51,9 @@ class ModelFile:
     def of(cls, text: str, path: Path | None = None) -> ModelFile:
         """The model file with this text, which has been read without mistakes."""
         blocks = as_blocks(text)
-        found = cls(str(blocks["model"]))
-        found._blocks, found._path, found._text = dict(blocks), path, text
-        return found
+        model_file = cls(str(blocks["model"]))
+        model_file._blocks, model_file._path, model_file._text = dict(blocks), path, text
+        return model_file
 
     # the words are methods of the class, set below
     def __getattr__(self, word: str) -> Callable[..., ModelFile]:
@@ -216,8 +216,8 @@ def _method(word: BlockWord) -> Callable[..., ModelFile]:
     return put
 
 
-for _found in _WORDS.values():
-    setattr(ModelFile, _found.word, _method(_found))
+for _block_word in _WORDS.values():
+    setattr(ModelFile, _block_word.word, _method(_block_word))
 
 
 def load(source: Source) -> ModelFile:

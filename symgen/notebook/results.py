@@ -69,8 +69,8 @@ def generated_model(path: Path, out: Path, options: Options) -> GeneratedModel:
     result = made(path, options)
     folder, notices = out / result.model.name, list(result.notices)
     files = write_files(folder, result.files, lambda message: notices.append(Notice(message)))
-    told = tuple(notices), result.left_out, result.certificate
-    return GeneratedModel(result.model.name, folder, files, result.summary, *told)
+    outcome = tuple(notices), result.left_out, result.certificate
+    return GeneratedModel(result.model.name, folder, files, result.summary, *outcome)
 
 
 def unheard(_message: str) -> None:

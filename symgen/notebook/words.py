@@ -110,11 +110,11 @@ def _word(word: str, block: tuple[str, ...], key: Key) -> BlockWord:
 
 def block_words() -> dict[str, BlockWord]:
     """All of them, by word."""
-    found: dict[str, BlockWord] = {}
+    by_word: dict[str, BlockWord] = {}
     for key in MODEL.fields:
         if key.key == "constraints":
-            found |= {row.key: _word(row.key, (key.key, row.key), row) for row in _keys_of(key.shape)}
+            by_word |= {row.key: _word(row.key, (key.key, row.key), row) for row in _keys_of(key.shape)}
         elif key.key != "model":
             word = SINGULAR.get(key.key, key.key)
-            found[word] = _word(word, (key.key,), key)
-    return found
+            by_word[word] = _word(word, (key.key,), key)
+    return by_word

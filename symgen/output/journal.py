@@ -133,8 +133,8 @@ def _read(journal: Path) -> Switch | None:
     import json
 
     with suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
-        found = json.loads(journal.read_text(encoding="utf-8"))
-        moves, removals = dict(found["moves"]), list(found["removals"])
+        record = json.loads(journal.read_text(encoding="utf-8"))
+        moves, removals = dict(record["moves"]), list(record["removals"])
         paths = (*moves.values(), *removals)
         if all(map(_STAGED.fullmatch, moves)) and all(path == FILES or is_inside(path) for path in paths):
             return Switch(moves, removals)

@@ -44,8 +44,8 @@ def read_checksums(directory: Path) -> dict[str, str]:
 
 
 def _by_path(text: str) -> dict[str, str]:
-    found = (line.groups() for row in text.splitlines() if (line := _LINE.fullmatch(row)))
-    return {path: checksum for checksum, path in found if is_inside(path)}
+    entries = (line.groups() for row in text.splitlines() if (line := _LINE.fullmatch(row)))
+    return {path: checksum for checksum, path in entries if is_inside(path)}
 
 
 def checksum_of(content: bytes) -> str:

@@ -94,11 +94,11 @@ def compare(directory: Path, files: Mapping[str, str | bytes], notify: Notify = 
         if done := recover(directory):
             notify(done)
         for path, content in expected.items():
-            found = _read(directory / path)
-            if found is None:
+            on_disk = _read(directory / path)
+            if on_disk is None:
                 differences.append(f"{directory / path}: missing")
-            elif found != content:
-                differences.append(f"{directory / path}: differs{_first_difference(found, content)}")
+            elif on_disk != content:
+                differences.append(f"{directory / path}: differs{_first_difference(on_disk, content)}")
         _, known = read_manifest(directory) or ("", {})
         differences += [f"{directory / path}: no longer generated" for path in _stale(directory, expected, known)]
     return tuple(sorted(differences))
@@ -136,9 +136,9 @@ def _refuse_to_replace(directory: Path, contents: Mapping[str, bytes], known: Ma
     foreign = []
     for path, content in contents.items():
         if _exists(directory / path):
-            found = _read(directory / path)
-            made = found is not None and checksum_of(found) in (known.get(path), kept.get(path))
-            if found != content and not made:
+            on_disk = _read(directory / path)
+            made = on_disk is not None and checksum_of(on_disk) in (known.get(path), kept.get(path))
+            if on_disk != content and not made:
                 foreign.append(path)
     if foreign:
         remedy = "move or delete what is named, or choose another folder (--out)"
@@ -173,13 +173,13 @@ def _stale(directory: Path, files: Collection[str], known: Collection[str]) -> l
 
 def _others(directory: Path, files: Collection[str], made: Collection[str]) -> list[str]:
     """What symgen did not make, of the sub-folders that `files` fill; hidden folders and caches do not count."""
-    found = []
+    others = []
     for folder in sorted(_folders(files)):
         for place, inner, names in os.walk(directory / folder):
             inner[:] = sorted(name for name in inner if not name.startswith(".") and name != "__pycache__")
             paths = ((Path(place) / name).relative_to(directory).as_posix() for name in sorted(names))
-            found += [path for path in paths if path not in made]
-    return found
+            others += [path for path in paths if path not in made]
+    return others
 
 
 def _folders(files: Collection[str]) -> frozenset[str]:

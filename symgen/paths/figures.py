@@ -64,6 +64,6 @@ def figure_data(model: Model, path: Path) -> FigureData:
 
 
 def _curve(singular: SingularPoses, J: tuple[int, ...], n: int) -> Curve:
-    found = singular.of(J)
-    poses = np.array([q for _, q in found]).reshape(-1, n)
-    return Curve(J, singular.determinants(J) ** 2, tuple(t for t, _ in found), poses)
+    zeros = singular.of(J)
+    poses = np.array([q for _, q in zeros]).reshape(-1, n)
+    return Curve(J, singular.determinants(J) ** 2, tuple(t for t, _ in zeros), poses)

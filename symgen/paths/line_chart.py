@@ -114,8 +114,8 @@ def _room(panel: Panel) -> float:
 
 def _limits(panel: Panel) -> tuple[float, float]:
     """The range of the values with a little room, never of width 0."""
-    found = [float(v) for line in panel.lines for v in line.values if math.isfinite(v)] or [0.0]
-    low, high = min(found), max(found)
+    values = [float(v) for line in panel.lines for v in line.values if math.isfinite(v)] or [0.0]
+    low, high = min(values), max(values)
     if panel.from_zero:
         return 0.0, 1.06 * max(high, panel.threshold or 0.0) or 1.0
     size = max(abs(low), abs(high))

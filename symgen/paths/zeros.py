@@ -45,14 +45,14 @@ class SingularPoses:
         zero = np.abs(signed) <= SINGULAR_SAMPLE * np.max(np.abs(signed), initial=0)
         if np.all(zero):
             return ()
-        found: list[tuple[float, Array]] = []
+        zeros: list[tuple[float, Array]] = []
         for k, t in enumerate(self._trajectory.t):
             if zero[k]:
                 if k == 0 or not zero[k - 1]:
-                    found.append((float(t), self._trajectory.q[k]))
+                    zeros.append((float(t), self._trajectory.q[k]))
             elif k and not zero[k - 1] and signed[k - 1] * signed[k] < 0:
-                found.append(self._refine(J, k - 1, float(signed[k - 1]), float(signed[k])))
-        return tuple(found)
+                zeros.append(self._refine(J, k - 1, float(signed[k - 1]), float(signed[k])))
+        return tuple(zeros)
 
     def _refine(self, J: tuple[int, ...], k: int, begin: float, end: float) -> tuple[float, Array]:
         """The zero between samples k and k + 1, with the values of the determinant there.

@@ -127,8 +127,8 @@ def _slices(
     program: Program, kernel: Kernel, ranges: dict[str, tuple[Range, ...]], wide: bool
 ) -> tuple[SliceView, ...]:
     """The slices of the decisive angles, none where there would be too many to analyse."""
-    found = {load.index: slices(program.scalar, ranges["q"][load.index], wide) for load in decisive_angles(kernel)}
-    if program.sincos is None or prod(len(cuts) for cuts in found.values()) > MOST_RUNS:
+    by_index = {load.index: slices(program.scalar, ranges["q"][load.index], wide) for load in decisive_angles(kernel)}
+    if program.sincos is None or prod(len(cuts) for cuts in by_index.values()) > MOST_RUNS:
         return ()
     return tuple(
         SliceView(
@@ -136,7 +136,7 @@ def _slices(
             tuple(_hexadecimal(program.scalar, cut.low) for cut in cuts),
             tuple(_hexadecimal(program.scalar, cut.high) for cut in cuts),
         )
-        for index, cuts in found.items()
+        for index, cuts in by_index.items()
     )
 
 

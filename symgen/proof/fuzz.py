@@ -125,8 +125,8 @@ def _given(
 
 
 def _with_trig(program: Program) -> Iterator[GivenTrig]:
-    found = (given_trig(kernel) for kernel in program.kernels if kernel.name in BATCHED)
-    return (one for one in found if one is not None)
+    variants = (given_trig(kernel) for kernel in program.kernels if kernel.name in BATCHED)
+    return (one for one in variants if one is not None)
 
 
 def _kernel(kernel: Kernel, ending: str, arrays: Sequence[str]) -> FuzzedFunctionView:

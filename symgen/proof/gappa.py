@@ -94,9 +94,9 @@ def _sum_errors(kernel: Kernel, bounds: Mapping[str, Interval]) -> dict[str, Fra
 
     Locals that are something else are left out.
     """
-    found = {load.local: Fraction(0) for load in kernel.loads}
+    errors = {load.local: Fraction(0) for load in kernel.loads}
     for statement in kernel.statements:
-        parts = [_error_of(operand, found) for operand in statement.operands]
+        parts = [_error_of(operand, errors) for operand in statement.operands]
         given = [part for part in parts if part is not None]
         if statement.operation not in ("add", "sub", "neg") or len(given) < len(parts):
             continue
@@ -105,8 +105,8 @@ def _sum_errors(kernel: Kernel, bounds: Mapping[str, Interval]) -> dict[str, Fra
         if statement.operation != "neg":
             largest = max(map(abs, bounds[target]))
             own = Fraction(2) ** (math.frexp(largest)[1] - 25)  # largest < 2^e: half a unit is 2^(e-25)
-        found[target] = sum(given, own)
-    return found
+        errors[target] = sum(given, own)
+    return errors
 
 
 def _error_of(operand: Operand, errors: Mapping[str, Fraction]) -> Fraction | None:

@@ -42,12 +42,12 @@ def slices(scalar: Scalar, given: Range, wide: bool = False) -> tuple[Slice, ...
     limit = float(angle_limit(scalar, wide))
     if not -limit <= low <= high <= limit:
         return (Slice(low, high),)
-    found = []
+    pieces = []
     while True:
         end = _last_with(scalar, _multiple(scalar, low), low, high)
-        found += _fine(scalar, Slice(low, end))
+        pieces += _fine(scalar, Slice(low, end))
         if end == high:
-            return tuple(found)
+            return tuple(pieces)
         low = _neighbour(scalar, end)
 
 

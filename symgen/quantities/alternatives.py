@@ -80,7 +80,7 @@ class Alternatives:
             self.too_long[quantity] += given_up
             names = tuple(name for name in names if name not in given_up)
         most = worth_trying(cost_taken)
-        found = []
+        alternatives = []
         for name in names:
             if name in (taken.title, same):
                 continue
@@ -91,13 +91,13 @@ class Alternatives:
                 self.too_long[quantity].append(name)
                 continue
             if one is not None:
-                found.append(one)
-        return tuple(sorted(found, key=lambda one: one.cost))
+                alternatives.append(one)
+        return tuple(sorted(alternatives, key=lambda one: one.cost))
 
     def named(self, quantity: str, name: str) -> Alternative | None:
         """A quantity by the method of a name; None where the system does not have it."""
-        found = self._named(quantity, name) if any(name in _names(quantity, tier) for tier in range(TIERS)) else None
-        return None if found is None else grouped(found)
+        one = self._named(quantity, name) if any(name in _names(quantity, tier) for tier in range(TIERS)) else None
+        return None if one is None else grouped(one)
 
     def _named(self, quantity: str, name: str) -> Alternative | None:
         mechanics = System(self._model)
@@ -105,14 +105,14 @@ class Alternatives:
             return self._by_method(quantity, name, mechanics)
         if name in SPACES:
             along = SPACES[name](mechanics, self._generic)
-            found = along if isinstance(along, str) else derive(BY_NAME[quantity], along)
+            derived = along if isinstance(along, str) else derive(BY_NAME[quantity], along)
         else:
             made = self._methods.candidate(quantity, name)
-            found = made if isinstance(made, str) else derived_on(mechanics.graph, made)
-        if isinstance(found, str):
+            derived = made if isinstance(made, str) else derived_on(mechanics.graph, made)
+        if isinstance(derived, str):
             return None
         # counted alike along null spaces and by methods
-        return self._alone(found, Choice(quantity, name, ((name, cost(scalars(found)).weight),)), mechanics)
+        return self._alone(derived, Choice(quantity, name, ((name, cost(scalars(derived)).weight),)), mechanics)
 
     def _by_method(self, quantity: str, name: str, mechanics: System) -> Alternative | None:
         """u, q_ddot or lambda by a method that is nowhere singular."""
@@ -131,11 +131,11 @@ class Alternatives:
     ) -> Alternative:
         """A quantity as it is scheduled, on a graph that holds nothing else any more."""
         made = complete(mechanics, self._generic, derived)
-        found = Alternative(choice, mechanics, made, known, grouped=False)
+        alternative = Alternative(choice, mechanics, made, known, grouped=False)
         if len(reached(scalars(made))) > LONG_ALTERNATIVE:
             forget_others(mechanics, (made,))
-            return found
-        return grouped(found)
+            return alternative
+        return grouped(alternative)
 
 
 def grouped(one: Alternative) -> Alternative:

@@ -121,8 +121,8 @@ class Candidates:
         return replace(best, along=space)
 
     def _moving(self, entry: CatalogueEntry, name: str, derivation: Derivation, motion: Motion) -> Candidate:
-        found = derived_from(entry, derivation, motion.part(entry.name), lambda _: motion.guards)
-        return Candidate(self._system, found, method=name)
+        derived = derived_from(entry, derivation, motion.part(entry.name), lambda _: motion.guards)
+        return Candidate(self._system, derived, method=name)
 
     def _differentiated(self, entry: CatalogueEntry, quantity: str) -> dict[str, Candidate]:
         """The derivatives of a quantity by the method that it takes itself."""

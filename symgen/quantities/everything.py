@@ -52,21 +52,21 @@ class WorkBudget:
         first = SCALAR * SCALARS_OF_A_METHOD
         if quantity not in self._asked:
             before = done()
-            found = self._within(methods, min(first, self._left))
+            made = self._within(methods, min(first, self._left))
             self._left -= done() - before
-            return found
+            return made
         for most in (first, GROWTH * first) if len(methods) > 1 else ():
-            if found := self._within(methods, most):
-                return found
+            if made := self._within(methods, most):
+                return made
         return {name: method() for name, method in methods.items()}
 
     @staticmethod
     def _within(methods: Mapping[str, Callable[[], Made]], most: float) -> dict[str, Made]:
-        found: dict[str, Made] = {}
+        made: dict[str, Made] = {}
         for name, method in methods.items():
             with suppress(TooLongError), at_most(most):
-                found[name] = method()
-        return found
+                made[name] = method()
+        return made
 
     def surplus(self, costs: Mapping[str, int]) -> list[str]:
         """The longest of the quantities that are not asked for, without which the rest is short enough."""

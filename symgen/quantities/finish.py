@@ -56,11 +56,11 @@ def with_groups(mechanics: System, derived: Quantity) -> Quantity:
     mark = mechanics.graph.mark()
     regrouped = grouped_scalars(mechanics.graph, mechanics.factoring, [*scalars(derived), *scales])
     mechanics.factoring.forget(mark, regrouped)
-    found = iter(regrouped)
-    outputs = tuple(next(found) for _ in derived.outputs)
-    denominators = [next(found) for _ in derived.guards]
+    remaining = iter(regrouped)
+    outputs = tuple(next(remaining) for _ in derived.outputs)
+    denominators = [next(remaining) for _ in derived.guards]
     guards = tuple(
-        replace(guard, denominator=denominator, scale=None if guard.scale is None else next(found))
+        replace(guard, denominator=denominator, scale=None if guard.scale is None else next(remaining))
         for guard, denominator in zip(derived.guards, denominators, strict=True)
     )
     return replace(derived, outputs=outputs, guards=guards)

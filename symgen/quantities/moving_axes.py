@@ -97,11 +97,11 @@ def _turned(mechanics: System, derived: Quantity, heading: _Heading) -> Quantity
         if not _same(derived.outputs, outputs):
             return None
     guards = [_turned_guard(guard, back) for guard in derived.guards]
-    found = tuple(guard for guard in guards if guard is not None)
-    if len(found) < len(guards):
+    turned_guards = tuple(guard for guard in guards if guard is not None)
+    if len(turned_guards) < len(guards):
         return None
     same_values("turning axes", derived.outputs, outputs)
-    return replace(derived, outputs=tuple(outputs), guards=found)
+    return replace(derived, outputs=tuple(outputs), guards=turned_guards)
 
 
 def _turned_guard(guard: Guard, back: dict[Scalar, Scalar]) -> Guard | None:

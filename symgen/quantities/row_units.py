@@ -38,10 +38,10 @@ BACK: dict[str, Exponent] = {
 
 def in_ordinary_units(model: Model) -> Model:
     """The model with rows times powers of 2 where they are in units of their own; the same model where none is."""
-    found = model.assembly
-    if found is None or model.row_units or not any(found.units):
+    assembly = model.assembly
+    if assembly is None or model.row_units or not any(assembly.units):
         return model
-    units = found.units
+    units = assembly.units
     rows = tuple(
         replace(row, expression=Binary("*", Number(UNIT_BASE**unit), row.expression)) if unit else row
         for row, unit in zip(model.constraints, units, strict=True)

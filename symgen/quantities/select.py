@@ -123,10 +123,10 @@ def derive_quantities(
     for name in each("methods of", present, str):
         if name == INPUTS or name in asked:
             method = asked.get(name, AUTO)
-            found = methods.choose(name, method)
-            if isinstance(found, str):
-                raise NoSuchMethodError(name, method, found)
-            one, compared[name] = found
+            answer = methods.choose(name, method)
+            if isinstance(answer, str):
+                raise NoSuchMethodError(name, method, answer)
+            one, compared[name] = answer
             made[name] = derived_on(mechanics.graph, one)
             choices[name] = Choice(name, one.title, compared[name].costs)
             continue

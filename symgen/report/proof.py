@@ -31,17 +31,17 @@ def read_proof(file: Path, sources: Mapping[str, str | bytes]) -> ProofFacts | N
     `sources` are the generated files by path (`c/<model>.c`, ...).
     """
     try:
-        found: Mapping[str, Any] = json.loads(file.read_text(encoding="utf-8"))
-        proved: Mapping[str, str] = found["sources"]
+        record: Mapping[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+        proved: Mapping[str, str] = record["sources"]
         if not proved or any(checksum(sources.get(f"c/{name}")) != expected for name, expected in proved.items()):
             return None
-        measured = found["measured"]
+        measured = record["measured"]
         return ProofFacts(
-            str(found["unproven"]),
-            str(found["without"]),
-            tuple((int(entry), float(bound), float(measured[entry])) for entry, bound in found["bounds"].items()),
-            tuple(map(str, found["denominators"])),
-            tuple(map(str, found["others"])),
+            str(record["unproven"]),
+            str(record["without"]),
+            tuple((int(entry), float(bound), float(measured[entry])) for entry, bound in record["bounds"].items()),
+            tuple(map(str, record["denominators"])),
+            tuple(map(str, record["others"])),
         )
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return None

@@ -42,12 +42,12 @@ def read_targets(file: Path, sources: Mapping[str, str | bytes]) -> tuple[Target
     `sources` are the generated files by path (`c/<model>.c`, ...).
     """
     try:
-        found = json.loads(file.read_text(encoding="utf-8"))
-        measured: Mapping[str, str] = found["sources"]
+        record = json.loads(file.read_text(encoding="utf-8"))
+        measured: Mapping[str, str] = record["sources"]
         same = all(checksum(sources.get(f"c/{name}")) == expected for name, expected in measured.items())
-        if not (found["passed"] and measured and same):
+        if not (record["passed"] and measured and same):
             return ()
-        return tuple(_core(core, found["cells"]) for core in found["cores"])
+        return tuple(_core(core, record["cells"]) for core in record["cores"])
     except (OSError, ValueError, KeyError, TypeError):
         return ()
 

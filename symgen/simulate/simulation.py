@@ -101,18 +101,18 @@ def _verified(path: Path, progress: Progress) -> Result:
     part = "c" if find_compiler() is not None else "python"
     result = generate(path, Options(outputs=QUANTITIES, scalars=("float64",), parts=(part,)), progress)
     kernels = {kernel.name for kernel in result.programs["float64"].kernels}
-    found: list[str] = []
+    reasons: list[str] = []
     if result.failures or result.left_out:
-        found.append("verification rejects what would be integrated")
-        found += [f"  {failure}" for failure in result.failures]
+        reasons.append("verification rejects what would be integrated")
+        reasons += [f"  {failure}" for failure in result.failures]
         for one in result.left_out:
-            found += [f"  {one.quantity}, {method}: {why}" for method, why in one.tried]
-            found.append(f"  {one.quantity}: remedy: {one.remedy}")
+            reasons += [f"  {one.quantity}, {method}: {why}" for method, why in one.tried]
+            reasons.append(f"  {one.quantity}: remedy: {one.remedy}")
     elif ACCELERATIONS not in kernels:
         # other quantities may be missing: a system without constraints has no violations of them
-        found += [notice.message for notice in result.notices if notice.message.startswith(ACCELERATIONS)]
-    if found:
-        raise NotSimulatedError("\n".join((f"not simulated: {found[0]}", *found[1:])))
+        reasons += [notice.message for notice in result.notices if notice.message.startswith(ACCELERATIONS)]
+    if reasons:
+        raise NotSimulatedError("\n".join((f"not simulated: {reasons[0]}", *reasons[1:])))
     return result
 
 
@@ -123,7 +123,7 @@ def _start(
     try:
         return consistent_start(plant, q, qd)
     except PlantError:
-        found = [] if chosen else configurations(mechanics, 1)
-        if not found:
+        starts = [] if chosen else configurations(mechanics, 1)
+        if not starts:
             raise
-        return consistent_start(plant, [found[0][c.name] for c in plant.model.coordinates], qd)
+        return consistent_start(plant, [starts[0][c.name] for c in plant.model.coordinates], qd)

@@ -72,11 +72,11 @@ def half_turns(value: Fraction) -> Fraction | None:
 def holding_roots(outputs: Iterable[Scalar]) -> set[Scalar]:
     """The scalars below the outputs in which a root of what is no number stands: at a point that of x^2 is x or -x,
     either by chance."""
-    found: set[Scalar] = set()
+    with_roots: set[Scalar] = set()
     for node in topological(outputs):
-        if (node.op == "sqrt" and node.args[0].constant is None) or not found.isdisjoint(node.args):
-            found.add(node)
-    return found
+        if (node.op == "sqrt" and node.args[0].constant is None) or not with_roots.isdisjoint(node.args):
+            with_roots.add(node)
+    return with_roots
 
 
 class ExactValues:
@@ -134,8 +134,8 @@ class ExactValues:
 
     def any_root_in(self, outputs: Sequence[Scalar]) -> bool:
         """Whether a root was taken of a + b i: any number stands for it, whose square is another."""
-        found = self._any_root if self._inside is None else self._any_root | self._inside._any_root
-        return not found.isdisjoint(topological(outputs))
+        roots = self._any_root if self._inside is None else self._any_root | self._inside._any_root
+        return not roots.isdisjoint(topological(outputs))
 
     def _opaque(self, *key: object) -> int:
         return opaque(self._seed, self._field.prime, *key) % self._field.prime
@@ -252,20 +252,20 @@ class ExactValues:
 
     def _add_turns(self, angles: Sequence[Scalar]) -> None:
         """The multiples of pi that are added in sums and in multiples of them; what stands in products is a number."""
-        found, none = self._turns, Fraction(0)
-        for node in topological(angles, found):
+        by_node, none = self._turns, Fraction(0)
+        for node in topological(angles, by_node):
             if node.constant is not None:
-                found[node] = half_turns(node.constant)
+                by_node[node] = half_turns(node.constant)
                 continue
-            turns = [found[a] for a in node.args]
+            turns = [by_node[a] for a in node.args]
             if node.op in _SIGNS:
-                found[node] = _sum_of_turns(_SIGNS[node.op], turns)
+                by_node[node] = _sum_of_turns(_SIGNS[node.op], turns)
             elif node.op == "mul" and (number := node.args[0].constant) is not None:
-                found[node] = turns[1] and number * turns[1]
+                by_node[node] = turns[1] and number * turns[1]
             elif node.op == "div" and (number := node.args[1].constant):
-                found[node] = turns[0] and turns[0] / number
+                by_node[node] = turns[0] and turns[0] / number
             else:
-                found[node] = none
+                by_node[node] = none
 
 
 def _sum_of_turns(signs: Sequence[int], turns: Sequence[Fraction | None]) -> Fraction | None:

@@ -22,13 +22,13 @@ def _whole(value: Fraction) -> int | Fraction:
     return value.numerator if value.denominator == 1 else value
 
 
-def _held(rule: str, same: bool, found: Scalar, asked: Callable[[], Scalar]) -> Scalar:
+def _held(rule: str, same: bool, rewritten: Scalar, asked: Callable[[], Scalar]) -> Scalar:
     """What was found, held to be what was asked for: where fingerprints are not the same, or do not decide, exactly."""
     from symgen.symbolic import identity  # which needs graphs
 
     if not same or identity.evaluates_all():
-        identity.same_values(rule, [asked()], [found])
-    return found
+        identity.same_values(rule, [asked()], [rewritten])
+    return rewritten
 
 
 _COMPOSED = frozenset({"const", "neg", "mul", "div"})
@@ -86,7 +86,7 @@ class Products:
     def forget(self, gone: Set[Scalar]) -> None:
         """Lets go of scalars, see `Graph.forget`; factors of a product that stays stay with it."""
         self._known = {
-            a: found for a, found in self._known.items() if a not in gone and gone.isdisjoint(found[1])
+            a: monomial for a, monomial in self._known.items() if a not in gone and gone.isdisjoint(monomial[1])
         }
         self._turning = {a for a in self._turning if a in self._known}
         self._sums = {value: a for value, a in self._sums.items() if a not in gone}
@@ -114,9 +114,9 @@ class Products:
         if angle is None:
             return None
         rest = {f: common for f in more if (common := min(left.get(f, 0), right.get(f, 0)))}
-        found = k1 * (self._product(rest) * angle)
-        op, same = "add" if sign > 0 else "sub", found.value == (a.value + sign * b.value) % PRIME
-        return _held("the addition theorem", same, found, lambda: self._graph.beside(op, (a, b)))
+        product = k1 * (self._product(rest) * angle)
+        op, same = "add" if sign > 0 else "sub", product.value == (a.value + sign * b.value) % PRIME
+        return _held("the addition theorem", same, product, lambda: self._graph.beside(op, (a, b)))
 
     def quotient(self, a: Scalar, powers: Mapping[Scalar, int], number: int | Fraction = 1) -> Scalar:
         """`a` over a number times powers of factors; those of its own are left out instead of divided by."""
@@ -124,16 +124,16 @@ class Products:
         if not coefficient:
             return a
         rest = {f: own.get(f, 0) - powers.get(f, 0) for f in {**own, **powers}}
-        found = Fraction(coefficient) / number * self._product({f: count for f, count in rest.items() if count})
-        # found * number * below = a * above, as what is 0 has no inverse in the field
-        left, right = found.value * residue(Fraction(number)), a.value
+        ratio = Fraction(coefficient) / number * self._product({f: count for f, count in rest.items() if count})
+        # ratio * number * below = a * above, as what is 0 has no inverse in the field
+        left, right = ratio.value * residue(Fraction(number)), a.value
         for factor, count in powers.items():
             if count > 0:
                 left = left * pow(factor.value, count, PRIME)
             else:
                 right = right * pow(factor.value, -count, PRIME)
         same = (left - right) % PRIME == 0
-        return _held("leaving out factors", same, found, lambda: self._over(a, powers, number))
+        return _held("leaving out factors", same, ratio, lambda: self._over(a, powers, number))
 
     def _over(self, a: Scalar, powers: Mapping[Scalar, int], number: int | Fraction) -> Scalar:
         """The quotient as it is asked for, divided by one factor after the other."""

@@ -184,7 +184,7 @@ def weights_alone(outputs: Sequence[Scalar]) -> list[int]:
                 weights.append(weight)
         if of_angle:
             angles[node.args[0]] = places[node]
-    found = [0] * len(outputs)
+    totals = [0] * len(outputs)
     for start in range(0, len(weights), BITS):
         reach: dict[Scalar, int] = {}
         for node in order:
@@ -197,5 +197,5 @@ def weights_alone(outputs: Sequence[Scalar]) -> list[int]:
         for place, weight in enumerate(weights[start : start + BITS]):
             masks[weight] = masks.get(weight, 0) | 1 << place
         for k, output in enumerate(outputs):
-            found[k] += sum(weight * (reach[output] & mask).bit_count() for weight, mask in masks.items())
-    return found
+            totals[k] += sum(weight * (reach[output] & mask).bit_count() for weight, mask in masks.items())
+    return totals

@@ -144,8 +144,8 @@ def _largest(mechanics: System, entries: Sequence[Scalar]) -> list[float]:
     evaluate, source = Evaluator(entries), random.Random(PIVOT_SEED)
     known, ranges = parameter_values(mechanics), _ranges(mechanics, entries)
     points = ({name: source.uniform(*limits) for name, limits in ranges.items()} for _ in range(LOOKED_AT))
-    found = zip(*(evaluate(known | point) for point in points), strict=True)
-    return [max((abs(x) for x in values if math.isfinite(x)), default=0.0) for values in found]
+    by_entry = zip(*(evaluate(known | point) for point in points), strict=True)
+    return [max((abs(x) for x in values if math.isfinite(x)), default=0.0) for values in by_entry]
 
 
 def _ranges(mechanics: System, values: Sequence[Scalar]) -> dict[str, tuple[float, float]]:

@@ -40,9 +40,9 @@ def definite_by_frames(mechanics: System, factor: ArticulatedFactor) -> bool:
 def _definite_apart(model: Model) -> bool:
     """The same on a graph of its own, so that no kernel shares what is looked at here."""
     apart = System(model)
-    found = _InertiasAtJoints(apart, ArticulatedFactor(apart.bodies)).definite
+    definite = _InertiasAtJoints(apart, ArticulatedFactor(apart.bodies)).definite
     apart.graph.dissolve()
-    return found
+    return definite
 
 
 def definite_along_motion(mechanics: System, factor: ArticulatedFactor) -> bool:
@@ -142,11 +142,11 @@ def _plus(one: Matrix, other: Matrix) -> Matrix:
 
 def _rank(rows: Sequence[Sequence[Fraction]]) -> int:
     """The exact rank, by elimination."""
-    left, found = [list(row) for row in rows], 0
+    left, rank = [list(row) for row in rows], 0
     while left:
         pivot = left.pop()
         column = next((j for j, x in enumerate(pivot) if x), None)
         if column is not None:
-            found += 1
+            rank += 1
             left = [[x - row[column] / pivot[column] * y for x, y in zip(row, pivot, strict=True)] for row in left]
-    return found
+    return rank

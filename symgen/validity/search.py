@@ -112,10 +112,10 @@ class ZeroSearch:
             for start in range(SEARCH_STARTS):
                 point = self._start(source, inner=start < SEARCH_STARTS // 2)
                 near = self._approach(floats, point, names, sizes, len(residuals))
-                found = None if near is None else self._descend(evaluator, *near, names, len(residuals))
-                if found is not None and self._regular(found):
+                zero = None if near is None else self._descend(evaluator, *near, names, len(residuals))
+                if zero is not None and self._regular(zero):
                     shown = [*self._angles, *names]
-                    return RegularZero(tuple((name, float(found[name])) for name in self._box if name in shown))
+                    return RegularZero(tuple((name, float(zero[name])) for name in self._box if name in shown))
             return None
 
     def _start(self, source: random.Random, inner: bool) -> Point:
@@ -227,8 +227,8 @@ class ZeroSearch:
                 values = self._rows.values(self._start(source, inner=True))
             except UndefinedError:
                 continue
-            found = (math.hypot(*row) for row in self._matrix(values))
-            lengths = [max(pair) for pair in zip(lengths, found, strict=True)]
+            row_lengths = (math.hypot(*row) for row in self._matrix(values))
+            lengths = [max(pair) for pair in zip(lengths, row_lengths, strict=True)]
         return lengths
 
     @staticmethod
@@ -262,5 +262,5 @@ def squares(scalar: Scalar) -> list[Scalar]:
 
 def _has_rank(rows: Sequence[Row], rank: int) -> bool:
     """Whether rows have a rank beyond doubt."""
-    found = pivots(rows)
-    return found is not None and len(found) >= rank and min(found[:rank], default=1.0) > REGULAR
+    sizes = pivots(rows)
+    return sizes is not None and len(sizes) >= rank and min(sizes[:rank], default=1.0) > REGULAR

@@ -79,9 +79,9 @@ def check_laws(
     results: Results,
 ) -> list[InvariantRecord]:
     """The laws the results of a target can be tested on, over all states where every result is valid."""
-    found: dict[tuple[str, str], list[float]] = {}
+    by_law: dict[tuple[str, str], list[float]] = {}
     for index, sample in enumerate(samples):
         entries = {name: outcomes[index].entries for name, outcomes in results.items() if outcomes[index].valid}
         for name, quantity, share in defects(reference, sample, expected[index], entries):
-            found.setdefault((name, quantity), []).append(share)
-    return [InvariantRecord(name, target, len(shares), max(shares), of) for (name, of), shares in found.items()]
+            by_law.setdefault((name, quantity), []).append(share)
+    return [InvariantRecord(name, target, len(shares), max(shares), of) for (name, of), shares in by_law.items()]

@@ -23,7 +23,7 @@ def condition_numbers(reference: Reference, samples: Sequence[Sample]) -> list[t
         wanted.append(("constraint Jacobian, rows of norm 1", "constraint_jacobian", reference.ranks.constraints))
     if reference.model.m and reference.ranks.actuation:
         wanted.append(("F'M, F orthonormal", "projected_control_matrix", reference.ranks.actuation))
-    found: dict[str, list[float]] = {label: [] for label, _, _ in wanted}
+    by_label: dict[str, list[float]] = {label: [] for label, _, _ in wanted}
     for sample in samples:
         matrices = reference.matrices(sample.state, [name for _, name, _ in wanted], SAMPLING_BITS)
         for label, name, rank in wanted:
@@ -32,8 +32,8 @@ def condition_numbers(reference: Reference, samples: Sequence[Sample]) -> list[t
                 sizes = np.linalg.norm(matrix, axis=1, keepdims=True)
                 matrix = matrix / np.where(sizes > 0, sizes, 1.0)
             values = np.linalg.svd(matrix, compute_uv=False)
-            found[label].append(float(values[0] / values[rank - 1]))
-    return [(label, median(values), max(values)) for label, values in found.items()]
+            by_label[label].append(float(values[0] / values[rank - 1]))
+    return [(label, median(values), max(values)) for label, values in by_label.items()]
 
 
 def _floats(matrix: Any) -> Any:

@@ -90,11 +90,11 @@ class ExactStates:
     def _value(self, quantity: str, index: int) -> Any:
         """What the reference has there; None where it has nothing."""
         if (quantity, index) not in self._values:
-            state, found = self._state(index), None
+            state, value = self._state(index), None
             if state is not None:
                 with suppress(ReferenceValueError):
-                    found = self._expected.reference.matrices(state, [quantity], EXACT_BITS)[quantity]
-            self._values[quantity, index] = found
+                    value = self._expected.reference.matrices(state, [quantity], EXACT_BITS)[quantity]
+            self._values[quantity, index] = value
         return self._values[quantity, index]
 
 
@@ -135,11 +135,11 @@ class ExactFunction:
         # numbers stand at the end, at negative places
         values += [None] * (self._count - len(values)) + self._numbers[::-1]
         for function, operands, targets in self._steps:
-            found = function(*[values[place] for place in operands])
+            result = function(*[values[place] for place in operands])
             if len(targets) == 1:
-                values[targets[0]] = found
+                values[targets[0]] = result
             else:
-                values[targets[0]], values[targets[1]] = found
+                values[targets[0]], values[targets[1]] = result
         return [values[place] for place in self._outputs]
 
     def _step(self, statement: Statement) -> tuple[Callable[..., Any], list[int], list[int]]:

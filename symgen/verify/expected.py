@@ -62,13 +62,13 @@ class Expected:
         fewer than 8 are left.
         """
         if scalar not in self._values:
-            found, kept = [], []
+            computed, kept = [], []
             for index, sample in each("", [(k, rounded(drawn, scalar)) for k, drawn in enumerate(self.drawn)]):
                 if index % 8 == 0:
                     self._progress(f"verifying: reference for {scalar}, state {index + 1} of {len(self.drawn)}")
                 with suppress(ReferenceValueError):
                     made = expectations(self.reference, sample.state, self._quantities, scalar, f"{scalar} {index}")
-                    found.append(made)
+                    computed.append(made)
                     kept.append(sample)
             if len(kept) < FEWEST_STATES:
                 raise VerificationError(
@@ -77,5 +77,5 @@ class Expected:
                     + ("" if scalar == "float64" else ", or generate double precision alone, with `--scalar float64`")
                 )
             self._samples[scalar] = tuple(kept)
-            self._values[scalar] = found
+            self._values[scalar] = computed
         return self._values[scalar]

@@ -63,32 +63,32 @@ class FarErrors:
         That masses or lengths far apart seem to leave the motion undetermined is no reason: infinitely many units.
         That masses are none is one, and that rows or inputs are near a drop of rank.
         """
-        found = self._of_pairs(far) if self._in_pairs else self._estimated_and_measured(far)
+        by_scalar = self._of_pairs(far) if self._in_pairs else self._estimated_and_measured(far)
         masses = ~self._estimates.indefinite(far.given)
-        return {scalar: np.where(masses, units, 0.0) for scalar, units in found.items()}
+        return {scalar: np.where(masses, units, 0.0) for scalar, units in by_scalar.items()}
 
     def _of_pairs(self, far: Far) -> dict[Scalar, Lanes]:
         """In float64 pairs have digits enough, and refuse where the same operations on plain numbers do."""
         own, unit = self._estimates.with_units(far.given)
-        found: dict[Scalar, Lanes] = {"float64": np.zeros(len(far))}
+        by_scalar: dict[Scalar, Lanes] = {"float64": np.zeros(len(far))}
         refused = np.flatnonzero(~np.isfinite(unit))
-        found["float64"][refused] = self._refusals("float64", far.only(refused))
+        by_scalar["float64"][refused] = self._refusals("float64", far.only(refused))
         if self._single is not None:
-            found["float32"] = np.maximum(self._refusals("float32", far), own / unit * 2.0**-GAINED)
-        return found
+            by_scalar["float32"] = np.maximum(self._refusals("float32", far), own / unit * 2.0**-GAINED)
+        return by_scalar
 
     def _estimated_and_measured(self, far: Far) -> dict[Scalar, Lanes]:
         own, unit = self._estimates.with_units(far.given)
         estimated = own / unit
         refused = np.flatnonzero(~np.isfinite(unit))
         estimated[refused] = self._refusals("float64", far.only(refused))
-        found: dict[Scalar, Lanes] = {"float64": estimated}
+        by_scalar: dict[Scalar, Lanes] = {"float64": estimated}
         if self._single is not None:
             off, size = self._measured(self._single, far), float(UNIT_ROUNDOFF["float32"]) * unit
             # a unit is infinite where the kernel of float64 refuses, or where squares of slopes are too large for it
             measured = np.divide(off, size, out=np.where(np.isfinite(off), 0.0, off), where=np.isfinite(size))
-            found["float32"] = measured if works_with_pairs(self._single) else np.maximum(measured, estimated)
-        return found
+            by_scalar["float32"] = measured if works_with_pairs(self._single) else np.maximum(measured, estimated)
+        return by_scalar
 
     def _refusals(self, scalar: Scalar, far: Far) -> Lanes:
         """Infinite where a kernel refuses without a reason, 0 elsewhere."""

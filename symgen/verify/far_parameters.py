@@ -113,12 +113,12 @@ class FarParameters:
 
     def _regular(self, given: Mapping[str, Lanes]) -> Lanes:
         """Whether neither rows nor inputs are near a drop of rank."""
-        found = np.ones(len(given["q"]), dtype=bool)
+        regular = np.ones(len(given["q"]), dtype=bool)
         with np.errstate(all="ignore"):
             blocks = matrices(self._reference.system, self._parts, self._loops, given["q"], given["p"])
             for part, (rows, control) in zip(self._parts, blocks, strict=True):
-                found &= is_regular(part, rows, control, share=CLEAR)
-        return found
+                regular &= is_regular(part, rows, control, share=CLEAR)
+        return regular
 
     def bound(self, parameter: int, low: float | None, high: float | None) -> Bound | None:
         """A parameter may be by these powers of ten below and above the values that it has in the verification.
@@ -237,8 +237,8 @@ class _Bounds:
                 first[scalar] = _nearest(far) | first[scalar]
         closer = {
             (index, sign * (power - 1 + quarter))
-            for found in first.values()
-            for (index, sign), power in found.items()
+            for by_side in first.values()
+            for (index, sign), power in by_side.items()
             for quarter in np.arange(QUARTER, 1 + QUARTER, QUARTER).tolist()
         }
         if not closer:
@@ -274,25 +274,25 @@ class _Bounds:
         self, scalar: Scalar, index: int, sign: int, steps: Mapping[tuple[int, float], Sequence[_Tried]], last: float
     ) -> float:
         """The power of ten up to which nothing is lost on one side, where something is at the `last`."""
-        quantity, found = self._kernels[scalar].name, last
+        quantity, limit = self._kernels[scalar].name, last
         powers = sorted((sign * power for which, power in steps if which == index and sign * power > 0), reverse=True)
         # from outside: where nothing is lost nothing is further in
         for power in powers:
             worst = steps[index, sign * power]
             if power <= JUDGED_UP_TO and not any(self._far.is_lost(quantity, scalar, tried) for tried in worst):
                 break
-            found = min(power, last)
-        return sign * _inside(found)
+            limit = min(power, last)
+        return sign * _inside(limit)
 
     def _lost(self, far: Far) -> dict[Scalar, Far]:
         """By scalar type, what of it seems to lose more than is allowed, the worst first."""
         parts = [self._errors.units(part) for part in self._parts(far)]
-        found = {}
+        by_scalar = {}
         for scalar in self._kernels:
             units = np.concatenate([np.zeros(0), *(part[scalar] for part in parts)])
             order = np.argsort(-units, kind="stable")
-            found[scalar] = far.only(order[units[order] > UNITS_LOST])
-        return found
+            by_scalar[scalar] = far.only(order[units[order] > UNITS_LOST])
+        return by_scalar
 
     def _parts(self, far: Far) -> Iterator[Far]:
         """As many states at a time as may be held."""
@@ -302,11 +302,11 @@ class _Bounds:
 
 def _nearest(far: Far) -> dict[tuple[int, int], float]:
     """By parameter and side, the nearest power of ten there is."""
-    found: dict[tuple[int, int], float] = {}
+    by_side: dict[tuple[int, int], float] = {}
     for index, power in zip(far.parameters.tolist(), far.powers.tolist(), strict=True):
         side = index, 1 if power > 0 else -1
-        found[side] = min(abs(power), found.get(side, FURTHEST))
-    return found
+        by_side[side] = min(abs(power), by_side.get(side, FURTHEST))
+    return by_side
 
 
 def _inside(lost: float) -> float:

@@ -22,9 +22,9 @@ def measured(
     """The errors of a kernel at the states of a verification in units of d + eps |y*|, and what is wrong."""
     samples, values = expected.samples(scalar), expected.values(scalar)
     with working(f"trying it in {scalar}"):
-        found = outcomes(kernel, sincos, scalar, [sample.state for sample in samples])
-    record = compare(kernel.name, scalar, [value[kernel.name] for value in values], found)
-    return record, next(faults_of(record, found, samples), None)
+        results = outcomes(kernel, sincos, scalar, [sample.state for sample in samples])
+    record = compare(kernel.name, scalar, [value[kernel.name] for value in values], results)
+    return record, next(faults_of(record, results, samples), None)
 
 
 class Measurements:

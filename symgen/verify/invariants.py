@@ -51,8 +51,8 @@ def _defects(
     for needed, (name, defect, bound) in _laws(evaluation, admissible):
         if all(quantity in given for quantity in needed):
             allowed = bound(exact, room) + 2 * norm(defect(exact))
-            found = norm(defect(given))
-            yield name, needed[0], found / allowed if allowed else float(found > 0)
+            size = norm(defect(given))
+            yield name, needed[0], size / allowed if allowed else float(size > 0)
 
 
 def _laws(evaluation: Evaluation, admissible: bool) -> Iterator[tuple[tuple[str, ...], Law]]:

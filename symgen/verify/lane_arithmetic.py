@@ -54,8 +54,8 @@ class LaneArithmetic:
         """A function of the library, which NumPy has with other bits."""
         given = np.broadcast_arrays(*operands)
         rounding = round_float32 if self.scalar == "float32" else float
-        found = [rounding(function(*one)) for one in zip(*(lane.ravel().tolist() for lane in given), strict=True)]
-        return np.array(found, TYPES[self.scalar]).reshape(given[0].shape)
+        values = [rounding(function(*one)) for one in zip(*(lane.ravel().tolist() for lane in given), strict=True)]
+        return np.array(values, TYPES[self.scalar]).reshape(given[0].shape)
 
 
 class _Steps:

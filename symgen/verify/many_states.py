@@ -76,8 +76,8 @@ class _KernelRun:
             status = np.where(status == 0, self._block(block), status)
         outputs = self._values[self._plan.outputs]
         status = np.where((status == 0) & ~np.isfinite(outputs).all(axis=0), Status.NOT_FINITE, status)
-        found = zip(status.tolist(), outputs.T.tolist(), strict=True)
-        return [(Status(code), entries if code == 0 else []) for code, entries in found]
+        by_state = zip(status.tolist(), outputs.T.tolist(), strict=True)
+        return [(Status(code), entries if code == 0 else []) for code, entries in by_state]
 
     def _block(self, block: _BlockPlan) -> Lanes:
         """The first status of each state."""
@@ -167,7 +167,7 @@ class _Plan:
 
     def _groups(self, statements: Iterable[Statement], known: dict[str, int]) -> tuple[_StatementGroup, ...]:
         """Targets get their places group by group, so that each result is written as one piece."""
-        found: dict[tuple[int, OperationName], list[Statement]] = {}
+        by_level: dict[tuple[int, OperationName], list[Statement]] = {}
         levels: dict[str, int] = {}
         depth = self._depth
         for statement in statements:
@@ -181,12 +181,12 @@ class _Plan:
             for target in statement.targets:
                 levels[target] = level + 1
             key = level + 1, statement.operation
-            if key in found:
-                found[key].append(statement)
+            if key in by_level:
+                by_level[key].append(statement)
             else:
-                found[key] = [statement]
+                by_level[key] = [statement]
         groups = []
-        for (level, operation), members in sorted(found.items(), key=lambda item: item[0]):
+        for (level, operation), members in sorted(by_level.items(), key=lambda item: item[0]):
             read = [
                 [known[o.name] if o.__class__ is Local else self._place(o, known) for o in one.operands]
                 for one in members

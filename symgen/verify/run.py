@@ -132,19 +132,19 @@ def _verified(
         twin = next((t for t in judged if _same(made, results[t][1]) and results[t][0] == scalar), None)
         if twin is None:
             records = [compare(name, target, [e[name] for e in values[scalar]], made[name]) for name in made]
-            found = check_laws(target, reference, samples[scalar], values[scalar], made)
+            invariants = check_laws(target, reference, samples[scalar], values[scalar], made)
         else:  # the same bits: C and Python usually agree
             records = [replace(r, target=target) for r in errors if r.target == twin and r.quantity in made]
             whole = len(made) == len(kernels[scalar])
-            found = [replace(law, target=target) for law in laws if law.target == twin and whole]
+            invariants = [replace(law, target=target) for law in laws if law.target == twin and whole]
         judged.append(target)
         errors += records
-        laws += found
+        laws += invariants
         for record in records:
             faults += faults_of(record, made[record.quantity], samples[scalar])
         faults += [
             Fault(f"{VIOLATES} {law.name}: {law.largest:.3g} times the allowed defect", law.quantity, target)
-            for law in found
+            for law in invariants
             if not law.largest <= 1
         ]
     return replace(

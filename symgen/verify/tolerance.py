@@ -70,8 +70,8 @@ def expectations(
 
     With `all_literals` those move too that the type holds.
     """
-    for found in _estimates(reference, state, quantities, scalar, seed, all_literals):
-        made = found
+    for estimate in _estimates(reference, state, quantities, scalar, seed, all_literals):
+        made = estimate
     return made
 
 
@@ -83,8 +83,8 @@ def is_beyond(
     Of its changes no more are looked at than it takes to see that they are not.
     """
     distance: float | None = None
-    for found in _estimates(reference, state, [quantity], scalar, seed):
-        expected = found[quantity]
+    for estimate in _estimates(reference, state, [quantity], scalar, seed):
+        expected = estimate[quantity]
         distance = expected.distance(entries) if distance is None else distance
         if expected.in_units(distance) <= units:
             return False

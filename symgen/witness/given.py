@@ -28,17 +28,17 @@ class GivenFunctions:
 
 def quantities_of_given(model: Model, s: Lagrange, ranks: ConfigurationRanks) -> dict[str, casadi.SX]:
     """The quantities of a model that names what is measured or has a task; none of others."""
-    found: dict[str, casadi.SX] = {}
+    quantities: dict[str, casadi.SX] = {}
     if model.measured:
         S = casadi.SX.eye(model.n)[list(model.measured_places), :]
         given = (s.further[name] for name in ("q_m", "qd_m", "qdd_m"))
-        found |= _determined(model, s, ranks, GivenFunctions(S @ s.q, S, *given), "measured")
+        quantities |= _determined(model, s, ranks, GivenFunctions(S @ s.q, S, *given), "measured")
     if model.task:
         slopes = casadi.densify(casadi.jacobian(s.task, s.q))
-        found |= {"task_position": s.task, "task_velocity": slopes @ s.qd, "task_jacobian": slopes}
+        quantities |= {"task_position": s.task, "task_velocity": slopes @ s.qd, "task_jacobian": slopes}
         given = (s.further[name] for name in ("x_t", "xd_t", "xdd_t"))
-        found |= _determined(model, s, ranks, GivenFunctions(s.task, slopes, *given), "task")
-    return found
+        quantities |= _determined(model, s, ranks, GivenFunctions(s.task, slopes, *given), "task")
+    return quantities
 
 
 def _determined(
@@ -46,18 +46,18 @@ def _determined(
 ) -> dict[str, casadi.SX]:
     n, slopes = model.n, given.slopes
     k, rows = slopes.shape[0], s.residual.shape[0]
-    found = {}
+    quantities = {}
     B_plus = pseudoinverse(s.jacobian, ranks.constraints)
     if k >= n - ranks.constraints:
         inverse = pseudoinverse(slopes @ (casadi.SX.eye(n) - B_plus @ s.jacobian), n - ranks.constraints)
         velocity = inverse @ given.rates
         least = -B_plus @ (casadi.substitute(s.jacobian_dot, s.qd, velocity) @ velocity)
         left = given.accelerations - along(slopes, s.q, velocity) @ velocity
-        found[f"velocity_from_{of}"] = velocity
-        found[f"acceleration_from_{of}"] = least + inverse @ (left - slopes @ least)
+        quantities[f"velocity_from_{of}"] = velocity
+        quantities[f"acceleration_from_{of}"] = least + inverse @ (left - slopes @ least)
     if k >= n - ranks.geometric and (rows == s.jacobian.shape[0] or k >= n - rows):
-        found[f"configuration_from_{of}"] = _configuration(s, given, ranks.geometric)
-    return found
+        quantities[f"configuration_from_{of}"] = _configuration(s, given, ranks.geometric)
+    return quantities
 
 
 def _configuration(s: Lagrange, given: GivenFunctions, rank: int) -> casadi.SX:

@@ -163,12 +163,12 @@ def _variations(s: Lagrange, ranks: ConfigurationRanks) -> casadi.SX:
     held = (s.residual, s.jacobian @ s.qd, s.jacobian @ s.qdd + s.jacobian_dot @ s.qd)
     answers = [pseudoinverse(s.jacobian[:rows, :], ranks.geometric)] if rows else [casadi.SX(s.q.shape[0], 0)]
     answers += [pseudoinverse(s.jacobian, ranks.constraints)] * 2
-    found = casadi.SX.eye(motion.shape[0])
+    projector = casadi.SX.eye(motion.shape[0])
     n = s.q.shape[0]
     for k, (what, answer) in enumerate(zip(held, answers, strict=True)):
-        answered = answer @ casadi.jacobian(what, motion) @ found
-        found[k * n : (k + 1) * n, :] -= answered
-    return found
+        answered = answer @ casadi.jacobian(what, motion) @ projector
+        projector[k * n : (k + 1) * n, :] -= answered
+    return projector
 
 
 def _minimal(model: Model, s: Lagrange, ranks: ConfigurationRanks) -> dict[str, casadi.SX]:

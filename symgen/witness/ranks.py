@@ -24,15 +24,15 @@ def generic_ranks(model: Model, lagrange: Lagrange) -> ConfigurationRanks:
     matrices = casadi.Function("matrices", [lagrange.q, lagrange.p], [lagrange.jacobian, lagrange.control])
     parameters = default_parameters(model)
     geometric_rows = lagrange.residual.shape[0]
-    found: list[tuple[int, int, int]] = []
+    sampled: list[tuple[int, int, int]] = []
     for q in islice(configurations(model, lagrange, parameters, seed=1, trials=TRIALS), GENERIC_POINTS):
         B, M = (part.full() for part in matrices(q, parameters))
         if np.all(np.isfinite(B)) and np.all(np.isfinite(M)):
             seen = _null_projector(B) @ M
-            found.append((_rank(B), _rank(B[:geometric_rows]), _rank(seen, float(np.linalg.norm(M)))))
-    if not found:
+            sampled.append((_rank(B), _rank(B[:geometric_rows]), _rank(seen, float(np.linalg.norm(M)))))
+    if not sampled:
         raise ValueError(f"{model.name}: no admissible configuration found")
-    constraints, geometric, actuation = (max(column) for column in zip(*found, strict=True))
+    constraints, geometric, actuation = (max(column) for column in zip(*sampled, strict=True))
     return ConfigurationRanks(constraints, geometric, actuation)
 
 

@@ -13,7 +13,7 @@ from symgen.laboratory.zoo.cases import case_of, read_case
 from symgen.laboratory.zoo.draws.describe import Description, Terms, read_description, summands
 from symgen.laboratory.zoo.draws.families import FAMILIES, draw
 from symgen.laboratory.zoo.records import DrawRecord, read_records, summary, write_record
-from symgen.laboratory.zoo.refusals import NOT_TOLD
+from symgen.laboratory.zoo.refusals import UNREPORTED
 from symgen.laboratory.zoo.run import CommandRun
 from symgen.laboratory.zoo.verdict import FAILED, REFUSED, VERIFIED, DrawVerdict
 from symgen.laboratory.zoo.witness.coverage import Coverage
@@ -232,7 +232,7 @@ def test_what_takes_long_is_made_small_in_few_runs(monkeypatch, tmp_path: Path) 
 
 
 def test_a_mistake_that_was_not_told_is_kept_with_the_mistake(tmp_path: Path) -> None:
-    description, verdict = draw(1, 0, "geared"), DrawVerdict(FAILED, NOT_TOLD)
+    description, verdict = draw(1, 0, "geared"), DrawVerdict(FAILED, UNREPORTED)
     assert shrunk(description, verdict, tmp_path / "small.yaml", 80) == description
     assert case_of(description, verdict).expected == REFUSED
 

@@ -78,8 +78,8 @@ class StepTable:
         if self.rows:
             yield f"static const {kind} {_STEP}[{len(self.rows)}] = {{"
             for number, *places in self.rows:
-                found = (", ".join(map(str, part)) for part in (places[:_SET], places[_SET:]))
-                yield f"    {{{number}, {', '.join(f'{{{part}}}' for part in found)}}},"
+                parts = (", ".join(map(str, part)) for part in (places[:_SET], places[_SET:]))
+                yield f"    {{{number}, {', '.join(f'{{{part}}}' for part in parts)}}},"
             yield "};"
         yield f"{scalar} {_VALUES}[{max(1, self.size)}];"
         yield from (f"{_VALUES}[{place}] = {text};" for place, text in enumerate(self.constants))
@@ -127,8 +127,8 @@ def table(kernel: Kernel, program: Program) -> StepTable:
         start = len(rows)
         for statement in block.statements:
             read = [places.read(operand, len(rows)) for operand in statement.operands]
-            found = [places.put(target, len(rows)) for target in statement.targets]
-            row = (*found, *[0] * (_SET - len(found)), *read, *[0] * (_READ - len(read)))
+            written = [places.put(target, len(rows)) for target in statement.targets]
+            row = (*written, *[0] * (_SET - len(written)), *read, *[0] * (_READ - len(read)))
             rows.append((numbers[statement.operation], *row))
         parts.append(range(start, len(rows)))
     texts = tuple(c_literal(program.scalar, one.value).strip("()") for one in places.constants)

@@ -145,15 +145,15 @@ def actuation_minors(ring: TrigRing, minors: Minors, control: Rows, delta: int) 
     n, m = len(control), len(control[0])
     vectors = {}
     for chosen in combinations(range(m), delta - 1):
-        found = []
+        entries = []
         for a in range(n):
             total = ring.zero
             for rest in combinations(range(n), delta - 1):
                 phi = minors.signed((a, *rest), ring)
                 if phi:
                     total = total + ring.product(small_determinant(ring, control, rest, chosen), phi)
-            found.append(total)
-        vectors[chosen] = tuple(found)
+            entries.append(total)
+        vectors[chosen] = tuple(entries)
     determinants = {}
     for subset in combinations(range(m), delta):
         vector = vectors[subset[1:]]

@@ -48,7 +48,7 @@ class Translator:
 
     def _scan(self, expressions: Iterable[Expression], atoms: dict[Expression, Opaque]) -> list[SineArgument]:
         """Angle arguments and opaque atoms of the expressions, of everything they name and of their derivatives."""
-        found: list[SineArgument] = []
+        arguments: list[SineArgument] = []
         pending = list(expressions)
         seen: set[Expression] = set()
         while pending:
@@ -58,7 +58,7 @@ class Translator:
             seen.add(expression)
             for argument in trigonometric_arguments(expression):
                 split = read_argument(argument, self._linear)
-                found.append(split)
+                arguments.append(split)
                 pending += [base for base, _ in split.combination]
             for part in parts(expression):
                 if isinstance(part, Name) and part.name in self.definitions:
@@ -67,18 +67,18 @@ class Translator:
                 if atom is not None and atom.expression not in atoms:
                     atoms[atom.expression] = atom
                     pending += [slope for _, slope in atom.outer_derivatives]
-        return found
+        return arguments
 
     def _below(self, *groups: Iterable[Expression]) -> tuple[str, ...]:
         """The definitions that these expressions use, directly or by others, in the order of use."""
-        found: set[str] = set()
+        used: set[str] = set()
         pending = [expression for group in groups for expression in group]
         while pending:
             for name in names_in(pending.pop()):
-                if name.name in self.definitions and name.name not in found:
-                    found.add(name.name)
+                if name.name in self.definitions and name.name not in used:
+                    used.add(name.name)
                     pending.append(self.definitions[name.name])
-        return tuple(name for name in self.definitions if name in found)
+        return tuple(name for name in self.definitions if name in used)
 
     def value(self, expression: Expression) -> Quotient:
         """The expression as a fraction of ring elements, definitions by value."""

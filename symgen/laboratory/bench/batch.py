@@ -108,7 +108,7 @@ def _times(ways: Sequence[_BatchCandidate], count: int) -> list[float]:
             for _ in range(repeats):
                 ways[place].run(count)
             times[place].append((perf_counter_ns() - start) / count / repeats)
-    return [median(found[1:]) for found in times]  # the first pass touches new memory
+    return [median(passes[1:]) for passes in times]  # the first pass touches new memory
 
 
 def _arguments(kernel: Kernel, parts: Sequence[Any]) -> list[Any]:

@@ -103,19 +103,19 @@ def results_of(built: Built, folder: Path, candidates: Sequence[CCandidate], tas
     import numpy as np
 
     _done([str(built.program), "results", "0"], folder)
-    found: dict[str, Any] = {}
+    by_entry: dict[str, Any] = {}
     for scalar, kind in C_TYPE.items():
         entries = [c.entry for c in candidates if c.scalar == scalar]
         if entries:
             data = np.fromfile(folder / f"results_{kind}.bin", dtype=np.dtype(scalar))
-            found |= dict(zip(entries, data.reshape(len(entries), -1, task.size), strict=True))
-    return found
+            by_entry |= dict(zip(entries, data.reshape(len(entries), -1, task.size), strict=True))
+    return by_entry
 
 
 def nanoseconds(built: Built, passes: int) -> dict[str, float]:
     """Median time of one call by entry; the candidates take turns in every pass."""
-    told = _done([str(built.program), "time", str(passes)], built.program.parent)
-    return {name: float(value) for name, value in (line.split() for line in told.splitlines())}
+    printed = _done([str(built.program), "time", str(passes)], built.program.parent)
+    return {name: float(value) for name, value in (line.split() for line in printed.splitlines())}
 
 
 def compile_candidate(
@@ -149,17 +149,17 @@ def compile_candidate(
 
 def gcc(arguments: Sequence[str], what: str) -> None:
     """Run gcc; raises BuildError with its words and `what` it refuses."""
-    told = run(["gcc", *arguments], LONGEST_RUN)
-    if told.returncode:
-        raise BuildError(f"gcc refuses {what}: {told.stderr[:2000]}")
+    completed = run(["gcc", *arguments], LONGEST_RUN)
+    if completed.returncode:
+        raise BuildError(f"gcc refuses {what}: {completed.stderr[:2000]}")
 
 
 def _done(command: Sequence[str], folder: Path | None = None) -> str:
     """What a program prints; raises ToolError when it fails."""
-    told = run(command, LONGEST_RUN, folder)
-    if told.returncode:
-        raise ToolError(f"{command[0]} failed ({told.returncode}): {told.stderr[:2000]}")
-    return told.stdout
+    completed = run(command, LONGEST_RUN, folder)
+    if completed.returncode:
+        raise ToolError(f"{command[0]} failed ({completed.returncode}): {completed.stderr[:2000]}")
+    return completed.stdout
 
 
 def _code_bytes(target: Path, functions: set[str]) -> int:

@@ -87,8 +87,8 @@ def mechanism_benchmark(path: Path, progress: Progress, out: Path | None = None)
     form = draft.choice(TASK).title
     programs = {form: draft.written}
     progress("writing peers")
-    found, left_out = mechanism_peers(model, load.states)
-    candidates = [*symgen_candidates(model, programs, "float64"), *found]
+    peers, left_out = mechanism_peers(model, load.states)
+    candidates = [*symgen_candidates(model, programs, "float64"), *peers]
     with tempfile.TemporaryDirectory(prefix="symgen-bench-") as folder:
         progress(f"compiling {len(candidates)} kernels")
         built = build(Path(folder), model, task, candidates, {"float64": load})
@@ -97,7 +97,7 @@ def mechanism_benchmark(path: Path, progress: Progress, out: Path | None = None)
         times = nanoseconds(built, PASSES)
         entries = [candidate.entry for candidate in candidates]
         counts = count_instructions(built.program, COUNTED_STATES, entries) if find_valgrind() else {}
-        exact = results[min(found, key=lambda c: counts.get(c.entry, times[c.entry])).entry]
+        exact = results[min(peers, key=lambda c: counts.get(c.entry, times[c.entry])).entry]
         kernels = [
             MeasuredKernel(
                 generator=c.generator,
@@ -132,7 +132,7 @@ def drawn_states(model: Model, count: int) -> list[list[float]]:
     return rows
 
 
-def _difference(found: Any, exact: Any) -> float:
+def _difference(computed: Any, exact: Any) -> float:
     import numpy as np
 
-    return float(np.median(np.linalg.norm(found - exact, axis=1) / np.linalg.norm(exact, axis=1)))
+    return float(np.median(np.linalg.norm(computed - exact, axis=1) / np.linalg.norm(exact, axis=1)))

@@ -159,10 +159,10 @@ def _compare(
     left_out: tuple[tuple[str, str], ...] = () if full_rank else (("peers", "the constraints depend on each other"),)
     candidates = [c for scalar in SCALARS for c in symgen_candidates(model, programs, scalar)]
     if full_rank:
-        found = peers(model, task, loads["float64"].states[:200])
-        left_out = found.left_out
-        candidates += found.candidates
-        candidates += [in_single(candidate) for candidate in found.candidates if "float32" in SCALARS]
+        peer_kernels = peers(model, task, loads["float64"].states[:200])
+        left_out = peer_kernels.left_out
+        candidates += peer_kernels.candidates
+        candidates += [in_single(candidate) for candidate in peer_kernels.candidates if "float32" in SCALARS]
     with tempfile.TemporaryDirectory(prefix="symgen-bench-") as folder:
         progress(f"compiling {task.quantity}, {len(candidates)} kernels")
         built = build(Path(folder), model, task, candidates, loads)

@@ -46,13 +46,13 @@ def programs_of(
     choice = draft.choice(task.quantity)
     absolute = " in absolute angles" if choice.method and choice.title == ABSOLUTE else ""
     name = (choice.method or choice.title) + absolute + choice.digits
-    found: dict[str, Mapping[Scalar, Program]] = {name: draft.written}
+    by_method: dict[str, Mapping[Scalar, Program]] = {name: draft.written}
     for method, (mechanics, quantity) in _methods(model, task.quantity):
-        if method not in found:
+        if method not in by_method:
             programs = schedule(mechanics, [quantity], scalars)
             if not any(map(_never_valid, programs.values())):
-                found[method] = programs
-    return found
+                by_method[method] = programs
+    return by_method
 
 
 def _never_valid(program: Program) -> bool:
@@ -72,15 +72,15 @@ def symgen_candidates(
     model: Model, programs: Mapping[str, Mapping[Scalar, Program]], scalar: Scalar
 ) -> tuple[CCandidate, ...]:
     """The C of every method for one scalar type."""
-    found = []
+    candidates = []
     for number, (method, by_scalar) in enumerate(programs.items()):
         portable = by_scalar[scalar]
         trigonometric = any(s.operation == "sincos" for kernel in portable.kernels for s in kernel.statements)
         variants = {PORTABLE: portable} | ({LIBRARY: with_library_trig(portable)} if trigonometric else {})
-        found += [
+        candidates += [
             replace(_candidate(model, program, method, trig), chosen=number == 0) for trig, program in variants.items()
         ]
-    return tuple(found)
+    return tuple(candidates)
 
 
 def symgen_python(

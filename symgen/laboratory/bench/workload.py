@@ -34,14 +34,14 @@ class Workload:
 def admissible_samples(reference: Reference, count: int, quantities: Sequence[str]) -> tuple[Sample, ...]:
     """States on the constraint manifold, rates and accelerations included, that are away from singularities."""
     geometric = bool(reference.system.r_geometric) and reference.ranks.constraints == reference.model.r
-    found = []
+    samples = []
     wanted = -(-4 * count // 3) + 8 if geometric else count
     for index, sample in enumerate(sample_states(reference, quantities, wanted, seed=1)):
         if sample.admissible:
-            found.append(sample)
+            samples.append(sample)
         elif not (geometric and index % 4 == 3):
-            found.append(_made_admissible(reference, sample))
-    return tuple(found[:count])
+            samples.append(_made_admissible(reference, sample))
+    return tuple(samples[:count])
 
 
 def _made_admissible(reference: Reference, sample: Sample) -> Sample:
@@ -69,8 +69,8 @@ def workload(
         high.append(heads)
         low.append([float(entry - head) for entry, head in zip(exact, heads, strict=True)])
         if index < UNIT_STATES:
-            found = expectations(reference, state, (task.quantity,), scalar, f"{scalar} {index}")
-            units.append(found[task.quantity].unit)
+            expected = expectations(reference, state, (task.quantity,), scalar, f"{scalar} {index}")
+            units.append(expected[task.quantity].unit)
     return Workload(scalar, np.array(rows), np.array(high), np.array(low), np.array(units))
 
 

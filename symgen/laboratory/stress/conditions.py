@@ -25,8 +25,8 @@ class Conditions:
 
     def matrix(self, name: str, state: State) -> Any:
         """A quantity as an array of doubles."""
-        found = self._reference.matrices(state, (name,), BITS)[name]
-        return np.array([float(x) for x in found.entries()]).reshape(found.nrows(), found.ncols())
+        exact = self._reference.matrices(state, (name,), BITS)[name]
+        return np.array([float(x) for x in exact.entries()]).reshape(exact.nrows(), exact.ncols())
 
     def measures(self, state: State) -> Measures | None:
         """Both measures of singularity; None where they do not exist."""
@@ -47,8 +47,8 @@ class Conditions:
         sizes = np.linalg.norm(M, axis=0)
         subsets = list(combinations(range(M.shape[1]), rank))
         orthogonal = sum(float(np.prod(sizes[list(J)])) ** 2 for J in subsets)
-        found = sum(float(np.prod(np.linalg.svd(M[:, J], compute_uv=False))) ** 2 for J in subsets)
-        return found / orthogonal if orthogonal > 0 else 0.0
+        minors = sum(float(np.prod(np.linalg.svd(M[:, J], compute_uv=False))) ** 2 for J in subsets)
+        return minors / orthogonal if orthogonal > 0 else 0.0
 
     def floor(self, name: str, scalar: Scalar, state: State, measures: Measures | None) -> float:
         """eps κ(B) κ(FᵀM), by 1/κ² ≈ measure of rows of one length.

@@ -126,17 +126,17 @@ def _factors(model: Model, exact: Exact) -> Choices:
 
     ring = exact.ring
     speller = Speller(ring, ())
-    found: dict[PolyElement, _DeterminantFactor] = {}
+    by_value: dict[PolyElement, _DeterminantFactor] = {}
 
     def factors(p: PolyElement) -> list[_DeterminantFactor]:
         result = []
         for value in essential_factors(ring, p):
-            if value not in found:
+            if value not in by_value:
                 spelled = speller.polynomial(ring.normal(value))
                 unsigned = -spelled if spelled.could_extract_minus_sign() else spelled
                 label = " ".join(render_text_math(unsigned, model, width=10_000).split())
-                found[value] = _DeterminantFactor(value, label)
-            result.append(found[value])
+                by_value[value] = _DeterminantFactor(value, label)
+            result.append(by_value[value])
         return result
 
     partitions: list[tuple[int, ...]] = []
@@ -155,7 +155,7 @@ def _factors(model: Model, exact: Exact) -> Choices:
                 factor.inputs.append(subset)
     known = [
         Trouble(f.label, _ring_values(model, exact, f.value), tuple(f.partitions), tuple(f.inputs))
-        for f in found.values()
+        for f in by_value.values()
     ]
     return Choices(tuple(known), tuple(partitions), tuple(inputs), True)
 
@@ -192,13 +192,13 @@ def _numeric(reference: Reference) -> list[Trouble]:
     system, rank = reference.system, reference.ranks.constraints
     if not rank or comb(system.n, rank) * comb(system.r, rank) > MOST_DETERMINANTS:
         return []
-    found = []
+    troubles = []
     for independent in combinations(range(system.n), system.n - rank):
         dependent = [j for j in range(system.n) if j not in independent]
         names = ", ".join(system.model.coordinates[j].name for j in independent)
         values = _minors_of_rows(reference, dependent)
-        found.append(Trouble(f"determinant of the partition ({names})", values, (independent,)))
-    return found
+        troubles.append(Trouble(f"determinant of the partition ({names})", values, (independent,)))
+    return troubles
 
 
 def _minors_of_rows(reference: Reference, columns: Sequence[int]) -> Values:
@@ -214,13 +214,13 @@ def _minors_of_rows(reference: Reference, columns: Sequence[int]) -> Values:
 def joint_troubles(reference: Reference) -> tuple[tuple[str, Trouble], ...]:
     """Without factors: where the rank of B drops, and where the degree of actuation does, all minors vanish at once."""
     system, ranks = reference.system, reference.ranks
-    found: list[tuple[str, Trouble]] = []
+    troubles: list[tuple[str, Trouble]] = []
     if ranks.constraints and comb(system.n, ranks.constraints) * comb(system.r, ranks.constraints) <= MOST_DETERMINANTS:
-        found.append(("constraint", Trouble("all minors of B", _all_minors(reference, False))))
+        troubles.append(("constraint", Trouble("all minors of B", _all_minors(reference, False))))
     size = ranks.constraints + ranks.actuation
     if ranks.actuation and comb(system.n, size) * comb(system.r + system.m, size) <= MOST_DETERMINANTS:
-        found.append(("input", Trouble("all minors of [Bᵀ, M]", _all_minors(reference, True))))
-    return tuple(found)
+        troubles.append(("input", Trouble("all minors of [Bᵀ, M]", _all_minors(reference, True))))
+    return tuple(troubles)
 
 
 def _all_minors(reference: Reference, with_inputs: bool) -> Values:

@@ -80,30 +80,30 @@ def search(reference: Reference, most: int | None = None) -> SingularFamilies:
 def _singularities(
     reference: Reference, known: Choices, most: int | None
 ) -> tuple[list[Family], tuple[str, ...]]:
-    found: list[Family] = []
+    families: list[Family] = []
     nowhere: list[str] = []
     for trouble in known.troubles[:most]:
         at = [(_kind(reference, place), place) for place in _places(reference, trouble)]
         if at:
             # a choice may also fail where more goes wrong; what it shows elsewhere is its own
             kind = max((kind for kind, _ in at), key=ORDER.index)
-            found.append(_family(reference, kind, trouble, [place for its_kind, place in at if its_kind == kind]))
+            families.append(_family(reference, kind, trouble, [place for its_kind, place in at if its_kind == kind]))
         else:
             nowhere.append(f"{trouble.label} = 0: not found on the constraint manifold")
     together = list(common_troubles(known)) if known.factored else list(joint_troubles(reference))
     for kind in ORDER[:2]:
         candidates = [trouble for its_kind, trouble in together if its_kind == kind]
         for trouble in candidates[: most or MOST_JOINT]:
-            if sum(family.kind == kind for family in found) == FAMILIES_OF_KIND:
+            if sum(family.kind == kind for family in families) == FAMILIES_OF_KIND:
                 break
             wanted = [place for place in _places(reference, trouble) if _kind(reference, place) == kind]
             if wanted:
-                found.append(_family(reference, "constraint" if kind == "constraint" else "input", trouble, wanted))
-        if not any(family.kind == kind for family in found):
+                families.append(_family(reference, "constraint" if kind == "constraint" else "input", trouble, wanted))
+        if not any(family.kind == kind for family in families):
             what = "the rank of B drops" if kind == "constraint" else "the degree of actuation drops"
             proven = known.factored and not candidates
             nowhere.append(f"{what} nowhere" if proven else f"{what}: no such configuration was found")
-    return sorted(found, key=lambda family: ORDER.index(family.kind)), tuple(nowhere)
+    return sorted(families, key=lambda family: ORDER.index(family.kind)), tuple(nowhere)
 
 
 def _places(reference: Reference, trouble: Trouble) -> list[Place]:
@@ -178,27 +178,27 @@ def _extremes(reference: Reference) -> list[Family]:
     model = reference.model
     regular = _regular(reference)
     angles = [i for i, c in enumerate(model.coordinates) if c.is_angle]
-    found: list[Family] = []
+    families: list[Family] = []
     curves: tuple[Callable[[float], State | None], ...]
     dependent = reference.ranks.constraints < model.r
     if angles:
         curves = tuple(_large_angles(state, angles) for state in regular)
-        found.append(Family("large angles", "whole turns added to every angle", "one radian over the angle", curves))
+        families.append(Family("large angles", "whole turns added to every angle", "one radian over the angle", curves))
         curves = tuple(_small_angles(reference, state, angles, k) for k, state in enumerate(regular))
-        found.append(Family("small angles", "every angle near zero", "size of the angles in rad", curves))
+        families.append(Family("small angles", "every angle near zero", "size of the angles in rad", curves))
     heavy = [i for i, d in enumerate(parameter_dimensions(model)) if d is not None and d[0] == 1 and d[2] == 0]
     for i in heavy:
         name = model.parameters[i].name
         curves = tuple(_scaled(state, i, sign) for state in regular[:1] for sign in (1, -1))
         meaning = f"{name} multiplied or divided by d"
-        found.append(Family("mass ratios", name, meaning, curves))
+        families.append(Family("mass ratios", name, meaning, curves))
     if any(row.kind == "geometric" for row in model.constraints):
-        found.append(_near_redundant(regular) if dependent else _drift(regular))
+        families.append(_near_redundant(regular) if dependent else _drift(regular))
     if model.r:
         curves = tuple(_moved(state, "qd", f"rates {k}", 1.0) for k, state in enumerate(regular))
         label = "rates and accelerations that violate the constraints"
-        found.append(Family("incompatible inputs", label, "relative size of the violation", curves))
-    return found
+        families.append(Family("incompatible inputs", label, "relative size of the violation", curves))
+    return families
 
 
 def _drift(regular: Sequence[State]) -> Family:

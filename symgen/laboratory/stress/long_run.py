@@ -95,9 +95,9 @@ def _built(model: Model, path: Path, kernels: RunnableKernels, folder: FilePath)
     target = folder / "long_run"
     flags = ("-std=c99", "-O2", "-ffp-contract=off")
     sources = (str(folder / "long_run.c"), str(folder / f"{stem}.c"))
-    told = processes.run([*kernels.compiler.command, *flags, "-o", str(target), *sources, "-lm"], LONGEST_COMPILATION)
-    if told.returncode or not target.is_file():
-        raise ToolError(f"{kernels.compiler.command[0]} makes no program: {told.stderr.strip()[:2000]}")
+    result = processes.run([*kernels.compiler.command, *flags, "-o", str(target), *sources, "-lm"], LONGEST_COMPILATION)
+    if result.returncode or not target.is_file():
+        raise ToolError(f"{kernels.compiler.command[0]} makes no program: {result.stderr.strip()[:2000]}")
     return target
 
 
@@ -115,9 +115,9 @@ def _run(program: FilePath, table: FilePath, path: str, steps: int, projected: b
 
 def complaints(runs: tuple[LongRun, ...]) -> tuple[str, ...]:
     """What ended a run early, or left it without finite numbers."""
-    found = [f"long run along {run.path}: {run.complaint}" for run in runs if run.complaint]
+    sentences = [f"long run along {run.path}: {run.complaint}" for run in runs if run.complaint]
     for run in runs:
         values = (*run.position_drift, *run.rate_drift, *run.tracking, *run.energy)
         if not run.complaint and not np.all(np.isfinite(values)):
-            found.append(f"long run along {run.path}: numbers that are not finite")
-    return tuple(found)
+            sentences.append(f"long run along {run.path}: numbers that are not finite")
+    return tuple(sentences)

@@ -27,9 +27,9 @@ class MethodKernels:
         derived = every_method(model, [name for name in quantities if name in NAMED])
         self._runners: list[tuple[str, Runner]] = []
         self.left_out: tuple[str, ...] = ()
-        for count, (name, mechanics, found) in enumerate(derived):
-            weights = {quantity.name: cost(scalars(quantity)).weight for quantity in found}
-            wanted = [quantity for quantity in found if weights[quantity.name] <= MOST_OPERATIONS]
+        for count, (name, mechanics, of_method) in enumerate(derived):
+            weights = {quantity.name: cost(scalars(quantity)).weight for quantity in of_method}
+            wanted = [quantity for quantity in of_method if weights[quantity.name] <= MOST_OPERATIONS]
             self.left_out += tuple(
                 f"{LABELS[name]} of {quantity}: not run, {weight} operations"
                 for quantity, weight in weights.items()

@@ -32,7 +32,7 @@ def odd_numbers(
     kernels: RunnableKernels, names: Sequence[str], states: Sequence[State]
 ) -> tuple[tuple[OddNumbers, ...], tuple[str, ...]]:
     """Every argument of every kernel set to each odd number in turn."""
-    found: list[OddNumbers] = []
+    counts: list[OddNumbers] = []
     failures: list[str] = []
     for scalar in SCALARS:
         for name in names:
@@ -53,5 +53,5 @@ def odd_numbers(
                             failures.append(f"{name}, {scalar}, {load.local} = {odd}: not finite with status 0")
                         if math.isnan(odd) and load.argument != "p" and outcome.status == Status.OK:
                             failures.append(f"{name}, {scalar}, {load.local} = nan: status 0")
-            found.append(OddNumbers(name, scalar, calls, answered))
-    return tuple(found), tuple(failures)
+            counts.append(OddNumbers(name, scalar, calls, answered))
+    return tuple(counts), tuple(failures)

@@ -68,14 +68,14 @@ class Series:
 
 def by_method(series: Sequence[Series], quantity: str, scalar: Scalar, families: Sequence[int]) -> Mapping[str, Series]:
     """The worst over some families for each method, distance by distance."""
-    found: dict[str, dict[float, Error]] = {}
+    worst: dict[str, dict[float, Error]] = {}
     for one in series:
         if one.quantity == quantity and one.scalar == scalar and one.family in families:
-            errors = found.setdefault(one.method, {})
+            errors = worst.setdefault(one.method, {})
             for e in one.errors:
                 errors[e.distance] = e.worse(errors.get(e.distance, e))
     return {
-        one: Series(-1, scalar, quantity, one, tuple(found[one][d] for d in sorted(found[one], reverse=True)))
+        one: Series(-1, scalar, quantity, one, tuple(worst[one][d] for d in sorted(worst[one], reverse=True)))
         for one in METHODS
-        if one in found
+        if one in worst
     }

@@ -75,7 +75,7 @@ class Sweep:
         )
 
 
-Found: TypeAlias = dict[tuple[int, Scalar, str, str], dict[float, Error]]
+ErrorsBySeries: TypeAlias = dict[tuple[int, Scalar, str, str], dict[float, Error]]
 
 
 class Sweeper:
@@ -94,7 +94,7 @@ class Sweeper:
         self._families = families
         self._names = tuple(name for name in STRESSED if name in kernels.names)
         self._methods = methods
-        self._found: Found = {}
+        self._errors: ErrorsBySeries = {}
         self._counts: dict[tuple[str, Scalar], list[int]] = {}
         self._failures: list[str] = []
 
@@ -118,7 +118,7 @@ class Sweeper:
         """What was found so far."""
         series = tuple(
             Series(family, scalar, quantity, method, tuple(errors[d] for d in sorted(errors, reverse=True)))
-            for (family, scalar, quantity, method), errors in self._found.items()
+            for (family, scalar, quantity, method), errors in self._errors.items()
         )
         statuses = tuple(StatusCount(name, scalar, *counts) for (name, scalar), counts in self._counts.items())
         exceeded = [(self._families[one.family], one) for one in series if one.method == SYMGEN and one.breaks]
@@ -227,7 +227,7 @@ class Sweeper:
             distance = expected.distance(entries)
             relative = distance / expected.size if expected.size else distance
             error = Error(d, relative, expected.in_units(distance), floor)
-        errors = self._found.setdefault((index, scalar, name, method), {})
+        errors = self._errors.setdefault((index, scalar, name, method), {})
         errors[d] = errors[d].worse(error) if d in errors else error
 
     def _paper(
@@ -330,14 +330,14 @@ def _sentence(family: Family, one: Series) -> str:
 
 def _within(series: Sequence[Series], exceeded: Series) -> str:
     """Which methods by name stay within the tolerance where the generated one does not."""
-    found = [
+    methods = [
         one.method.removeprefix("method ")
         for one in series
         if (one.family, one.scalar, one.quantity) == (exceeded.family, exceeded.scalar, exceeded.quantity)
         and one.method in LABELS.values()
         and one.breaks is None
     ]
-    return f"; within it: --form {exceeded.quantity}={' or '.join(found)}" if found else ""
+    return f"; within it: --form {exceeded.quantity}={' or '.join(methods)}" if methods else ""
 
 
 def _texts(values: Sequence[float]) -> str:

@@ -58,7 +58,7 @@ def places(reference: Reference, trouble: Trouble, count: int, parameters_too: b
     """
     model, system = reference.model, reference.system
     generator = random.Random(f"places {trouble.label}")
-    found: list[Place] = []
+    distinct: list[Place] = []
     with precision(BITS):
         parameters = default_parameters(model)
         free = [i for i, p in enumerate(model.parameters) if p.range is not None] if parameters_too else []
@@ -70,14 +70,14 @@ def places(reference: Reference, trouble: Trouble, count: int, parameters_too: b
             chosen = list(parameters)
             for i, value in zip(free, x[system.n :], strict=True):
                 chosen[i] = value
-            if not (_allowed(reference, q, chosen, free) and _new(q, found)):
+            if not (_allowed(reference, q, chosen, free) and _new(q, distinct)):
                 continue
             direction = _direction(reference, trouble, q, chosen, generator)
             if direction is not None:
-                found.append(Place(q, tuple(chosen), direction))
-            if len(found) == count:
+                distinct.append(Place(q, tuple(chosen), direction))
+            if len(distinct) == count:
                 break
-    return found
+    return distinct
 
 
 def _solved(
@@ -119,8 +119,8 @@ def _allowed(reference: Reference, q: Sequence[Any], parameters: Sequence[Any], 
     return True
 
 
-def _new(q: Sequence[Any], found: Sequence[Place]) -> bool:
-    return all(any(abs(float(a - b)) > 1e-3 for a, b in zip(q, place.q, strict=True)) for place in found)
+def _new(q: Sequence[Any], known: Sequence[Place]) -> bool:
+    return all(any(abs(float(a - b)) > 1e-3 for a, b in zip(q, place.q, strict=True)) for place in known)
 
 
 def _direction(

@@ -39,12 +39,12 @@ def uses_library(entry: Entry, portable: bool) -> bool:
     return bool(names & LIBRARY) or (not portable and "sincos" in names)
 
 
-def compare(entries: Entries, portable: bool, host: Results, found: Results, units: Units, regular: int) -> Difference:
-    """Every record of `found` beside the host's; the first `regular` states are judged where bits may differ."""
+def compare(entries: Entries, portable: bool, host: Results, other: Results, units: Units, regular: int) -> Difference:
+    """Every record of `other` beside the host's; the first `regular` states are judged where bits may differ."""
     different, farthest = 0, 0.0
     wrong: list[str] = []
     for entry in entries.functions:
-        pairs = list(zip(host.records[entry.name], found.records[entry.name], strict=True))
+        pairs = list(zip(host.records[entry.name], other.records[entry.name], strict=True))
         unequal = [k for k, (a, b) in enumerate(pairs) if a != b]
         different += len(unequal)
         if not uses_library(entry, portable):
@@ -69,7 +69,7 @@ def units_of(entries: Entries, scalar: Scalar, exact: Results, moved: Results) -
     Both results are those of the plain kernels in float64.
     """
     eps = float(UNIT_ROUNDOFF[scalar])
-    found: dict[str, list[float]] = {}
+    by_name: dict[str, list[float]] = {}
     for entry in entries.functions:
         if entry.form:
             continue
@@ -80,8 +80,8 @@ def units_of(entries: Entries, scalar: Scalar, exact: Results, moved: Results) -
             others = [numbers(other, "float64") for other in around if other.status == 0]
             d = max((_norm([a - b for a, b in zip(y, z, strict=True)]) for z in others), default=0.0)
             units.append(d + eps * _norm(y))
-        found[entry.name] = units
-    return found
+        by_name[entry.name] = units
+    return by_name
 
 
 def numbers(record: RunRecord, scalar: Scalar) -> tuple[float, ...]:

@@ -47,11 +47,11 @@ def count_calls(core: Core, image: Path, counter: Path, functions: Mapping[str, 
     calls, out = image.parent / "calls.txt", image.parent / "counts.bin"
     calls.write_text("".join(f"{address:x}\n" for address in functions.values()), encoding="utf-8")
     emulate(core, image, ("-plugin", f"{counter},calls={calls},out={out}"))
-    found: dict[str, list[int]] = {name: [] for name in functions}
+    by_function: dict[str, list[int]] = {name: [] for name in functions}
     names = list(functions)
     for place, count in struct.iter_unpack("<II", out.read_bytes()):
-        found[names[place]].append(count)
-    return {name: tuple(counts) for name, counts in found.items()}
+        by_function[names[place]].append(count)
+    return {name: tuple(counts) for name, counts in by_function.items()}
 
 
 def addresses(workshop: Workshop, image: Path, functions: Sequence[str]) -> dict[str, int]:

@@ -56,8 +56,8 @@ def _footprint(
 
 def _symbols(workshop: Workshop, part: Path) -> tuple[set[str], tuple[str, ...]]:
     """The functions in an object, and the undefined symbols it refers to; its table may name others that went away."""
-    told = run([workshop.tool("objdump"), "-t", "-r", str(part)]).stdout
-    rows = [line.split() for line in told.splitlines()]
+    listing = run([workshop.tool("objdump"), "-t", "-r", str(part)]).stdout
+    rows = [line.split() for line in listing.splitlines()]
     # `00000000 g     F .text.name  00000010 name` and `00000000  *UND*  00000000 name`
     functions = {row[-1].partition(".")[0] for row in rows if "F" in row[1:4]}
     unknown = {row[-1] for row in rows if "*UND*" in row}

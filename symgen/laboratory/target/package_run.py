@@ -40,13 +40,13 @@ def run_package(
     for scalar, entries in package.entries.items():
         places = chosen[scalar]
         try:
-            found = unpack_results((image.parent / results_file(scalar)).read_bytes(), entries, len(places))
+            results = unpack_results((image.parent / results_file(scalar)).read_bytes(), entries, len(places))
         except (OSError, ValueError) as error:
             raise ToolError(f"the package on {core.name}: {error}") from error
         known = expected[scalar].records
         common = Entries(scalar, tuple(entry for entry in entries.functions if entry.name in known), entries.given)
         host = Results({e.name: tuple(known[e.name][k] for k in places) for e in common.functions}, {})
-        made = compare(common, True, host, found, units[scalar], min(regular, REGULAR))
+        made = compare(common, True, host, results, units[scalar], min(regular, REGULAR))
         count = len(common.functions)
         cells.append(Cell(
             core.name, "package", LEVEL, scalar, "portable", count, count * len(places), made.different, made.distance

@@ -165,14 +165,14 @@ class _Bench:
         self, image: Path, entries: Mapping[Scalar, Entries], states: Mapping[Scalar, int]
     ) -> dict[Scalar, Results]:
         """What an image wrote; raises ToolError when it is incomplete."""
-        found = {}
+        results = {}
         for scalar, known in entries.items():
             try:
                 data = (image.parent / results_file(scalar)).read_bytes()
-                found[scalar] = unpack_results(data, known, states[scalar])
+                results[scalar] = unpack_results(data, known, states[scalar])
             except (OSError, ValueError) as error:
                 raise ToolError(f"{image.parent.name}: {error}") from error
-        return found
+        return results
 
     def _run(self, build: _Build, image: Path) -> dict[Scalar, Results]:
         run_image(build.core, image)
@@ -227,24 +227,24 @@ def measure(
         packaged = () if package is None else tuple(cores)
         done = 0
 
-        def told() -> None:
+        def report_done() -> None:
             nonlocal done
             done += 1
             progress(f"compiling and running, {done} of {len(builds) + len(packaged)} builds")
 
         def one(build: _Build) -> tuple[list[Cell], list[KernelCost], list[str]]:
-            found = _measured(bench, build)
-            told()
-            return found
+            measurement = _measured(bench, build)
+            report_done()
+            return measurement
 
         def other(core: Core) -> tuple[list[Cell], list[str]]:
             assert package is not None
-            found = run_package(
+            measurement = run_package(
                 package, core, bench.folder / f"{core.name}-package", bench.states, len(vectors.regular),
                 bench.expected[PORTABLE], bench.units,
             )
-            told()
-            return found
+            report_done()
+            return measurement
 
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             packages = pool.map(other, packaged)
@@ -294,16 +294,16 @@ def _measured(bench: _Bench, build: _Build) -> tuple[list[Cell], list[KernelCost
     cells, failures = [], []
     for scalar, entries in bench.entries(build).items():
         portable = build.trig == PORTABLE
-        found = compare(
+        difference = compare(
             entries, portable, bench.expected[build.trig][scalar], results[scalar], bench.units[scalar],
             len(bench.vectors.regular),
         )
         count = len(entries.functions)
         cells.append(Cell(
             build.where, build.compiler, build.level, scalar, build.trig, count, count * len(bench.states[scalar]),
-            found.different, found.distance,
+            difference.different, difference.distance,
         ))
-        failures += [f"{build.label}, {scalar}: {wrong}" for wrong in found.wrong]
+        failures += [f"{build.label}, {scalar}: {wrong}" for wrong in difference.wrong]
     return cells, costs, [*failures, *(wrong for cost in costs for wrong in _wrong(bench, build, cost))]
 
 
@@ -328,13 +328,13 @@ def _costed(bench: _Bench, build: _Build, core: Core) -> tuple[dict[Scalar, Resu
 
 def _sizes(shop: Workshop, build: _Build, entries: Entries) -> dict[str, KernelFootprint]:
     """Footprints by function; each file has an object of its own."""
-    found: dict[str, KernelFootprint] = {}
+    sizes: dict[str, KernelFootprint] = {}
     for unit in dict.fromkeys(entry.unit for entry in entries.functions):
         target = shop.object(f"{unit}.c", build.level, build.compiler)
         here = [entry for entry in entries.functions if entry.unit == unit]
         deep = {entry.function for entry in here if works_with_pairs(entry.kernel)}
-        found |= footprints(shop, target, [entry.function for entry in here], deep)
-    return found
+        sizes |= footprints(shop, target, [entry.function for entry in here], deep)
+    return sizes
 
 
 def _wrong(bench: _Bench, build: _Build, cost: KernelCost) -> list[str]:
@@ -362,27 +362,27 @@ def _wrong(bench: _Bench, build: _Build, cost: KernelCost) -> list[str]:
 
 def _notes(bench: _Bench, cores: Sequence[Core]) -> tuple[str, ...]:
     """What was left out, and what is not as in the folder of the model."""
-    found = [*bench.notes]
+    notes = [*bench.notes]
     without = [core.name for core in cores if not has_unit(core)]
     if bench.beyond and without:
-        found.append(
+        notes.append(
             f"not built by gcc in float64 for {', '.join(without)}, for their size: {', '.join(bench.beyond)}"
         )
     if not has_cmake():
-        found.append(WITHOUT_CMAKE)
+        notes.append(WITHOUT_CMAKE)
     if "clang" not in compilers():
-        found.append("clang is not installed: builds with clang are left out")
-    return tuple(found)
+        notes.append("clang is not installed: builds with clang are left out")
+    return tuple(notes)
 
 
 def _statuses(bench: _Bench) -> dict[str, dict[str, int]]:
     """How often each status was told on the singular and odd vectors, by scalar type."""
     first = len(bench.vectors.regular)
-    found: dict[str, dict[str, int]] = {}
+    by_scalar: dict[str, dict[str, int]] = {}
     for scalar, results in bench.expected[PORTABLE].items():
-        told = Counter(record.status for records in results.records.values() for record in records[first:])
-        found[scalar] = {str(status): told[status] for status in sorted(told)}
-    return found
+        counts = Counter(record.status for records in results.records.values() for record in records[first:])
+        by_scalar[scalar] = {str(status): counts[status] for status in sorted(counts)}
+    return by_scalar
 
 
 def _versions(cores: Sequence[Core]) -> dict[str, str]:

@@ -75,10 +75,10 @@ def has_unit(core: Core | None) -> bool:
 
 def selected(chosen: BuildSelection, programs: Mapping[Scalar, Program]) -> dict[Scalar, Program]:
     """The kernels of a selection by scalar type, where there are any."""
-    found = {scalar: replace(program, kernels=tuple(_kept(chosen, scalar, program)))
+    kept = {scalar: replace(program, kernels=tuple(_kept(chosen, scalar, program)))
              for scalar, program in programs.items()}
     return {scalar: with_library_trig(program) if chosen.library else program
-            for scalar, program in found.items() if program.kernels}
+            for scalar, program in kept.items() if program.kernels}
 
 
 def small_kernels(program: Program) -> Program:

@@ -29,8 +29,8 @@ def _conformance(cells: Sequence[Cell]) -> str:
         levels = [build + mark for build, mark in marks.items()]
         different = sum(cell.different for cell in here)
         distance = max(cell.distance for cell in here)
-        told = "the same bits" if not different else f"{different} differ, by {distance:.2g} units at most"
-        rows.append((where, trig, ", ".join(levels), str(sum(cell.records for cell in here)), told))
+        agreement = "the same bits" if not different else f"{different} differ, by {distance:.2g} units at most"
+        rows.append((where, trig, ", ".join(levels), str(sum(cell.records for cell in here)), agreement))
     note = "\n  * not every kernel" if any("*" in row[2] for row in rows) else ""
     return columns(("beside the host", "trig", "builds", "results", ""), rows, "<<<><") + note
 

@@ -60,9 +60,9 @@ def toolchain(family: Family) -> Toolchain:
     """The toolchain of a family; picolibc is RISC-V's only packaged C library."""
     prefix = PREFIX[family]
     specs = ("--specs=picolibc.specs",) if family == "riscv" else ()
-    found = run([f"{prefix}gcc", *specs, "-E", "-v", "-x", "c", "/dev/null"]).stderr
-    listed = found.partition("search starts here:\n")[2].partition("#include <...> search starts here:\n")
-    folders = [line.strip() for line in (listed[2] or found).partition("End of search list")[0].splitlines()]
+    printed = run([f"{prefix}gcc", *specs, "-E", "-v", "-x", "c", "/dev/null"]).stderr
+    listed = printed.partition("search starts here:\n")[2].partition("#include <...> search starts here:\n")
+    folders = [line.strip() for line in (listed[2] or printed).partition("End of search list")[0].splitlines()]
     # clang brings its own headers of the language and lacks those of the library
     library = [folder for folder in folders if Path(folder, "math.h").is_file() and Path(folder, "string.h").is_file()]
     include = tuple(argument for folder in library[:1] for argument in ("-isystem", folder))
@@ -71,11 +71,11 @@ def toolchain(family: Family) -> Toolchain:
 
 def run(command: Sequence[str], folder: Path | None = None) -> CompletedProcess[str]:
     """Runs a tool; raises ToolError with what it says when it fails or hangs."""
-    told = processes.run(command, LONGEST_RUN, folder)
-    if told.returncode:
-        said = (told.stderr + told.stdout).strip()[:2000]
-        raise ToolError(f"{command[0]} failed ({told.returncode}): {said}\n  {' '.join(command)}")
-    return told
+    completed = processes.run(command, LONGEST_RUN, folder)
+    if completed.returncode:
+        said = (completed.stderr + completed.stdout).strip()[:2000]
+        raise ToolError(f"{command[0]} failed ({completed.returncode}): {said}\n  {' '.join(command)}")
+    return completed
 
 
 def version(tool: str) -> str:

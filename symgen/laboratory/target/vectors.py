@@ -45,8 +45,8 @@ class Vectors:
 
 def vectors_of(reference: Reference) -> Vectors:
     """Seeded and deterministic; raises VerificationError where hardly any state is found."""
-    found = [sample.state for sample in sample_states(reference, (), CONFIGURATIONS, seed=2)]
-    regular = tuple(islice(_mixed(found), FEWEST))
+    states = [sample.state for sample in sample_states(reference, (), CONFIGURATIONS, seed=2)]
+    regular = tuple(islice(_mixed(states), FEWEST))
     singular = (with_task(reference, state) for state in _singular(reference))
     return Vectors(regular, (*singular, *_degenerate(regular[0])), tuple(_odd(regular[0])))
 

@@ -58,22 +58,22 @@ class Approach:
         """The decades that are reached, 0 to `DEEPEST`, each with a configuration; fewer where nothing is singular."""
         first = here = np.array(start)
         distance = self.distance(kind, here)
-        told: set[int] = set()
+        reached: set[int] = set()
         for _ in range(STEPS):
             if not distance:
                 return
             decade = min(DEEPEST, int(-math.log10(min(1.0, distance))))
-            if decade not in told:
-                told.add(decade)
+            if decade not in reached:
+                reached.add(decade)
                 yield decade, here
             if decade == DEEPEST:
                 return
             aim = MIDDLE * 10.0 ** -(decade + 1)
             move = (distance - aim) * self._steepest(kind, here, distance, dice)
-            found = self._step(kind, first, here, distance, move)
-            if found is None:
+            nearer = self._step(kind, first, here, distance, move)
+            if nearer is None:
                 return
-            here, distance = found
+            here, distance = nearer
 
     def _steepest(self, kind: str, q: Any, distance: float, dice: Dice) -> Any:
         """The direction along V in which the distance falls, as long as the way for a distance of 1 is at this slope.

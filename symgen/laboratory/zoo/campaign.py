@@ -17,7 +17,7 @@ from symgen.laboratory.zoo.cases import case_of
 from symgen.laboratory.zoo.draws.describe import Description
 from symgen.laboratory.zoo.draws.families import draw
 from symgen.laboratory.zoo.records import DrawRecord
-from symgen.laboratory.zoo.refusals import NOT_TOLD, judged
+from symgen.laboratory.zoo.refusals import UNREPORTED, judged
 from symgen.laboratory.zoo.run import run_command
 from symgen.laboratory.zoo.shrink import shrink
 from symgen.laboratory.zoo.verdict import FAILED, REFUSED, DrawVerdict, verdict_of, without_numbers
@@ -72,8 +72,8 @@ def judge(description: Description, model: Path) -> JudgedDraw:
     verdict = judged(description, verdict_of(run))
     compared = None
     if not verdict.failed and verdict.ending != REFUSED:
-        verdict, told, compared = _witnessed(description, folder, verdict)
-        (folder / "stderr").write_text(told + run.err, encoding="utf-8")
+        verdict, text, compared = _witnessed(description, folder, verdict)
+        (folder / "stderr").write_text(text + run.err, encoding="utf-8")
     return JudgedDraw(verdict, run.cpu, run.megabytes, compared)
 
 
@@ -91,8 +91,8 @@ def _witnessed(
         return DrawVerdict(FAILED, "fault of the zoo", signature), f"{fault!r}\n", None
     if checked.findings:
         first = checked.findings[0]
-        told = "".join(f"{finding.text}\n" for finding in checked.findings)
-        return DrawVerdict(FAILED, first.kind, without_numbers(first.text)), told, checked.coverage
+        text = "".join(f"{finding.text}\n" for finding in checked.findings)
+        return DrawVerdict(FAILED, first.kind, without_numbers(first.text)), text, checked.coverage
     if not checked.states:
         verdict = without_states(verdict, checked.coverage.lack)
     return verdict, "", checked.coverage
@@ -115,9 +115,9 @@ def one_draw(campaign: Campaign, index: int) -> tuple[DrawRecord, str]:
         campaign.seed, index, description.family, verdict.ending, verdict.kind, verdict.signature,
         round(ended.cpu, 1), round(ended.megabytes), str(model) if verdict.failed else "", ended.compared,
     )  # fmt: skip
-    told = f"{record.ending} {record.kind} {record.signature} ({record.cpu} s, {record.megabytes} MB)"
+    line = f"{record.ending} {record.kind} {record.signature} ({record.cpu} s, {record.megabytes} MB)"
     if ended.compared is not None and ended.compared.lack:
-        told += f"; {ended.compared.states} states: {ended.compared.lack}"
+        line += f"; {ended.compared.states} states: {ended.compared.lack}"
     if not verdict.failed:
         shutil.rmtree(model.parent, ignore_errors=True)
     elif campaign.shrinking:
@@ -125,8 +125,8 @@ def one_draw(campaign: Campaign, index: int) -> tuple[DrawRecord, str]:
         kept = campaign.cases / f"{model.parent.name}.yaml" if campaign.cases else model.with_name("case.yaml")
         kept.parent.mkdir(parents=True, exist_ok=True)
         kept.write_text(case_of(small, verdict).text, encoding="utf-8")
-        told += f"; kept as {kept}"
-    return record, f"{record.seed}:{index} {record.family}: {' '.join(told.split())}"
+        line += f"; kept as {kept}"
+    return record, f"{record.seed}:{index} {record.family}: {' '.join(line.split())}"
 
 
 def run_campaign(
@@ -166,7 +166,7 @@ def usual_jobs() -> int:
 def shrunk(description: Description, verdict: DrawVerdict, model: Path, most: int) -> Description:
     """The draw made small, still with the same ending; a mistake that was not told stays as it is, lest it be lost."""
     spent = 0.0
-    if verdict.kind == NOT_TOLD:
+    if verdict.kind == UNREPORTED:
         return description
 
     def fails(candidate: Description) -> bool:

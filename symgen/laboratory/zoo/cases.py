@@ -8,7 +8,7 @@ from pathlib import Path
 
 from symgen.laboratory.zoo.dice import exact
 from symgen.laboratory.zoo.draws.describe import Description
-from symgen.laboratory.zoo.refusals import NOT_TOLD
+from symgen.laboratory.zoo.refusals import UNREPORTED
 from symgen.laboratory.zoo.verdict import REFUSED, VERIFIED, DrawVerdict
 
 FAILURE, EXPECTED, START = "# found by the zoo: ", "# expected: ", "# start: "
@@ -32,7 +32,7 @@ class StoredCase:
 
 def case_of(description: Description, verdict: DrawVerdict) -> StoredCase:
     """The case of a failure: a mistake that was not told must be refused, all else verified."""
-    expected = REFUSED if verdict.kind == NOT_TOLD else VERIFIED
+    expected = REFUSED if verdict.kind == UNREPORTED else VERIFIED
     return StoredCase(f"{verdict.kind}: {verdict.signature}", expected, dict(description.start), description.text)
 
 

@@ -64,8 +64,8 @@ ALL = (
 def features(description: Description) -> frozenset[str]:
     """Which of `ALL` a drawn system has."""
     blocks = expanded(description.blocks, description.files)
-    found = set(_of_text(description, blocks)) | set(_of_marks(description.marks))
-    return frozenset(found | set(_of_numbers(DrawnEquations(blocks, description.start), blocks)))
+    present = set(_of_text(description, blocks)) | set(_of_marks(description.marks))
+    return frozenset(present | set(_of_numbers(DrawnEquations(blocks, description.start), blocks)))
 
 
 def _of_marks(marks: tuple[str, ...]) -> Iterator[str]:
@@ -152,7 +152,7 @@ def _of_elements(blocks: Mapping[str, Any]) -> Iterator[str]:
     inputs = (blocks.get("inputs") or {}).values()
     allocation = blocks.get("allocation") or {}
     preload = allocation.get("preload")
-    told = {
+    by_name = {
         "spring": bool(springs),
         "damper": any("damping" in spring for spring in springs),
         "friction": "friction" in blocks,
@@ -169,7 +169,7 @@ def _of_elements(blocks: Mapping[str, Any]) -> Iterator[str]:
         "task": "task" in blocks,
         "wide range of angles": blocks.get("trig_range") == "wide",
     }
-    yield from (name for name, true in told.items() if true)
+    yield from (name for name, true in by_name.items() if true)
 
 
 def _of_numbers(drawn: DrawnEquations, blocks: Mapping[str, Any]) -> Iterator[str]:

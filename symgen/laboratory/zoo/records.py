@@ -48,14 +48,14 @@ def write_record(path: Path, record: DataclassInstance) -> None:
 
 def read_records(paths: Iterable[Path]) -> list[DrawRecord]:
     """The records of some chunks; of a draw that was run twice the later one."""
-    found: dict[tuple[int, int, str], DrawRecord] = {}
+    by_draw: dict[tuple[int, int, str], DrawRecord] = {}
     for path in paths:
         for line in path.read_text(encoding="utf-8").splitlines():
             given: dict[str, Any] = json.loads(line)
             compared = given.pop("compared", None)
             record = DrawRecord(**given, compared=coverage_of(compared) if compared else None)
-            found[record.seed, record.index, record.family] = record
-    return list(found.values())
+            by_draw[record.seed, record.index, record.family] = record
+    return list(by_draw.values())
 
 
 def summary(records: list[DrawRecord]) -> str:
@@ -68,8 +68,8 @@ def summary(records: list[DrawRecord]) -> str:
     wide = max(len(family) for family in families)
     lines = [f"{len(records)} draws"]
     for family in families:
-        told = ", ".join(f"{table[family, ending]} {ending}" for ending in endings if table[family, ending])
-        lines.append(f"  {family:{wide}}  {told}")
+        counts = ", ".join(f"{table[family, ending]} {ending}" for ending in endings if table[family, ending])
+        lines.append(f"  {family:{wide}}  {counts}")
     failures = Counter((record.kind, record.signature) for record in records if record.failed)
     for (kind, signature), count in failures.most_common():
         lines.append(f"  {count} x {kind}: {signature}")
@@ -85,12 +85,12 @@ def _compared(records: list[DrawRecord]) -> Iterator[str]:
     """At how many states, which quantities, and what was passed over; records of earlier versions say nothing."""
     known = [record.compared for record in records if record.compared is not None]
     none, fewer = ([each for each in known if low <= each.states < high] for low, high in ((0, 1), (1, STATES)))
-    told = [f"{len(known)} draws compared: {len(known) - len(none) - len(fewer)} at {STATES} states"]
+    phrases = [f"{len(known)} draws compared: {len(known) - len(none) - len(fewer)} at {STATES} states"]
     for draws, how in ((fewer, "at fewer"), (none, "at none")):
         reasons = Counter(each.lack for each in draws)
         why = f" ({', '.join(f'{count} x {lack}' for lack, count in reasons.most_common())})" if draws else ""
-        told.append(f"{len(draws)} {how}{why}")
-    yield ", ".join(told)
+        phrases.append(f"{len(draws)} {how}{why}")
+    yield ", ".join(phrases)
     for name, symbol in SYMBOLS.items():
         compared, missing = (
             sum(name in names for names in which)
@@ -101,12 +101,12 @@ def _compared(records: list[DrawRecord]) -> Iterator[str]:
     statuses = [each for each in known if each.statuses]
     float64, float32 = (sum(getattr(each, f"statuses_{scalar}") for each in known) for scalar in ("float64", "float32"))
     clearest = max((each.clearest for each in statuses), default=0.0)
-    told = [
+    phrases = [
         f"{results} results compared",
         f"{sum(each.unknown for each in known)} without truth",
         f"passed over {float64} statuses of float64 and {float32} of float32 in {len(statuses)} draws "
         f"(states determine them to {clearest:.1e} at best)",
     ]
-    yield ", ".join(told)
+    yield ", ".join(phrases)
     trees = [each.pinocchio for each in known if each.pinocchio]
     yield f"{sum(trees)} results of {len(trees)} draws beside Pinocchio's"

@@ -9,7 +9,7 @@ from symgen.laboratory.zoo.draws.drawn import DrawnEquations
 from symgen.laboratory.zoo.verdict import FAILED, REFUSED, DrawVerdict
 from symgen.laboratory.zoo.witness.urdf_file import expanded
 
-NOT_TOLD = "mistake not told"
+UNREPORTED = "mistake not told"
 # what symgen says of a system as a whole, and what must be so then
 REASONS: dict[str, Callable[[DrawnEquations], bool]] = {
     "the accelerations are undetermined": lambda drawn: drawn.undetermined,
@@ -22,7 +22,7 @@ def judged(description: Description, verdict: DrawVerdict) -> DrawVerdict:
     """The verdict, a failure where a legal draw was refused, or a mistake that was drawn on purpose was not told."""
     mistaken = MISTAKE in description.marks
     if mistaken and not verdict.failed and verdict.ending != REFUSED:
-        return DrawVerdict(FAILED, NOT_TOLD, verdict.signature)
+        return DrawVerdict(FAILED, UNREPORTED, verdict.signature)
     if verdict.ending != REFUSED or mistaken:
         return verdict
     for words, is_true in REASONS.items():

@@ -172,15 +172,15 @@ def _held(blocks: dict[str, Any], joint: str, entry: Mapping[str, Any], start: M
 
 def _unused(blocks: Mapping[str, Any], name: str) -> dict[str, Any]:
     """Without springs and inputs that act on the coordinate."""
-    found = dict(blocks)
+    rest = dict(blocks)
     for block in ("springs", "inputs"):
-        for key, entry in (found.get(block) or {}).items():
+        for key, entry in (rest.get(block) or {}).items():
             column = entry.get("acts_on")
             if entry.get("joint") == name or (column and set(column) == {name}):
-                found = _dropped(found, block, key)
+                rest = _dropped(rest, block, key)
             elif column and name in column:
-                found = {**found, block: {**found[block], key: {"acts_on": _without(column, name)}}}
-    return found
+                rest = {**rest, block: {**rest[block], key: {"acts_on": _without(column, name)}}}
+    return rest
 
 
 def substituted(value: Any, name: str, text: str) -> Any:

@@ -49,13 +49,13 @@ class SweepRecord:
     def line(self) -> str:
         """About the draw, for a terminal."""
         swept = self.swept
-        told = f"{self.ending}, not swept"
+        summary = f"{self.ending}, not swept"
         if self.counts:
             answered, unknown = swept.of(ANSWERED), swept.of(UNKNOWN)
             statuses = ", ".join(f"{swept.of(name)} {name}" for name in STATUSES.values() if swept.of(name))
-            told = f"{answered} answered, {statuses or 'no status'}, {unknown} without truth"
-            told += f"; {swept.of(BEYOND)} beyond the tolerance, {swept.of(UNEXPLAINED)} statuses unexplained"
-        return f"{self.seed}:{self.index} {self.family}: {told}"
+            summary = f"{answered} answered, {statuses or 'no status'}, {unknown} without truth"
+            summary += f"; {swept.of(BEYOND)} beyond the tolerance, {swept.of(UNEXPLAINED)} statuses unexplained"
+        return f"{self.seed}:{self.index} {self.family}: {summary}"
 
     @property
     def swept(self) -> SweepCounts:
@@ -71,8 +71,8 @@ def record_of(seed: int, index: int, family: str, ending: str, swept: SweepCount
 
 def write_violations(path: Path, swept: SweepCounts) -> None:
     """Everything that is needed to look at each once more."""
-    found: list[dict[str, Any]] = [{"text": one.text, **asdict(one)} for one in swept.violations]
-    path.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+    records: list[dict[str, Any]] = [{"text": one.text, **asdict(one)} for one in swept.violations]
+    path.write_text(json.dumps(records, indent=1) + "\n", encoding="utf-8")
 
 
 def table(records: Sequence[SweepRecord]) -> str:

@@ -67,10 +67,10 @@ class Violation:
     @property
     def text(self) -> str:
         """In a line."""
-        found, at = self.comparison, f"{self.target}, {self.quantity}, {self.where}"
-        if found.status:
-            return f"{at}: {STATUSES[found.status]} although clear to {found.clear:.1e}"
-        return f"{at}: {ALLOWED * found.units:.3g} units, relative error {found.relative:.1e}, clear {found.clear:.1e}"
+        case, at = self.comparison, f"{self.target}, {self.quantity}, {self.where}"
+        if case.status:
+            return f"{at}: {STATUSES[case.status]} although clear to {case.clear:.1e}"
+        return f"{at}: {ALLOWED * case.units:.3g} units, relative error {case.relative:.1e}, clear {case.clear:.1e}"
 
 
 @dataclass(frozen=True)
@@ -109,31 +109,31 @@ def compared(witness: Witness, folder: Path, model: str, led: Iterable[LedState]
     for one in led:
         for target in called:
             for quantity in target.quantities:
-                found = witness.compare(target, quantity, one.state, one.ranks)
+                judged = witness.compare(target, quantity, one.state, one.ranks)
                 far = one.distance > CERTAIN[target.scalar]
-                if found is not None and found.status == PARAMETER_RANGE:
+                if judged is not None and judged.status == PARAMETER_RANGE:
                     far = one.kind != SCALED
-                elif found is not None and found.status == ANGLE_RANGE:
+                elif judged is not None and judged.status == ANGLE_RANGE:
                     far = max(map(abs, one.state.q)) < ANGLES[target.scalar]
-                elif far and found is not None and found.certain:
+                elif far and judged is not None and judged.certain:
                     far = witness.unit(quantity, one.state, one.ranks, target.scalar) < VAGUE
-                for outcome in _outcomes(found, far):
+                for outcome in _outcomes(judged, far):
                     counts[one.kind, target.scalar, outcome] += 1
-                    if found is not None and outcome in (BEYOND, UNEXPLAINED):
-                        violations.append(Violation(one.kind, one.where, target.name, quantity, found, one.state))
+                    if judged is not None and outcome in (BEYOND, UNEXPLAINED):
+                        violations.append(Violation(one.kind, one.where, target.name, quantity, judged, one.state))
     return SweepCounts(dict(counts), tuple(violations))
 
 
-def _outcomes(found: JudgedResult | None, far: bool) -> Iterator[str]:
-    if found is None:
+def _outcomes(judged: JudgedResult | None, far: bool) -> Iterator[str]:
+    if judged is None:
         yield UNKNOWN
-    elif found.status:
-        yield STATUSES[found.status]
-        if found.certain and far:
+    elif judged.status:
+        yield STATUSES[judged.status]
+        if judged.certain and far:
             yield UNEXPLAINED
     else:
         yield ANSWERED
-        if not found.units <= 1:
+        if not judged.units <= 1:
             yield BEYOND
 
 

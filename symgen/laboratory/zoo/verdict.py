@@ -56,8 +56,8 @@ def verdict_of(run: CommandRun) -> DrawVerdict:
         return DrawVerdict(FAILED, "verification", _withheld(run.err))
     if run.code == 1 and (placed := PLACED.search(run.err)):
         untrue = any(words in placed["message"] for words in UNTRUE)
-        told = without_numbers(placed["message"])
-        return DrawVerdict(FAILED, "refused without reason", told) if untrue else DrawVerdict(REFUSED, signature=told)
+        text = without_numbers(placed["message"])
+        return DrawVerdict(FAILED, "refused without reason", text) if untrue else DrawVerdict(REFUSED, signature=text)
     return DrawVerdict(
         FAILED, "message without a place or remedy", without_numbers(_last_line(run.err, "nothing was said"))
     )

@@ -91,10 +91,10 @@ def _schur_qr(derivation: Derivation, refining: bool = False) -> Motion:
     measured = derivation.r > min(rank, LONGEST_PRODUCT)
 
     def solved(problem: Problem) -> Motion:
-        found = apart(problem)
-        if found is None:
+        columns_apart = apart(problem)
+        if columns_apart is None:
             return schur_qr(problem, rank, refining=refining)
-        return found.brought_back(schur_qr(found, rank, found.factor, refining))
+        return columns_apart.brought_back(schur_qr(columns_apart, rank, columns_apart.factor, refining))
 
     return _solved_apart(derivation, solved, measured)
 
@@ -110,8 +110,8 @@ def along_space(solved: Callable[[Problem, NullSpace], Motion]) -> Callable[[Der
 
     def made(derivation: Derivation) -> Motion:
         completed = completed_multipliers(derivation.mechanics)
-        found = solved(Problem(derivation.mechanics, derivation.space.guards), derivation.space)
-        return replace(found, multipliers=completed(found.multipliers))
+        motion = solved(Problem(derivation.mechanics, derivation.space.guards), derivation.space)
+        return replace(motion, multipliers=completed(motion.multipliers))
 
     return made
 

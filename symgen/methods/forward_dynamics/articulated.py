@@ -62,25 +62,25 @@ class _SpatialLoops(Problem):
             given = zip(self.rows, mechanics.constraint_acceleration_bias(mechanics.qd), strict=True)
             return self._turned(tuple(a + dot(self.graph, row, q_ddot) for row, a in given), inward=True)
         # nothing else is worked out: the first way to a function is the one that stands in the graph
-        found = dict[int, Scalar]()
+        by_row = dict[int, Scalar]()
         for loop, axes in self.loops:
             along = acceleration(mechanics, motions, loop, axes)
-            found |= {i: along[axis] for axis, i in loop.rows.items()}
-        return tuple(found[i] for i in range(self.r))
+            by_row |= {i: along[axis] for axis, i in loop.rows.items()}
+        return tuple(by_row[i] for i in range(self.r))
 
     def of_the_model(self, multipliers: Vector) -> Vector:
         """Multipliers of the model's rows from those of the rows along the loops' axes."""
         return self._turned(multipliers, inward=False)
 
     def _turned(self, values: Vector, inward: bool) -> Vector:
-        found = list(values)
+        turned = list(values)
         for loop, frame in self.loops:
             if frame != WORLD:
                 axes = self.mechanics.bodies.kinematics.axes(frame)
                 three = triple([values[i] for i in loop.rows.values()])
                 for i, x in zip(loop.rows.values(), applied(transposed(axes) if inward else axes, three), strict=True):
-                    found[i] = x
-        return tuple(found)
+                    turned[i] = x
+        return tuple(turned)
 
 
 class RefinedBy(Enum):
@@ -131,14 +131,14 @@ class BodyEquations:
         by_bodies, by_columns = refined_by is RefinedBy.BODIES, refined_by is RefinedBy.COLUMNS
         own = None if by_bodies else by_joints(mechanics, self._factor, loops, forces, self._given)
         if own is not None:
-            found = self._apart.solve(own.force, own.bias, by_columns, own.raised)
-            return Motion(found[0], self._completed(problem.of_the_model(found[1])), self.guards)
+            solution = self._apart.solve(own.force, own.bias, by_columns, own.raised)
+            return Motion(solution[0], self._completed(problem.of_the_model(solution[1])), self.guards)
         none = (mechanics.graph.zero,) * mechanics.n
         direct, loads = self._given
         inertial = self._inertial_forces(mechanics.qd, none, mechanics.working_gravity)
         force = self._factor.lowered(direct, added_loads(inertial, loads, mechanics.graph.one))
         if not by_bodies:
-            found = self._apart.solve(force, problem.bias, by_columns)
+            solution = self._apart.solve(force, problem.bias, by_columns)
         else:
 
             def left_over(q_ddot: Vector, multipliers: Vector) -> Solution:
@@ -146,8 +146,8 @@ class BodyEquations:
                 acting = added_loads(inertial, loads, mechanics.graph.one)
                 return self._less(direct, acting, q_ddot, multipliers), problem.bias_at(q_ddot)
 
-            found = self._refined(force, problem.bias, left_over)
-        return Motion(found[0], self._completed(problem.of_the_model(found[1])), self.guards)
+            solution = self._refined(force, problem.bias, left_over)
+        return Motion(solution[0], self._completed(problem.of_the_model(solution[1])), self.guards)
 
     def answered(self, asked: Vector) -> Vector:
         """x with G x + B^T lambda = 0, B x = `asked`, of rows that are not `turned`."""
@@ -188,8 +188,8 @@ class BodyEquations:
         As a force of the coordinates each would hold what all frames further out need, which is taken off again on the
         way inwards: in chains the difference of two numbers a hundred times larger than the torques.
         """
-        found = inertial_wrenches(self._mechanics.bodies, qd, q_ddot, gravity)
-        return {name: tuple(-x for x in (*wrench.moment, *wrench.force)) for name, wrench in found.items()}
+        by_frame = inertial_wrenches(self._mechanics.bodies, qd, q_ddot, gravity)
+        return {name: tuple(-x for x in (*wrench.moment, *wrench.force)) for name, wrench in by_frame.items()}
 
 
 def articulated(
@@ -199,8 +199,8 @@ def articulated(
 
     None where T is not that of bodies alone, a coordinate moves several frames or none, or G is not definite.
     """
-    found = body_equations(model, generic, turned=generic.rank == generic.r)
-    return None if found is None else (found[0], found[1].motion(refined_by))
+    body_system = body_equations(model, generic, turned=generic.rank == generic.r)
+    return None if body_system is None else (body_system[0], body_system[1].motion(refined_by))
 
 
 def body_equations(model: Model, generic: Genericity, turned: bool) -> tuple[System, BodyEquations] | None:
@@ -246,18 +246,18 @@ def _along_best_axes(
 ) -> tuple[str, list[Vector]]:
     """The frame along whose axes a loop's columns hold least, and these; they are given along the axes of the world."""
     none = (mechanics.graph.zero,) * mechanics.n
-    found = {WORLD: columns}
+    by_frame = {WORLD: columns}
     if len(loop.rows) == 3:
         for frame in loop.frames:
-            found[frame] = [factor.lowered(none, loads) for loads in wrenches(mechanics, loop, frame)]
-    return min(found.items(), key=lambda one: sum(not entry.is_zero for column in one[1] for entry in column))
+            by_frame[frame] = [factor.lowered(none, loads) for loads in wrenches(mechanics, loop, frame)]
+    return min(by_frame.items(), key=lambda one: sum(not entry.is_zero for column in one[1] for entry in column))
 
 
 def _alone(workspace: Workspace, refined_by: RefinedBy) -> tuple[System, Motion] | str:
     if refined_by is RefinedBy.COLUMNS and (reason := constraints(workspace.generic)):
         return reason
-    found = articulated(workspace.model, workspace.generic, refined_by)
-    return BY_BODIES_ALONE if found is None else found
+    solved = articulated(workspace.model, workspace.generic, refined_by)
+    return BY_BODIES_ALONE if solved is None else solved
 
 
 ARTICULATED: Method = WithoutNullSpace(partial(_alone, refined_by=RefinedBy.NOTHING), STRUCTURED)

@@ -60,17 +60,17 @@ class ColumnsApart(Problem):
 
     def brought_back(self, motion: Motion) -> Motion:
         """With T x for x."""
-        found = list(motion.accelerations)
+        accelerations = list(motion.accelerations)
         for parent, share in self._shares.items():
-            found[share.child] = found[share.child] - share.amount * motion.accelerations[parent]
-        return replace(motion, accelerations=tuple(found))
+            accelerations[share.child] = accelerations[share.child] - share.amount * motion.accelerations[parent]
+        return replace(motion, accelerations=tuple(accelerations))
 
     def _along(self, row: Sequence[Scalar]) -> Vector:
         """row T."""
-        found = list(row)
+        entries = list(row)
         for parent, share in self._shares.items():
-            found[parent] = row[parent] - share.amount * row[share.child]
-        return tuple(found)
+            entries[parent] = row[parent] - share.amount * row[share.child]
+        return tuple(entries)
 
 
 class _Turned(OrderedCholesky):
@@ -106,16 +106,16 @@ def apart(problem: Problem) -> ColumnsApart | None:
     for child, parent in enumerate(mechanics.change.parents):
         if parent is None or parent in shares or order.index(child) > order.index(parent):
             continue
-        found = _beside(definite, *(tuple(row[j] for row in problem.rows) for j in (parent, child)))
-        if found is not None:
-            amount, columns[parent] = found
+        decomposition = _beside(definite, *(tuple(row[j] for row in problem.rows) for j in (parent, child)))
+        if decomposition is not None:
+            amount, columns[parent] = decomposition
             shares[parent] = Share(child, amount)
     return ColumnsApart(problem, shares, tuple(zip(*columns, strict=True))) if shares else None
 
 
 def _beside(definite: Definite, own: Vector, other: Vector) -> tuple[Scalar, list[Scalar]] | None:
     """t and own - t other, orthogonal to `other` in each of the planes in which both move a point along a circle."""
-    graph, found, shares = own[0].graph, list(own), set[Scalar]()
+    graph, rest, shares = own[0].graph, list(own), set[Scalar]()
     left = [i for i, x in enumerate(other) if not x.is_zero]
     while left:
         i = left.pop(0)
@@ -130,7 +130,7 @@ def _beside(definite: Definite, own: Vector, other: Vector) -> tuple[Scalar, lis
         number, powers = graph.products.monomial(square)
         shares.add(graph.products.quotient(dot(graph, u, v), powers, number))
         across = graph.products.quotient(v[0] * u[1] - v[1] * u[0], powers, number)
-        found[i], found[k] = -v[1] * across, v[0] * across
+        rest[i], rest[k] = -v[1] * across, v[0] * across
     if len(shares) != 1 or next(iter(shares)).is_zero:
         return None
-    return shares.pop(), found
+    return shares.pop(), rest

@@ -82,11 +82,11 @@ class FrameForces:
 
 def added_loads(loads: Mapping[str, Six], others: Mapping[str, Six], magnitude: Scalar) -> dict[str, Six]:
     """The sum of wrenches on frames, the others so many times."""
-    found = dict(loads)
+    sums = dict(loads)
     for name, wrench in others.items():
         own = tuple(magnitude * x for x in wrench)
-        found[name] = tuple(a + b for a, b in zip(found[name], own, strict=True)) if name in found else own
-    return found
+        sums[name] = tuple(a + b for a, b in zip(sums[name], own, strict=True)) if name in sums else own
+    return sums
 
 
 class _Loose(Kinematics[Scalar, Scalar]):

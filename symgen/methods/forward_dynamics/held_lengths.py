@@ -50,15 +50,15 @@ class HeldLengths:
         To be called before anything is solved: what is exactly 0 must stand in the graph first.
         """
         rows = mechanics.constraint_jacobian
-        found = []
+        equations = []
         for joint, i, slope in zip(self.joints, self.rows, self.slopes, strict=True):
             force = mechanics.given_along(dict(zip(joint.parts, joint.values, strict=True)))
             couplings = {k: joint.along_length([rows[k][j] for j in joint.parts]) for k in self.others(len(rows))}
-            found.append((i, force, {k: x for k, x in couplings.items() if not x.is_zero}, slope))
+            equations.append((i, force, {k: x for k, x in couplings.items() if not x.is_zero}, slope))
 
         def completed(given: Vector) -> Vector:
             values = list(given)
-            for i, force, couplings, slope in found:
+            for i, force, couplings, slope in equations:
                 taken = self.graph.sum(x * given[k] for k, x in couplings.items())
                 values[i] = (force - taken) / slope
             return tuple(values)
@@ -73,9 +73,9 @@ class HeldLengths:
 
 def held_lengths(joints: Sequence[QuaternionJoint], rows: Matrix, graph: Graph) -> HeldLengths | None:
     """The rows of B that hold the lengths of quaternions; None where a length is held by none."""
-    found = [next((i for i, row in enumerate(rows) if joint.holds_length(row)), None) for joint in joints]
-    known = tuple(i for i in found if i is not None)
-    if len(known) < len(found):
+    holders = [next((i for i, row in enumerate(rows) if joint.holds_length(row)), None) for joint in joints]
+    known = tuple(i for i in holders if i is not None)
+    if len(known) < len(holders):
         return None
     pairs = zip(joints, known, strict=True)
     slopes = tuple(joint.along_length([rows[i][j] for j in joint.parts]) for joint, i in pairs)
@@ -97,9 +97,9 @@ def completed_multipliers(mechanics: System) -> Callable[[Vector], Vector]:
     used = Counter(name for frame in mechanism.frames for name in set(_names(_placing(frame), within)))
     used.update(rotor.coordinate for rotor in mechanism.rotor_inertias)
     anything: dict[int, Vector] = dict.fromkeys(range(mechanics.n), ())
-    found = (quaternion_joint(mechanics.bodies, frame.name, anything) for frame in turned)
+    all_joints = (quaternion_joint(mechanics.bodies, frame.name, anything) for frame in turned)
     names = [c.name for c in mechanics.model.coordinates]
-    joints = [joint for joint in found if joint is not None and all(used[names[j]] == 1 for j in joint.parts)]
+    joints = [joint for joint in all_joints if joint is not None and all(used[names[j]] == 1 for j in joint.parts)]
     rows = mechanics.constraint_jacobian
     held = held_lengths([joint for joint in joints if any(map(joint.holds_length, rows))], rows, mechanics.graph)
     return held.multipliers(mechanics) if held is not None else lambda given: given
@@ -164,11 +164,11 @@ class LengthsApart:
         known = dict(zip(self._places, rates, strict=True))
         pairs = enumerate(zip(x, self._rest.weights, strict=True))
         weighted = tuple(known.get(j, entry * w) for j, (entry, w) in pairs)
-        found = dict(zip(self._others, multipliers, strict=True))
+        by_row = dict(zip(self._others, multipliers, strict=True))
         for k, (i, j, slope) in enumerate(zip(held.rows, self._places, held.slopes, strict=True)):
             taken = dot(graph, [self._couplings[other][k] for other in self._others], multipliers)
-            found[i] = (force[j] - taken) / slope
-        return (raised or self._factor.raised)(weighted), tuple(found[i] for i in range(self._count))
+            by_row[i] = (force[j] - taken) / slope
+        return (raised or self._factor.raised)(weighted), tuple(by_row[i] for i in range(self._count))
 
     def _without_lengths(self, column: Vector) -> Vector:
         return tuple(self._graph.zero if j in self._places else x for j, x in enumerate(column))

@@ -76,15 +76,15 @@ def _row_accelerations(
 ) -> list[Scalar] | None:
     """What frames that turn and have no acceleration leave of each row's, or None."""
     taken = {i for loop, _ in loops for i in loop.rows.values()}
-    found = dict[int, Scalar]()
+    by_row = dict[int, Scalar]()
     on_frames = {i for i, (_, loads) in enumerate(forces) if loads}
     others = [(loop, WORLD) for loop in loop_points(mechanics, in_planes=True)] if on_frames - taken else []
     for loop, axes in (*loops, *(one for one in others if taken.isdisjoint(one[0].rows.values()))):
         along = acceleration(mechanics, turning, loop, axes)
-        found |= {i: along[axis] for axis, i in loop.rows.items()}
-    if on_frames - found.keys():
+        by_row |= {i: along[axis] for axis, i in loop.rows.items()}
+    if on_frames - by_row.keys():
         return None
-    if len(found) < len(forces):
+    if len(by_row) < len(forces):
         plain = mechanics.constraint_acceleration_bias(mechanics.qd)
-        found = dict(enumerate(plain)) | found
-    return [found[i] for i in range(len(forces))]
+        by_row = dict(enumerate(plain)) | by_row
+    return [by_row[i] for i in range(len(forces))]

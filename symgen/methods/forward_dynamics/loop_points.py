@@ -56,7 +56,7 @@ def loop_points(mechanics: System, in_planes: bool = False) -> list[LoopPoint]:
         return []
     names, leaves = with_leaves(mechanics, list(held))
     places = {leaf: (owner, axis) for owner, three in leaves.items() for axis, leaf in enumerate(three)}
-    found: dict[tuple[tuple[str, Scalar], ...], dict[int, int]] = {}
+    by_weights: dict[tuple[tuple[str, Scalar], ...], dict[int, int]] = {}
     rows = [row.expression for row in mechanics.model.constraints if row.kind == "geometric"]
     for i, expression in enumerate(rows):
         residual = translate(graph, expression, names)
@@ -66,24 +66,24 @@ def loop_points(mechanics: System, in_planes: bool = False) -> list[LoopPoint]:
         moves = not reached([residual]).isdisjoint(mechanics.q)
         taken = in_planes or any(kinematics.plane(WORLD, held[owner][0]) is None for owner, _, _ in own)
         if taken and len(axes) == 1 and not moves and all(slope.constant is not None for _, _, slope in own):
-            found.setdefault(tuple((owner, slope) for owner, _, slope in own), {})[axes.pop()] = i
+            by_weights.setdefault(tuple((owner, slope) for owner, _, slope in own), {})[axes.pop()] = i
     return [
         LoopPoint(dict(sorted(by_axis.items())), tuple(HeldPoint(slope, *held[owner]) for owner, slope in weights))
-        for weights, by_axis in found.items()
+        for weights, by_axis in by_weights.items()
     ]
 
 
 def wrenches(mechanics: System, loop: LoopPoint, axes: str) -> tuple[dict[str, Six], ...]:
     """What multipliers of 1 along these axes put on frames: moment and force in the frame's axes."""
-    found: tuple[dict[str, Six], ...] = ({}, {}, {})
+    along_axes: tuple[dict[str, Six], ...] = ({}, {}, {})
     for point in loop.points:
         directions = transposed(mechanics.bodies.kinematics.axes(axes, point.frame))
-        for loads, direction in zip(found, directions, strict=True):
+        for loads, direction in zip(along_axes, directions, strict=True):
             force = triple([point.weight * x for x in direction])
             load = (*cross(point.at, force), *force)
             before = loads.get(point.frame)
             loads[point.frame] = load if before is None else tuple(a + b for a, b in zip(before, load, strict=True))
-    return found
+    return along_axes
 
 
 def acceleration(mechanics: System, motions: Mapping[str, FrameMotion], loop: LoopPoint, axes: str) -> Vector3:

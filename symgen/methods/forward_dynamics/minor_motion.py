@@ -90,11 +90,11 @@ class MinorMotion:
         graph, n, g = self._graph, self._n, self._problem.mass_matrix
         if n - self._problem.r == 1:
             w = tuple(self._dual.get(1 << i, graph.zero) for i in range(n))
-            found = {1 << i: x for i, x in enumerate(matvec(graph, g, w))}
+            components = {1 << i: x for i, x in enumerate(matvec(graph, g, w))}
         else:
             half = matmul(graph, g, self._phi, n)
-            found = {1 << i | 1 << j: dot(graph, half[i], g[j]) for i in range(n) for j in range(i + 1, n)}
-        return {mask: value for mask, value in found.items() if not value.is_zero}
+            components = {1 << i | 1 << j: dot(graph, half[i], g[j]) for i in range(n) for j in range(i + 1, n)}
+        return {mask: value for mask, value in components.items() if not value.is_zero}
 
     def solve(self, force: Vector) -> Vector:
         """K f, the acceleration that a force causes along the constraints."""

@@ -81,6 +81,6 @@ class Problem:
         if kept not in self._multipliers:
             self._multipliers[kept] = factoring.multiplier(lambda node: node in kept)
         shared = share_angles(self.graph, values)
-        found = refactored(self.graph, shared, self._multipliers[kept], factoring.fixed)
-        same_values("multiplying sums of parameters out", shared, found)
-        return found
+        expanded = refactored(self.graph, shared, self._multipliers[kept], factoring.fixed)
+        same_values("multiplying sums of parameters out", shared, expanded)
+        return expanded

@@ -77,8 +77,8 @@ class AlongNullSpace(ByTheorem):
     def validity(self, workspace: Workspace, candidate: Candidate, first_only: bool) -> Validity:
         """A theorem, or the state at which G is not definite."""
         del workspace, first_only
-        found = indefinite(candidate.system.mechanics) if self.free else None
-        singular = () if found is None else (_singular(candidate.system.mechanics, found),)
+        pivot = indefinite(candidate.system.mechanics) if self.free else None
+        singular = () if pivot is None else (_singular(candidate.system.mechanics, pivot),)
         return Validity(0, 0, singular, "" if singular else self.theorem)
 
     def _alone(self, workspace: Workspace) -> tuple[System, Motion] | str:
@@ -110,18 +110,18 @@ def motions_along(derivation: Derivation) -> dict[str, Motion]:
         one = row.load()
         if isinstance(one, AlongNullSpace) and one.offered is not None and one.offered(derivation):
             offered[row.name] = one
-    found: dict[str, Motion] = {}
+    motions: dict[str, Motion] = {}
     for name, one in offered.items():
         if not one.grows or len(offered) == 1:
-            found[name] = one.solved(derivation)
+            motions[name] = one.solved(derivation)
             continue
         with suppress(TooLongError), at_most(worth_trying(0)):
-            found[name] = one.solved(derivation)
+            motions[name] = one.solved(derivation)
     if derivation.generic.rank:
-        return found
+        return motions
     # rows that hold nothing press on nothing
     still = (derivation.graph.zero,) * derivation.r
-    return {name: replace(one, multipliers=still) for name, one in found.items()}
+    return {name: replace(one, multipliers=still) for name, one in motions.items()}
 
 
 def motions_alone() -> list[str]:
@@ -134,8 +134,8 @@ def _shared(
 ) -> Candidate | str:
     """One of both quantities; what was solved stays in the workspace for the other one."""
     if key not in workspace.motions:
-        found = solved(workspace)
-        workspace.motions[key] = found if isinstance(found, str) else _kept(workspace.generic, *found)
+        solution = solved(workspace)
+        workspace.motions[key] = solution if isinstance(solution, str) else _kept(workspace.generic, *solution)
     kept = workspace.motions[key]
     return kept if isinstance(kept, str) else kept[quantity]
 
@@ -150,10 +150,10 @@ def _kept(generic: Genericity, mechanics: System, made: Motion) -> dict[str, Can
 
 def failing_motions(mechanics: System) -> tuple[tuple[str, str], ...]:
     """The methods of q_ddot and lambda that fail at regular states of a system, and where."""
-    found = indefinite(mechanics)
-    if found is None:
+    pivot = indefinite(mechanics)
+    if pivot is None:
         return ()
-    why = Validity(0, 0, (_singular(mechanics, found),)).explanation
+    why = Validity(0, 0, (_singular(mechanics, pivot),)).explanation
     made = ((row.name, row.load()) for row in methods(MOTIONS[0]))
     return tuple((name, why) for name, one in made if isinstance(one, AlongNullSpace) and one.free)
 

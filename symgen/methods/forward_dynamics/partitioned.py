@@ -67,22 +67,22 @@ class Partition:
 
     def completed(self, free: Sequence[Scalar], asked: Sequence[Scalar]) -> Vector:
         """x (n) for which these rows of B give `asked`, with the given free entries."""
-        found = dict(zip(self.free, free, strict=True))
+        by_column = dict(zip(self.free, free, strict=True))
         for pivot, inverse in zip(self.pivots, self._inverses, strict=True):
             row = self._rows[pivot.row]
-            rest = asked[pivot.row] - self._graph.sum(row[j] * x for j, x in found.items())
-            found[pivot.column] = rest * inverse
-        return tuple(found[j] for j in range(self._n))
+            rest = asked[pivot.row] - self._graph.sum(row[j] * x for j, x in by_column.items())
+            by_column[pivot.column] = rest * inverse
+        return tuple(by_column[j] for j in range(self._n))
 
     def multipliers(self, force: Sequence[Scalar], left: Mapping[int, Scalar]) -> Vector:
         """lambda (r) with B^T lambda = f for the dependent coordinates, given those of the rows that are left."""
-        found = dict(left)
+        by_row = dict(left)
         for pivot, inverse in zip(reversed(self.pivots), reversed(self._inverses), strict=True):
             rest = force[pivot.column] - self._graph.sum(
-                self._rows[i][pivot.column] * x for i, x in found.items()
+                self._rows[i][pivot.column] * x for i, x in by_row.items()
             )
-            found[pivot.row] = rest * inverse
-        return tuple(found[i] for i in range(len(self._rows)))
+            by_row[pivot.row] = rest * inverse
+        return tuple(by_row[i] for i in range(len(self._rows)))
 
 
 class Reduced(Problem):
@@ -159,13 +159,13 @@ def pivots(mechanics: System) -> list[Pivot]:
     inertias = [sum(not x.is_zero for x in row) for row in mechanics.mass_matrix]
     holders = [sum(not row[j].is_zero for row in rows) for j in range(mechanics.n)]
     left = sorted((not definite.holds(rows[i][j]), holders[j], inertias[j], i, j) for i, j in entries)
-    found: list[Pivot] = []
+    chosen: list[Pivot] = []
     while left:
         *_, i, j = left[0]
-        found.append(Pivot(i, j, rows[i][j]))
-        solved = {pivot.row for pivot in found}
+        chosen.append(Pivot(i, j, rows[i][j]))
+        solved = {pivot.row for pivot in chosen}
         left = [one for one in left if one[-2] not in solved and rows[i][one[-1]].is_zero]
-    return found
+    return chosen
 
 
 def _free(problem: Reduced) -> Motion:
@@ -205,11 +205,11 @@ def _alone(workspace: Workspace) -> tuple[System, Motion] | str:
     if reason := constraints(workspace.generic) or independent_rows(workspace.generic):
         return reason
     mechanics = in_absolute_angles(workspace.model) or System(workspace.model)
-    found = pivots(mechanics)
-    if not found:
+    chosen = pivots(mechanics)
+    if not chosen:
         return "no row gives a coordinate that can be substituted everywhere"
     completed = completed_multipliers(mechanics)
-    problem = Reduced(Problem(mechanics, ()), Partition(mechanics.constraint_jacobian, found))
+    problem = Reduced(Problem(mechanics, ()), Partition(mechanics.constraint_jacobian, chosen))
     made = _solved(problem)
     if made is None:
         return "the mass matrix is not shown to be positive definite, and rows are left"

@@ -159,5 +159,5 @@ class OrderedCholesky:
 
     def raised(self, b: Sequence[Scalar]) -> Vector:
         """The solution of L^T x = b."""
-        found = dict(zip(self.order, self._factor.raised(b), strict=True))
-        return tuple(found[i] for i in range(len(self.order)))
+        by_coordinate = dict(zip(self.order, self._factor.raised(b), strict=True))
+        return tuple(by_coordinate[i] for i in range(len(self.order)))

@@ -42,10 +42,10 @@ def weighted_projection(
     changed = in_absolute_angles(mechanics.model)
     there = changed or mechanics.apart()
     solver = SchurQR(Problem(there, ()), generic.rank)
-    found = [motion_brought_back(mechanics.graph, changed, motion) for motion in _motions(there, solver, quantity)]
-    guards = tuple(dict.fromkeys((*before, *(guard for motion in found for guard in motion.guards))))
+    motions = [motion_brought_back(mechanics.graph, changed, motion) for motion in _motions(there, solver, quantity)]
+    guards = tuple(dict.fromkeys((*before, *(guard for motion in motions for guard in motion.guards))))
     there.graph.dissolve()
-    return transpose(tuple(motion.accelerations for motion in found), mechanics.n), guards
+    return transpose(tuple(motion.accelerations for motion in motions), mechanics.n), guards
 
 
 def projection_of_bodies(
@@ -57,10 +57,10 @@ def projection_of_bodies(
     """
     from symgen.methods.forward_dynamics.articulated import body_equations  # models given by energies have none
 
-    found = body_equations(mechanics.model, generic, turned=False) if mechanics.r else None
-    if found is None:
+    body_system = body_equations(mechanics.model, generic, turned=False) if mechanics.r else None
+    if body_system is None:
         return None
-    there, equations = found
+    there, equations = body_system
     n, r = there.n, there.r
     if quantity == PSEUDOINVERSE:
         columns = [equations.answered(unit) for unit in identity(there.graph, r)]
@@ -88,10 +88,10 @@ class _Eliminated(ByTheorem):
         """B_G^+ (n x r) or N_{B,G} (n x n) on a graph of its own, or why there is none."""
         system = MethodInput.fresh(workspace.model, workspace.generic)
         mechanics, generic = system.mechanics, system.generic
-        found = self.solved(mechanics, generic, quantity, reflected_rows(mechanics, generic).guards)
-        if found is None:
+        solution = self.solved(mechanics, generic, quantity, reflected_rows(mechanics, generic).guards)
+        if solution is None:
             return self.missing
-        matrix, guards = found
+        matrix, guards = solution
         return Candidate(system, Quantity(quantity, (len(matrix), len(matrix[0])), flatten(matrix), guards))
 
 

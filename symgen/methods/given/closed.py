@@ -36,25 +36,25 @@ def closed_configuration(mechanics: System, given: Given) -> ClosedConfiguration
     known = {mechanics.q[place]: value for place, value in pairs if place >= 0}
     others = [k for k, place in enumerate(given.places) if place < 0]
     rows = [*mechanics.constraint_residual, *(given.functions[k] - given.values[k] for k in others)]
-    found = steps(mechanics.graph, rows, [x for x in mechanics.q if x not in known])
-    if found is None:
+    closed_steps = steps(mechanics.graph, rows, [x for x in mechanics.q if x not in known])
+    if closed_steps is None:
         return None
-    unknowns = _Unknowns(mechanics.graph, given, known, found)
+    unknowns = _Unknowns(mechanics.graph, given, known, closed_steps)
     return ClosedConfiguration(tuple(unknowns.known[x] for x in mechanics.q), tuple(dict.fromkeys(unknowns.guards)))
 
 
 class _Unknowns:
     """Their values one after the other: what is known so far, at first what is given."""
 
-    def __init__(self, graph: Graph, given: Given, known: dict[Scalar, Scalar], found: ClosedSteps) -> None:
+    def __init__(self, graph: Graph, given: Given, known: dict[Scalar, Scalar], closed_steps: ClosedSteps) -> None:
         self._graph, self._given = graph, given
-        self._signs = {one.sign: graph.function("copysign", (graph.one, one.start)) for one in found.sides}
+        self._signs = {one.sign: graph.function("copysign", (graph.one, one.start)) for one in closed_steps.sides}
         self.known, self.guards = dict(known), list[Guard]()
-        for side in found.sides:
+        for side in closed_steps.sides:
             self._on_its_side(side)
-        for one in found.first:
+        for one in closed_steps.first:
             self._of_row(one) if isinstance(one, SolvableRow) else self._of_angle(one)
-        for last in found.last:
+        for last in closed_steps.last:
             self._of_replaced(last)
 
     def _on_its_side(self, side: Side) -> None:
@@ -109,10 +109,10 @@ class _Closed(ByTheorem):
     def build(self, workspace: Workspace, quantity: str) -> Candidate | str:
         """The configuration (n), or why there is none."""
         system = MethodInput.fresh(workspace.model, workspace.generic)
-        found = closed_configuration(system.mechanics, given_of(quantity, system.mechanics))
-        if found is None:
+        closed = closed_configuration(system.mechanics, given_of(quantity, system.mechanics))
+        if closed is None:
             return "its rows are no chains of two links, and hold more than one unknown"
-        return Candidate(system, Quantity(quantity, (len(found.outputs),), found.outputs, tested(found.guards)))
+        return Candidate(system, Quantity(quantity, (len(closed.outputs),), closed.outputs, tested(closed.guards)))
 
 
 CLOSED: Method = _Closed("its roots multiplied are the determinant of the rows and of what is given together")

@@ -192,8 +192,8 @@ class _SolvedRows:
     def solve(self, given: Sequence[Scalar], right: Sequence[Scalar]) -> Vector:
         """x with B x = right whose entries at these places are those given."""
         held = [dot(self._graph, [row[k] for k in self._places], given) for row in self._rows]
-        found = self._space.lift(tuple(a - b for a, b in zip(right, held, strict=True)))
-        x = dict(zip(self._places, given, strict=True)) | dict(zip(self._free, found, strict=True))
+        free_entries = self._space.lift(tuple(a - b for a, b in zip(right, held, strict=True)))
+        x = dict(zip(self._places, given, strict=True)) | dict(zip(self._free, free_entries, strict=True))
         return tuple(x[k] for k in range(len(x)))
 
 

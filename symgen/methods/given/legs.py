@@ -64,8 +64,8 @@ class LegMotion:
         sides = derivative_along(graph, self._of((*zeros, *self.given.rates)), motion)
         changes = (x - y for x, y in zip(sides, together, strict=True))
         combined = [x + y for x, y in zip(self._of(given), changes, strict=True)]
-        found = map(self.solution.solve, (self._of(right), combined))
-        return self.numbers.completed(min(found, key=lambda one: cost(one).weight if one else 0), right)
+        solutions = map(self.solution.solve, (self._of(right), combined))
+        return self.numbers.completed(min(solutions, key=lambda one: cost(one).weight if one else 0), right)
 
     def _of(self, right: Sequence[Scalar]) -> list[Scalar]:
         """The right-hand sides of the blocks."""
@@ -103,11 +103,11 @@ class _ByLegs(ByTheorem):
         """Rates or accelerations (n), or why there are none."""
         system = MethodInput.fresh(workspace.model, workspace.generic)
         given = given_of(quantity, system.mechanics)
-        found = leg_motion(system, given)
-        if isinstance(found, str):
-            return found
-        outputs = found.velocity if quantity.startswith("velocity") else found.acceleration
-        guards = found.solution.guards(given.status, _of_rows(system))
+        motion = leg_motion(system, given)
+        if isinstance(motion, str):
+            return motion
+        outputs = motion.velocity if quantity.startswith("velocity") else motion.acceleration
+        guards = motion.solution.guards(given.status, _of_rows(system))
         return Candidate(system, Quantity(quantity, (len(outputs),), outputs, tested(guards)))
 
 

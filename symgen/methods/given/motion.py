@@ -29,9 +29,9 @@ class GivenMotion:
         columns = list(given.slopes)
         forms, self._restriction = self._space.actuation(columns, self._space.delta)
         self._forms = forms.cancelled(derivation.mechanics.factoring.cancelled)
-        found = solvable(derivation.mechanics, derivation.generic, self._space, self._forms, columns, given.status)
+        guards = solvable(derivation.mechanics, derivation.generic, self._space, self._forms, columns, given.status)
         of_rows = self._space.guards
-        self.guards: tuple[Guard, ...] = (*of_rows, *(guard for guard in found if guard not in of_rows))
+        self.guards: tuple[Guard, ...] = (*of_rows, *(guard for guard in guards if guard not in of_rows))
 
     @property
     def velocity(self) -> Vector:

@@ -93,8 +93,8 @@ class _Reduction:
 
     def _held(self, row: Scalar) -> list[Scalar]:
         """The unknowns in a row."""
-        found = reached([row])
-        return [x for x in self._open if x in found]
+        nodes = reached([row])
+        return [x for x in self._open if x in nodes]
 
     def _combine(self) -> None:
         """Rows added to each other where fewer unknowns are left in them."""
@@ -121,13 +121,13 @@ class _Reduction:
             if len(held) < 2 or not all(numbers):
                 continue
             others = [other for other in self._rows if other is not row]
-            found = []
+            replacements = []
             for x, number in zip(held, numbers, strict=True):
                 assert number is not None
                 (rest,) = substitute(self._graph, [row], {x: self._graph.zero})
                 one = ReplacedUnknown(x, rest * (-1 / number))
-                found.append((one, substitute(self._graph, others, {x: one.value})))
-            best, left = min(found, key=lambda pair: cost(pair[1]).weight if pair[1] else 0)
+                replacements.append((one, substitute(self._graph, others, {x: one.value})))
+            best, left = min(replacements, key=lambda pair: cost(pair[1]).weight if pair[1] else 0)
             self._last.append(best)
             self._let_go([row], best.unknown)
             self._rows = list(left)

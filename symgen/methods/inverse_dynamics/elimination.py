@@ -95,13 +95,13 @@ class Elimination:
 
     def values(self, core: dict[int, Scalar], homogeneous: bool) -> Vector:
         """The inputs for given unknowns of the core, with right-hand sides or without."""
-        found = dict(core)
+        unknowns = dict(core)
         for name, row in reversed(self._explicit):
             others = {j: c for j, c in row.coefficients.items() if j != name}
             pivot = row.coefficients[name]
-            value = self._rest(others, found, row, homogeneous)
-            found[name] = value if pivot.is_one else value * (1 / pivot)
-        return tuple(found.get(j, self._graph.zero) for j in self.inputs)
+            value = self._rest(others, unknowns, row, homogeneous)
+            unknowns[name] = value if pivot.is_one else value * (1 / pivot)
+        return tuple(unknowns.get(j, self._graph.zero) for j in self.inputs)
 
     def lengths(self) -> tuple[Scalar, ...]:
         """The factors of pivots that depend on coordinates, each of them once."""
@@ -124,21 +124,21 @@ class Elimination:
 
         A shorter entry is taken where it gains more by itself than all rows and f lose that it had in common with them.
         """
-        found = [list(row) for row in rows]
+        shortened = [list(row) for row in rows]
         weight: int | None = None
-        for row in found:
+        for row in shortened:
             for j, entry in enumerate(row):
                 shorter = self._mechanics.factoring.cancelled(entry)
                 if shorter is entry:
                     continue
-                weight = self._weight(found) if weight is None else weight
+                weight = self._weight(shortened) if weight is None else weight
                 row[j] = shorter
-                now = self._weight(found)
+                now = self._weight(shortened)
                 if now - weight < _sums_and_products(entry) - _sums_and_products(shorter):
                     weight = now
                 else:
                     row[j] = entry
-        return [tuple(row) for row in found]
+        return [tuple(row) for row in shortened]
 
     def _weight(self, rows: Sequence[Sequence[Scalar]]) -> int:
         return cost([*(x for row in rows for x in row), *self._mechanics.balance]).weight
@@ -173,12 +173,12 @@ class Elimination:
     def _leave_single_inputs(self) -> None:
         """Inputs of one row only, so that the rows without inputs decide on directions."""
         while True:
-            found = next(
+            single_input = next(
                 ((j, row) for row in self.core for j in self._occurs_here_only(row) if j in self.inputs), None
             )
-            if found is None:
+            if single_input is None:
                 return
-            self._leave(*found)
+            self._leave(*single_input)
 
     def _turn_multipliers(self, lengths: bool = False) -> None:
         """Pairs of multipliers are turned into the directions in which a row holds one of them only.
@@ -373,5 +373,5 @@ class Elimination:
 
 
 def _sums_and_products(scalar: Scalar) -> int:
-    found = cost([scalar])
-    return found.additive + found.multiplications
+    operations = cost([scalar])
+    return operations.additive + operations.multiplications

@@ -249,7 +249,7 @@ def _symbols_back(mechanics: System, change: AbsoluteAngles | None) -> dict[Scal
     if change is None:
         return {}
     graph, model = mechanics.graph, mechanics.model
-    found: dict[Scalar, Scalar] = {}
+    replacements: dict[Scalar, Scalar] = {}
     given = (
         (mechanics.q, [c.name for c in model.coordinates]),
         (mechanics.qd, [c.rate for c in model.coordinates]),
@@ -257,8 +257,8 @@ def _symbols_back(mechanics: System, change: AbsoluteAngles | None) -> dict[Scal
     )
     for own, names in given:
         absolute = change.absolute(tuple(graph.symbol(name) for name in names))
-        found |= dict(zip(own, absolute, strict=True))
-    return found
+        replacements |= dict(zip(own, absolute, strict=True))
+    return replacements
 
 
 def _positive_sizes(mechanics: System) -> dict[Scalar, Scalar]:

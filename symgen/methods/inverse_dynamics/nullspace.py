@@ -113,11 +113,11 @@ def _decoupled(inputs: Matrix, system: MethodInput) -> list[tuple[Sequence[int],
     if generic.m > generic.alpha:
         return [(part.columns, part.rows) for part in components(inputs) if part.columns]
     products = tuple(tuple(dot(graph, a, b) for b in inputs) for a in inputs)
-    found: list[tuple[Sequence[int], Sequence[int]]] = []
+    parts: list[tuple[Sequence[int], Sequence[int]]] = []
     for part in components(products):
         moved = {j for k in part.rows for j, entry in enumerate(inputs[k]) if not entry.is_zero}
-        found.append((sorted(moved), part.rows))
-    return found
+        parts.append((sorted(moved), part.rows))
+    return parts
 
 
 def _bases(system: MethodInput) -> Iterator[_Basis]:
@@ -162,8 +162,8 @@ def _kernels(graph: Graph, rest: Rates, rows: list[int], rates: list[int]) -> li
         return [_NullVectors((), ())]
     if len(rates) == len(rows) + 1:
         return [_NullVectors(_spread(graph, (cross_product(graph, part, len(rates)),), rates, width), ())]
-    found = [_solved(graph, part, chosen) for chosen in combinations(range(len(rates)), len(rows))]
-    kernels = [_NullVectors(_spread(graph, k.vectors, rates, width), k.pivots) for k in found if k is not None]
+    solutions = [_solved(graph, part, chosen) for chosen in combinations(range(len(rates)), len(rows))]
+    kernels = [_NullVectors(_spread(graph, k.vectors, rates, width), k.pivots) for k in solutions if k is not None]
     return sorted(kernels, key=lambda kernel: cost(x for v in kernel.vectors for x in v).weight)
 
 

@@ -85,18 +85,18 @@ def _solved(definite: Definite, rates: Rates, i: int, j: int) -> Rates:
 
 
 def _turns(graph: Graph, definite: Definite, rates: Rates) -> list[_TurnOfPair]:
-    found = []
+    turns = []
     for i, row in enumerate(rates.core):
         for j, k in combinations(range(rates.width), 2):
             pair = _unit_pair(graph, definite, row[j], row[k])
             if pair is not None:
-                found.append(_TurnOfPair(True, i, j, k, *pair))
+                turns.append(_TurnOfPair(True, i, j, k, *pair))
     for j in range(rates.width):
         for i, k in combinations(range(len(rates.core)), 2):
             pair = _unit_pair(graph, definite, rates.core[i][j], rates.core[k][j])
             if pair is not None:
-                found.append(_TurnOfPair(False, j, i, k, *pair))
-    return found
+                turns.append(_TurnOfPair(False, j, i, k, *pair))
+    return turns
 
 
 def _unit_pair(graph: Graph, definite: Definite, a: Scalar, b: Scalar) -> tuple[Scalar, Scalar, Scalar] | None:

@@ -165,8 +165,8 @@ def _common_unit(units: Mapping[str, str | None], setting: _Setting, block: Node
     """The unit of a limit or preferred value is its input's, that of the preload the one all inputs have."""
     if setting.of:
         return units[setting.of]
-    found = set(units.values())
-    return found.pop() if len(found) == 1 and member(block, "weights") is None else None
+    input_units = set(units.values())
+    return input_units.pop() if len(input_units) == 1 and member(block, "weights") is None else None
 
 
 def _named(

@@ -24,12 +24,12 @@ NEED_FRAME = "name the frame it belongs to, or put a frame there under `frames`"
 
 def read_frames(scope: Scope, tree: MappingNode, joints: tuple[Frame, ...]) -> tuple[Frame, ...]:
     """The frames, those of joints among them, parents first; faulty ones are left out."""
-    found: dict[str, Frame] = {frame.name: frame for frame in joints}
+    by_name: dict[str, Frame] = {frame.name: frame for frame in joints}
     for key, node in entries(tree.get("frames")):
         frame = _frame(scope, key, node)
         if frame is not None and scope.owns(key):
-            found[key.value] = frame
-    return parents_first(scope, found)
+            by_name[key.value] = frame
+    return parents_first(scope, by_name)
 
 
 def parents_first(scope: Scope, frames: dict[str, Frame]) -> tuple[Frame, ...]:

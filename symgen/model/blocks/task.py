@@ -19,7 +19,7 @@ def read_task(scope: Scope, tree: MappingNode) -> tuple[TaskCoordinate, ...]:
 
     Their names stand for themselves: that of a coordinate, a point or a parameter may be among them.
     """
-    found: list[TaskCoordinate] = []
+    coordinates: list[TaskCoordinate] = []
     for key, node in entries(tree.get("task")):
         mistake = name_mistake(key, "coordinate of the task")
         if mistake is not None:
@@ -32,5 +32,5 @@ def read_task(scope: Scope, tree: MappingNode) -> tuple[TaskCoordinate, ...]:
             remedy = "write a function of the coordinates, such as a component of a point: `tip.x`"
             scope.wrong(f"`{key.value}` of the task does not move", remedy, node.span)
             continue
-        found.append(TaskCoordinate(key.value, expression, node.span))
-    return tuple(found)
+        coordinates.append(TaskCoordinate(key.value, expression, node.span))
+    return tuple(coordinates)

@@ -74,19 +74,19 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
     massive = model.mechanism.has_mass and (kinetic is not None or tree.get("kinetic_energy") is None)
     if whole and (massive or kinetic is not None) and len(scope.mistakes) == before:
         start = {name: float(value) for name, value in model.configuration}
-        found = branches(mechanics, model.inputs, start)
+        assembly = branches(mechanics, model.inputs, start)
         written_out = {key.value for key, _ in entries(tree.get("configuration"))}
         declared = {name: value for name, value in start.items() if name in written_out}
         chosen = model.independent_velocities, model.measured
-        _add(scope, check_motion(mechanics, found, *chosen, declared, _block_spans(tree)))
-        if isinstance(found, Assembly) and len(scope.mistakes) == before:
+        _add(scope, check_motion(mechanics, assembly, *chosen, declared, _block_spans(tree)))
+        if isinstance(assembly, Assembly) and len(scope.mistakes) == before:
             if model.allocation is not None:
-                _add(scope, check_redundancy(mechanics, found, model.inputs, model.allocation))
-            found = replace(found, tied=tied_parameters(written, mechanics, found))
-            _add(scope, _notices_of_tied(model, found.tied))
-            places = not model.measured or measures_places(mechanics, found, model.measured)
-            left = left_by_task(mechanics, found, model.task)
-            return replace(model, assembly=found, measures_places=places, task_leaves=left)
+                _add(scope, check_redundancy(mechanics, assembly, model.inputs, model.allocation))
+            assembly = replace(assembly, tied=tied_parameters(written, mechanics, assembly))
+            _add(scope, _notices_of_tied(model, assembly.tied))
+            places = not model.measured or measures_places(mechanics, assembly, model.measured)
+            left = left_by_task(mechanics, assembly, model.task)
+            return replace(model, assembly=assembly, measures_places=places, task_leaves=left)
     return model
 
 

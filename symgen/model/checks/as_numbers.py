@@ -30,13 +30,13 @@ def with_numbers(model: Model, names: Collection[str], defaults: Mapping[str, fl
 
 def _values(parameters: Sequence[Parameter], defaults: Mapping[str, float]) -> dict[str, Fraction]:
     """The default values of all parameters."""
-    found: dict[str, Fraction] = {}
+    values: dict[str, Fraction] = {}
     for parameter in parameters:
-        known = {name.name: Number(found[name.name]) for name in names_in(parameter.value)}
+        known = {name.name: Number(values[name.name]) for name in names_in(parameter.value)}
         value: Expression = _placed(parameter.value, known)
         exact = exact_value(value)
-        found[parameter.name] = Fraction(defaults[parameter.name]) if exact is None else exact
-    return found
+        values[parameter.name] = Fraction(defaults[parameter.name]) if exact is None else exact
+    return values
 
 
 def _placed(part: Any, numbers: Mapping[str, Number]) -> Any:

@@ -85,11 +85,11 @@ def check_units(tree: MappingNode, model: Model, fits: tuple[Fit, ...] = ()) -> 
     for column in model.inputs:
         for coordinate, coefficient in column.acts_on:
             force_unit, input_unit = forces.get(coordinate), units.get(column.name)
-            found = inference.of(coefficient)
-            if force_unit and input_unit and found and input_unit.times(found) != force_unit:
+            coefficient_unit = inference.of(coefficient)
+            if force_unit and input_unit and coefficient_unit and input_unit.times(coefficient_unit) != force_unit:
                 what = f"the force of `{column.name}` on `{coordinate}`"
                 needed = f"the generalized force of `{coordinate}`"
-                clash = _clash(what, input_unit.times(found), needed, force_unit, coefficient)
+                clash = _clash(what, input_unit.times(coefficient_unit), needed, force_unit, coefficient)
                 # `joint: a` has no coefficient of its own in the file
                 mistakes.append(replace(clash, span=clash.span or column.span))
         if column.velocity is not None:
@@ -129,16 +129,16 @@ def _check_allocation(model: Model, allocation: Allocation, units: dict[str, Uni
     if allocation.preload is None:
         return
     preload = values[allocation.preload]
-    found = inference.of(preload) if any(names_in(preload)) else None
+    preload_unit = inference.of(preload) if any(names_in(preload)) else None
     weights = {given: values[name] for given, name in allocation.weights}
     for item in model.inputs:
         weight = weights.get(item.name, Number(Fraction(1)))
         factor = inference.of(weight) if item.name not in weights or any(names_in(weight)) else None
         unit = units.get(item.name)
-        if found is None or factor is None or unit is None:
+        if preload_unit is None or factor is None or unit is None:
             continue
         needed = unit.times(factor.to_power(Fraction(1, 2)))
-        if found != needed:
+        if preload_unit != needed:
             other = f"`{item.name}` times the root of its weight" if item.name in weights else f"`{item.name}`"
             # the inputs may differ among themselves: one mistake is enough
             inference.agrees(preload, needed, "the preload", other)
@@ -161,15 +161,15 @@ class _Inference:
             if self._is_measured(definition.value):
                 self._measured.add(definition.name)
         for definition in model.definitions:
-            found = self.of_term(definition.value)
-            if found is not None:
-                self._units[definition.name] = found
+            dimension = self.of_term(definition.value)
+            if dimension is not None:
+                self._units[definition.name] = dimension
 
     def agrees(self, expression: Expression, declared: Dimension, what: str, other: str) -> None:
         """Records a mistake where `what`, the expression, has another dimension than `other`, which is `declared`."""
-        found = self.of_term(expression)
-        if declared is not None and found is not None and found != declared:
-            self._mistakes.append(_clash(what, found, other, declared, expression))
+        dimension = self.of_term(expression)
+        if declared is not None and dimension is not None and dimension != declared:
+            self._mistakes.append(_clash(what, dimension, other, declared, expression))
 
     def of_energy(self, expression: Expression) -> Dimension:
         """The dimension of an energy, free where its terms are made of coordinates and numbers, divisors included."""
@@ -178,8 +178,8 @@ class _Inference:
                 return self.of_energy(operand)
             case Binary(operator="+" | "-", left=left, right=right):
                 return self._same(self.of_energy(left), self.of_energy(right), right)
-        found = self.of_term(expression)
-        return found if self._is_measured(expression) or not _has_number(expression) else None
+        dimension = self.of_term(expression)
+        return dimension if self._is_measured(expression) or not _has_number(expression) else None
 
     def _is_measured(self, expression: Expression) -> bool:
         return any(is_component(name.name) or name.name in self._measured for name in names_in(expression))
@@ -202,8 +202,8 @@ class _Inference:
             case Binary(operator=operator, left=left, right=right):
                 return self._product(operator, left, right)
             case Power(base=base, exponent=exponent):
-                found = self.of(base)
-                return None if found is None else found.to_power(exponent)
+                dimension = self.of(base)
+                return None if dimension is None else dimension.to_power(exponent)
             case Call():
                 return self._call(expression)
 
@@ -217,11 +217,11 @@ class _Inference:
 
     def of_term(self, expression: Expression) -> Dimension:
         """As `of`, but a number by itself, or before coordinates or a pure number, has the unit its place demands."""
-        found = self.of(expression)
+        dimension = self.of(expression)
         if not any(names_in(expression)):
             return None
-        fits = _has_factor(expression) and (found == NUMBER or not self._is_measured(expression))
-        return None if fits else found
+        fits = _has_factor(expression) and (dimension == NUMBER or not self._is_measured(expression))
+        return None if fits else dimension
 
     def _sum(self, left: Expression, right: Expression) -> Dimension:
         return self._same(self.of_term(left), self.of_term(right), right)
@@ -240,16 +240,16 @@ class _Inference:
         return None if a is None or b is None else a.times(b, 1 if operator == "*" else -1)
 
     def _call(self, call: Call) -> Dimension:
-        found = [self.of(argument) for argument in call.arguments]
+        units = [self.of(argument) for argument in call.arguments]
         if call.function == "sqrt":
-            return None if found[0] is None else found[0].to_power(Fraction(1, 2))
+            return None if units[0] is None else units[0].to_power(Fraction(1, 2))
         if call.function == "atan2":
-            if found[0] is not None and found[1] is not None and found[0] != found[1]:
-                self._mistakes.append(_clash("this argument", found[1], "the first", found[0], call.arguments[1]))
-        elif found[0] is not None and found[0] != NUMBER:
+            if units[0] is not None and units[1] is not None and units[0] != units[1]:
+                self._mistakes.append(_clash("this argument", units[1], "the first", units[0], call.arguments[1]))
+        elif units[0] is not None and units[0] != NUMBER:
             self._mistakes.append(
                 Mistake(
-                    f"`{call.function}` of something in {found[0]}",
+                    f"`{call.function}` of something in {units[0]}",
                     "the argument must be an angle in rad or a number",
                     call.arguments[0].span,
                 )

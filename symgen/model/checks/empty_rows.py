@@ -70,8 +70,8 @@ def parameters_that_count(mechanics: NumericSystem) -> tuple[str, ...]:
     loops = [[j for j in holding if rows[j].span == rows[i].span] for i in holding]
     counting = [i for i, loop in zip(holding, loops, strict=True) if not _stays_open(mechanics, loop)]
     named = set[str]()
-    while (found := _other_parameters(mechanics, counting, named)) is not None:
-        named.add(found)
+    while (name := _other_parameters(mechanics, counting, named)) is not None:
+        named.add(name)
     return tuple(parameter.name for parameter in mechanics.parameters if parameter.name in named)
 
 
@@ -154,13 +154,13 @@ def _stays_open(mechanics: NumericSystem, together: Sequence[int]) -> bool:
         return False
     for _, parameters in mechanics.anywhere(OTHERS):
         other = mechanics.having(parameters)
-        found = []
+        gaps = []
         for q, _ in mechanics.anywhere(ROW_DRAWS):
             try:
-                found.append(math.hypot(*other.residuals(q, together)[0]))
+                gaps.append(math.hypot(*other.residuals(q, together)[0]))
             except (ArithmeticError, ValueError):
                 continue
-        if not found or not 0 < max(found) < math.inf or max(found) - min(found) > CONSTANT * max(found):
+        if not gaps or not 0 < max(gaps) < math.inf or max(gaps) - min(gaps) > CONSTANT * max(gaps):
             return False
     return True
 

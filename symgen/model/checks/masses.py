@@ -119,10 +119,10 @@ class _Masses:
         largest = [[0.0] * n for _ in range(n)]
         for q, _ in self._mechanics.anywhere(USUAL_PLACES):
             try:
-                found = self._mechanics.mass_matrix(q)
+                mass = self._mechanics.mass_matrix(q)
             except (ArithmeticError, ValueError):
                 continue
-            pairs = zip(largest, found, strict=True)
+            pairs = zip(largest, mass, strict=True)
             largest = [[max(a, abs(b)) for a, b in zip(*rows, strict=True)] for rows in pairs]
         return largest
 
@@ -130,8 +130,8 @@ class _Masses:
         """W^T G W for an orthonormal basis W of the velocities that the constraints allow; what is nothing is 0."""
         limits = self._limits
         # rounded zeros of rows let a motion of no mass take masses along
-        found = null_space(jacobian, len(mass))
-        basis = [[x if abs(x) > limits.component else 0.0 for x in vector] for vector in found]
+        vectors = null_space(jacobian, len(mass))
+        basis = [[x if abs(x) > limits.component else 0.0 for x in vector] for vector in vectors]
         bounds = [
             [max(limits.rounding * abs(a), limits.energy * b) for a, b in zip(*rows, strict=True)]
             for rows in zip(mass, self._usual, strict=True)
@@ -147,8 +147,12 @@ class _Masses:
         for relative in self._limits.rows:
             motions = null_space([*jacobian, *massive], len(mass), relative)
             if motions:
-                found = self._mechanics.coordinates
-                return {c.name for i, c in enumerate(found) if any(abs(motion[i]) > NO_COMPONENT for motion in motions)}
+                coordinates = self._mechanics.coordinates
+                return {
+                    c.name
+                    for i, c in enumerate(coordinates)
+                    if any(abs(motion[i]) > NO_COMPONENT for motion in motions)
+                }
         return set()
 
     def _alone(self, name: str) -> bool:
@@ -162,12 +166,12 @@ class _Masses:
 
 def _closed(mechanics: NumericSystem, q: list[float]) -> list[float]:
     """The configuration nearer to the constraints: Newton steps of least length in the numbers of `mechanics`."""
-    found = [mechanics.numbers.rational(0) + x for x in q]
+    configuration = [mechanics.numbers.rational(0) + x for x in q]
     for _ in range(CLOSING):
         try:
-            values, rows = mechanics.residuals(found, range(len(mechanics.geometric)))
+            values, rows = mechanics.residuals(configuration, range(len(mechanics.geometric)))
         except (ArithmeticError, ValueError):
-            return found
+            return configuration
         step, met = [0.0] * len(q), list[list[float]]()
         for value, row in zip(values, rows, strict=True):
             given = [row.get(j, 0.0) for j in range(len(q))]
@@ -183,8 +187,8 @@ def _closed(mechanics: NumericSystem, q: list[float]) -> list[float]:
             share = (value + sum(a * b for a, b in zip(given, step, strict=True))) / square
             step = [x - share * a for x, a in zip(step, across, strict=True)]
             met.append([x / square**0.5 for x in across])
-        found = [x + dx for x, dx in zip(found, step, strict=True)]
-    return found
+        configuration = [x + dx for x, dx in zip(configuration, step, strict=True)]
+    return configuration
 
 
 def _above(values: Rows, least: Rows) -> Rows:

@@ -70,8 +70,8 @@ class Shaken:
         for i, row in enumerate(rows):
             for j, value in row.items():
                 self.sizes[i][j] = max(self.sizes[i].get(j, 0.0), abs(value))
-            for changes, found in zip(self._changes, beside, strict=True):
-                for other in found:
+            for changes, other_rows in zip(self._changes, beside, strict=True):
+                for other in other_rows:
                     for j in {*row, *other[i]}:
                         change = abs(row.get(j, 0.0) - other[i].get(j, 0.0))
                         changes[i][j] = max(changes[i].get(j, 0.0), change)
@@ -79,7 +79,7 @@ class Shaken:
 
     def is_rest(self, i: int, j: int) -> bool:
         """Whether nothing but rounding is left of an entry."""
-        size, little, much = (found[i].get(j, 0.0) for found in (self.sizes, *self._changes))
+        size, little, much = (sizes[i].get(j, 0.0) for sizes in (self.sizes, *self._changes))
         if size == 0 or (CHANGED * size <= little and PROPORTIONAL * little <= much):
             return True
         # zero whatever the numbers are, such as a force along the arm it turns: only rounding changes, and altogether

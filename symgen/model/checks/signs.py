@@ -42,8 +42,8 @@ def _inertial(model: Model) -> frozenset[str]:
     """The parameters that are a mass or a moment of inertia, by unit or by use."""
     masses = {expression.name for expression in _masses(model.mechanism) if isinstance(expression, Name)}
     signed = {name.name for expression in _products(model.mechanism) for name in names_in(expression)}
-    found = (p.name for p in model.parameters if p.name in masses or _is_in(p, _INERTIAL))
-    return frozenset(name for name in found if name not in signed)
+    names = (p.name for p in model.parameters if p.name in masses or _is_in(p, _INERTIAL))
+    return frozenset(name for name in names if name not in signed)
 
 
 def _is_in(parameter: Parameter, units: tuple[Unit, ...]) -> bool:

@@ -62,8 +62,8 @@ def _check_degree(
 
 
 def _wrong_term(mechanics: NumericSystem, expression: Expression, degree: int) -> Monomial | None:
-    found = (_wrong_monomial(polynomial, degree) for polynomial in mechanics.polynomials(expression))
-    return next((monomial for monomial in found if monomial is not None), None)
+    monomials = (_wrong_monomial(polynomial, degree) for polynomial in mechanics.polynomials(expression))
+    return next((monomial for monomial in monomials if monomial is not None), None)
 
 
 def _wrong_monomial(polynomial: Polynomial, degree: int) -> Monomial | None:

@@ -96,9 +96,9 @@ class _Search:
                 if (ranks := self._ranks(q, plain)) is not None
             ]
             if places:
-                found = self._chosen(places, configurations[0])
-                losing = () if found.regular else self._losing(found.places[0])
-                return replace(found, held=self._held(found), losing=losing, units=self._units_of(found))
+                assembly = self._chosen(places, configurations[0])
+                losing = () if assembly.regular else self._losing(assembly.places[0])
+                return replace(assembly, held=self._held(assembly), losing=losing, units=self._units_of(assembly))
         return None
 
     def _losing(self, place: RankedConfiguration) -> tuple[int, ...]:
@@ -125,14 +125,14 @@ class _Search:
 
     def _sampled(self) -> Iterator[tuple[list[float], list[Row]]]:
         """B and M at random configurations, whether they satisfy the constraints or not."""
-        found = 0
+        count = 0
         for _ in range(10 * TYPICAL_POINTS):
             place = self._starts.anywhere(whole=False)
             rows = self._rows(place)
             if rows is not None:
                 yield place, rows
-                found += 1
-            if found == TYPICAL_POINTS:
+                count += 1
+            if count == TYPICAL_POINTS:
                 return
 
     def _with_other_parameters(self) -> Iterator[list[Row]]:
@@ -176,31 +176,31 @@ class _Search:
         return ConfigurationRanks(constraints, geometric, together - constraints)
 
     def _free(self) -> Iterator[tuple[float, ...]]:
-        found, q = 0, tuple(self._starts.begin())
+        count, q = 0, tuple(self._starts.begin())
         for number in range(10 * FREE_POINTS):
             q = tuple(self._starts.anywhere(whole=False)) if number else q
             if self._rows(q) is not None:
                 yield q
-                found += 1
-            if found == FREE_POINTS:
+                count += 1
+            if count == FREE_POINTS:
                 return
 
     def _closed(self) -> Iterator[tuple[float, ...]]:
         """Configurations on the geometric constraints, where the start leads first."""
-        found: list[tuple[float, ...]] = []
+        configurations: list[tuple[float, ...]] = []
         reached: list[ConfigurationRanks] = []
         regular = False
-        for number, (guess, held) in enumerate(self._starts.guesses(found)):
+        for number, (guess, held) in enumerate(self._starts.guesses(configurations)):
             q = self._close(guess, held)
             if q is not None:
                 q = self._turned_back(q) if number else q
-                found.append(q)
+                configurations.append(q)
                 yield q
                 if (ranks := self._ranks(q)) is not None:
                     reached.append(ranks)
                     regular = regular or self._is_regular(RankedConfiguration(q, ranks))
             enough = number + 1 >= FEWEST_STARTS
-            if enough and len(found) >= ENOUGH and self._at_bound(reached):
+            if enough and len(configurations) >= ENOUGH and self._at_bound(reached):
                 return
             if self._closer.effort > EFFORT and (regular or self._closer.effort > LONGEST * EFFORT):
                 return
@@ -275,8 +275,8 @@ class _Search:
     def _nearness(self, place: RankedConfiguration) -> float:
         """How near a configuration is to a drop of rank: the less the smallest pivot, the more."""
         rows = self._rows(place.q)
-        found = None if rows is None else pivots(self._scales.scaled(rows))
-        return -min(found or [0.0])
+        pivot_sizes = None if rows is None else pivots(self._scales.scaled(rows))
+        return -min(pivot_sizes or [0.0])
 
     def _is_regular(self, place: RankedConfiguration) -> bool:
         """Whether the ranks stay as they are where a step along an admissible direction leads."""
@@ -319,19 +319,19 @@ class _Search:
 
     def _along(self, place: RankedConfiguration) -> list[RankedConfiguration]:
         """A walk along a branch, with shorter steps where it is bent more."""
-        found, stride = [place], STRIDE
+        walk, stride = [place], STRIDE
         for _ in range(3 * WALK):
-            direction = self._closer.along(found[-1].q, self._starts.direction())
+            direction = self._closer.along(walk[-1].q, self._starts.direction())
             longest = max(map(abs, direction or ()), default=0.0)
-            if direction is None or longest < STRIDES[0] or len(found) == WALK:
+            if direction is None or longest < STRIDES[0] or len(walk) == WALK:
                 break
-            pairs = zip(found[-1].q, direction, self._widths, strict=True)
+            pairs = zip(walk[-1].q, direction, self._widths, strict=True)
             closed = self._closer.close([x + stride * a / longest * w for x, a, w in pairs])
             if not closed.open and self._ranks(closed.q) == place.ranks:
-                found.append(RankedConfiguration(closed.q, place.ranks))
+                walk.append(RankedConfiguration(closed.q, place.ranks))
             else:
                 stride /= 4
-        return found
+        return walk
 
     def _in_ranges(self, place: RankedConfiguration) -> bool:
         """Whether every coordinate lies in its range, but for a hundredth of its width."""

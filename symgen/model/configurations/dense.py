@@ -14,7 +14,7 @@ RELATIVE = 1e-9
 def rank(rows: Rows, relative: float = RELATIVE) -> int:
     """The rank by elimination with complete pivoting, of the rows scaled to norm one."""
     work = _unit_rows(rows)
-    found = 0
+    pivot_count = 0
     columns = list(range(len(work[0]))) if work else []
     while work and columns:
         size, pivot_row, pivot_column = max((abs(row[c]), i, c) for i, row in enumerate(work) for c in columns)
@@ -26,8 +26,8 @@ def rank(rows: Rows, relative: float = RELATIVE) -> int:
             factor = row[pivot_column] / pivot[pivot_column]
             for column in columns:
                 row[column] -= factor * pivot[column]
-        found += 1
-    return found
+        pivot_count += 1
+    return pivot_count
 
 
 def null_space(rows: Rows, n: int, relative: float = RELATIVE) -> Rows:

@@ -107,14 +107,14 @@ class NumericSystem:
         return self._expanded[id(expression)][1]
 
     def _expansions(self, expression: Expression) -> Iterator[Polynomial]:
-        found = 0
+        count = 0
         for q, parameters in self.anywhere(EXPANSION_DRAWS):
             try:
                 yield self.expansion(q, parameters).of(expression)
             except (ArithmeticError, ValueError):
                 continue
-            found += 1
-            if found == EXPANSION_POINTS:
+            count += 1
+            if count == EXPANSION_POINTS:
                 return
 
     def turning(self) -> dict[str, tuple[bool, bool, bool]]:
@@ -125,11 +125,11 @@ class NumericSystem:
             kinematics = self._kinematics({**parameters, **self._named(q)})
             for frame in dict.fromkeys(body.frame for body in self.mechanism.bodies):
                 try:
-                    found = [any(abs(x) > LEAST_TURN for x in form.values()) for form in kinematics.turning(frame)]
+                    turns = [any(abs(x) > LEAST_TURN for x in form.values()) for form in kinematics.turning(frame)]
                 except (ArithmeticError, ValueError, KeyError):
                     continue
                 before = able.get(frame, (False, False, False))
-                x, y, z = (one or other for one, other in zip(before, found, strict=True))
+                x, y, z = (one or other for one, other in zip(before, turns, strict=True))
                 able[frame] = x, y, z
         return able
 
@@ -158,8 +158,8 @@ class NumericSystem:
     def residuals(self, q: Sequence[float], numbers: Sequence[int]) -> tuple[list[float], list[Row]]:
         """Values and gradients of the geometric rows with these numbers."""
         gradients = self._gradients(q)
-        found = [gradients.of(self.geometric[i].expression) for i in numbers]
-        return [value for value, _ in found], [gradient for _, gradient in found]
+        pairs = [gradients.of(self.geometric[i].expression) for i in numbers]
+        return [value for value, _ in pairs], [gradient for _, gradient in pairs]
 
     def gradients(self, q: Sequence[float], expressions: Iterable[Expression]) -> list[Row]:
         """Those of functions of the configuration."""
@@ -195,8 +195,8 @@ class NumericSystem:
 
     def _coefficients(self, polynomial: Polynomial) -> Row:
         """Of the rates, in an expression that is linear in them."""
-        found = ((i, polynomial.get((c.rate,))) for i, c in enumerate(self.coordinates))
-        return {i: pair[0] for i, pair in found if pair is not None}
+        terms = ((i, polynomial.get((c.rate,))) for i, c in enumerate(self.coordinates))
+        return {i: pair[0] for i, pair in terms if pair is not None}
 
     def jacobian(self, q: Sequence[float]) -> Rows:
         """B, r x n."""

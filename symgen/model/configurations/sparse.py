@@ -62,8 +62,8 @@ def typical(samples: Iterable[Sequence[Row]]) -> list[Row]:
 
 def clear_rank(rows: Sequence[Row], plain: float = PLAIN) -> int | None:
     """The rank of scaled rows by elimination with complete pivoting; None where it is not clear-cut."""
-    found = pivots(rows)
-    return None if found is None or (found and found[-1] < plain) else len(found)
+    sizes = pivots(rows)
+    return None if sizes is None or (sizes and sizes[-1] < plain) else len(sizes)
 
 
 def pivots(rows: Sequence[Row]) -> list[float] | None:
@@ -73,7 +73,7 @@ def pivots(rows: Sequence[Row]) -> list[float] | None:
         return None
     # of each row its largest entry, the first of equal ones: only rows that a step changes are looked at again
     largest = [_largest(row) for row in left]
-    found: list[float] = []
+    sizes: list[float] = []
     while left:
         size, place, column = max((size, -i, column) for i, (size, column) in enumerate(largest))
         if size < NEGLIGIBLE:
@@ -88,8 +88,8 @@ def pivots(rows: Sequence[Row]) -> list[float] | None:
                 for j, value in lead.items():
                     row[j] = row.get(j, 0.0) - factor * value
                 largest[i] = _largest(row)
-        found.append(size)
-    return found
+        sizes.append(size)
+    return sizes
 
 
 def _largest(row: Row) -> tuple[float, int]:
@@ -159,12 +159,12 @@ def groups(rows: Sequence[Row], n: int) -> list[tuple[tuple[int, ...], tuple[int
         first, *others = row or (0,)
         for j in others:
             leader[of(j)] = of(first)
-    found: dict[int, tuple[list[int], list[int]]] = {}
+    by_leader: dict[int, tuple[list[int], list[int]]] = {}
     for i, row in enumerate(rows):
         for j in row:
-            found.setdefault(of(j), ([], []))[0].append(i)
+            by_leader.setdefault(of(j), ([], []))[0].append(i)
             break
     for j in range(n):
-        if of(j) in found:
-            found[of(j)][1].append(j)
-    return [(tuple(these), tuple(columns)) for these, columns in found.values()]
+        if of(j) in by_leader:
+            by_leader[of(j)][1].append(j)
+    return [(tuple(these), tuple(columns)) for these, columns in by_leader.values()]

@@ -75,5 +75,5 @@ class Starts:
             columns = self._mechanics.columns(q, self._inputs)
         except (ArithmeticError, ValueError):
             columns = []
-        found = [tuple(j for j, value in column.items() if value) for column in columns]
-        return [these for these in found if these] or [(j,) for j in range(len(self.widths))]
+        coordinates = [tuple(j for j, value in column.items() if value) for column in columns]
+        return [these for these in coordinates if these] or [(j,) for j in range(len(self.widths))]

@@ -21,8 +21,8 @@ def derivative(expression: Expression, slope: Callable[[str], Expression]) -> Ex
     match expression:
         case Number() | Pi():
             return ZERO
-        case Name(name=found):
-            return slope(found)
+        case Name(name=name):
+            return slope(name)
         case Negation(operand=operand):
             return negated(of(operand))
         case Binary(operator="+", left=left, right=right):

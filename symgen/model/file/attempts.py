@@ -24,19 +24,19 @@ def attempted_names(tree: MappingNode, mistakes: Sequence[Mistake]) -> set[str]:
     Of entries that only act on what others declare the names: what else is wrong with them follows, too.
     """
     lines = {mistake.span.line for mistake in mistakes if mistake.span is not None and not mistake.span.file}
-    found: set[str] = set()
+    words: set[str] = set()
     for key, block, whole in _ranges(tree):
         if nearest(key.value, MEANT) not in DECLARING | ACTING or not any(line in whole for line in lines):
             continue
         if key.value not in DECLARING | ACTING:
-            found |= {word for text in _texts(block) for word in words_of(text)}  # the block is misspelt
+            words |= {word for text in _texts(block) for word in words_of(text)}  # the block is misspelt
             continue
         inner = list(_ranges(block)) if isinstance(block, MappingNode) else []
         faulty = [(name, value) for name, value, its in inner if any(line in its for line in lines)]
         for name, value in faulty or [(name, value) for name, value, _ in inner] or [(key, block)]:
             texts = (name.value, *_texts(value)) if key.value in DECLARING else (name.value,)
-            found |= {word for text in texts for word in words_of(text)}
-    return found
+            words |= {word for text in texts for word in words_of(text)}
+    return words
 
 
 def _ranges(node: MappingNode) -> Iterator[tuple[ScalarNode, Node, range]]:

@@ -105,13 +105,13 @@ class _EnergyWriter:
 
     def _components(self) -> tuple[str, ...]:
         """Components in the motion equations, in printed formulas and in paths."""
-        found = dict.fromkeys((*components_in(self.model), *self.more))
+        components = dict.fromkeys((*components_in(self.model), *self.more))
         for path in self.model.paths:
             for _, condition in path.conditions:
-                found |= dict.fromkeys(name.name for name in names_in(condition) if is_component(name.name))
+                components |= dict.fromkeys(name.name for name in names_in(condition) if is_component(name.name))
         for expression in printed_formulas(self.model.published):
-            found |= dict.fromkeys(name.name for name in names_in(expression) if is_component(name.name))
-        return tuple(found)
+            components |= dict.fromkeys(name.name for name in names_in(expression) if is_component(name.name))
+        return tuple(components)
 
     def _component(self, name: str) -> Expression:
         one = component(name)

@@ -61,8 +61,8 @@ def _parts(angle: Expression) -> tuple[Fraction, Fraction] | None:
         case Pi():
             return Fraction(0), Fraction(1)
         case Negation(operand=operand):
-            found = _parts(operand)
-            return None if found is None else (-found[0], -found[1])
+            parts = _parts(operand)
+            return None if parts is None else (-parts[0], -parts[1])
         case Binary(operator=operator, left=left, right=right):
             a, b = _parts(left), _parts(right)
             if a is None or b is None:

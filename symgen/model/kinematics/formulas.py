@@ -116,15 +116,15 @@ class ExpressionArithmetic:
         return ExpressionNumber(Name(name))
 
     def _names_below(self, expression: Expression) -> set[str]:
-        found: set[str] = set()
+        names: set[str] = set()
         pending = [expression]
         while pending:
             for name in names_in(pending.pop()):
-                if name.name not in found:
-                    found.add(name.name)
+                if name.name not in names:
+                    names.add(name.name)
                     if name.name in self._known:
                         pending.append(self._known[name.name])
-        return found
+        return names
 
 
 def rate_of(form: Form) -> Expression:
@@ -147,8 +147,8 @@ def coefficients(
     def of(part: Expression) -> Form:
         match part:
             case Name(name=name):
-                found = rates_of_name(name)
-                return of(definitions[name]) if found is None and name in definitions else found or {}
+                form = rates_of_name(name)
+                return of(definitions[name]) if form is None and name in definitions else form or {}
             case Negation(operand=operand):
                 return combination([(minus_one, of(operand))])
             case Binary(operator="+" | "-" as operator, left=left, right=right):

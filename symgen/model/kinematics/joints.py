@@ -55,16 +55,16 @@ def plane_turn(frame: Frame) -> tuple[Vector3 | None, Expression] | None:
 
 def main_axis(axis: Vector3) -> tuple[int, int] | None:
     """Which of x, y, z (0, 1, 2) the axis is, and its sign; None for any other direction."""
-    found: tuple[int, int] | None = None
+    signed_axis: tuple[int, int] | None = None
     for index, entry in enumerate(axis):
         value = entry.value if isinstance(entry, Number) else exact_value(entry)
         if value is None:
             return None
         if value.numerator:
-            if found is not None or abs(value.numerator) != 1 or value.denominator != 1:
+            if signed_axis is not None or abs(value.numerator) != 1 or value.denominator != 1:
                 return None
-            found = index, value.numerator
-    return found
+            signed_axis = index, value.numerator
+    return signed_axis
 
 
 def _turns(space: Space[P, V], turns: tuple[Turn, ...]) -> tuple[Rows[P], Rates[V], Rates[V]]:

@@ -105,11 +105,11 @@ class Kinematics(Generic[P, V]):
             # what is added up beyond a fixed turn is turned once
             at, frame = self.place(frame, at, still), still
         axes, origin = self._below(meeting, frame)
-        found = plus(origin, applied(axes, at))
+        position = plus(origin, applied(axes, at))
         if meeting == seen_from:
-            return found
+            return position
         axes, origin = self._below(meeting, seen_from)
-        return applied(transposed(axes), minus(found, origin))
+        return applied(transposed(axes), minus(position, origin))
 
     def origin(self, frame: str) -> Triple[P]:
         """The origin of a frame from that of the world."""
@@ -222,7 +222,7 @@ class Kinematics(Generic[P, V]):
 
     def _last_fixed_turn(self, ancestor: str, frame: str) -> str | None:
         """The last frame on the way that is turned against the ancestor by fixed angles only; in a plane angles add."""
-        found = None
+        last = None
         if self._sums_of_angles and self.plane(ancestor, frame) is not None:
             return None
         line = self.lineage(frame)
@@ -230,8 +230,8 @@ class Kinematics(Generic[P, V]):
             turns = self.frames[name].rotation
             if isinstance(turns, Quaternion) or any(list(names_in(turn.angle)) for turn in turns):
                 break
-            found = name if turns or found else None
-        return found
+            last = name if turns or last else None
+        return last
 
     def _located(self, owner: str) -> tuple[str, Triple[P], str]:
         """Frame, place in it, and carrier of a point or of a frame's origin."""

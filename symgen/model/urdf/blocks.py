@@ -161,15 +161,15 @@ def _ranges(tree: MappingNode, joints: list[UrdfJoint], names: RobotNames) -> It
         if ENDINGS[joint.kind] != ("",):
             continue
         name, span = names.coordinates[joint.name], joint.span
-        found: list[tuple[str, Node, Node]] = []
+        ranges: list[tuple[str, Node, Node]] = []
         if joint.kind != "continuous":
             lower, upper = (_number(joint.limits.get(key), span) for key in ("lower", "upper"))
-            found.append((name, lower, upper))
+            ranges.append((name, lower, upper))
         for key, ending in (("velocity", "_dot"), ("acceleration", "_ddot")):
             bound = joint.limits.get(key)
             if bound is not None and bound.value > 0:
-                found.append((name + ending, ScalarNode(f"-{bound.text}", bound.span, "", False), bound.node))
-        for key, low, high in found:
+                ranges.append((name + ending, ScalarNode(f"-{bound.text}", bound.span, "", False), bound.node))
+        for key, low, high in ranges:
             if key not in own:
                 yield _text(key, span), SequenceNode((low, high), span)
 

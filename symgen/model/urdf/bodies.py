@@ -79,8 +79,8 @@ def judge_links(robot: Robot) -> Iterator[Notice]:
             mass, *entries = (Number(q.value, q.span) for q in (link.inertial.mass, *link.inertial.tensor))
             elements = dict(zip(INERTIA_ELEMENTS, entries, strict=True))
             bodies.append(Body(link.name, link.name, mass, NO_VECTOR, Inertia(**elements), link.inertial.span))
-    for found in check_bodies(Mechanism(bodies=tuple(bodies)), {}):
-        yield Notice(found.message, found.span)
+    for report in check_bodies(Mechanism(bodies=tuple(bodies)), {}):
+        yield Notice(report.message, report.span)
 
 
 def body_entries(robot: Robot, links: list[str], places: dict[str, LinkPose]) -> tuple[Node, Span] | None:

@@ -90,8 +90,8 @@ class _RobotReader:
         self._children(element, ("origin", "mass", "inertia"), "inertial")
         origin = self._origin(element)
         mass, tensor = self._only(element, "mass"), self._only(element, "inertia")
-        for part, found in (("mass", mass), ("inertia", tensor)):
-            if found is None:
+        for part, child in (("mass", mass), ("inertia", tensor)):
+            if child is None:
                 self.wrong(f"the inertial of the link `{link}` has no `{part}`", f"add <{part} .../>", element.span)
         if mass is None or tensor is None:
             return None
@@ -155,8 +155,8 @@ class _RobotReader:
         if part is None:
             return {}
         self._attributes(part, keys)
-        found = {key: self._number(part, key, f"the {tag} of the joint `{joint}`") for key in keys}
-        return {key: value for key, value in found.items() if value is not None}
+        numbers = {key: self._number(part, key, f"the {tag} of the joint `{joint}`") for key in keys}
+        return {key: value for key, value in numbers.items() if value is not None}
 
     # attributes and children
 
@@ -201,10 +201,10 @@ class _RobotReader:
             inside += part.children
 
     def _only(self, element: Element, tag: str) -> Element | None:
-        found = element.all(tag)
-        for further in found[1:]:
+        children = element.all(tag)
+        for further in children[1:]:
             self.wrong(f"`{element.tag}` has a second `{tag}`", "keep one of them", further.span)
-        return found[0] if found else None
+        return children[0] if children else None
 
     def _text(self, element: Element, key: str, what: str) -> str:
         text = element.attributes.get(key, "").strip()

@@ -49,7 +49,7 @@ def read_names(scope: Scope, node: Node | None, robot: Robot, key_span: Span) ->
 
 def _chosen(scope: Scope, node: Node | None, known: dict[str, Span], what: str) -> dict[str, str]:
     """The name of each thing in the model: its own, or that of an entry `name in the model: own name`."""
-    found = {name: _plain(name) for name in known}
+    by_own_name = {name: _plain(name) for name in known}
     named: set[str] = set()
     for key, value in entries(node):
         own = text_of(value)
@@ -60,8 +60,8 @@ def _chosen(scope: Scope, node: Node | None, known: dict[str, Span], what: str) 
         if own in named:
             scope.wrong(f"the {what} `{own}` is named twice", "keep one of the two", value.span)
         named.add(own)
-        found[own] = key.value
-    return found
+        by_own_name[own] = key.value
+    return by_own_name
 
 
 def _enter(scope: Scope, taken: dict[str, str], name: str, span: Span, of: tuple[str, str, str, str]) -> None:

@@ -66,9 +66,9 @@ def import_robot(scope: Scope, tree: MappingNode, folder: Path) -> Imported:
     scope.mistakes.extend(check_joints(robot, {joint for joint, name in names.coordinates.items() if name in own}))
     if not scope.mistakes:
         tree = with_robot(scope, tree, robot, names, span)
-        found = (*_notices(robot, span), *judge_links(robot))
+        notices = (*_notices(robot, span), *judge_links(robot))
         # names in the file are any text
-        scope.notices.extend(Notice(printable(notice.message), notice.span) for notice in found)
+        scope.notices.extend(Notice(printable(notice.message), notice.span) for notice in notices)
         efforts = _listed(robot, "effort")
         if efforts:
             scope.efforts = Notice(printable(f"effort limits of the URDF bound no input ({efforts})"), span)
@@ -132,16 +132,16 @@ def _notices(robot: Robot, span: Span) -> list[Notice]:
 
 def _idle(kind: str, limits: dict[str, WrittenNumber], dynamics: dict[str, WrittenNumber], mimics: bool) -> str:
     """What a joint of this kind has no use for."""
-    found = []
+    unused = []
     if kind in ("fixed", "planar", "floating") and any(value.value for value in limits.values()):
-        found.append("`limit`")
+        unused.append("`limit`")
     if kind == "continuous" and any(key in limits for key in ("lower", "upper")):
-        found.append("the position in `limit`")
+        unused.append("the position in `limit`")
     if kind == "fixed" and any(value.value for value in dynamics.values()):
-        found.append("`dynamics`")
+        unused.append("`dynamics`")
     if kind == "fixed" and mimics:
-        found.append("`mimic`")
-    return " and ".join(found)
+        unused.append("`mimic`")
+    return " and ".join(unused)
 
 
 def _listed(robot: Robot, key: str) -> str:

@@ -57,14 +57,14 @@ class Element:
     def place(self, attribute: str, start: int = 0, length: int | None = None) -> Span:
         """The place of the value of an attribute, or of some characters of it."""
         raw = re.compile(rf"\s{re.escape(attribute)}\s*=\s*(\"[^\"]*\"|'[^']*')")
-        found = raw.search(self.document.text, self.offset)
+        match = raw.search(self.document.text, self.offset)
         value = self.attributes.get(attribute, "")
-        if found is None:
+        if match is None:
             return self.span
-        if found.group(1)[1:-1] != value:
+        if match.group(1)[1:-1] != value:
             # a character written as &#...;, so that places inside are not those of the text
-            start, length = 0, len(found.group(1)) - 2
-        return self.document.span(found.start(1) + 1 + start, len(value) if length is None else length)
+            start, length = 0, len(match.group(1)) - 2
+        return self.document.span(match.start(1) + 1 + start, len(value) if length is None else length)
 
 
 class _RefusedXmlError(Exception):

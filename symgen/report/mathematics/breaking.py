@@ -108,39 +108,39 @@ def _pieces(node: Layout, first: int, level: int, measure: Measure, room: float)
 
 def _row(inner: tuple[Layout, ...], first: int, level: int, measure: Measure, room: float) -> list[Piece]:
     """A row: breaks before relations and after punctuation; a short left-hand side keeps its relation."""
-    found: list[Piece] = []
+    pieces: list[Piece] = []
     for position, node in enumerate(inner):
         before = inner[position - 1] if position else None
         breakable = isinstance(node, Relation) or isinstance(before, Punctuation)
         here = first if position == 0 else level if breakable else GLUED
-        found.extend(_pieces(node, here, level + 1, measure, room))
-    if len(found) > 1 and isinstance(found[1].node, Relation) and measure(found[0].node) < KEPT_WHOLE * room:
-        found[1] = Piece(found[1].node, GLUED)
-    return found
+        pieces.extend(_pieces(node, here, level + 1, measure, room))
+    if len(pieces) > 1 and isinstance(pieces[1].node, Relation) and measure(pieces[0].node) < KEPT_WHOLE * room:
+        pieces[1] = Piece(pieces[1].node, GLUED)
+    return pieces
 
 
 def _sum(terms: tuple[tuple[str, Layout], ...], first: int, level: int, measure: Measure, room: float) -> list[Piece]:
     """A sum: breaks before the signs, worse ones inside its terms."""
-    found: list[Piece] = []
+    pieces: list[Piece] = []
     for position, (sign, term) in enumerate(terms):
         here = level + 1 if position else first
         if position or sign == "-":
-            found.append(Piece(Sign("-" if sign == "-" else "+", prefix=position == 0), here))
+            pieces.append(Piece(Sign("-" if sign == "-" else "+", prefix=position == 0), here))
             here = GLUED
-        found.extend(_pieces(term, here, level + 2, measure, room))
-    return found
+        pieces.extend(_pieces(term, here, level + 2, measure, room))
+    return pieces
 
 
 def _product(factors: tuple[Layout, ...], first: int, level: int, measure: Measure, room: float) -> list[Piece]:
     """A product: runs of narrow factors stay together, breaks come before multiplication points."""
-    found: list[Piece] = []
+    pieces: list[Piece] = []
     run: list[Layout] = []
     for factor in factors:
         if run and measure(Product((*run, factor))) > KEPT_WHOLE * room:
-            found += _run(run, first if not found else None, level, measure, room)
+            pieces += _run(run, first if not pieces else None, level, measure, room)
             run = []
         run.append(factor)
-    return [*found, *_run(run, first if not found else None, level, measure, room)]
+    return [*pieces, *_run(run, first if not pieces else None, level, measure, room)]
 
 
 def _run(run: list[Layout], first: int | None, level: int, measure: Measure, room: float) -> list[Piece]:

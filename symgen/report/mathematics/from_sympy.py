@@ -50,10 +50,10 @@ class SympyLayout:
 
     def expression(self, expression: Any) -> Layout:
         """One SymPy expression; raises SymgenBug for a kind of node nothing here can set."""
-        found = self._layouts.get(expression)
-        if found is None:
-            found = self._layouts[expression] = self._translate(expression)
-        return found
+        layout = self._layouts.get(expression)
+        if layout is None:
+            layout = self._layouts[expression] = self._translate(expression)
+        return layout
 
     def _translate(self, node: Any) -> Layout:
         if node.is_Symbol:
@@ -112,19 +112,19 @@ class SympyLayout:
         return (*self._base_key(base), -float(exponent) if exponent.is_Rational else 0.0)
 
     def _base_key(self, base: Any) -> Key:
-        found = self._keys.get(base)
-        if found is None:
+        key = self._keys.get(base)
+        if key is None:
             if base.is_Symbol:
                 kind, place = self._order.get(base.name, (PARAMETER, len(self._order)))
-                found = (kind, place, base.name)
+                key = (kind, place, base.name)
             elif isinstance(base, sympy.Function):
-                found = (FUNCTION, 0, "", self._term_key(base.args[0]), str(type(base).__name__))
+                key = (FUNCTION, 0, "", self._term_key(base.args[0]), str(type(base).__name__))
             elif base.is_Add:
-                found = (GROUP, 0, "", tuple(sorted(self._term_key(term) for term in base.args)))
+                key = (GROUP, 0, "", tuple(sorted(self._term_key(term) for term in base.args)))
             else:
-                found = (GROUP, 1, str(base))
-            self._keys[base] = found
-        return found
+                key = (GROUP, 1, str(base))
+            self._keys[base] = key
+        return key
 
     def _term_key(self, term: Any) -> Key:
         if term.is_Rational:

@@ -88,13 +88,13 @@ class Denominators:
         powers: Counter[tuple[Any, int]] = Counter()
         for entry in entries:
             powers.update(self._denominators(entry))
-        found: Counter[Any] = Counter()
+        by_base: Counter[Any] = Counter()
         for (base, _), count in powers.items():
-            found[base] += count
-        shared = [factor for factor, count in found.items() if count >= 2 and 2 * count > len(entries)]
+            by_base[base] += count
+        shared = [factor for factor, count in by_base.items() if count >= 2 and 2 * count > len(entries)]
         if not shared:
             return None
-        factor = max(shared, key=lambda candidate: (found[candidate], str(candidate)))
+        factor = max(shared, key=lambda candidate: (by_base[candidate], str(candidate)))
         return factor, max((count, exponent) for (base, exponent), count in powers.items() if base == factor)[1]
 
     def _denominators(self, entry: Any) -> list[tuple[Any, int]]:
@@ -106,9 +106,9 @@ class Denominators:
         """The name of a denominator, and whether it is new."""
         if factor.is_Symbol:
             return factor.name, False
-        found = self._named.get(factor)
-        if found is not None:
-            return found, False
+        known = self._named.get(factor)
+        if known is not None:
+            return known, False
         used = self._taken | set(self._named.values())
         name = next((name for name in DENOMINATOR_NAMES if name not in used), f"D_{len(self._named)}")
         self._named[factor] = name

@@ -50,18 +50,18 @@ class _Reader:
         self._at = 0
 
     def whole(self) -> Layout:
-        found = self._list()
+        layout = self._list()
         if self._at < len(self._text):
             raise ValueError(f"{self._text[self._at :]!r} in the symbol {self._text!r}")
-        return found
+        return layout
 
     def _next(self) -> str:
         return self._text[self._at : self._at + 1]  # empty at the end
 
     def _taken(self, wanted: str) -> bool:
-        found = self._next() == wanted
-        self._at += found
-        return found
+        matches = self._next() == wanted
+        self._at += matches
+        return matches
 
     def _list(self) -> Layout:
         """One sum, or several with commas between them."""
@@ -117,7 +117,7 @@ class _Reader:
             return None
         if not self._taken("{"):
             return self._letter()
-        found = self._list()
+        layout = self._list()
         if not self._taken("}"):
             raise ValueError(f"a brace stays open in the symbol {self._text!r}")
-        return found
+        return layout

@@ -59,11 +59,11 @@ def _is_twin(target: str) -> bool:
 def _errors(measured: Verification) -> Table:
     """One line for each kernel, one column for each target."""
     targets = [target for target in _targets(measured) if not _is_twin(target)]
-    found = {(row.quantity, row.target): row for row in measured.errors}
+    by_cell = {(row.quantity, row.target): row for row in measured.errors}
     rows = tuple(
         (
             (InlineCode(quantity),),
-            *(say("{}", _spread(found[quantity, t])) if (quantity, t) in found else say("") for t in targets),
+            *(say("{}", _spread(by_cell[quantity, t])) if (quantity, t) in by_cell else say("") for t in targets),
         )
         for quantity in dict.fromkeys(row.quantity for row in measured.errors)
     )
@@ -73,9 +73,9 @@ def _errors(measured: Verification) -> Table:
 
 def _laws(measured: Verification) -> Table:
     targets = list(dict.fromkeys(target for target, _, _ in measured.invariants))
-    found = {(target, law): value for target, law, value in measured.invariants}
+    values = {(target, law): value for target, law, value in measured.invariants}
     rows = tuple(
-        (say("{}", law), *(say("{}", found.get((target, law), "")) for target in targets))
+        (say("{}", law), *(say("{}", values.get((target, law), "")) for target in targets))
         for law in dict.fromkeys(law for _, law, _ in measured.invariants)
     )
     return Table(tuple(say("{}", heading) for heading in ("Law", *targets)), rows, (0, *(1 for _ in targets)))

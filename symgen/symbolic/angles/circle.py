@@ -69,8 +69,8 @@ class Field:
     def unit(self) -> Pair:
         """G, of the order of the field of angles: the point of the angle 1."""
         assert self.angles is not None
-        found = (self.multiple(point, (self.prime + 1) // self.angles.prime) for point in self._points())
-        return next(point for point in found if point != (1, 0))
+        multiples = (self.multiple(point, (self.prime + 1) // self.angles.prime) for point in self._points())
+        return next(point for point in multiples if point != (1, 0))
 
     @cached_property
     def step(self) -> Pair:

@@ -99,10 +99,10 @@ class _EvaluatedAngles:
         """A kept angle, its sign, and sine and cosine of the fixed angle that is added to make the form."""
         shift, rest = _split(form)
         for sign in (1, -1):
-            found = self._by_rest.get(_key({leaf: sign * count for leaf, count in rest.items()}))
-            pair = None if found is None else _fixed_pair(graph, shift - sign * found[1])
-            if found is not None and pair is not None:
-                return found[0], sign, *pair
+            kept_angle = self._by_rest.get(_key({leaf: sign * count for leaf, count in rest.items()}))
+            pair = None if kept_angle is None else _fixed_pair(graph, shift - sign * kept_angle[1])
+            if kept_angle is not None and pair is not None:
+                return kept_angle[0], sign, *pair
         return None
 
     def as_sum(self, form: dict[Scalar, int]) -> tuple[tuple[Scalar, int], tuple[Scalar, int]] | None:
@@ -132,8 +132,8 @@ def _fixed_pair(graph: Graph, angle: Fraction) -> tuple[Scalar, Scalar] | None:
     steps = angle * 12 / PI
     if steps.denominator != 1:
         return None
-    found = [sine_of_steps(int(steps) + quarter) for quarter in (0, 6)]
-    values = [None if s is None else graph.const(s[0]) * graph.function("sqrt", (graph.const(s[1]),)) for s in found]
+    sines = [sine_of_steps(int(steps) + quarter) for quarter in (0, 6)]
+    values = [None if s is None else graph.const(s[0]) * graph.function("sqrt", (graph.const(s[1]),)) for s in sines]
     sine, cosine = values
     return None if sine is None or cosine is None else (sine, cosine)
 

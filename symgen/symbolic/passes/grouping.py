@@ -108,8 +108,8 @@ class _Improvement:
         same_values(f"{taken.of} {taken.at}", best.outputs, changed)
         if tuple(changed) == best.outputs:
             return best
-        found = _weighed(without_twins(self._graph, changed))
-        return found if found.weight < best.weight else best
+        weighed = _weighed(without_twins(self._graph, changed))
+        return weighed if weighed.weight < best.weight else best
 
 
 def _weighed(outputs: Sequence[Scalar]) -> _Weighed:

@@ -72,7 +72,7 @@ class _Sharing:
             if node not in self._long:
                 for pair in _pairs(terms):
                     places.setdefault(pair, set()).add(node)
-        found: dict[Scalar, _Pair] = {}
+        shared: dict[Scalar, _Pair] = {}
         waiting = [_ranked(pair, nodes) for pair, nodes in places.items() if len(nodes) > 1]
         heapify(waiting)
         while waiting:
@@ -83,8 +83,8 @@ class _Sharing:
                 if 1 < len(held) < -count:
                     heappush(waiting, _ranked(best, held))
                 continue
-            whole = self._graph.stand_in(f"shared part {self._ops} {len(found)}")
-            found[whole] = best
+            whole = self._graph.stand_in(f"shared part {self._ops} {len(shared)}")
+            shared[whole] = best
             for node in sorted(places.pop(best), key=lambda node: node.serial):
                 for pair in _pairs(self._terms[node]):
                     if pair in places:
@@ -95,7 +95,7 @@ class _Sharing:
                     nodes.add(node)
                     if len(nodes) > 1:
                         heappush(waiting, _ranked(pair, nodes))
-        return found
+        return shared
 
     def _built(
         self, terms: Sequence[Term], pairs: Mapping[Scalar, _Pair], image: Mapping[Scalar, Scalar],
@@ -114,12 +114,12 @@ class _Sharing:
 
 def _pairs(terms: Sequence[Term]) -> set[_Pair]:
     """The pairs of different terms, the older one first and positive."""
-    found = set()
+    pairs = set()
     for k, one in enumerate(terms):
         for other in terms[k + 1 :]:
             if one[1] is not other[1]:
-                found.add(_pair(one, other))
-    return found
+                pairs.add(_pair(one, other))
+    return pairs
 
 
 def _pair(one: Term, other: Term) -> _Pair:

@@ -93,11 +93,11 @@ def _signs(groups: Sequence[_Group]) -> list[int]:
 
     At least one is positive where that needs no sign of its own.
     """
-    found = [min(group.terms, key=lambda term: term.product.serial).sign for group in groups]
-    if all(sign < 0 for sign in found):
+    signs = [min(group.terms, key=lambda term: term.product.serial).sign for group in groups]
+    if all(sign < 0 for sign in signs):
         mixed = (k for k, group in enumerate(groups) if any(term.sign > 0 for term in group.terms))
-        found[next(mixed, 0)] *= -1
-    return found
+        signs[next(mixed, 0)] *= -1
+    return signs
 
 
 def _common(products: Sequence[tuple[Scalar, ...]], numbers: bool) -> tuple[Scalar, ...]:

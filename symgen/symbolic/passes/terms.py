@@ -17,7 +17,7 @@ MOST_FACTORED_TERMS = 64
 
 def terms_of(node: Scalar, inside: Collection[Scalar]) -> list[Term]:
     """The signed terms of a sum, or the factors of a product, in their order; operands `inside` are taken apart too."""
-    found = []
+    terms = []
     stack = [(1, node)]
     while stack:
         sign, part = stack.pop()
@@ -25,8 +25,8 @@ def terms_of(node: Scalar, inside: Collection[Scalar]) -> list[Term]:
             left, right = part.args
             stack += [(-sign if part.op == "sub" else sign, right), (sign, left)]
         else:
-            found.append((sign, part))
-    return found
+            terms.append((sign, part))
+    return terms
 
 
 def without_opposites(terms: Sequence[Term], uses: Mapping[Scalar, int]) -> list[Term]:
@@ -52,26 +52,26 @@ def _less_opposites(terms: Sequence[Term]) -> list[Term]:
     """The terms without pairs a, -a, in their order."""
     counts = Counter(terms)
     left = {term: max(0, count - counts[-term[0], term[1]]) for term, count in counts.items()}
-    found: list[Term] = []
+    kept: list[Term] = []
     for term in terms:
         if left[term] > 0:
             left[term] -= 1
-            found.append(term)
-    return found
+            kept.append(term)
+    return kept
 
 
 def _added_up(node: Scalar) -> list[Term]:
     """The terms of a sum and of the sums that it adds up; none for what is no sum."""
-    found: list[Term] = []
+    terms: list[Term] = []
     stack = [(1, node)] if node.op in SUMS else []
-    while stack and len(found) + len(stack) <= MOST_FACTORED_TERMS:
+    while stack and len(terms) + len(stack) <= MOST_FACTORED_TERMS:
         sign, part = stack.pop()
         if part.op in SUMS:
             left, right = part.args
             stack += [(-sign if part.op == "sub" else sign, right), (sign, left)]
         else:
-            found.append((sign, part))
-    return [] if stack else found
+            terms.append((sign, part))
+    return [] if stack else terms
 
 
 def sum_of(graph: Graph, terms: Sequence[Term]) -> Scalar:

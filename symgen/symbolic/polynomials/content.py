@@ -23,9 +23,9 @@ def divided(graph: Graph, value: Scalar, number: Fraction) -> Scalar:
     """value / number, taken out of the terms that hold it instead of divided by."""
     if number == 1:
         return value
-    found = _divided(graph, value, number, DEEPEST)
-    same_values("dividing by a number", [graph.raw("mul", (value, graph.const(1 / number)))], [found])
-    return found
+    quotient = _divided(graph, value, number, DEEPEST)
+    same_values("dividing by a number", [graph.raw("mul", (value, graph.const(1 / number)))], [quotient])
+    return quotient
 
 
 def _number(value: Scalar, depth: int) -> Fraction:

@@ -99,11 +99,11 @@ class Monomials:
         work = dict(terms)
         while pending:
             key = pending.pop()
-            found = (key + bias) & sines
-            if not found or key not in work:
+            squared_sines = (key + bias) & sines
+            if not squared_sines or key not in work:
                 continue
             value = work.pop(key)
-            square = 2 << (found.bit_length() - FIELD_BITS)
+            square = 2 << (squared_sines.bit_length() - FIELD_BITS)
             rest = key - square
             turned = rest + 2 * self._partner(square)
             # the partner may be an atom of its own from now on
@@ -114,8 +114,8 @@ class Monomials:
     def _without_squared_roots(self, terms: Terms) -> Terms:
         work: Terms = {}
         for key, value in terms.items():
-            while found := (key + self._squares) & self._roots:
-                square = 2 << (found.bit_length() - FIELD_BITS)
+            while squared_roots := (key + self._squares) & self._roots:
+                square = 2 << (squared_roots.bit_length() - FIELD_BITS)
                 number = self._graph.at(self._atoms[(square.bit_length() - 2) // FIELD_BITS]).args[0].constant
                 assert number is not None
                 key, value = key - square, value * number

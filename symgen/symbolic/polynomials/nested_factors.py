@@ -12,8 +12,8 @@ def nested_factors(scalar: Scalar, fixed: Callable[[Scalar], bool]) -> tuple[Sca
 
     The scalar itself where it is no product.
     """
-    found = list(dict.fromkeys(_factors(scalar)))
-    constant, moving = [x for x in found if fixed(x)], [x for x in found if not fixed(x)]
+    factors = list(dict.fromkeys(_factors(scalar)))
+    constant, moving = [x for x in factors if fixed(x)], [x for x in factors if not fixed(x)]
     if len(moving) < 2:
         return (scalar,)
     return (scalar.graph.product([*constant, moving[0]]), *moving[1:])

@@ -47,18 +47,18 @@ class Multiplier:
         What becomes small with products of differences stays a polynomial of these, unless without them no more terms
         are left.  A single factor multiplied out is as exact as the coordinates are.
         """
-        found = self._polynomial(node)
+        own = self._polynomial(node)
         if self._further is None:
-            return found
-        if found is not None:
-            powers = [[power for atom, power in key if atom in self._met] for key in found]
+            return own
+        if own is not None:
+            powers = [[power for atom, power in key if atom in self._met] for key in own]
             if not any(powers):
-                return found
+                return own
         further = self._further.polynomial(node)
-        if found is None or further is None:
-            return further if found is None else found
+        if own is None or further is None:
+            return further if own is None else own
         squared = any(sum(power for power in each if power > 0) > 1 for each in powers)
-        return found if squared and len(found) < len(further) else further
+        return own if squared and len(own) < len(further) else further
 
     def _polynomial(self, node: Scalar) -> Polynomial | None:
         try:

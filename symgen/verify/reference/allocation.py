@@ -70,10 +70,10 @@ def _weighted_inverse(e: Evaluation, weights: Sequence[Any]) -> Any:
 
 
 def _fold(values: Sequence[Any], choose: str) -> Any:
-    found = values[0]
+    extreme = values[0]
     for value in values[1:]:
-        found = getattr(found, choose)(value)
-    return found
+        extreme = getattr(extreme, choose)(value)
+    return extreme
 
 
 def _middle(a: Any, b: Any, c: Any) -> Any:

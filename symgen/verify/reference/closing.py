@@ -58,7 +58,7 @@ def closed(
     geometry = system.loop_geometry(q, parameters, literals)
     units = _units(system, geometry)
     own = zip(system.loops, units, geometry, strict=True)
-    loops = [_PartIteration(place, part, unit, q, found) for place, (part, unit, found) in enumerate(own)]
+    loops = [_PartIteration(place, part, unit, q, at_start) for place, (part, unit, at_start) in enumerate(own)]
     for _ in range(NEWTON_STEPS):
         moving = [loop for loop in loops if not loop.ended and not loop.size <= tolerance]
         if not moving:
@@ -148,13 +148,13 @@ def admissible(
 ) -> list[Any]:
     """The part of a shift that leaves the geometric rows as they are to first order; rows may depend on each other."""
     geometry = system.loop_geometry(column(q).entries(), parameters, literals)
-    moved, found = column(shift), []
+    moved, pieces = column(shift), []
     for part, units, (_, jacobian) in zip(system.loops, _units(system, geometry), geometry, strict=True):
         rows = powers(units) * jacobian.mid()
         step = _step(rows * piece(moved, part.coordinates, (0,)), rows, LAST_DAMPING)
         if step is not None:
-            found.append((part.coordinates, (0,), step))
-    return list((moved - placed(system.n, 1, found)).mid().entries())
+            pieces.append((part.coordinates, (0,), step))
+    return list((moved - placed(system.n, 1, pieces)).mid().entries())
 
 
 def _units(system: ReferenceSystem, geometry: Sequence[tuple[Any, Any]]) -> list[list[int]]:

@@ -51,8 +51,8 @@ class Driven:
     def _beside_inputs(self, columns: Any) -> Any:
         """R times columns (n x k)."""
         width, along = range(columns.ncols()), self._along_inputs(columns)
-        found = ((places, width, own * piece(along, block.inputs, width)) for block, places, own in self._pieces())
-        return columns - placed(self.control.nrows(), columns.ncols(), found)
+        pieces = ((places, width, own * piece(along, block.inputs, width)) for block, places, own in self._pieces())
+        return columns - placed(self.control.nrows(), columns.ncols(), pieces)
 
     def _pieces(self) -> Iterator[tuple[Part, Sequence[int], Any]]:
         """Each block with inputs, the coordinates that these act on, and its own M."""

@@ -189,26 +189,26 @@ class Evaluation:
     @cached_property
     def weighted(self) -> Any:
         """Z (symmetric): N_BG = Z G."""
-        found = []
+        pieces = []
         for part in self.system.heavy:
             mass, projector, off = (
                 piece(matrix, part.coordinates, part.coordinates)
                 for matrix in (self.at.mass, self.projector, self.projector_off)
             )
             inverse = projector * solve(projector * mass * projector + off, projector)
-            found.append((part.coordinates, part.coordinates, inverse))
-        return placed(self.system.n, self.system.n, found)
+            pieces.append((part.coordinates, part.coordinates, inverse))
+        return placed(self.system.n, self.system.n, pieces)
 
     @cached_property
     def projected_control(self) -> Any:
         """N_B M (21)."""
-        found = []
+        pieces = []
         for part in self.system.parts:
             inverse = piece(self.inverse, part.coordinates, part.rows)
             rows = piece(self.at.constraints, part.rows, part.coordinates)
             control = piece(self.at.control, part.coordinates, part.inputs)
-            found.append((part.coordinates, part.inputs, control - inverse * (rows * control)))
-        return placed(self.system.n, self.system.m, found)
+            pieces.append((part.coordinates, part.inputs, control - inverse * (rows * control)))
+        return placed(self.system.n, self.system.m, pieces)
 
     @cached_property
     def driven(self) -> tuple[Driven, ...] | None:
@@ -234,21 +234,21 @@ class Evaluation:
         if self.driven is None:
             return self.control_inverse * (self.projector * self.load)
         pairs = zip(self.system.parts, self.driven, strict=True)
-        found = ((x.inputs, (0,), own.inputs(piece(self.load, x.coordinates, (0,)))) for x, own in pairs)
-        return placed(self.system.m, 1, found)
+        pieces = ((x.inputs, (0,), own.inputs(piece(self.load, x.coordinates, (0,)))) for x, own in pairs)
+        return placed(self.system.m, 1, pieces)
 
     @cached_property
     def control_inverse(self) -> Any:
         """M~+ (27), (28), at the generic degree of actuation."""
         full = self.ranks.actuation == self.system.n - self.ranks.constraints < self.system.m
         if full:  # range(N M) = ker B: (M~ M~' + P) is regular
-            found = []
+            pieces = []
             for part in self.system.parts:
                 control = piece(self.projected_control, part.coordinates, part.inputs)
                 off = piece(self.projector_off, part.coordinates, part.coordinates)
                 inverse = solve(control * control.transpose() + off, control).transpose()
-                found.append((part.inputs, part.coordinates, inverse))
-            return placed(self.system.m, self.system.n, found)
+                pieces.append((part.inputs, part.coordinates, inverse))
+            return placed(self.system.m, self.system.n, pieces)
         return pseudoinverse_of_parts(self.projected_control, self.ranks.actuation, self.system.parts)
 
     @cached_property

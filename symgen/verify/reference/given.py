@@ -101,12 +101,12 @@ def _places(e: Evaluation, given: GivenValues) -> Iterator[tuple[Any, float]]:
     q, n, rank = column(e.q), e.system.n, e.ranks.geometric
     while True:
         place = [x.mid() for x in q.entries()]
-        found, slopes = given.at(place)
+        values, slopes = given.at(place)
         residual, rows = e.system.geometry(place, e.parameters, e.literals)
         inverse = right_pseudoinverse(rows, rank)
         least = -(inverse * residual)
         moving = slopes - (slopes * inverse) * rows
-        step = least + right_pseudoinverse(moving, n - rank) * (given.values - found - slopes * least)
+        step = least + right_pseudoinverse(moving, n - rank) * (given.values - values - slopes * least)
         q = column(place) + step
         yield q, norm(step)
 

@@ -66,19 +66,19 @@ def _sampled_ranks(system: ReferenceSystem, rounded: bool) -> ManifoldRanks | No
     parameters = default_parameters(system.model)
     literals = literal_values(system.literals)
     generator = random.Random("ranks")
-    found: list[ManifoldRanks] = []
+    sampled: list[ManifoldRanks] = []
     known = () if system.model.assembly is None else system.model.assembly.places[:RANK_POINTS]
     for start in (*(place.q for place in known), *(() if known else starts(system, generator, RANK_STARTS))):
         q = onto_manifold(system, start, parameters, literals, 2.0**-170, rounded)
         ranks = None if q is None else _ranks_at(system, q, parameters, literals, rounded)
         if ranks is not None:
-            found.append(ranks)
-        if len(found) == RANK_POINTS:
+            sampled.append(ranks)
+        if len(sampled) == RANK_POINTS:
             break
-    if not found:
+    if not sampled:
         return None
-    constraints = max(ranks.constraints for ranks in found)
-    regular = [ranks for ranks in found if ranks.constraints == constraints]
+    constraints = max(ranks.constraints for ranks in sampled)
+    regular = [ranks for ranks in sampled if ranks.constraints == constraints]
     best = max(regular, key=lambda ranks: ranks.actuation)
     return ManifoldRanks(constraints, max(r.geometric for r in regular), best.actuation, rounded, best.of_parts)
 
@@ -89,10 +89,10 @@ def exceeds(
     """Whether a point of V has greater ranks than are meant, as other branches may: kernels give a status there."""
     if ranks.constraints == system.r and ranks.actuation == min(system.m, system.n - ranks.constraints):
         return False
-    found = _ranks_at(system, q, parameters, literals, rounded=True)
-    if found is None or found.constraints != ranks.constraints:
-        return found is None or found.constraints > ranks.constraints
-    return found.actuation > ranks.actuation
+    ranks_here = _ranks_at(system, q, parameters, literals, rounded=True)
+    if ranks_here is None or ranks_here.constraints != ranks.constraints:
+        return ranks_here is None or ranks_here.constraints > ranks.constraints
+    return ranks_here.actuation > ranks.actuation
 
 
 def starts(system: ReferenceSystem, generator: random.Random, count: int) -> list[list[float]]:
@@ -145,13 +145,13 @@ def _ranks_at(
 
 def _projected(system: ReferenceSystem, constraints: Any, control: Any, rows: Sequence[int]) -> Any:
     """N M by rows that span all: on V, where sums over all subsets of rows in other units lose far more digits."""
-    found = []
+    pieces = []
     for part in system.parts:
         own = piece(control, part.coordinates, part.inputs)
         basis = piece(constraints, [i for i in part.rows if i in rows], part.coordinates)
         held = right_pseudoinverse(basis, basis.nrows()) * (basis * own)
-        found.append((part.coordinates, part.inputs, own - held))
-    return placed(system.n, system.m, found)
+        pieces.append((part.coordinates, part.inputs, own - held))
+    return placed(system.n, system.m, pieces)
 
 
 def _size(matrix: Any, column: int) -> float:

@@ -82,8 +82,8 @@ class MatrixRates:
 
     def _gradient_rates(self, function: Expression) -> list[Register]:
         """Of second degree in t and one coordinate, each twice along the line."""
-        found = self._places.polynomial(function)
-        return [found.get(((j, self._time), ()), self._tape.zero) for j in range(self._n)]
+        polynomial = self._places.polynomial(function)
+        return [polynomial.get(((j, self._time), ()), self._tape.zero) for j in range(self._n)]
 
     @cached_property
     def _control(self) -> Replay:
@@ -104,8 +104,8 @@ class MatrixRates:
         energy = self._rates(2).polynomial(self._model.kinetic_energy)
 
         def entry(i: int, j: int) -> Register:
-            found = energy.get(((self._time,), (min(i, j), max(i, j))), tape.zero)
-            return tape.binary("add", found, found) if i == j else found
+            coefficient = energy.get(((self._time,), (min(i, j), max(i, j))), tape.zero)
+            return tape.binary("add", coefficient, coefficient) if i == j else coefficient
 
         return replay_of(tape, [entry(i, j) for i in range(n) for j in range(n)])
 
@@ -170,12 +170,12 @@ class MatrixRates:
     def _about_velocity(self, rate: Polynomial) -> Polynomial:
         """A rate that is linear in those of the coordinates, about their values v."""
         tape = self._tape
-        found = dict(rate)
+        polynomial = dict(rate)
         for (place, moving), register in rate.items():
             product = tape.binary("mul", register, tape.input(self._n + moving[0]))
-            known = found.get((place, ()))
-            found[place, ()] = product if known is None else tape.binary("add", known, product)
-        return found
+            known = polynomial.get((place, ()))
+            polynomial[place, ()] = product if known is None else tape.binary("add", known, product)
+        return polynomial
 
 
 def _to_first_order(place: Polynomial) -> Polynomial:

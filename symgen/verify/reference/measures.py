@@ -30,10 +30,10 @@ def measures_of_parts(e: Evaluation) -> list[Any]:
     ranks = e.ranks.of_parts
     if len(ranks) != len(parts):
         return [constraint_measure(e), actuation_measure(e)]
-    found = []
+    measures = []
     for part, (constraints, actuation) in zip(parts, ranks, strict=True):
-        found += [_constraints(e, (part,), constraints), _inputs(e, (part,), actuation)]
-    return found
+        measures += [_constraints(e, (part,), constraints), _inputs(e, (part,), actuation)]
+    return measures
 
 
 def _constraints(e: Evaluation, parts: Sequence[Part], rank: int) -> Any:

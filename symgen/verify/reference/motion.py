@@ -107,13 +107,13 @@ class DriftAlongRate:
 
     def _applied(self, inertia: Sequence[Register], vector: Sequence[Register]) -> list[Register]:
         tape = self._tape
-        found = []
+        totals = []
         for row in (inertia[:3], inertia[3:6], inertia[6:]):
             total = tape.zero
             for entry, x in zip(row, vector, strict=True):
                 total = tape.binary("add", total, tape.binary("mul", entry, x))
-            found.append(total)
-        return found
+            totals.append(total)
+        return totals
 
     def _written(self) -> list[Register]:
         """d/dt dT/dqd - dT/dq of the energy that is written out; rotors have a constant G."""
@@ -167,10 +167,10 @@ class DriftAlongRate:
 
     def _component(self, name: str, coordinates: int) -> Polynomial:
         """A component of a point or frame along the line, to this degree in t."""
-        found = self._frames.component(name)
+        polynomial = self._frames.component(name)
         if component(name).is_rate:
-            return found
-        return {monomial: register for monomial, register in found.items() if len(monomial[0]) <= coordinates}
+            return polynomial
+        return {monomial: register for monomial, register in polynomial.items() if len(monomial[0]) <= coordinates}
 
 
 def _is_zero(expression: object) -> bool:

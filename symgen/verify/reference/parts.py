@@ -75,12 +75,12 @@ def placed(
 ) -> Any:
     """The matrix of pieces at their rows and columns, 0 elsewhere."""
     whole = arb_mat(rows, columns)
-    for at_rows, at_columns, found in pieces:
+    for at_rows, at_columns, block in pieces:
         if len(at_rows) == rows and len(at_columns) == columns:
-            return found
+            return block
         for a, i in enumerate(at_rows):
             for b, j in enumerate(at_columns):
-                whole[i, j] = found[a, b]
+                whole[i, j] = block[a, b]
     return whole
 
 
@@ -97,8 +97,8 @@ def others(polynomials: Sequence[Sequence[Any]], degree: int) -> Iterator[list[A
 
 def product(first: Sequence[Any], second: Sequence[Any], degree: int) -> list[Any]:
     """Of two polynomials by their coefficients, up to a degree."""
-    found: list[Any] = [0] * min(degree + 1, len(first) + len(second) - 1)
-    for i, x in enumerate(first[: len(found)]):
-        for j, y in enumerate(second[: len(found) - i]):
-            found[i + j] += x * y
-    return found
+    coefficients: list[Any] = [0] * min(degree + 1, len(first) + len(second) - 1)
+    for i, x in enumerate(first[: len(coefficients)]):
+        for j, y in enumerate(second[: len(coefficients) - i]):
+            coefficients[i + j] += x * y
+    return coefficients

@@ -25,11 +25,11 @@ def slopes(e: Evaluation, value: Callable[[Evaluation], Any], part: Part) -> lis
     """The derivatives of a column by each entry of q, qd, qdd, u or the parameters, a column each."""
     step = arb(2) ** -(ctx.prec // 3)
     value(e)  # what it takes of AT_REST is known from here on
-    found = []
+    columns = []
     for k in range(len(getattr(e, part))):
         above, below = (value(one) for one in _moved(e, part, k, step))
-        found.append((above - below) / (2 * step))
-    return found
+        columns.append((above - below) / (2 * step))
+    return columns
 
 
 def _moved(e: Evaluation, part: Part, k: int, step: Any) -> Iterator[Evaluation]:

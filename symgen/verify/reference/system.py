@@ -133,8 +133,8 @@ class ReferenceSystem:
         inputs = [[k for k in range(n) if control[k * self.m + j] != zero] for j in range(self.m)]
         pairs = [(i, j) for i, these in enumerate(touched(mass, n, zero)) for j in these]
         bodies = self._bodies.moved()
-        found = parts(n, rows[: self.r_geometric])
-        self.loops = tuple(part for part in found if part.rows)
+        coupled = parts(n, rows[: self.r_geometric])
+        self.loops = tuple(part for part in coupled if part.rows)
         self._loop_replay = replay_of(
             self._tape,
             [
@@ -184,22 +184,22 @@ class ReferenceSystem:
     def task_replay(self) -> Replay:
         """Its coordinates, then their derivatives row by row."""
         zero, given = self._tape.zero, self._translation(1, 0)
-        found = [given.polynomial(x.expression) for x in self.model.task]
-        slopes = [x.get(((j,), ()), zero) for x in found for j in range(self.n)]
-        return replay_of(self._tape, [*(x.get(CONSTANT, zero) for x in found), *slopes])
+        polynomials = [given.polynomial(x.expression) for x in self.model.task]
+        slopes = [x.get(((j,), ()), zero) for x in polynomials for j in range(self.n)]
+        return replay_of(self._tape, [*(x.get(CONSTANT, zero) for x in polynomials), *slopes])
 
     def loop_geometry(
         self, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]
     ) -> list[tuple[Any, Any]]:
         """g and dg/dq of each loop, by its own coordinates."""
         values = self._loop_replay.run([*q, *([None] * self.n), *parameters, *literals])
-        found, start = [], 0
+        geometry, start = [], 0
         for loop in self.loops:
             rows, columns = len(loop.rows), len(loop.coordinates)
             middle, end = start + rows, start + rows * (1 + columns)
-            found.append((arb_mat(rows, 1, values[start:middle]), arb_mat(rows, columns, values[middle:end])))
+            geometry.append((arb_mat(rows, 1, values[start:middle]), arb_mat(rows, columns, values[middle:end])))
             start = end
-        return found
+        return geometry
 
     def energies(
         self, q: Sequence[Any], qd: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]
@@ -295,10 +295,10 @@ class ReferenceSystem:
 
     def _component(self, name: str, coordinates: int, rates: int) -> Polynomial:
         """A component of a point or frame, to these degrees."""
-        found = self._frames.component(name)
+        polynomial = self._frames.component(name)
         if not component(name).is_rate:
-            return _truncated(found, coordinates)
-        return found if rates else self._settled_rate(found)
+            return _truncated(polynomial, coordinates)
+        return polynomial if rates else self._settled_rate(polynomial)
 
     def _settled_rate(self, rate: Polynomial) -> Polynomial:
         """A rate with the rates of the coordinates at their values."""

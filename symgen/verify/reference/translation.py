@@ -22,12 +22,12 @@ Moving: TypeAlias = Callable[[int], tuple[Polynomial, Polynomial]]
 
 def literals_of(model: Model) -> tuple[Number | Pi, ...]:
     """Every literal of the model's formulas, in order of reading; default values of parameters do not count."""
-    found: dict[int, Number | Pi] = {}
+    literals: dict[int, Number | Pi] = {}
     for expression in _formulas(model):
         for node in _walk(expression):
             if isinstance(node, Pi) or (isinstance(node, Number) and node.value != 0):
-                found.setdefault(id(node), node)
-    return tuple(found.values())
+                literals.setdefault(id(node), node)
+    return tuple(literals.values())
 
 
 def literal_values(literals: Sequence[Number | Pi]) -> list[Any]:
@@ -59,8 +59,8 @@ class Translation:
                 return {CONSTANT: self._pi() if register is None else register}
             case Name(name):
                 if name not in self.names:
-                    found = self.component(name) if self.component is not None and is_component(name) else None
-                    self.names[name] = self.polynomial(self.definitions[name]) if found is None else found
+                    of_component = self.component(name) if self.component is not None and is_component(name) else None
+                    self.names[name] = self.polynomial(self.definitions[name]) if of_component is None else of_component
                 return self.names[name]
             case Negation(operand):
                 return algebra.negate(self.polynomial(operand))

@@ -22,7 +22,7 @@ _FUNCTION = re.compile(r"^(?:@.*\n)*def ", re.MULTILINE)
 
 def _parts(source: str) -> Iterator[str]:
     """The module, or its functions one after the other where it is large; what stands before the first comes first."""
-    starts = [0] if len(source) <= LARGE_MODULE else [0, *(found.start() for found in _FUNCTION.finditer(source))]
+    starts = [0] if len(source) <= LARGE_MODULE else [0, *(match.start() for match in _FUNCTION.finditer(source))]
     for start, end in zip(starts, [*starts[1:], len(source)], strict=True):
         yield source[start:end]
 

@@ -39,10 +39,10 @@ class Inertias:
             return 1.0
         mass, projector = (_array(matrices[name]) for name in NEEDED)
         # what the constraints hold comes first, with 0
-        found = np.linalg.eigvalsh(projector @ mass @ projector)[self._reference.ranks.constraints :]
-        if not len(found) or not np.isfinite(found).all() or found[-1] <= 0:
+        eigenvalues = np.linalg.eigvalsh(projector @ mass @ projector)[self._reference.ranks.constraints :]
+        if not len(eigenvalues) or not np.isfinite(eigenvalues).all() or eigenvalues[-1] <= 0:
             return 1.0
-        share = max(0.0, float(found[0] / found[-1]))
+        share = max(0.0, float(eigenvalues[0] / eigenvalues[-1]))
         self._largest = max(self._largest, share)
         return share
 

@@ -74,16 +74,16 @@ class RoundingErrors:
     def indefinite(self, given: Mapping[str, Lanes]) -> Lanes:
         """Where a pivot of masses is below 0, by more than rounding leaves of one that is 0."""
         count = len(next(iter(given.values())))
-        found = np.zeros(count, dtype=bool)
+        negative = np.zeros(count, dtype=bool)
         if not any(check.status is Status.MASS_RANK for block in self._kernel.blocks for check in block.checks):
-            return found
+            return negative
         with np.errstate(all="ignore"):
             values, _ = self._values(given, count)
             for block, (_, checks) in zip(self._kernel.blocks, self._blocks, strict=True):
                 for check, (_, value, limit) in zip(block.checks, checks, strict=True):
                     if check.status is Status.MASS_RANK:
-                        found |= values[value] < -np.abs(values[limit])
-        return found
+                        negative |= values[value] < -np.abs(values[limit])
+        return negative
 
     def _put(self, name: str) -> int:
         """The place of what is worked out next; numbers stand before all of it, at negative places."""

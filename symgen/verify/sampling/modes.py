@@ -53,8 +53,8 @@ def modes(reference: Reference) -> tuple[tuple[float, ...], ...]:
         literals = [float(x) for x in reference.literals()]
     places = () if reference.model.assembly is None else reference.model.assembly.places
     with np.errstate(all="ignore"):
-        found = _Modes(reference, parameters, literals).kept([place.q for place in places])
-    return tuple(tuple(map(float, q)) for q in found)
+        kept = _Modes(reference, parameters, literals).kept([place.q for place in places])
+    return tuple(tuple(map(float, q)) for q in kept)
 
 
 class _Modes:

@@ -214,13 +214,13 @@ class Surroundings:
     def tangents(self, states: Nearby) -> Lanes:
         """What is left of changes of coordinates (n x n) along V, for each state."""
         n = self._system.n
-        found = np.broadcast_to(np.eye(n), (len(states), n, n)).copy()
+        projectors = np.broadcast_to(np.eye(n), (len(states), n, n)).copy()
         blocks = self._matrices(states.parts["q"], states.parts["p"])
         for part, (rows, _) in zip(self._parts, blocks, strict=True):
             unit = np.nan_to_num(rows / lengths_of(rows))
             these = np.array(part.coordinates)
-            found[:, these[:, None], these] -= np.linalg.pinv(unit, rcond=DEPENDENT) @ unit
-        return found
+            projectors[:, these[:, None], these] -= np.linalg.pinv(unit, rcond=DEPENDENT) @ unit
+        return projectors
 
     def moved(self, states: Nearby, seed: str) -> Nearby:
         """States a step further, of which some are left out: those that are not regular or out of range."""

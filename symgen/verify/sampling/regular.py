@@ -109,11 +109,11 @@ class RegularStateSearch:
                 start = self._step(last)
             else:
                 start = point
-            found = self._reached_from(start, parameters)
-            if found is not None:
-                last = found[0]
-                inside = last if found[2] else inside
-                yield found[1:]
+            reached = self._reached_from(start, parameters)
+            if reached is not None:
+                last = reached[0]
+                inside = last if reached[2] else inside
+                yield reached[1:]
         if self._kept[True] < FEWEST_STATES and self._system.r_geometric:
             yield from self._along(inside)
 
@@ -151,15 +151,15 @@ class RegularStateSearch:
                 )
             # other lengths may leave no room to move
             parameters = self._parameters(vary=index % 2 > 0)
-            found = self._reached_from(self._shifted(here, parameters, reach), parameters)
-            if found is None:
+            reached = self._reached_from(self._shifted(here, parameters, reach), parameters)
+            if reached is None:
                 reach /= 2
                 continue
-            if found[2]:
-                last, reach = found[0], min(LONGEST_STEP, 2 * reach)
+            if reached[2]:
+                last, reach = reached[0], min(LONGEST_STEP, 2 * reach)
             else:  # on from where it left the ranges
                 reach /= 2
-            yield found[1:]
+            yield reached[1:]
 
     def _reached_from(self, start: Sequence[Any], exact: Sequence[Any]) -> tuple[list[Any], Regular, bool] | None:
         """The point of V that a start leads to, the state there, and whether it lies in the ranges.
@@ -170,9 +170,9 @@ class RegularStateSearch:
         several = len(self._system.loops or self._system.parts) > 1
         for left in reversed(range(LOOP_RESTARTS if several else 1)):
             self._wanting.clear()
-            found = self._led_to(start, exact, left > 0)
-            if found is not None or not self._wanting:
-                return found
+            reached = self._led_to(start, exact, left > 0)
+            if reached is not None or not self._wanting:
+                return reached
             anew = [self._generator.uniform(*map(float, c.range)) for c in self._reference.model.coordinates]
             start = [y if j in self._wanting else x for j, (x, y) in enumerate(zip(self._reached, anew, strict=True))]
         return None
@@ -210,16 +210,16 @@ class RegularStateSearch:
         in_range = not outside
         # what lies outside is rarely needed
         needed = measured(reference) if in_range else ()
-        found = self._regular(
+        regular = self._regular(
             settled(q, [c.range for c in reference.model.coordinates]),
             [float(x) for x in exact],
             self._kept[in_range],
             needed,
         )
-        if found is None:
+        if regular is None:
             return None
         self._kept[in_range] += 1
-        return q, found, in_range
+        return q, regular, in_range
 
     def _limits(self) -> _Sizes:
         """What measures and rows must be at a regular state.
@@ -242,14 +242,14 @@ class RegularStateSearch:
             free = [len(part.coordinates) - constraints for part, (constraints, _) in pairs]
         self._owners = self._system.parts if known_apart else ()
         usual = [REGULAR_SHARE ** max(1.0, count / 2) for count in free for _ in range(2)]
-        found = []
+        sampled = []
         for q in on_it:
             try:
                 measures = reference.measured(_at_rest(reference, q, parameters), (), SAMPLING_BITS)[1]
-                found.append([float(x) for x in measures])
+                sampled.append([float(x) for x in measures])
             except ReferenceValueError:
                 continue
-        largest = [max((x for x in column if isfinite(x)), default=1.0) for column in zip(*found, strict=True)]
+        largest = [max((x for x in column if isfinite(x)), default=1.0) for column in zip(*sampled, strict=True)]
         pairs_of_limits = zip(usual, largest or [1.0] * len(usual), strict=True)
         return _Sizes([min(low, x / 10) for low, x in pairs_of_limits], [REGULAR_SHARE * x for x in rows])
 
@@ -263,8 +263,8 @@ class RegularStateSearch:
                 rows = reference.matrices(state, ["constraint_jacobian"], SAMPLING_BITS)["constraint_jacobian"]
             except ReferenceValueError:
                 continue
-            found = _lengths(floats(rows), reference.model.n)
-            lengths = [max(pair) if isfinite(pair[1]) else pair[0] for pair in zip(lengths, found, strict=True)]
+            at_point = _lengths(floats(rows), reference.model.n)
+            lengths = [max(pair) if isfinite(pair[1]) else pair[0] for pair in zip(lengths, at_point, strict=True)]
         return lengths
 
     def _parameters(self, vary: bool) -> list[Any]:
@@ -317,13 +317,13 @@ class RegularStateSearch:
         """What is needed of a state; None where it is not regular, which is counted."""
         model = self._reference.model
         try:
-            found, measures = self._reference.measured(
+            matrices, measures = self._reference.measured(
                 state, ("singularity", "constraint_jacobian", *needed), SAMPLING_BITS
             )
         except ReferenceValueError:
             self._ends[VALUE] += 1
             return None
-        values = in_floats(found)
+        values = in_floats(matrices)
         sizes = _Sizes([float(x) for x in measures], _lengths(values["constraint_jacobian"], model.n))
         if sizes.finite:
             self._met.append(sizes)
@@ -342,13 +342,13 @@ class RegularStateSearch:
 
     def _outside(self, q: Sequence[Any]) -> list[int]:
         """The coordinates out of their ranges, by more than a hundredth of their width."""
-        found = []
+        outside = []
         for j, (x, coordinate) in enumerate(zip(q, self._reference.model.coordinates, strict=True)):
             low, high = map(float, coordinate.range)
             slack = 0.01 * (high - low)
             if not low - slack <= x <= high + slack:
-                found.append(j)
-        return found
+                outside.append(j)
+        return outside
 
     def _turned_away(self, q: Sequence[Any]) -> list[int]:
         """The angles turns outside of their ranges, where one step after another leads and nothing new is met."""

@@ -84,12 +84,12 @@ class WorstStateSearch:
 
     def _add(self, kernel: Kernel, errors: RoundingErrors, made: _Estimates) -> None:
         samples = self._brought(kernel, made.states, made.units, SETTLED)
-        found = self._worst_of(kernel, errors, samples) if len(samples) > JUDGED else samples
+        chosen = self._worst_of(kernel, errors, samples) if len(samples) > JUDGED else samples
         if "float32" in self._expected.scalars:
             # beside those that estimates tell of, not in their places
-            found += self._brought(kernel, made.states, _measured(kernel, made), MEASURED)
+            chosen += self._brought(kernel, made.states, _measured(kernel, made), MEASURED)
         known = self._states[kernel.name]
-        known += [sample for sample in dict.fromkeys(found) if sample not in known]
+        known += [sample for sample in dict.fromkeys(chosen) if sample not in known]
 
     def _brought(self, kernel: Kernel, states: Nearby, units: Lanes, count: int) -> list[Sample]:
         """The worst of them that leave a doubt, where they can be brought onto V."""
@@ -175,12 +175,12 @@ class WorstStateSearch:
     @cached_property
     def _drawn(self) -> Nearby:
         around = self._surroundings
-        found = joined(around.samples, around.aligned(self._affordable(ALIGNED)))
-        found = joined(found, around.in_modes(self._affordable(IN_MODES)))
-        found = joined(found, around.resting(self._affordable(RESTING)))
-        found = joined(found, around.further_out(self._affordable(FURTHER_OUT)))
-        found = joined(found, around.drawn(self._affordable(DRAWN)))
-        return joined(found, around.hardly_driven(self._affordable(HARDLY_DRIVEN)))
+        states = joined(around.samples, around.aligned(self._affordable(ALIGNED)))
+        states = joined(states, around.in_modes(self._affordable(IN_MODES)))
+        states = joined(states, around.resting(self._affordable(RESTING)))
+        states = joined(states, around.further_out(self._affordable(FURTHER_OUT)))
+        states = joined(states, around.drawn(self._affordable(DRAWN)))
+        return joined(states, around.hardly_driven(self._affordable(HARDLY_DRIVEN)))
 
     @cached_property
     def _beside_singular(self) -> Nearby:
@@ -215,7 +215,7 @@ def _worst(units: Lanes, count: int) -> Lanes:
     return np.argsort(-units, kind="stable")[:count]
 
 
-def _apart(found: Sequence[Outcome], exact: Sequence[Outcome]) -> Lanes:
+def _apart(results: Sequence[Outcome], exact: Sequence[Outcome]) -> Lanes:
     """How far results are apart; 0 where one of them is none."""
-    pairs = zip(found, exact, strict=True)
+    pairs = zip(results, exact, strict=True)
     return np.nan_to_num([dist(one.entries, other.entries) for one, other in pairs], posinf=0.0)

@@ -58,8 +58,8 @@ class Settling:
         state = replace(state, q=tuple(settled(q, [c.range for c in model.coordinates])))
         values = values_at(reference, state, ("singularity", *PROJECTED))
         first, second = values["singularity"]
-        found = (first, second, *self._lengths(state))
-        if not all(low <= x and isfinite(x) for low, x in zip((*self.measures, *self._rows), found, strict=True)):
+        sizes = (first, second, *self._lengths(state))
+        if not all(low <= x and isfinite(x) for low, x in zip((*self.measures, *self._rows), sizes, strict=True)):
             return None
         if admissible:
             rates = settled(values["admissible_velocity"], [c.rate_range for c in model.coordinates])

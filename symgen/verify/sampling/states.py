@@ -79,25 +79,25 @@ def sample_states(
         search = RegularStateSearch(reference, count, seed, modes)
         inertias = Inertias(reference, quantities)
         with working("", count) as work:
-            for found_state, in_range in search.candidates():
+            for regular, in_range in search.candidates():
                 if not in_range:
-                    outside.append(found_state)
-                elif (sample := _sample(reference, quantities, found_state, inertias)) is not None:
+                    outside.append(regular)
+                elif (sample := _sample(reference, quantities, regular, inertias)) is not None:
                     inside.append(sample)
                 else:
                     search.has_no_value()
                 if len(inside) == count:
                     break
                 work.done, work.part = len(inside), f"{len(inside)} of {count} found"
-        others = (_sample(reference, quantities, found_state, inertias) for found_state in outside)
-        found = [*inside, *islice((sample for sample in others if sample is not None), count - len(inside))]
-    if len(found) < FEWEST_STATES:
+        others = (_sample(reference, quantities, regular, inertias) for regular in outside)
+        samples = [*inside, *islice((sample for sample in others if sample is not None), count - len(inside))]
+    if len(samples) < FEWEST_STATES:
         raise VerificationError(
-            f"{reference.model.name}: only {len(found)} regular configurations on the constraint manifold were found "
+            f"{reference.model.name}: only {len(samples)} regular configurations on the constraint manifold were found "
             f"({FEWEST_STATES} are needed){search.explanation()}; give a start under `configuration` and the ranges of "
             "the coordinates"
         )
-    return tuple(found)
+    return tuple(samples)
 
 
 def rounded(sample: Sample, scalar: Scalar) -> Sample:

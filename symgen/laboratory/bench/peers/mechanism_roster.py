@@ -43,7 +43,7 @@ def _of_inputs(engine: Engine, s: PeerSystem) -> list[Symbol]:
 
 def mechanism_peers(model: Model, states: Any) -> tuple[tuple[CCandidate, ...], tuple[tuple[str, str], ...]]:
     """Candidates in float64, and (name, reason) of what was left out; `states` (k, 3 n + P)."""
-    found = _as_written(model)
+    candidates = _as_written(model)
     left_out: list[tuple[str, str]] = []
     methods = _methods(model, states, left_out)
     engines: list[type[Engine]] = [CasadiEngine, CasadiSsaEngine]
@@ -58,16 +58,16 @@ def mechanism_peers(model: Model, states: Any) -> tuple[tuple[CCandidate, ...], 
         for route, derive in routes.items():
             for name, build in methods.items():
                 try:
-                    found.append(_candidate(engine_type(), model, f"{name}{route}", derive, build))
+                    candidates.append(_candidate(engine_type(), model, f"{name}{route}", derive, build))
                 except DeadPivotError:
                     left_out.append((f"{engine_type.tool} {name}{route}", "its fixed choice is singular everywhere"))
     if is_recursive(model) and _selects(model):
         for engine in (CasadiEngine(), SsaEngine()):
-            found.append(_candidate(engine, model, RECURSIVE, mechanics_by_recursion, _of_inputs))
+            candidates.append(_candidate(engine, model, RECURSIVE, mechanics_by_recursion, _of_inputs))
     if model.n <= MOST_DENSE:
         units, functions = householder_units(model, lagrange_by_frames(model), "c_householder_float64")
-        found.append(CCandidate("C", "Householder QR", "float64", "c_householder_float64", units, functions))
-    return tuple(found), tuple(left_out)
+        candidates.append(CCandidate("C", "Householder QR", "float64", "c_householder_float64", units, functions))
+    return tuple(candidates), tuple(left_out)
 
 
 def _depth(model: Model) -> int:
@@ -80,14 +80,14 @@ def _depth(model: Model) -> int:
 def _others(left_out: list[tuple[str, str]]) -> list[type[Engine]]:
     from symgen.laboratory.bench.peers.engines.sympy_engine import SympyEngine
 
-    found: list[type[Engine]] = [SympyEngine]
+    engines: list[type[Engine]] = [SympyEngine]
     if find_spec("wrenfold") is None:
         left_out.append(("wrenfold", "not installed"))
     else:
         from symgen.laboratory.bench.peers.engines.wrenfold_engine import WrenfoldEngine
 
-        found.append(WrenfoldEngine)
-    return found
+        engines.append(WrenfoldEngine)
+    return engines
 
 
 def _methods(model: Model, states: Any, left_out: list[tuple[str, str]]) -> dict[str, Build]:
@@ -123,16 +123,16 @@ def _as_written(model: Model) -> list[CCandidate]:
     routes: dict[str, Lagrange] = {"": lagrange_by_frames(model)}
     if model.n <= MOST_LEAN and model.r:
         routes[FROM_ENERGIES] = differentiate(model)
-    found = []
+    candidates = []
     for route, s in routes.items():
         if model.r:
-            found.append(_matrix_candidate(model, s, f"literal{route}", native.direct_balance))
+            candidates.append(_matrix_candidate(model, s, f"literal{route}", native.direct_balance))
         if model.n <= MOST_DENSE:
-            found.append(_matrix_candidate(model, s, f"native{route}", native.user_matrices))
+            candidates.append(_matrix_candidate(model, s, f"native{route}", native.user_matrices))
     if not model.r:
         s = lagrange_by_frames(model, world_axes=True)
-        found.append(_matrix_candidate(model, s, SERIAL_IN_WORLD_AXES, native.direct_balance))
-    return found
+        candidates.append(_matrix_candidate(model, s, SERIAL_IN_WORLD_AXES, native.direct_balance))
+    return candidates
 
 
 def _matrix_candidate(model: Model, s: Lagrange, method: str, balance: Callable[[Lagrange], Any]) -> CCandidate:

@@ -55,8 +55,8 @@ def pinocchio_time(model: Model, states: Sequence[Sequence[float]]) -> Timed | s
     with tempfile.TemporaryDirectory(prefix="symgen-bench-") as folder:
         given = Path(folder) / "mechanism.txt"
         given.write_text(text, encoding="utf-8")
-        told = subprocess.run([str(program), str(given)], capture_output=True, text=True, check=True)
-    first, *rows = told.stdout.splitlines()
+        completed = subprocess.run([str(program), str(given)], capture_output=True, text=True, check=True)
+    first, *rows = completed.stdout.splitlines()
     return Timed(float(first), tuple(tuple(map(float, row.split())) for row in rows))
 
 
@@ -71,12 +71,12 @@ def tree_text(model: Model, states: Sequence[Sequence[float]]) -> str:
 @lru_cache(maxsize=1)
 def _program() -> Path | str:
     """The compiled program, once a run; or what it lacks."""
-    found = find_spec("pinocchio")
-    if found is None or found.origin is None:
+    module = find_spec("pinocchio")
+    if module is None or module.origin is None:
         return "not installed"
     if which("g++") is None:
         return "there is no C++ compiler"
-    prefix = next((path for path in Path(found.origin).parents if (path / "include" / "pinocchio").is_dir()), None)
+    prefix = next((path for path in Path(module.origin).parents if (path / "include" / "pinocchio").is_dir()), None)
     if prefix is None:
         return "its headers are not installed"
     folder = Path(_folder().name)
@@ -85,9 +85,9 @@ def _program() -> Path | str:
     command = ["g++", "-O2", "-std=c++17", *(f"-D{name}" for name in DEFINITIONS), f"-I{prefix / 'include'}"]
     command += [f"-I{prefix / 'include' / 'eigen3'}", "-I/usr/include/eigen3", "-o", str(program), str(source)]
     command += [f"-L{prefix / 'lib'}", "-lpinocchio_default", f"-Wl,-rpath,{prefix / 'lib'}"]
-    told = subprocess.run(command, capture_output=True, text=True, check=False, timeout=SLOWEST_COMPILER)
-    if told.returncode:
-        line = next((line for line in told.stderr.splitlines() if "error" in line), "unknown")
+    completed = subprocess.run(command, capture_output=True, text=True, check=False, timeout=SLOWEST_COMPILER)
+    if completed.returncode:
+        line = next((line for line in completed.stderr.splitlines() if "error" in line), "unknown")
         return f"its program does not compile: {line.rsplit('error: ', 1)[-1]}"
     return program
 
@@ -167,8 +167,8 @@ class _NumberedTree:
         self.places[frame.name] = joint, turn, at
 
     def _in(self, expressions: Sequence[Expression]) -> list[str]:
-        found = dict.fromkeys(name.name for expression in expressions for name in names_in(expression))
-        return [name for name in found if name in self.names]
+        used = dict.fromkeys(name.name for expression in expressions for name in names_in(expression))
+        return [name for name in used if name in self.names]
 
     def _joint(self, parent: int, kind: str, axis: Any, turn: Any, at: Any, name: str) -> int:
         if self.names.index(name) in self.moved:

@@ -40,21 +40,21 @@ def peers(model: Model, task: Task, states: Any) -> Peers:
     if task.quantity not in ("inverse_dynamics", "forward_dynamics", "multipliers"):
         return _of_matrix(model, s, states, task)
     if task.quantity != "inverse_dynamics":
-        found, left_out = _motions(model, s, states, task)
+        candidates, left_out = _motions(model, s, states, task)
         if task.quantity == "forward_dynamics" and is_recursive(model):
-            found += _articulated(model)
-        return Peers(tuple(found), tuple(left_out))
+            candidates += _articulated(model)
+        return Peers(tuple(candidates), tuple(left_out))
     methods, left_out = _methods(model, s, states)
     # What inlining CasADi's exported helpers is worth, which a shared library does not allow.
     inlined = replace(_native(model, s, task, "native_fpie"), form="native -fPIE", flags=("-fPIE",))
-    found = [_native(model, s, task), inlined, _native_in_lines(model, s, task)]
+    candidates = [_native(model, s, task), inlined, _native_in_lines(model, s, task)]
     for engine_type in _engines():
         for method, build in methods.items():
             if method not in SYMPY_ONLY or engine_type.tool == "SymPy":
-                found.append(_candidate(engine_type(), model, method, build))
-    found.append(_householder(model, s))
+                candidates.append(_candidate(engine_type(), model, method, build))
+    candidates.append(_householder(model, s))
     absent = [(tool, "not installed") for tool, module in OPTIONAL.items() if find_spec(module) is None]
-    return Peers(tuple(found), (*left_out, *absent))
+    return Peers(tuple(candidates), (*left_out, *absent))
 
 
 def _of_matrix(model: Model, s: Lagrange, states: Any, task: Task) -> Peers:
@@ -111,13 +111,13 @@ def _motions(
         ways["null space"] = lambda: in_lines(
             "null space", lambda engine, system: along_null_space(engine, system, independent)
         )
-    found, left_out = list[CCandidate](), list[tuple[str, str]]()
+    candidates, left_out = list[CCandidate](), list[tuple[str, str]]()
     for name, way in ways.items():
         try:
-            found += way()
+            candidates += way()
         except DeadPivotError:
             left_out.append((f"CasADi {name}", LACKS_A_MASS))
-    return found, left_out
+    return candidates, left_out
 
 
 def _articulated(model: Model) -> list[CCandidate]:
@@ -125,12 +125,12 @@ def _articulated(model: Model) -> list[CCandidate]:
     from symgen.laboratory.bench.peers.engines.ssa_engine import SsaEngine
     from symgen.laboratory.bench.peers.formulas.articulated import forward_dynamics
 
-    found = []
+    candidates = []
     for engine in (CasadiSsaEngine(), SsaEngine()):
         lines = engine.straight(*forward_dynamics(engine, model))
         entry = f"{engine.tool.lower()}_articulated_float64".replace(" ", "_")
-        found.append(straight_candidate(engine.tool, "articulated bodies", entry, lines))
-    return found
+        candidates.append(straight_candidate(engine.tool, "articulated bodies", entry, lines))
+    return candidates
 
 
 def python_peers(model: Model, task: Task) -> list[PythonCandidate]:
@@ -139,12 +139,12 @@ def python_peers(model: Model, task: Task) -> list[PythonCandidate]:
         return []
     from symgen.laboratory.bench.peers.numpy_pinv import numpy_pinv
 
-    found = [numpy_pinv(model)]
+    candidates = [numpy_pinv(model)]
     if find_spec("jax") is not None:
         from symgen.laboratory.bench.peers.jax_batch import jax_batch
 
-        found.append(jax_batch(model))
-    return found
+        candidates.append(jax_batch(model))
+    return candidates
 
 
 def in_single(candidate: CCandidate) -> CCandidate:
@@ -187,16 +187,16 @@ def _engines() -> list[type[Engine]]:
     from symgen.laboratory.bench.peers.engines.casadi_ssa import CasadiSsaEngine
     from symgen.laboratory.bench.peers.engines.sympy_engine import SympyEngine
 
-    found: list[type[Engine]] = [CasadiEngine, CasadiSsaEngine, SympyEngine]
+    engines: list[type[Engine]] = [CasadiEngine, CasadiSsaEngine, SympyEngine]
     if find_spec("wrenfold") is not None:
         from symgen.laboratory.bench.peers.engines.wrenfold_engine import WrenfoldEngine
 
-        found.append(WrenfoldEngine)
+        engines.append(WrenfoldEngine)
     if find_spec("symforce") is not None:
         from symgen.laboratory.bench.peers.engines.symforce_engine import SymforceEngine
 
-        found.append(SymforceEngine)
-    return found
+        engines.append(SymforceEngine)
+    return engines
 
 
 def _candidate(engine: Engine, model: Model, method: str, build: Build) -> CCandidate:

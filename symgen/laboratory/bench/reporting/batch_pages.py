@@ -92,5 +92,5 @@ def _ratio(other: Row | None, batch: Row, wanted: float | None) -> str:
     ratio = _time(other) / _time(batch)
     if wanted is None:
         return f"{ratio:.1f}"
-    told = f"{ratio:.1f}" if wanted == round(wanted) else f"{ratio:.2f}"
-    return f"{told} ({wanted:g})" if ratio >= wanted else f"**{told}** ({wanted:g})"
+    shown = f"{ratio:.1f}" if wanted == round(wanted) else f"{ratio:.2f}"
+    return f"{shown} ({wanted:g})" if ratio >= wanted else f"**{shown}** ({wanted:g})"

@@ -107,10 +107,10 @@ def ratio(rows: Sequence[Row], goal: Goal, wanted: float | None) -> str:
     mine, peer = _own(rows, goal.trig), _peer(rows, goal.against)
     if peer is None:
         return "none"
-    found = _count(mine) / _count(peer)
+    quotient = _count(mine) / _count(peer)
     digits = 3 if wanted is not None and wanted < 0.1 else 2
-    shown = f"{found:.{digits}f}"
-    shown = shown if wanted is None or round(found, digits) <= wanted else f"**{shown}**"
+    shown = f"{quotient:.{digits}f}"
+    shown = shown if wanted is None or round(quotient, digits) <= wanted else f"**{shown}**"
     asked = "" if wanted is None else f" ({wanted})"
     return f"{shown}{asked}: {_count(mine):.0f} / {_count(peer):.0f} {peer['generator']} {peer['form']}"
 

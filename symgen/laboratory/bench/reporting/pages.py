@@ -69,11 +69,11 @@ def deviation_lines(results: Sequence[Mapping[str, Any]]) -> list[str]:
         return []
     lines = []
     for against, cells in deviations(measured).items():
-        for name, (count, found, label) in zip(PAPER, cells, strict=True):
-            change = found / count - 1
+        for name, (count, here, label) in zip(PAPER, cells, strict=True):
+            change = here / count - 1
             verdict = "DEARER than early" if change > REPRODUCED_WITHIN else ""
             verdict = "cheaper than early" if change < -REPRODUCED_WITHIN else verdict
-            line = f"{name}: {against}: {found:.0f} ({label}), early {count:.0f}: {100 * change:+.1f} % {verdict}"
+            line = f"{name}: {against}: {here:.0f} ({label}), early {count:.0f}: {100 * change:+.1f} % {verdict}"
             lines.append(line.rstrip())
     return lines
 
@@ -89,14 +89,14 @@ def _of_inverse_dynamics(results: Sequence[Mapping[str, Any]]) -> Results:
 
 def deviations(measured: Results) -> dict[str, tuple[tuple[float, float, str], ...]]:
     """By row of the early counts, in the order of the paper's models: the early count, the one found here, by whom."""
-    found = {}
+    by_row = {}
     for against, counts in EARLY_COUNTS.items():
         cells = []
         for (count, _), name in zip(counts, PAPER, strict=True):
             best = _best(measured.get(COUNTED_EARLY.get(name, name), measured[name]), _PEERS[against])
             cells.append((float(count), float(best["instructions"]), _label(best)))
-        found[against] = tuple(cells)
-    return found
+        by_row[against] = tuple(cells)
+    return by_row
 
 
 def _goals(measured: Results) -> str:
@@ -159,11 +159,11 @@ def _reproduced(measured: Results) -> str:
     rows = []
     for against, cells in deviations(measured).items():
         row = [against]
-        for (count, found, label), (_, by) in zip(cells, EARLY_COUNTS[against], strict=True):
-            change = found / count - 1
+        for (count, here, label), (_, by) in zip(cells, EARLY_COUNTS[against], strict=True):
+            change = here / count - 1
             shown = f"{100 * change:+.0f} %"
             shown = f"**{shown}**" if change > REPRODUCED_WITHIN else shown
-            row.append(f"{count:.0f} {by}; here {found:.0f} {label}, {shown}")
+            row.append(f"{count:.0f} {by}; here {here:.0f} {label}, {shown}")
         rows.append(row)
     swapped = ", ".join(f"{other} in place of {name}" for name, other in COUNTED_EARLY.items() if other in measured)
     note = f" With {swapped}, which is the mechanism of that count." if swapped else ""

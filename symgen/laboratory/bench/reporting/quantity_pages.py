@@ -51,8 +51,8 @@ def _cells(result: Row) -> Iterator[tuple[str, dict[str, float]]]:
         peers = [row["instructions"] for row in counted if row["generator"] != "symgen"]
         if own[PORTABLE] and peers:
             # a kernel without angles has one form
-            found = {way: (own[way] or own[PORTABLE])[0] / min(peers) for way in GOALS}
-            yield comparison["quantity"], found
+            ratios = {way: (own[way] or own[PORTABLE])[0] / min(peers) for way in GOALS}
+            yield comparison["quantity"], ratios
 
 
 def _mean(cells: Sequence[Mapping[str, float]]) -> dict[str, float]:

@@ -40,8 +40,8 @@ class _Loader(SourceFileLoader):
         path = self.get_filename(fullname)
         tree = ast.parse(self.get_data(path), path)
         for statement in tree.body:
-            if isinstance(statement, ast.Assign) and (found := named_number(statement)):
-                name, value = found
+            if isinstance(statement, ast.Assign) and (named := named_number(statement)):
+                name, value = named
                 key = ast.Constant(f"{fullname}.{name}")
                 exchanged = ast.Call(ast.Name(_EXCHANGE, ast.Load()), [key, value], [])
                 statement.value = ast.copy_location(exchanged, value)

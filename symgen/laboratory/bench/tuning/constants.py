@@ -58,13 +58,13 @@ class Change:
     @property
     def ratios(self) -> dict[tuple[str, str], float]:
         """Counted cost of quantities against what it is, where it is another and none of both is 0."""
-        found = {}
+        by_kernel = {}
         for name, (plain, changed) in self.models.items():
             for quantity, (cost, _) in changed.kernels.items():
                 before = plain.kernels.get(quantity, (0, ""))[0]
                 if before and cost and cost != before:
-                    found[name, quantity] = cost / before
-        return found
+                    by_kernel[name, quantity] = cost / before
+        return by_kernel
 
     @property
     def others(self) -> int:
@@ -119,8 +119,8 @@ def measured(constants: Sequence[Constant], models: Sequence[Path]) -> MeasuredC
 
 def _changed(constant: Constant, how: str, plain: Mapping[str, Derived]) -> Change:
     most = {path: PATIENCE * one.seconds + SECONDS_MORE for path, one in plain.items()}
-    found = _child([constant.module], (constant.key, how), most)
-    return Change(constant, how, {Path(path).stem: (one, found[path]) for path, one in plain.items()})
+    derived = _child([constant.module], (constant.key, how), most)
+    return Change(constant, how, {Path(path).stem: (one, derived[path]) for path, one in plain.items()})
 
 
 def _child(modules: Sequence[str], changed: Key | None, models: Mapping[str, float]) -> dict[str, Derived]:
@@ -132,37 +132,37 @@ def _child(modules: Sequence[str], changed: Key | None, models: Mapping[str, flo
     return {path: _derived(one) for path, one in json.loads(done.stdout).items()}
 
 
-def _derived(told: Mapping[str, Any]) -> Derived:
-    if "failed" in told:
-        return Derived({}, failed=told["failed"])
-    kernels = {name: (cost, digest) for name, (cost, digest) in told["kernels"].items()}
-    return Derived(kernels, told["c"], told["seconds"], frozenset((key, how) for key, how in told["noticed"]))
+def _derived(record: Mapping[str, Any]) -> Derived:
+    if "failed" in record:
+        return Derived({}, failed=record["failed"])
+    kernels = {name: (cost, digest) for name, (cost, digest) in record["kernels"].items()}
+    return Derived(kernels, record["c"], record["seconds"], frozenset((key, how) for key, how in record["noticed"]))
 
 
-def page(found: MeasuredConstants) -> str:
+def page(measurements: MeasuredConstants) -> str:
     """The page docs/constants.md."""
-    count = sum(len(one.kernels) for one in found.plain.values())
-    by_constant = {key: list(group) for key, group in groupby(found.changes, key=lambda one: one.constant.key)}
+    count = sum(len(one.kernels) for one in measurements.plain.values())
+    by_constant = {key: list(group) for key, group in groupby(measurements.changes, key=lambda one: one.constant.key)}
     busy = {key for key, group in by_constant.items() if not all(one.idle for one in group)}
     lines = list(_table(("constant", "value", "limits", "change", "kernels", "geometric mean", "most", "beside"), ()))
-    for constant in found.constants:
-        told = _told(constant)
+    for constant in measurements.constants:
+        first_cells = _first_cells(constant)
         for change in by_constant[constant.key] if constant.key in busy else ():
-            lines.append(table_line([*told, change.how, *_cells(change, count)]))
-            told = ("", "", "")
-    quiet = [one for one in found.constants if one.key not in busy]
+            lines.append(table_line([*first_cells, change.how, *_cells(change, count)]))
+            first_cells = ("", "", "")
+    quiet = [one for one in measurements.constants if one.key not in busy]
     numerical, outside = ([one for one in quiet if one.numerical], [one for one in quiet if one.outside])
-    texts = {"CHANGES": "\n".join(lines), "COUNTS": f"{len(found.plain)} models, {count} kernels"}
+    texts = {"CHANGES": "\n".join(lines), "COUNTS": f"{len(measurements.plain)} models, {count} kernels"}
     same = [one for one in quiet if not one.numerical and not one.outside]
     for name, group in (("SAME", same), ("NUMERICAL", numerical), ("OUTSIDE", outside)):
-        texts[name] = "\n".join(_table(("constant", "value", "limits"), map(_told, group)))
+        texts[name] = "\n".join(_table(("constant", "value", "limits"), map(_first_cells, group)))
     made = _PAGE
     for name, text in texts.items():
         made = made.replace(name, text)
     return made
 
 
-def _told(constant: Constant) -> tuple[str, str, str]:
+def _first_cells(constant: Constant) -> tuple[str, str, str]:
     return f"`{constant.module.removeprefix('symgen.')}` `{constant.name}`", constant.value, constant.limits
 
 

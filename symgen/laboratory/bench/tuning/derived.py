@@ -33,7 +33,7 @@ def derived(path: str, most: float, noticed: set[Key]) -> dict[str, Any]:
         model = load_model(Path(path))
         draft = as_recorded(model, model.outputs, OPTIONS)
         sources = sources_of(draft, OPTIONS)
-        found = costs(draft.derivations.quantities)
+        by_name = costs(draft.derivations.quantities)
     except _SlowError:
         return {"failed": "takes too long"}
     except Exception as error:  # whatever a constant breaks is a result
@@ -41,7 +41,7 @@ def derived(path: str, most: float, noticed: set[Key]) -> dict[str, Any]:
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0)
     took = time.process_time() - before
-    kernels = {name: [cost, _digest(repr(draft.kernels(name)))] for name, cost in found.items()}
+    kernels = {name: [cost, _digest(repr(draft.kernels(name)))] for name, cost in by_name.items()}
     text = _digest("".join(text for _, text in sorted(sources.items())))
     return {"kernels": kernels, "c": text, "seconds": took, "noticed": sorted(noticed)}
 

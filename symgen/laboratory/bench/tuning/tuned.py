@@ -100,8 +100,8 @@ def _of_module(file: Path) -> Iterator[Constant]:
     lines = text.splitlines()
     body = ast.parse(text).body
     for statement, below in zip(body, (*body[1:], None), strict=True):
-        if found := named_number(statement):
-            name, value = found
+        if named := named_number(statement):
+            name, value = named
             comment = _string(below) or _comment(lines, statement.lineno - 1)
             yield Constant(module, name, ast.unparse(value), " ".join(comment.split()))
 

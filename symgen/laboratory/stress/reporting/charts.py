@@ -154,11 +154,11 @@ def _families(result: Stress) -> str:
 
 
 def _all_labels(panels: Sequence[Any]) -> tuple[list[Any], list[str]]:
-    found: dict[str, Any] = {}
+    by_label: dict[str, Any] = {}
     for panel in panels:
         for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
-            found.setdefault(label, handle)
-    return list(found.values()), list(found)
+            by_label.setdefault(label, handle)
+    return list(by_label.values()), list(by_label)
 
 
 def _units(panel: Any, series: Series, colour: str, line: str, label: str) -> None:

@@ -40,11 +40,11 @@ def _families(result: Stress) -> str:
             worst = max(mine, key=lambda s: s.largest.units, default=None)
             cells.append("" if worst is None else f"{worst.largest.units:.2g} {SHORTEST[worst.quantity]}")
         rows.append(cells)
-    found = result.searched
-    choices = f"\n  {found.failing} of {found.partitions} choices of independent coordinates fail along these"
+    searched = result.searched
+    choices = f"\n  {searched.failing} of {searched.partitions} choices of independent coordinates fail along these"
     return columns(("family", "singular where / what", "float64*", "float32*"), rows, "<<>>") + (
         "\n  * symgen's largest error in units of what rounding the inputs and the result does; 16 are allowed"
-        + (choices if found.partitions else "")
+        + (choices if searched.partitions else "")
     )
 
 

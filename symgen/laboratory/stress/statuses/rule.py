@@ -93,21 +93,21 @@ def counted(
 
 def breaches(held: Sequence[Held]) -> tuple[str, ...]:
     """In words, what breaks the rule worst in each kernel."""
-    found = []
+    sentences = []
     for one in held:
         if one.beyond:
             worst = max(one.beyond, key=lambda case: case.units)
-            found.append(
+            sentences.append(
                 f"{one.quantity}, {one.scalar}: {len(one.beyond)} of {one.answered} results of status 0 are beyond the "
                 f"tolerance, at most {worst.units:.2g} units: {worst.where}"
             )
         if one.unexplained:
             case = one.unexplained[0]
-            found.append(
+            sentences.append(
                 f"{one.quantity}, {one.scalar}: {len(one.unexplained)} of {one.states} states have a status while no "
                 f"measure is below its threshold, as status {case.status}: {case.where}"
             )
-    return tuple(found)
+    return tuple(sentences)
 
 
 class _Count:
@@ -163,13 +163,13 @@ def _expected(
     try:
         return expectations(reference, state, names, scalar, seed, all_literals=True)
     except ReferenceValueError:
-        found: dict[str, Expectation] = {}
+        by_name: dict[str, Expectation] = {}
         for name in names:
             try:
-                found |= expectations(reference, state, (name,), scalar, seed, all_literals=True)
+                by_name |= expectations(reference, state, (name,), scalar, seed, all_literals=True)
             except ReferenceValueError:
                 continue
-        return found
+        return by_name
 
 
 def _units(expected: Expectation, entries: Sequence[float]) -> float:

@@ -87,9 +87,9 @@ def _with(
     reference: Reference, state: State, exponents: Mapping[int, float], what: str, seed: int
 ) -> Iterator[Pushed]:
     parameters = [p * 10.0 ** exponents.get(i, 0) for i, p in enumerate(map(float, state.parameters))]
-    found = admissible(reference, state.q, parameters, f"{what} {seed}")
-    if found is not None:
-        yield Pushed(what, found)
+    pushed = admissible(reference, state.q, parameters, f"{what} {seed}")
+    if pushed is not None:
+        yield Pushed(what, pushed)
 
 
 def admissible(
@@ -107,8 +107,8 @@ def admissible(
     state = State(tuple(float(x) for x in near), rates, accelerations, shares, tuple(parameters))
     try:
         names = ("admissible_velocity", "admissible_acceleration")
-        found = reference.matrices(state, names, BITS)
-        rates, accelerations = (tuple(float(x) for x in found[name].entries()) for name in names)
+        projected = reference.matrices(state, names, BITS)
+        rates, accelerations = (tuple(float(x) for x in projected[name].entries()) for name in names)
         state = replace(state, qd=rates, qdd=accelerations)
         if model.m:
             u = reference.matrices(state, ("inverse_dynamics",), BITS)["inverse_dynamics"].entries()

@@ -67,13 +67,13 @@ def scaling(reference: Reference, kernels: RunnableKernels, folder: Path) -> tup
     quantities = names[:1] if model.m else ()
     regular = sample_states(reference, quantities, 2 * STATES)
     states = [sample.state for sample in regular if sample.admissible][:STATES]
-    found: list[Scaled] = []
+    scaled: list[Scaled] = []
     changes = [(what, tuple(Fraction(2) ** e for e in powers), True) for what, powers in POWERS_OF_TWO]
     if any(d[1] for d in coordinate_dimensions(model)) or any(d and d[1] for d in parameter_dimensions(model)):
         changes.append(("m in mm", (Fraction(1), Fraction(1000), Fraction(1)), False))
     for what, factors, binary in changes:
         converted = [_converted(model, state, factors) for state in states]
-        found += _compare(what, reference, kernels, reference, kernels, states, converted, names, binary)
+        scaled += _compare(what, reference, kernels, reference, kernels, states, converted, names, binary)
     angles = [c.name for c in model.coordinates if c.is_angle]
     if angles:
         turned = in_degrees(model)
@@ -81,13 +81,13 @@ def scaling(reference: Reference, kernels: RunnableKernels, folder: Path) -> tup
         converted = [_in_degrees(model, state) for state in states]
         (folder / "degrees").mkdir()
         names_other = RunnableKernels(turned, folder / "degrees", names, kernels.out)
-        found += _compare("rad in deg", reference, kernels, other, names_other, states, converted, names, False)
-    return tuple(found), tuple(_failures(found))
+        scaled += _compare("rad in deg", reference, kernels, other, names_other, states, converted, names, False)
+    return tuple(scaled), tuple(_failures(scaled))
 
 
-def _failures(found: Sequence[Scaled]) -> list[str]:
+def _failures(scaled: Sequence[Scaled]) -> list[str]:
     failures = []
-    for one in found:
+    for one in scaled:
         where = f"{one.quantity}, {one.change}, {one.scalar}"
         if one.covariant and not one.units <= FACTOR:
             failures.append(f"{where}: error {one.units:.3g} times d + eps |y*|, {FACTOR:g} is allowed")
@@ -107,7 +107,7 @@ def _compare(
     names: Sequence[str],
     binary: bool,
 ) -> list[Scaled]:
-    found = []
+    scaled = []
     for name in names:
         conversion = _conversion(reference, other, states, converted, name)
         required = binary and name == "inverse_dynamics" and kernels.method(name) in POLYNOMIAL
@@ -128,8 +128,8 @@ def _compare(
                     pairs = zip(plain.entries, conversion, outcome.entries, strict=True)
                     identical = identical and all(factor is None or x * factor == y for x, factor, y in pairs)
             identical = identical and binary
-            found.append(Scaled(what, name, scalar, conversion is not None, worst, refused, identical, required))
-    return found
+            scaled.append(Scaled(what, name, scalar, conversion is not None, worst, refused, identical, required))
+    return scaled
 
 
 def _one_dimension(reference: Reference) -> bool:

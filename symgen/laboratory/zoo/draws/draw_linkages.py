@@ -48,8 +48,8 @@ def parallelogram_energies(dice: Dice) -> Description:
     if cranks == 2 and dice.chance(0.5):
         # all bars on one line: two branches meet there, and both have the same ranks
         flat = dict.fromkeys(sketch.start, "0")
-        told = {**description.blocks, "configuration": flat}
-        return replace(description, blocks=told, marks=(*description.marks, "start at a singular pose"))
+        blocks = {**description.blocks, "configuration": flat}
+        return replace(description, blocks=blocks, marks=(*description.marks, "start at a singular pose"))
     return description
 
 

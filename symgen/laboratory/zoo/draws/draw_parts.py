@@ -203,8 +203,8 @@ def depth(parts: list[DrawnPart], index: int) -> int:
 
 def chain_of(parts: list[DrawnPart], index: int) -> set[int]:
     """A part and all that carry it, by their indices."""
-    found = set()
+    chain = set()
     while index >= 0:
-        found.add(index)
+        chain.add(index)
         index = parts[index].parent
-    return found
+    return chain

@@ -28,8 +28,8 @@ class DrawnEquations:
 
     def __init__(self, blocks: Mapping[str, Any], start: Mapping[str, float]) -> None:
         self.system = SystemReader(blocks)
-        found = equations(self.system)
-        self._evaluate = EquationEvaluator(NodeProgram(self.system.tape, found.flat), found)
+        system_equations = equations(self.system)
+        self._evaluate = EquationEvaluator(NodeProgram(self.system.tape, system_equations.flat), system_equations)
         self.start = {name: start.get(name, 0.0) for name in self.system.coordinates}
 
     @cached_property

@@ -41,8 +41,8 @@ class Sketch:
 
     def block(self, name: str) -> dict[str, Any]:
         """A block, made where it is missing."""
-        found: dict[str, Any] = self.blocks.setdefault(name, {})
-        return found
+        entries: dict[str, Any] = self.blocks.setdefault(name, {})
+        return entries
 
     def coordinate(self, plain: str, value: float, unit: str = "rad") -> str:
         """A new coordinate with its value at the start."""

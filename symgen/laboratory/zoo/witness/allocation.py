@@ -14,15 +14,15 @@ NO_PART = 1e-30
 
 def members(block: Mapping[str, Any], value: Callable[[str], float]) -> dict[str, float]:
     """Weights, preloads and limits as members of the parameters, in the order of the documentation."""
-    found = {f"weight_{name}": value(text) for name, text in (block.get("weights") or {}).items()}
+    by_name = {f"weight_{name}": value(text) for name, text in (block.get("weights") or {}).items()}
     preload = block.get("preload")
     if isinstance(preload, str):
-        found["preload"] = value(preload)
+        by_name["preload"] = value(preload)
     elif preload is not None:
-        found |= {f"preload_{name}": value(text) for name, text in preload.items()}
+        by_name |= {f"preload_{name}": value(text) for name, text in preload.items()}
     for name, (lower, upper) in (block.get("limits") or {}).items():
-        found |= {f"limit_{name}_lower": value(lower), f"limit_{name}_upper": value(upper)}
-    return found
+        by_name |= {f"limit_{name}_lower": value(lower), f"limit_{name}_upper": value(upper)}
+    return by_name
 
 
 def preloads(inputs: Sequence[str], block: Mapping[str, Any], values: Mapping[str, Any], zero: Any) -> Vector | None:

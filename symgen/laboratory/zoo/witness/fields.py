@@ -48,10 +48,10 @@ class Balls:
 
     def number(self, value: Fraction) -> Any:
         """The ball of a rational."""
-        found = self._numbers.get(value)
-        if found is None:
-            found = self._numbers[value] = self._arb(value.numerator) / self._arb(value.denominator)
-        return found
+        ball = self._numbers.get(value)
+        if ball is None:
+            ball = self._numbers[value] = self._arb(value.numerator) / self._arb(value.denominator)
+        return ball
 
     def pi(self) -> Any:
         """pi."""

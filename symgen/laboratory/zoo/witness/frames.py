@@ -170,7 +170,7 @@ class FramePoses:
 
 def read_frames(tape: NodeTape, blocks: Mapping[str, Any], read: Read) -> dict[str, Relative]:
     """The frames of the blocks `frames` and `joints`."""
-    found: dict[str, Relative] = {}
+    by_name: dict[str, Relative] = {}
     for name, entry in (blocks.get("frames") or {}).items():
         given = entry or {}
         rotation = given.get("rotation") or []
@@ -178,16 +178,16 @@ def read_frames(tape: NodeTape, blocks: Mapping[str, Any], read: Read) -> dict[s
         parent = given.get("parent", "world")
         if isinstance(rotation, Mapping):
             w, x, y, z = (read(part) for part in rotation["quaternion"])
-            found[name] = Relative(parent, translation, (), (w, x, y, z))
+            by_name[name] = Relative(parent, translation, (), (w, x, y, z))
         else:
             turns = tuple((unit_axis(tape, axis, read), read(angle)) for axis, angle in rotation)
-            found[name] = Relative(parent, translation, turns)
+            by_name[name] = Relative(parent, translation, turns)
     for name, entry in (blocks.get("joints") or {}).items():
         child = entry.get("child", name)
         base, moved = _joint(tape, entry, read)
-        found[child + BASE] = base
-        found[child] = replace(moved, parent=child + BASE)
-    return found
+        by_name[child + BASE] = base
+        by_name[child] = replace(moved, parent=child + BASE)
+    return by_name
 
 
 def joint_coordinates(entry: Mapping[str, Any]) -> list[str]:

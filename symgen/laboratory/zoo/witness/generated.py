@@ -48,13 +48,13 @@ class Target:
 
 def targets(folder: Path, model: str) -> list[Target]:
     """Python, and the C of both types."""
-    found = []
+    present = []
     if (folder / "python" / f"{model}.py").exists():
-        found.append(_python(folder / "python" / f"{model}.py"))
+        present.append(_python(folder / "python" / f"{model}.py"))
     for scalar, suffix in (("float64", ""), ("float32", "_f")):
         if (folder / "c" / f"{model}{suffix}.c").exists():
-            found.append(_c(folder / "c", model, scalar, suffix))
-    return found
+            present.append(_c(folder / "c", model, scalar, suffix))
+    return present
 
 
 def _given(quantity: str, state: FloatState) -> list[tuple[float, ...]]:

@@ -108,14 +108,14 @@ def _along(at: EquationValues, parts: DirectionSplit) -> tuple[Matrix, list[floa
 def distances(at: EquationValues, ranks: GenericRanks, one: Any) -> dict[str, float]:
     """What tells how far rows, inputs and masses are from a drop of rank, 0 to 1, of those that there are."""
     parts = split(at, ranks.constraints, one)
-    found = {"rows": _smallest(parts.pivots, ranks.constraints)} if ranks.constraints else {}
+    by_kind = {"rows": _smallest(parts.pivots, ranks.constraints)} if ranks.constraints else {}
     if ranks.actuation:
         projected, whole = _along(at, parts)
         columns = transposed(projected, len(whole))
-        found["inputs"] = _smallest(basis(columns, ranks.actuation, whole)[1], ranks.actuation)
+        by_kind["inputs"] = _smallest(basis(columns, ranks.actuation, whole)[1], ranks.actuation)
     if parts.free:
-        found["masses"] = _smallest(_scaled_pivots(_inside(at, parts)), len(parts.free))
-    return found
+        by_kind["masses"] = _smallest(_scaled_pivots(_inside(at, parts)), len(parts.free))
+    return by_kind
 
 
 def _smallest(pivots: Sequence[float], rank: int) -> float:

@@ -77,17 +77,17 @@ def complement(taken: Matrix, n: int, one: Any) -> Matrix:
     for _ in range(2):
         for direction in taken:
             units = [_without(unit, direction) for unit in units]
-    found: Matrix = []
-    while len(found) < n - len(taken):
+    added: Matrix = []
+    while len(added) < n - len(taken):
         sizes = [size(unit) for unit in units]
         best = max(range(len(units)), key=sizes.__getitem__)
         chosen = units.pop(best)
-        for direction in (*taken, *found):
+        for direction in (*taken, *added):
             chosen = _without(chosen, direction)
         length = inner(chosen, chosen) ** _HALF
-        found.append([x / length for x in chosen])
-        units = [_without(unit, found[-1]) for unit in units]
-    return found
+        added.append([x / length for x in chosen])
+        units = [_without(unit, added[-1]) for unit in units]
+    return added
 
 
 def solve(a: Sequence[Sequence[Any]], b: Sequence[Any]) -> Vector:

@@ -35,8 +35,8 @@ class PinocchioAnswers:
     def __init__(self, tree: PinocchioTree, blocks: Mapping[str, Any], ranks: GenericRanks) -> None:
         self._tree, self._ranks = tree, ranks
         self._system = SystemReader({name: block for name, block in blocks.items() if name not in WITHOUT})
-        found = equations(self._system)
-        self._evaluate = EquationEvaluator(NodeProgram(self._system.tape, found.flat), found)
+        system_equations = equations(self._system)
+        self._evaluate = EquationEvaluator(NodeProgram(self._system.tape, system_equations.flat), system_equations)
         self._closed = len(self._system.rows) > sum(bool(part.quaternion) for part in tree.parts)
 
     def apart(

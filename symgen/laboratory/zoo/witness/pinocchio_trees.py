@@ -53,8 +53,8 @@ def tree_of(
 
 def disagreement(tree: PinocchioTree, system: SystemReader, parameters: Mapping[str, float], dice: Dice) -> float:
     """The largest difference of G and of all other forces relative to the largest entry, at random states."""
-    found = equations(system)
-    evaluate = EquationEvaluator(NodeProgram(system.tape, found.flat), found)
+    system_equations = equations(system)
+    evaluate = EquationEvaluator(NodeProgram(system.tape, system_equations.flat), system_equations)
     return max(_apart(tree, system, evaluate, parameters, dice) for _ in range(STATES))
 
 
@@ -174,9 +174,9 @@ class PinocchioTree:
             armature[part.in_v] = rotors[part.single[0]][part.single[0]] if part.single else 0.0
         still = np.array(self._model.armature)
         self._model.armature = armature
-        found = self._pin.aba(self._model, self._data, at.place, at.rates @ qd, back.T @ forces)
+        tree_accelerations = self._pin.aba(self._model, self._data, at.place, at.rates @ qd, back.T @ forces)
         self._model.armature = still
-        accelerations = back @ (found - at.drift)
+        accelerations = back @ (tree_accelerations - at.drift)
         for part in self.parts:
             if part.quaternion:
                 places = list(part.quaternion)
@@ -256,17 +256,17 @@ class _Joints:
     def _carried(self, carrier: str) -> list[str]:
         """Places the fixed frames that stand on a frame; them and the joints there."""
         blocks = self._system.blocks
-        found = []
+        children = []
         for name in blocks.get("frames") or {}:
             frame = self._frames[name]
             if frame.parent == carrier and is_fixed(self._system, frame):
                 joint, place = self._known[carrier]
                 self._known[name] = joint, place * self._placed(frame)
-                found.append(name)
+                children.append(name)
         for name, entry in blocks["joints"].items():
             if entry.get("parent", "world") == carrier:
-                found.append(entry.get("child", name))
-        return found
+                children.append(entry.get("child", name))
+        return children
 
     def _placed(self, frame: Relative) -> Any:
         """Where a frame that stands still is on its parent."""

@@ -64,11 +64,11 @@ class SystemReader:
     @cached_property
     def parameters(self) -> dict[str, Node]:
         """Values of the parameters as expressions of earlier parameters."""
-        found: dict[str, Node] = {}
+        by_name: dict[str, Node] = {}
         for name, entry in (self.blocks.get("parameters") or {}).items():
             text = entry["value"] if isinstance(entry, Mapping) else entry
-            found[name] = read_expression(self.tape, str(text), found.__getitem__)
-        return found
+            by_name[name] = read_expression(self.tape, str(text), by_name.__getitem__)
+        return by_name
 
     @cached_property
     def inputs(self) -> tuple[str, ...]:
@@ -184,25 +184,25 @@ class SystemReader:
         """All constraints: those of the file, joints, loops, wheels; of wheels none that always hold."""
         given = self.blocks.get("constraints") or {}
         geometric, nonholonomic = given.get("geometric") or {}, given.get("nonholonomic") or {}
-        found = [ConstraintEquation(name, True, self.read(text)) for name, text in geometric.items()]
+        all_rows = [ConstraintEquation(name, True, self.read(text)) for name, text in geometric.items()]
         for name, entry in (self.blocks.get("loops") or {}).items():
-            found += self._loop(name, entry)
-        found += self._norms()
+            all_rows += self._loop(name, entry)
+        all_rows += self._norms()
         wheels = [row for name, entry in (self.blocks.get("rolling") or {}).items() for row in self._wheel(name, entry)]
         wheels = [row for row in wheels if row.value.number != 0]
-        found += [row for row in wheels if row.geometric]
-        found += [ConstraintEquation(name, False, self.read(text)) for name, text in nonholonomic.items()]
-        found += [row for row in wheels if not row.geometric]
-        return tuple(found)
+        all_rows += [row for row in wheels if row.geometric]
+        all_rows += [ConstraintEquation(name, False, self.read(text)) for name, text in nonholonomic.items()]
+        all_rows += [row for row in wheels if not row.geometric]
+        return tuple(all_rows)
 
     def _norms(self) -> list[ConstraintEquation]:
-        found = []
+        norms = []
         for name, entry in (self.blocks.get("joints") or {}).items():
             if entry["type"] in ("spherical", "floating"):
                 parts = [self.read(part) for part in joint_coordinates(entry)[-4:]]
                 value = self.tape.sum(part * part for part in parts) - self.tape.one
-                found.append(ConstraintEquation(f"{name}_norm", True, value))
-        return found
+                norms.append(ConstraintEquation(f"{name}_norm", True, value))
+        return norms
 
     def _loop(self, name: str, entry: Mapping[str, Any]) -> list[ConstraintEquation]:
         kind = entry["type"]
@@ -306,7 +306,7 @@ class SystemReader:
     @cached_property
     def bodies(self) -> tuple[RigidBody, ...]:
         """Masses and tensors in the world."""
-        found = []
+        rigid_bodies = []
         for name, given in (self.blocks.get("bodies") or {}).items():
             entry = given or {}
             frame = entry.get("frame", name)
@@ -314,29 +314,29 @@ class SystemReader:
             xx, yy, zz, xy, xz, yz = (tensor.get(key, self.tape.zero) for key in ("xx", "yy", "zz", "xy", "xz", "yz"))
             centre = self.frames.place(frame, read_vector(self.tape, entry.get("com"), self.read))
             mass = self.read(entry["mass"]) if "mass" in entry else self.tape.zero
-            found.append(RigidBody(frame, mass, centre, ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))))
-        return tuple(found)
+            rigid_bodies.append(RigidBody(frame, mass, centre, ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))))
+        return tuple(rigid_bodies)
 
     @cached_property
     def applied(self) -> tuple[tuple[Node, Node], ...]:
         """Magnitudes and the rates they work on: Q_a is the sum of magnitude times the gradient of the rate."""
-        found = []
+        terms = []
         for name, text in (self.blocks.get("applied_forces") or {}).items():
-            found.append((self.read(text), self.tape.symbol(f"{name}_dot")))
+            terms.append((self.read(text), self.tape.symbol(f"{name}_dot")))
         for entry in (self.blocks.get("springs") or {}).values():
             if "damping" in entry:
                 rate = self._spring(entry)[1]
-                found.append((-(self.read(entry["damping"]) * rate), rate))
+                terms.append((-(self.read(entry["damping"]) * rate), rate))
         for name, entry in (self.blocks.get("friction") or {}).items():
             rate = self.tape.symbol(f"{name}_dot")
             force = -(self.read(entry.get("viscous", "0")) * rate)
             if "coulomb" in entry:
                 slope = self.tape.call("tanh", rate / self.read(entry["width"]))
                 force = force - self.read(entry["coulomb"]) * slope
-            found.append((force, rate))
+            terms.append((force, rate))
         for entry in (self.blocks.get("forces") or {}).values():
-            found.append((self.read(entry["magnitude"]), self.power(entry)))
-        return tuple(found)
+            terms.append((self.read(entry["magnitude"]), self.power(entry)))
+        return tuple(terms)
 
 
 @dataclass(frozen=True)

@@ -92,23 +92,23 @@ class Walker:
             points += self.points(parameters, wanted, STRIDE / 2**walked)
             walked += 1
             ranks, regular = self._regular(points, parameters)
-        found: list[FloatState] = []
+        kept: list[FloatState] = []
         for q in regular:
-            if len(found) == count:
+            if len(kept) == count:
                 break
             nearest = self.refined(q, parameters)
             if nearest is not None:
-                rests, place = len(found) % SLOW_ONES == SLOW_ONES - 1, len(found) // SLOW_ONES
+                rests, place = len(kept) % SLOW_ONES == SLOW_ONES - 1, len(kept) // SLOW_ONES
                 pace = PACES[place % len(PACES)] if rests else 1.0
-                found.append(self.state(nearest, parameters, pace=pace))
-        if len(found) < count:
+                kept.append(self.state(nearest, parameters, pace=pace))
+        if len(kept) < count:
             lost = {
                 LOST_STEPS: walked * wanted - len(points),
                 IRREGULAR: len(points) - len(regular),
-                LED_ELSEWHERE: len(regular) - len(found),
+                LED_ELSEWHERE: len(regular) - len(kept),
             }
             self.lack = max(lost, key=lost.__getitem__)
-        return found, ranks
+        return kept, ranks
 
     def _regular(self, points: list[Any], parameters: Mapping[str, float]) -> tuple[GenericRanks, list[Any]]:
         """The largest ranks of all, and the configurations that have them by far."""

@@ -67,11 +67,11 @@ class NodeTape:
 
     def _node(self, op: str, args: tuple[Node, ...] = (), payload: object = None) -> Node:
         key = (op, tuple(arg.index for arg in args), payload)
-        found = self._known.get(key)
-        if found is None:
-            found = self._known[key] = Node(self, len(self.nodes), op, args, payload)
-            self.nodes.append(found)
-        return found
+        node = self._known.get(key)
+        if node is None:
+            node = self._known[key] = Node(self, len(self.nodes), op, args, payload)
+            self.nodes.append(node)
+        return node
 
     def number(self, value: Fraction | int) -> Node:
         """A number of mechanics, or a whole one, which no type rounds."""
@@ -256,18 +256,18 @@ class NodeProgram:
 
     def run(self, values: Mapping[str, Any], field: Any, literals: Mapping[FileNumber, Any] | None = None) -> list[Any]:
         """Values of the outputs; `literals` replaces numbers of the file."""
-        found: dict[int, Any] = {}
+        results: dict[int, Any] = {}
         functions = field.functions
         moved = literals or {}
         for index, op, args, payload in self._steps:
             if op == "add":
-                value = found[args[0]] + found[args[1]]
+                value = results[args[0]] + results[args[1]]
             elif op == "mul":
-                value = found[args[0]] * found[args[1]]
+                value = results[args[0]] * results[args[1]]
             elif op == "neg":
-                value = -found[args[0]]
+                value = -results[args[0]]
             elif op == "div":
-                value = found[args[0]] / found[args[1]]
+                value = results[args[0]] / results[args[1]]
             elif op == "symbol":
                 value = values[payload]  # type: ignore[index]
             elif op == "number":
@@ -278,8 +278,8 @@ class NodeProgram:
             elif op == "pi":
                 value = field.pi()
             elif op == "power":
-                value = field.power(found[args[0]], payload)
+                value = field.power(results[args[0]], payload)
             else:
-                value = functions[op](*(found[arg] for arg in args))
-            found[index] = value
-        return [found[index] for index in self._outputs]
+                value = functions[op](*(results[arg] for arg in args))
+            results[index] = value
+        return [results[index] for index in self._outputs]

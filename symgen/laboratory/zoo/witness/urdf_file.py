@@ -25,16 +25,16 @@ def expanded(blocks: Mapping[str, Any], files: Mapping[str, str]) -> dict[str, A
     placed = {*(blocks.get("frames") or {}), *(e.get("child", n) for n, e in (blocks.get("joints") or {}).items())}
     if root != "world" and root not in placed:
         made["frames"] = {root: {}, **made["frames"]}
-    found = {key: value for key, value in blocks.items() if key != "urdf"}
+    merged = {key: value for key, value in blocks.items() if key != "urdf"}
     for name, block in made.items():
         if not block:
             continue
         if name == "constraints":
-            old = found.get(name) or {}
-            found[name] = {**old, "geometric": {**block["geometric"], **(old.get("geometric") or {})}}
+            old = merged.get(name) or {}
+            merged[name] = {**old, "geometric": {**block["geometric"], **(old.get("geometric") or {})}}
         else:
-            found[name] = {**block, **(found.get(name) or {})}
-    return found
+            merged[name] = {**block, **(merged.get(name) or {})}
+    return merged
 
 
 def _robot(robot: ElementTree.Element, entry: Mapping[str, Any]) -> dict[str, Any]:
@@ -85,8 +85,8 @@ def _placed(parent: str, place: list[str], turns: list[Any]) -> dict[str, Any]:
 
 
 def _of(element: ElementTree.Element, what: str, attribute: str, otherwise: str = "") -> str:
-    found = element.find(what)
-    return otherwise if found is None else found.get(attribute, otherwise)
+    child = element.find(what)
+    return otherwise if child is None else child.get(attribute, otherwise)
 
 
 def _origin(element: ElementTree.Element) -> tuple[list[str], list[Any]]:
@@ -106,10 +106,10 @@ def _angle(text: str) -> str:
 def exact_angles(text: str) -> str:
     """A URDF in which angles that stand for multiples of a quarter turn have all their digits."""
 
-    def whole(found: re.Match[str]) -> str:
-        angles = (float(angle) for angle in found[2].split())
-        told = (repr(count * QUARTER if (count := _quarters(angle)) else angle) for angle in angles)
-        return f"{found[1]}{' '.join(told)}{found[3]}"
+    def whole(match: re.Match[str]) -> str:
+        angles = (float(angle) for angle in match[2].split())
+        texts = (repr(count * QUARTER if (count := _quarters(angle)) else angle) for angle in angles)
+        return f"{match[1]}{' '.join(texts)}{match[3]}"
 
     return re.sub(r"""(\brpy\s*=\s*["'])([^"']*)(["'])""", whole, text)
 
@@ -122,11 +122,11 @@ def _quarters(angle: float) -> int:
 
 def _friction(joint: ElementTree.Element, name: str, entry: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
     damping, dry = (_of(joint, "dynamics", key, "0") for key in ("damping", "friction"))
-    found = {"viscous": damping} if float(damping) else {}
+    coefficients = {"viscous": damping} if float(damping) else {}
     if float(dry):
-        found |= {"coulomb": dry, "width": str(entry["friction_width"])}
-    if found:
-        yield name, found
+        coefficients |= {"coulomb": dry, "width": str(entry["friction_width"])}
+    if coefficients:
+        yield name, coefficients
 
 
 def _limits(joint: ElementTree.Element, name: str) -> Iterator[tuple[str, Any]]:

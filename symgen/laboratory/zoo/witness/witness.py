@@ -68,8 +68,8 @@ class Witness:
         self._equations = equations(self._system)
         self._evaluate = EquationEvaluator(NodeProgram(self._system.tape, self._equations.flat), self._equations)
         self._seed = seed
-        told = {name: float(value) for name, value in (blocks.get("configuration") or {}).items()}
-        self._start = {**told, **(start or {})}
+        configuration = {name: float(value) for name, value in (blocks.get("configuration") or {}).items()}
+        self._start = {**configuration, **(start or {})}
         self._balls = Balls()
         self._rows: Sequence[int] = range(len(self._system.rows))
         self._runtime: list[bool] = []
@@ -78,17 +78,17 @@ class Witness:
     def check(self, folder: Path, count: int = STATES) -> CheckResult:
         """Everything generated in a folder; nothing is compared where no state is found."""
         defaults, walker, tally = self.defaults(), self.walker(), Tally()
-        found, ranks = walker.states(defaults, count)
+        states, ranks = walker.states(defaults, count)
         findings: list[Finding] = []
         largest = 0.0
         members = self.opened(folder)
         called = targets(folder, self._system.blocks["model"])
         for target in called:
             if members and len(target.parameters) != len(members):
-                told = f"{target.name}: parameters {target.parameters} where {members} are due"
-                findings.append(Finding("witness: parameters", told))
+                message = f"{target.name}: parameters {target.parameters} where {members} are due"
+                findings.append(Finding("witness: parameters", message))
                 continue
-            for state in found:
+            for state in states:
                 for quantity in target.quantities:
                     error, finding = self._compared(target, quantity, state, ranks, tally)
                     largest = max(largest, error)
@@ -97,8 +97,8 @@ class Witness:
                         break
                 if findings and findings[-1].text.startswith(target.name):
                     break
-        findings += self._beside_pinocchio(called, found, ranks, tally)
-        return CheckResult(tally.total(len(found), walker.lack, self._there), largest, tuple(findings))
+        findings += self._beside_pinocchio(called, states, ranks, tally)
+        return CheckResult(tally.total(len(states), walker.lack, self._there), largest, tuple(findings))
 
     @property
     def _there(self) -> tuple[str, ...]:
@@ -111,14 +111,14 @@ class Witness:
     ) -> Iterator[Finding]:
         """Where joints and bodies make a tree, or one that is closed: its forces, and double results of all states."""
         defaults = self.defaults()
-        found = tree_of(self._given, defaults, self._files)
-        if found is None:
+        tree_and_system = tree_of(self._given, defaults, self._files)
+        if tree_and_system is None:
             return
-        other = disagreement(*found, defaults, Dice("Pinocchio", self._seed))
+        other = disagreement(*tree_and_system, defaults, Dice("Pinocchio", self._seed))
         if other > SAME:
             yield Finding("witness: Pinocchio", f"the witness and Pinocchio differ by {other:.1e}")
             return
-        answers = PinocchioAnswers(found[0], self._system.blocks, ranks)
+        answers = PinocchioAnswers(tree_and_system[0], self._system.blocks, ranks)
         names = (*self._system.coordinates, *self._system.rate_names)
         for target in called:
             for state in states if target.scalar == "float64" else ():
@@ -128,8 +128,8 @@ class Witness:
                     apart = None if answer.status else answers.apart(quantity, state, values, answer.value)
                     tally.pinocchio += apart is not None
                     if apart is not None and not apart <= SAME:
-                        told = f"{target.name}, {quantity}: {apart:.1e} from Pinocchio's, {SAME:g} is allowed"
-                        yield Finding("witness: Pinocchio", told)
+                        message = f"{target.name}, {quantity}: {apart:.1e} from Pinocchio's, {SAME:g} is allowed"
+                        yield Finding("witness: Pinocchio", message)
                         return
 
     def _at_runtime(self, state: FloatState) -> FloatState:
@@ -193,24 +193,24 @@ class Witness:
         self, target: Target, quantity: str, state: FloatState, ranks: GenericRanks, tally: Tally
     ) -> tuple[float, Finding | None]:
         """The error of one result in units of what is allowed, and what is wrong with it."""
-        found = self.compare(target, quantity, state, ranks)
-        if found is None:
+        judged = self.compare(target, quantity, state, ranks)
+        if judged is None:
             tally.unknown()
             return 0.0, None
         where = f"{target.name}, {quantity}"
-        if found.status:
-            if not found.certain:
-                tally.status(target.scalar, found.clear)
-            told = f"{where}: status {found.status} at a regular state ({found.clear:.1e})"
-            return 0.0, Finding("witness: status", told) if found.certain else None
+        if judged.status:
+            if not judged.certain:
+                tally.status(target.scalar, judged.clear)
+            message = f"{where}: status {judged.status} at a regular state ({judged.clear:.1e})"
+            return 0.0, Finding("witness: status", message) if judged.certain else None
         tally.number(quantity)
-        if found.units <= 1:
-            return found.units, None
-        told = (
-            f"{where}: {ALLOWED * found.units:.3g} units at a state, {ALLOWED:g} are allowed "
-            f"(relative error {found.relative:.1e})"
+        if judged.units <= 1:
+            return judged.units, None
+        message = (
+            f"{where}: {ALLOWED * judged.units:.3g} units at a state, {ALLOWED:g} are allowed "
+            f"(relative error {judged.relative:.1e})"
         )
-        return found.units, Finding("witness: number", told)
+        return judged.units, Finding("witness: number", message)
 
     def compare(self, target: Target, quantity: str, state: FloatState, ranks: GenericRanks) -> JudgedResult | None:
         """One result beside the truth, None where there is no truth."""

@@ -29,7 +29,7 @@ def shorter_gradients(
 def gradient(tape: Tape, result: Register, inputs: range) -> list[Register]:
     """The derivatives of one result by these inputs."""
     slopes: dict[Register, Register] = {result: tape.one}
-    found = [tape.zero] * len(inputs)
+    derivatives = [tape.zero] * len(inputs)
     cone = sorted(needed_for(tape, [result]))
     moving: set[Register] = set()
     for register in cone:
@@ -42,7 +42,7 @@ def gradient(tape: Tape, result: Register, inputs: range) -> list[Register]:
         if slope == tape.zero or register not in moving:
             continue
         if operation == "input":
-            found[left - inputs.start] = slope
+            derivatives[left - inputs.start] = slope
             continue
         for operand, change in _changes(tape, register):
             if operand not in moving:
@@ -50,7 +50,7 @@ def gradient(tape: Tape, result: Register, inputs: range) -> list[Register]:
             share = tape.binary("mul", slope, change)
             before = slopes.get(operand)
             slopes[operand] = share if before is None else tape.binary("add", before, share)
-    return found
+    return derivatives
 
 
 def _changes(tape: Tape, register: Register) -> list[tuple[Register, Register]]:

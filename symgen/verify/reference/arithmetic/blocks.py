@@ -33,10 +33,10 @@ def right_pseudoinverse_of_parts(matrix: Any, rank: int, parts: Sequence[Part]) 
         return right_pseudoinverse(matrix, rank)
     pieces = [piece(matrix, part.rows, part.coordinates) for part in parts]
     if rank == matrix.nrows():
-        found = [right_pseudoinverse(x, x.nrows()) for x in pieces]
+        inverses = [right_pseudoinverse(x, x.nrows()) for x in pieces]
     else:
-        found = _mean_inverses(pieces, rank)
-    places = ((part.coordinates, part.rows, x) for part, x in zip(parts, found, strict=True))
+        inverses = _mean_inverses(pieces, rank)
+    places = ((part.coordinates, part.rows, x) for part, x in zip(parts, inverses, strict=True))
     return placed(matrix.ncols(), matrix.nrows(), places)
 
 
@@ -50,14 +50,14 @@ def _mean_inverses(pieces: Sequence[Any], rank: int) -> list[Any]:
     rests = list(others(minors, rank))
     total = product(rests[0], minors[0], rank)[rank]
     check_total(total)
-    found = []
+    inverses = []
     for x, gram, own, rest in zip(pieces, grams, minors, rests, strict=True):
         gradient = arb_mat(gram.nrows(), gram.nrows())
         for size, slope in enumerate(gradients_of_minors(gram, own, gram.nrows()), start=1):
             if 0 <= rank - size < len(rest):
                 gradient += slope * rest[rank - size]
-        found.append(x.transpose() * gradient * (1 / total))
-    return found
+        inverses.append(x.transpose() * gradient * (1 / total))
+    return inverses
 
 
 def pseudoinverse_of_parts(matrix: Any, rank: int, parts: Sequence[Part]) -> Any:

@@ -35,20 +35,20 @@ class BodyJacobian:
 
     def mass(self, weights: Sequence[Any]) -> Any:
         """G (n x n) of all bodies, by their masses and inertias."""
-        found = []
+        pieces = []
         for part, rows in zip(self.parts, self.pieces, strict=True):
             own = [x for k in part.bodies for x in weights[WEIGHTS * k : WEIGHTS * (k + 1)]]
-            found.append((part.coordinates, part.coordinates, rows.transpose() * weighted(rows, own)))
-        return placed(self.n, self.n, found)
+            pieces.append((part.coordinates, part.coordinates, rows.transpose() * weighted(rows, own)))
+        return placed(self.n, self.n, pieces)
 
     def mass_times(self, vector: Any, weights: Sequence[Any]) -> Any:
         """G times a column (n x 1)."""
-        found = []
+        pieces = []
         for part, rows in zip(self.parts, self.pieces, strict=True):
             own = [x for k in part.bodies for x in weights[WEIGHTS * k : WEIGHTS * (k + 1)]]
             moved = rows * piece(vector, part.coordinates, (0,))
-            found.append((part.coordinates, (0,), rows.transpose() * weighted(moved, own)))
-        return placed(self.n, 1, found)
+            pieces.append((part.coordinates, (0,), rows.transpose() * weighted(moved, own)))
+        return placed(self.n, 1, pieces)
 
     def coriolis(self, rates: Sequence[Any], velocity: Any, weights: Sequence[Any]) -> Any:
         """C (3) (n x n) of all bodies along a velocity, by the rates of their Jacobians.
@@ -57,30 +57,30 @@ class BodyJacobian:
         body axes have d_j a_i - d_i a_j = a_i x a_j (of R'dR, for every attitude R), which adds half of
         a_i . (I [w] + [w] I - [I w]) a_j at the turning rate w.
         """
-        found = []
+        pieces = []
         for part, rows, change in zip(self.parts, self.pieces, rates, strict=True):
             own = [x for k in part.bodies for x in weights[WEIGHTS * k : WEIGHTS * (k + 1)]]
             moved = rows * piece(velocity, part.coordinates, (0,))
             force = weighted(change, own) + _turned(rows, moved.entries(), own)
-            found.append((part.coordinates, part.coordinates, rows.transpose() * force))
-        return placed(self.n, self.n, found)
+            pieces.append((part.coordinates, part.coordinates, rows.transpose() * force))
+        return placed(self.n, self.n, pieces)
 
     def mass_dot(self, rates: Sequence[Any], weights: Sequence[Any]) -> Any:
         """d/dt G (n x n) of all bodies, by the rates of their Jacobians."""
-        found = []
+        pieces = []
         for part, rows, change in zip(self.parts, self.pieces, rates, strict=True):
             own = [x for k in part.bodies for x in weights[WEIGHTS * k : WEIGHTS * (k + 1)]]
             half = rows.transpose() * weighted(change, own)
-            found.append((part.coordinates, part.coordinates, half + half.transpose()))
-        return placed(self.n, self.n, found)
+            pieces.append((part.coordinates, part.coordinates, half + half.transpose()))
+        return placed(self.n, self.n, pieces)
 
     def force(self, wrenches: Sequence[Any]) -> Any:
         """What forces on the centres and torques in body axes load the coordinates with (n x 1)."""
-        found = []
+        pieces = []
         for part, rows in zip(self.parts, self.pieces, strict=True):
             own = [x for k in part.bodies for x in wrenches[BODY_ROWS * k : BODY_ROWS * (k + 1)]]
-            found.append((part.coordinates, (0,), rows.transpose() * arb_mat(len(own), 1, own)))
-        return placed(self.n, 1, found)
+            pieces.append((part.coordinates, (0,), rows.transpose() * arb_mat(len(own), 1, own)))
+        return placed(self.n, 1, pieces)
 
 
 class BodyRows:
@@ -144,29 +144,29 @@ def weighted(rows: Any, weights: Sequence[Any]) -> Any:
     """Velocities of centres times masses and turning rates times inertias, for each column of `rows`."""
     columns = rows.ncols()
     table = rows.tolist()
-    found: list[Any] = []
+    entries: list[Any] = []
     for k in range(rows.nrows() // BODY_ROWS):
         mass, *inertia = weights[WEIGHTS * k : WEIGHTS * (k + 1)]
         block = table[BODY_ROWS * k : BODY_ROWS * (k + 1)]
-        found += [mass * x for row in block[:3] for x in row]
+        entries += [mass * x for row in block[:3] for x in row]
         turned = arb_mat(3, 3, inertia) * arb_mat(3, columns, [x for row in block[3:] for x in row])
-        found += turned.entries()
-    return arb_mat(rows.nrows(), columns, found)
+        entries += turned.entries()
+    return arb_mat(rows.nrows(), columns, entries)
 
 
 def _turned(rows: Any, velocities: Sequence[Any], weights: Sequence[Any]) -> Any:
     """Half of (I [w] + [w] I - [I w]) times the turning rates of each column, w among the velocities; no force."""
     columns, table = rows.ncols(), rows.tolist()
-    found: list[Any] = []
+    entries: list[Any] = []
     for k in range(rows.nrows() // BODY_ROWS):
         inertia = arb_mat(3, 3, list(weights[WEIGHTS * k + 1 : WEIGHTS * (k + 1)]))
         rate = velocities[BODY_ROWS * k + 3 : BODY_ROWS * (k + 1)]
         spin = _crossing(rate)
         momentum = _crossing((inertia * arb_mat(3, 1, list(rate))).entries())
         turning = arb_mat(3, columns, [x for row in table[BODY_ROWS * k + 3 : BODY_ROWS * (k + 1)] for x in row])
-        found += [0] * (3 * columns)
-        found += ((inertia * spin + spin * inertia - momentum) * turning / 2).entries()
-    return arb_mat(rows.nrows(), columns, found)
+        entries += [0] * (3 * columns)
+        entries += ((inertia * spin + spin * inertia - momentum) * turning / 2).entries()
+    return arb_mat(rows.nrows(), columns, entries)
 
 
 def _crossing(vector: Sequence[Any]) -> Any:

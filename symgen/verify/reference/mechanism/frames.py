@@ -121,7 +121,7 @@ class Frames:
         The time along a line is none of the coordinates that move.
         """
         tape = self._algebra.tape
-        found: Polynomial = {}
+        derivative: Polynomial = {}
         for (coordinates, _), register in place.items():
             for index, moving in enumerate(coordinates):
                 if moving == self._algebra.along:
@@ -130,9 +130,9 @@ class Frames:
                 if not self._moving.keeps(rest, (moving,)):
                     continue
                 monomial = (rest, (moving,))
-                known = found.get(monomial)
-                found[monomial] = register if known is None else tape.binary("add", known, register)
-        return found
+                known = derivative.get(monomial)
+                derivative[monomial] = register if known is None else tape.binary("add", known, register)
+        return derivative
 
     def _enter(self, frame: Frame) -> None:
         algebra, parent = self._algebra, frame.parent

@@ -48,14 +48,14 @@ class CasadiEngine(Engine):
 
     def gradient(self, value: Symbol, by: Sequence[Symbol]) -> list[Symbol]:
         """All derivatives at once, by CasADi's reverse mode."""
-        found = casadi.densify(casadi.gradient(value, casadi.vertcat(*by)))
-        return [found[i] for i in range(len(by))]
+        entries = casadi.densify(casadi.gradient(value, casadi.vertcat(*by)))
+        return [entries[i] for i in range(len(by))]
 
     def rates(self, values: Sequence[Symbol], by: Sequence[Symbol], direction: Sequence[Symbol]) -> list[Symbol]:
         """All derivatives along the direction at once, by CasADi's forward mode."""
         column = casadi.vertcat(*values)
-        found = casadi.densify(casadi.jtimes(column, casadi.vertcat(*by), casadi.vertcat(*direction)))
-        return [found[i] for i in range(len(values))]
+        entries = casadi.densify(casadi.jtimes(column, casadi.vertcat(*by), casadi.vertcat(*direction)))
+        return [entries[i] for i in range(len(values))]
 
     def is_zero(self, value: Symbol) -> bool:
         """Whether SX knows the value as 0."""

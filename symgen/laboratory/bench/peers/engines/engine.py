@@ -50,13 +50,13 @@ class Engine(Protocol):
 
     def rates(self, values: Sequence[Symbol], by: Sequence[Symbol], direction: Sequence[Symbol]) -> list[Symbol]:
         """The derivatives of all values along a direction."""
-        found = []
+        totals = []
         for value in values:
             total = self.number(Fraction(0))
             for x, step in zip(by, direction, strict=True):
                 total = total + self.derivative(value, x) * step
-            found.append(total)
-        return found
+            totals.append(total)
+        return totals
 
     def is_zero(self, value: Symbol) -> bool:
         """Whether the tool itself has found the value to be the constant 0."""

@@ -219,15 +219,15 @@ def _place(value: Value) -> int:
 def _ordered(outputs: Sequence[Value]) -> list[Value]:
     """What the outputs need, operands first: as they were made."""
     seen: set[int] = set()
-    found: list[Value] = []
+    needed: list[Value] = []
     stack = list(outputs)
     while stack:
         node = stack.pop()
         if node.place not in seen:
             seen.add(node.place)
-            found.append(node)
+            needed.append(node)
             stack += node.operands
-    return sorted(found, key=_place)
+    return sorted(needed, key=_place)
 
 
 def _written(operation: str, operands: Sequence[str]) -> str:

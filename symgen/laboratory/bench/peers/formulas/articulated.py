@@ -71,16 +71,16 @@ class _Sweeps:
         solved = {frame.name: self._inwards(frame, carried) for frame in reversed(frames)}
         gravity = self._space.values(model.mechanism.gravity)
         motions = {WORLD: [self._zero] * 3 + [-component for component in gravity]}
-        found = [self._zero] * model.n
+        accelerations = [self._zero] * model.n
         for frame in frames:
             link = self._links[frame.name]
             motion = self._sum(self._to_child(link, motions[frame.parent]), link.bias)
             for place, (rows, right) in zip(link.columns, solved[frame.name], strict=True):
-                found[place] = engine.name(right - dot(engine, rows, motion))
+                accelerations[place] = engine.name(right - dot(engine, rows, motion))
             for place, column in link.columns.items():
-                motion = self._sum(motion, [x * found[place] if not engine.is_zero(x) else x for x in column])
+                motion = self._sum(motion, [x * accelerations[place] if not engine.is_zero(x) else x for x in column])
             motions[frame.name] = [engine.name(x) for x in motion]
-        return self.inputs, found
+        return self.inputs, accelerations
 
     def _link(self, frame: Frame) -> _JointedFrame:
         engine, space, joint = self._engine, self._space, self._at.kinematics.joint(frame.name)
@@ -129,7 +129,7 @@ class _Sweeps:
         own.inertia, own.force = named(engine, own.inertia), [engine.name(x) for x in own.force]
         columns = list(link.columns.values())
         rotors = {rotor.coordinate: rotor.inertia for rotor in self._model.mechanism.rotor_inertias}
-        found: list[tuple[Vector, Symbol]] = []
+        equations: list[tuple[Vector, Symbol]] = []
         inertia, force = own.inertia, own.force
         if columns:
             pushed = [[engine.name(dot(engine, row, column)) for row in own.inertia] for column in columns]
@@ -144,17 +144,17 @@ class _Sweeps:
             ]
             solutions = self._solved(square, [*transposed(pushed), rest])
             rows, right = transposed(solutions[:6]), solutions[6]
-            found = [([engine.name(x) for x in row], engine.name(x)) for row, x in zip(rows, right, strict=True)]
-            taken = [[dot(engine, a, b) for b in transposed([r for r, _ in found])] for a in transposed(pushed)]
+            equations = [([engine.name(x) for x in row], engine.name(x)) for row, x in zip(rows, right, strict=True)]
+            taken = [[dot(engine, a, b) for b in transposed([r for r, _ in equations])] for a in transposed(pushed)]
             inertia = named(engine, self._less(own.inertia, taken))
-            shares = [dot(engine, a, [x for _, x in found]) for a in transposed(pushed)]
+            shares = [dot(engine, a, [x for _, x in equations]) for a in transposed(pushed)]
             force = self._sum(own.force, shares)
         force = [engine.name(x) for x in self._sum(force, [dot(engine, row, link.bias) for row in inertia])]
         if frame.parent != WORLD:
             above = carried[frame.parent]
             above.inertia = self._plus(above.inertia, self._inertia_above(link, inertia))
             above.force = self._sum(above.force, self._force_above(link, force))
-        return found
+        return equations
 
     def _solved(self, square: Matrix, columns: Matrix) -> Matrix:
         engine = self._engine
