@@ -32,12 +32,12 @@ def test_the_reference_is_built_without_a_warning(tmp_path: Path) -> None:
 
 
 def docstrings() -> list[tuple[str, str]]:
-    found = []
+    texts = []
     for path in sorted((ROOT / "symgen").rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.FunctionDef | ast.ClassDef | ast.Module) and (text := ast.get_docstring(node)):
-                found.append((f"{path.relative_to(ROOT)} {getattr(node, 'name', '')}", text))
-    return found
+                texts.append((f"{path.relative_to(ROOT)} {getattr(node, 'name', '')}", text))
+    return texts
 
 
 def test_docstrings_are_shown_as_they_are_written() -> None:

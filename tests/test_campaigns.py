@@ -46,9 +46,9 @@ def version(_: str) -> str:
 
 def ran(root: Path) -> list[str]:
     path = root / "runs.txt"
-    found = sorted(path.read_text().split()) if path.exists() else []
+    names = sorted(path.read_text().split()) if path.exists() else []
     path.unlink(missing_ok=True)
-    return found
+    return names
 
 
 NOT_SAMPLED = SAMPLED - 1
@@ -150,14 +150,14 @@ def test_each_model_is_in_the_campaigns_and_all_that_they_read_exists() -> None:
     marked = {f"tests/{there.parts[0]}" for path, there in tests if marks.search(path.read_text("utf-8"))}
     assert marked == {one.commands[0][-3] for one in members if one.campaign == "tests"}
     record = read_record(ROOT)
-    known = {(campaign, name) for campaign, found in record.items() for name in found}
+    known = {(campaign, name) for campaign, recorded in record.items() for name in recorded}
     assert known <= {(one.campaign, one.name) for one in members}, "run `make campaigns`"
 
 
 def test_what_a_campaign_looks_at_is_in_its_hash() -> None:
     """The packages of Python, what its code imports, helpers of tests; and no more than that."""
     files = {(one.campaign, one.name): one.files for one in all_members(ROOT)}
-    assert [name for name, found in files.items() if "requirements.lock" not in found] == []
+    assert [name for name, paths in files.items() if "requirements.lock" not in paths] == []
     stress = {*files["stress", "skate"]}
     assert stress >= {"symgen/generation/runnable.py", "symgen/validity/descent.py", "symgen/paths/printed.py"}
     assert stress.isdisjoint({"symgen/symbolic/scalar.py", "symgen/methods/table.py", "symgen/report/compose.py"})

@@ -11,12 +11,12 @@ PACKAGE = Path(__file__).parent.parent / "symgen"
 
 def classes(package: Path) -> dict[str, list[str]]:
     """Places of the classes of a package by name; a private class may not share a name with a public one either."""
-    found = defaultdict(list)
+    places = defaultdict(list)
     for path in sorted(package.rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.ClassDef):
-                found[node.name.lstrip("_")].append(f"{path.relative_to(package)}:{node.lineno} {node.name}")
-    return found
+                places[node.name.lstrip("_")].append(f"{path.relative_to(package)}:{node.lineno} {node.name}")
+    return places
 
 
 def shared_names(package: Path) -> list[str]:

@@ -85,8 +85,8 @@ def test_generated_files_are_current(made: Result) -> None:
         "run `make generated` and look at the change"
     )
     if name in WHOLE:
-        found = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
-        others = {path for path in found - set(files) if not is_measured(path) and "__pycache__" not in path}
+        existing = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+        others = {path for path in existing - set(files) if not is_measured(path) and "__pycache__" not in path}
         assert others == {CHECKSUMS}, "remove what is no longer generated"
     assert [path for path, content in files.items() if len(content) > LIMIT] == []
 

@@ -37,13 +37,13 @@ def test_imports_are_followed_through_functions_and_packages(root: Path) -> None
 
 
 def test_what_stands_outside_is_not_entered(root: Path) -> None:
-    found = imported(root, ["shop/till.py"], ["shop/bread", "shop/scales.py"])
-    assert found == ("shop/__init__.py", "shop/till.py")
+    files = imported(root, ["shop/till.py"], ["shop/bread", "shop/scales.py"])
+    assert files == ("shop/__init__.py", "shop/till.py")
 
 
 def test_helpers_of_tests_lie_beside_them_or_above_or_among_the_tools(root: Path) -> None:
-    found = imported(root, ["tests/till"], ["shop"])
-    assert found == ("tests/coins.py", "tests/till/drawer.py", "tests/till/test_till.py", "tools/counted.py")
+    files = imported(root, ["tests/till"], ["shop"])
+    assert files == ("tests/coins.py", "tests/till/drawer.py", "tests/till/test_till.py", "tools/counted.py")
 
 
 def test_a_new_import_is_seen(root: Path) -> None:

@@ -40,9 +40,9 @@ def _names(statement: ast.stmt) -> tuple[str, ...]:
     match statement:
         case ast.Assign(targets=[target], value=value) | ast.AnnAssign(target=target, value=ast.expr() as value):
             values = value.elts if isinstance(value, ast.Tuple) else [value]
-            found = target.elts if isinstance(target, ast.Tuple) else [target]
+            targets = target.elts if isinstance(target, ast.Tuple) else [target]
             if values and all(map(_is_number, values)):
-                return tuple(one.id for one in found if isinstance(one, ast.Name))
+                return tuple(one.id for one in targets if isinstance(one, ast.Name))
     return ()
 
 
@@ -69,7 +69,7 @@ def shared_names(package: Path) -> list[str]:
     for numbers in named_numbers(package):
         for name in numbers.names:
             places[name].append(numbers.place)
-    return [f"{name}: {', '.join(found)}" for name, found in places.items() if len(found) > 1]
+    return [f"{name}: {', '.join(where)}" for name, where in places.items() if len(where) > 1]
 
 
 def unexplained(package: Path) -> list[str]:

@@ -34,7 +34,7 @@ def packages() -> list[str]:
 
 def shown(docstring: str) -> Markup:
     """A docstring as HTML: Markdown in which < stands for itself, as in OUT/<model>."""
-    return Markup(to_html(BESIDE_CODE.sub(lambda found: found[1] or "&lt;", docstring)))
+    return Markup(to_html(BESIDE_CODE.sub(lambda match: match[1] or "&lt;", docstring)))
 
 
 def write(folder: Path, names: Sequence[str]) -> None:

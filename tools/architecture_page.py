@@ -19,15 +19,15 @@ WIDTH, HEIGHT, ROW, GAP, MARGIN = 128, 40, 84, 20, 24
 
 def imports() -> dict[str, set[str]]:
     """Which packages, or modules of the top, each of them imports; imports for type checkers alone do not count."""
-    found: dict[str, set[str]] = defaultdict(set)
+    needs: dict[str, set[str]] = defaultdict(set)
     for path in sorted((ROOT / "symgen").rglob("*.py")):
         own = _package(".".join(path.relative_to(ROOT).with_suffix("").parts))
         for node in _nodes(ast.parse(path.read_text(encoding="utf-8"))):
             names = [node.module or ""] if isinstance(node, ast.ImportFrom) else [alias.name for alias in node.names]
             if names == ["symgen"]:
                 names = [f"symgen.{alias.name}" for alias in node.names]
-            found[own] |= {_package(name) for name in names if name.startswith("symgen.")} - {own}
-    return {name: {other for other in others if other in found} for name, others in found.items()}
+            needs[own] |= {_package(name) for name in names if name.startswith("symgen.")} - {own}
+    return {name: {other for other in others if other in needs} for name, others in needs.items()}
 
 
 def _package(module: str) -> str:
@@ -37,28 +37,28 @@ def _package(module: str) -> str:
 
 
 def _nodes(tree: ast.AST) -> list[ast.Import | ast.ImportFrom]:
-    found: list[ast.Import | ast.ImportFrom] = []
+    nodes: list[ast.Import | ast.ImportFrom] = []
     for node in ast.iter_child_nodes(tree):
         if isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING":
             continue
         if isinstance(node, ast.Import | ast.ImportFrom):
-            found.append(node)
-        found += _nodes(node)
-    return found
+            nodes.append(node)
+        nodes += _nodes(node)
+    return nodes
 
 
 def levels(needs: dict[str, set[str]]) -> dict[str, int]:
     """How high each package stands: one above the highest that it imports."""
-    found: dict[str, int] = {}
+    heights: dict[str, int] = {}
 
     def level(name: str) -> int:
-        if name not in found:
-            found[name] = 1 + max((level(other) for other in needs[name]), default=-1)
-        return found[name]
+        if name not in heights:
+            heights[name] = 1 + max((level(other) for other in needs[name]), default=-1)
+        return heights[name]
 
     for name in sorted(needs):
         level(name)
-    return found
+    return heights
 
 
 def direct(needs: dict[str, set[str]]) -> dict[str, set[str]]:

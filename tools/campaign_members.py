@@ -105,14 +105,14 @@ def _size(root: Path, name: str) -> int:
 @cache
 def _code(root: Path, path: str, *outside: str) -> tuple[str, ...]:
     """A campaign's own files, and what they import besides the way to the bytes they are about."""
-    found = imported(root, (path,), (*BY_BYTES, *TELLING, *outside))
-    return (path, *(file for file in found if not file.startswith(f"{path}/")))
+    files = imported(root, (path,), (*BY_BYTES, *TELLING, *outside))
+    return (path, *(file for file in files if not file.startswith(f"{path}/")))
 
 
 def _tests_of(root: Path, path: str) -> tuple[str, ...]:
     """A folder or file of tests, with the helpers that they share with others."""
-    found = imported(root, (f"tests/{path}",), ("symgen",))
-    helpers = (file for file in found if not file.startswith(f"tests/{path}"))
+    files = imported(root, (f"tests/{path}",), ("symgen",))
+    helpers = (file for file in files if not file.startswith(f"tests/{path}"))
     return (f"tests/{path}", "tests/conftest.py", *helpers, *MORE_LOCKS)
 
 
@@ -134,9 +134,9 @@ def _written(name: str, file: str) -> Callable[[Path], Any]:
 
 def _target(root: Path, name: str) -> Member:
     def result(root: Path) -> Any:
-        found = _written(name, "target.json")(root)
-        cells = found["cells"]
-        return {"passed": found["passed"], "builds": len(cells), "different": sum(c["different"] for c in cells)}
+        record = _written(name, "target.json")(root)
+        cells = record["cells"]
+        return {"passed": record["passed"], "builds": len(cells), "different": sum(c["different"] for c in cells)}
 
     command = (*SYMGEN, "target", f"models/{name}.yaml", "--cpu", "all", "--quiet")
     code = (*_code(root, "symgen/laboratory/target", "symgen/closedform"), "templates/target", "templates/package")
@@ -145,8 +145,8 @@ def _target(root: Path, name: str) -> Member:
 
 def _proof(root: Path, name: str) -> Member:
     def result(root: Path) -> Any:
-        found = _written(name, "proof.json")(root)
-        return {"unproven": found["unproven"], "bounds": found["bounds"], "without": found["without"]}
+        record = _written(name, "proof.json")(root)
+        return {"unproven": record["unproven"], "bounds": record["bounds"], "without": record["without"]}
 
     make = (*SYMGEN, f"models/{name}.yaml", "--only", "c,proof", "--recorded", "generated", "--out", "build/proof")
     table = (PYTHON, "tools/proof_table.py", "build/proof", "generated", name)
@@ -156,9 +156,9 @@ def _proof(root: Path, name: str) -> Member:
 
 def _stress(root: Path, name: str) -> Member:
     def result(root: Path) -> Any:
-        found = _written(name, "stress.json")(root)
-        counts = [(one["quantity"], one["scalar"], one["beyond"], one["unexplained"]) for one in found["rule"]]
-        return {"failures": found["failures"], "rule": [list(one) for one in counts]}
+        record = _written(name, "stress.json")(root)
+        counts = [(one["quantity"], one["scalar"], one["beyond"], one["unexplained"]) for one in record["rule"]]
+        return {"failures": record["failures"], "rule": [list(one) for one in counts]}
 
     command = (*SYMGEN, "stress", f"models/{name}.yaml", "--quiet")
     code = (*_code(root, "symgen/laboratory/stress"), "templates/stress")

@@ -70,16 +70,16 @@ def due(
     members: Sequence[Member], record: Record, count: int, hash_of: Callable[[Member], str]
 ) -> list[tuple[Member, str]]:
     """The members to run with the reason: not recorded, changed, or one of the sample of this count."""
-    found = []
+    members_due = []
     for index, member in enumerate(members):
         known = record.get(member.campaign, {}).get(member.name)
         if known is None:
-            found.append((member, "not recorded"))
+            members_due.append((member, "not recorded"))
         elif known["inputs"] != hash_of(member):
-            found.append((member, "changed"))
+            members_due.append((member, "changed"))
         elif index % SAMPLED == count % SAMPLED:
-            found.append((member, "sample"))
-    return found
+            members_due.append((member, "sample"))
+    return members_due
 
 
 def run(root: Path, member: Member) -> tuple[Any, str]:
@@ -173,11 +173,11 @@ def run_changed(
 ) -> int:
     """Runs what has changed and a sample; a sample that gives another result than recorded is a failure."""
     record = read_record(root)
-    found = due(members, record, count, lambda member: inputs_hash(root, member, version))
-    for member, reason in found:
+    members_due = due(members, record, count, lambda member: inputs_hash(root, member, version))
+    for member, reason in members_due:
         print(f"{member.campaign} {member.name}: {reason}", flush=True)
-    print(f"{len(found)} of {len(members)} members are due", flush=True)
-    sampled = {(member.campaign, member.name) for member, reason in found if reason == "sample"}
+    print(f"{len(members_due)} of {len(members)} members are due", flush=True)
+    sampled = {(member.campaign, member.name) for member, reason in members_due if reason == "sample"}
 
     def compare(member: Member, result: Any) -> str:
         if (member.campaign, member.name) not in sampled:
@@ -185,7 +185,7 @@ def run_changed(
         expected = record[member.campaign][member.name]["result"]
         return "" if result == expected else f"recorded: {json.dumps(expected)}\nnow: {json.dumps(result)}"
 
-    return _said(run_all(root, [member for member, _ in found], compare))
+    return _said(run_all(root, [member for member, _ in members_due], compare))
 
 
 def _said(failed: Sequence[str]) -> int:

@@ -28,9 +28,9 @@ def main(folder: Path, seconds: int, names: list[str]) -> int:
     models = [name for name in names if name != "--sums"]
     failed = []
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        found = pool.map(lambda model: campaign(folder / model, model, seconds, model in sums), models)
-        for model, (runs, told) in zip(models, found, strict=True):
-            print(f"{model}: {runs} inputs" if runs else f"{model}: failed\n{told}", flush=True)
+        results = pool.map(lambda model: campaign(folder / model, model, seconds, model in sums), models)
+        for model, (runs, message) in zip(models, results, strict=True):
+            print(f"{model}: {runs} inputs" if runs else f"{model}: failed\n{message}", flush=True)
             failed += [] if runs else [model]
     if failed:
         print(f"failed: {' '.join(failed)}", file=sys.stderr)
@@ -45,10 +45,10 @@ def campaign(folder: Path, model: str, seconds: int, sums: bool) -> tuple[int, s
     if made.returncode:
         return 0, made.stderr[-4000:]
     limits = [f"-max_total_time={seconds}", f"-max_len={LENGTH}", "-seed=1"]
-    told = run(["./fuzz", *limits, "-print_final_stats=1"], folder)
-    runs = re.search(r"number_of_executed_units: (\d+)", told.stderr)
-    found = told.stderr.partition("== ERROR: libFuzzer")[0]  # the rule and the state, without the stack
-    return (int(runs[1]) if runs and not told.returncode else 0), found[-4000:]
+    process = run(["./fuzz", *limits, "-print_final_stats=1"], folder)
+    runs = re.search(r"number_of_executed_units: (\d+)", process.stderr)
+    message = process.stderr.partition("== ERROR: libFuzzer")[0]  # the rule and the state, without the stack
+    return (int(runs[1]) if runs and not process.returncode else 0), message[-4000:]
 
 
 def run(command: list[str], folder: Path) -> subprocess.CompletedProcess[str]:

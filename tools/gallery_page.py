@@ -27,16 +27,16 @@ the kernel in `generated/`, a pair of sine and cosine being one.
 
 def pages() -> dict[str, str]:
     """The text of every file by its path."""
-    found, entries = dict[str, str](), []
+    pictures, entries = dict[str, str](), []
     for path in sorted((ROOT / "models").glob("*.yaml")):
         model = load_model(path)
         picture = drawing(model)
         if picture is not None:
-            found[f"{FOLDER}/{path.stem}.svg"] = picture + "\n"
+            pictures[f"{FOLDER}/{path.stem}.svg"] = picture + "\n"
         entries.append(_entry(path.stem, model, picture is not None))
     # machines with a picture first
     entries.sort(key=lambda entry: "![" not in entry)
-    return {PAGE: HEAD + "\n".join(entries), **found}
+    return {PAGE: HEAD + "\n".join(entries), **pictures}
 
 
 def _entry(name: str, model: Model, drawn: bool) -> str:
@@ -47,8 +47,8 @@ def _entry(name: str, model: Model, drawn: bool) -> str:
         if quantity in derivation["kernels"]
     ]
     sizes = f"{model.n} coordinates, {model.r} constraints, {model.m} inputs"
-    told = [f"operations: {', '.join(counts)}"] if counts else []
-    lines = [f"## {name}", "", f"{model.description}.", "", "; ".join([sizes, *told]) + ".", ""]
+    operations = [f"operations: {', '.join(counts)}"] if counts else []
+    lines = [f"## {name}", "", f"{model.description}.", "", "; ".join([sizes, *operations]) + ".", ""]
     lines += [f"[models/{name}.yaml](../models/{name}.yaml)", ""]
     if drawn:
         lines += [f"![{name}: the machine where its start leads](gallery/{name}.svg)", ""]

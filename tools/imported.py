@@ -24,7 +24,7 @@ def imported(root: Path, paths: Iterable[str], outside: Sequence[str] = ()) -> t
         if file in reached or any(file.is_relative_to(path) for path in barred):
             continue
         reached.add(file)
-        waiting += (found for name in _names(file.read_bytes()) for found in _files(root, file.parent, name))
+        waiting += (source for name in _names(file.read_bytes()) for source in _files(root, file.parent, name))
     return tuple(sorted(file.relative_to(root).as_posix() for file in reached))
 
 
@@ -57,8 +57,8 @@ def _files(root: Path, beside: Path, name: str) -> Iterator[Path]:
     """The file of a module, and those of the packages it lies in, which an import runs as well."""
     for folder in (beside, *(root / place for place in ROOTS)):
         parts = name.split(".")
-        found = folder.joinpath(*parts)
-        file = found.with_suffix(".py") if found.with_suffix(".py").is_file() else found / "__init__.py"
+        module = folder.joinpath(*parts)
+        file = module.with_suffix(".py") if module.with_suffix(".py").is_file() else module / "__init__.py"
         if file.is_file():
             packages = (folder.joinpath(*parts[:k], "__init__.py") for k in range(1, len(parts)))
             yield from (file, *filter(Path.is_file, packages))

@@ -66,20 +66,20 @@ def examine(folder: Path, model: str) -> Row:
     }
     size, in_pairs = operations(folder), twice_the_digits(folder)
     bounds, measured, without = rounding(folder, model, size <= MOST_FOR_GAPPA)
-    unproven, told = (IN_PAIRS if in_pairs else TOO_LONG), ""
+    unproven, printed = (IN_PAIRS if in_pairs else TOO_LONG), ""
     if size <= MOST_FOR_EVA and not in_pairs:
-        unproven, told = alarms(folder, model)
+        unproven, printed = alarms(folder, model)
     denominators = named(folder, DENOMINATORS)
-    others = () if denominators else origins(told, folder)
+    others = () if denominators else origins(printed, folder)
     return Row(model, sources, unproven, bounds, measured, without, denominators, others)
 
 
 def line(row: Row) -> str:
     """A row of the table."""
     largest = ", ".join(f"{bound:.2g}" for bound in row.bounds.values()) or row.without
-    found = ", ".join(f"{row.measured[entry]:.2g}" for entry in row.bounds if entry in row.measured) or "–"
+    measured = ", ".join(f"{row.measured[entry]:.2g}" for entry in row.bounds if entry in row.measured) or "–"
     remains = "<br>".join((*row.denominators, *row.others)) or ("none" if row.unproven == "0" else "not known")
-    return f"| {row.model} | {row.unproven} | {largest} | {found} | {remains} |"
+    return f"| {row.model} | {row.unproven} | {largest} | {measured} | {remains} |"
 
 
 def operations(folder: Path) -> int:
@@ -101,26 +101,26 @@ def alarms(folder: Path, model: str) -> tuple[str, str]:
     command = ["frama-c", "-eva", "-eva-precision", "1", "-warn-special-float", "non-finite"]
     command += [f"-cpp-extra-args=-I{here / 'c'}", "-main", "eva_inverse_dynamics"]
     command += [str(here / "proof" / f"{model}_f_eva.c"), str(here / "c" / f"{model}_f.c")]
-    told = output(command, folder)
-    found = re.search(r"(\d+) alarms? generated", told)
-    status = re.search(r"Assertions +\d+ valid +(\d+) unknown +(\d+) invalid", told)
-    if not found or not status:
-        return (told if told == TOO_LONG else FAILED), ""
-    return str(int(found[1]) + int(status[1]) + int(status[2])), told
+    printed = output(command, folder)
+    counted = re.search(r"(\d+) alarms? generated", printed)
+    status = re.search(r"Assertions +\d+ valid +(\d+) unknown +(\d+) invalid", printed)
+    if not counted or not status:
+        return (printed if printed == TOO_LONG else FAILED), ""
+    return str(int(counted[1]) + int(status[1]) + int(status[2])), printed
 
 
-def origins(told: str, folder: Path) -> tuple[str, ...]:
+def origins(printed: str, folder: Path) -> tuple[str, ...]:
     """Eva's alarms by kind, each with the first statement, then what they may come from; nothing without alarms."""
     kinds: dict[str, list[str]] = {}
-    for file, number, kind in ALARM.findall(told):
+    for file, number, kind in ALARM.findall(printed):
         statement = (folder / "c" / Path(file).name).read_text().splitlines()[int(number) - 1]
         kinds.setdefault(kind, []).append(re.sub(r"^\s*(const )?(float |double )?|;$", "", statement))
     if not kinds:
         return ()
-    found = [f"{len(places)} × {kind}, first `{places[0]}`" for kind, places in kinds.items()]
-    found += [f"no bounds are known of `{name}`" for name in dict.fromkeys(WITHOUT_BOUNDS.findall(told))]
+    remarks = [f"{len(places)} × {kind}, first `{places[0]}`" for kind, places in kinds.items()]
+    remarks += [f"no bounds are known of `{name}`" for name in dict.fromkeys(WITHOUT_BOUNDS.findall(printed))]
     angles = named(folder, ANGLES)
-    return (*found, f"sines over several quadrants: {', '.join(angles)} (`range:`)") if angles else tuple(found)
+    return (*remarks, f"sines over several quadrants: {', '.join(angles)} (`range:`)") if angles else tuple(remarks)
 
 
 def rounding(folder: Path, model: str, short: bool) -> tuple[dict[int, float], dict[int, float], str]:
@@ -128,12 +128,12 @@ def rounding(folder: Path, model: str, short: bool) -> tuple[dict[int, float], d
     scripts = sorted((folder / "proof").glob("*.gappa"))
     if not scripts or not short:
         return {}, {}, TOO_LONG if scripts else "no script"
-    told = output(["gappa", str(scripts[0].relative_to(folder))], folder)
-    found = {name: float(upper) for name, upper in re.findall(r"\|(\w+) - \w+\| in .*?\{([0-9.e+-]+),", told)}
-    if not found:
-        return {}, {}, told if told == TOO_LONG else FAILED
+    printed = output(["gappa", str(scripts[0].relative_to(folder))], folder)
+    by_name = {name: float(upper) for name, upper in re.findall(r"\|(\w+) - \w+\| in .*?\{([0-9.e+-]+),", printed)}
+    if not by_name:
+        return {}, {}, printed if printed == TOO_LONG else FAILED
     entries = re.findall(r"^# entry (\d+) of the result: (\w+)$", scripts[0].read_text(), re.MULTILINE)
-    bounds = {int(entry): found[name] for entry, name in entries if name in found}
+    bounds = {int(entry): by_name[name] for entry, name in entries if name in by_name}
     measured = measure(folder, model)
     if len(bounds) != len(entries) or not measured or any(measured[k] > 1.00001 * bound for k, bound in bounds.items()):
         return {}, {}, FAILED
@@ -144,15 +144,15 @@ def measure(folder: Path, model: str) -> dict[int, float]:
     """What the program beside Gappa's script measures, by entry of u; empty if it fails."""
     sources = [f"proof/{model}_f_inverse_dynamics_error.c", f"c/{model}.c", f"c/{model}_f.c"]
     made = output(["cc", "-std=c99", "-O2", "-ffp-contract=off", "-Ic", *sources, "-o", "error", "-lm"], folder)
-    told = output(["./error"], folder) if not made else ""
-    return {entry: float(error) for entry, error in enumerate(told.split())}
+    printed = output(["./error"], folder) if not made else ""
+    return {entry: float(error) for entry, error in enumerate(printed.split())}
 
 
 def named(folder: Path, heading: str) -> tuple[str, ...]:
     """What the page of the proof folder names of u under a heading."""
     page = (folder / "proof" / "README.md").read_text().partition(f"## {heading}\n")[2].partition("\n## ")[0]
-    found = re.search(r"^\| inverse_dynamics\([^|]*\| (.*) \|$", page, re.MULTILINE)
-    return tuple(found[1].split("<br>")) if found else ()
+    match = re.search(r"^\| inverse_dynamics\([^|]*\| (.*) \|$", page, re.MULTILINE)
+    return tuple(match[1].split("<br>")) if match else ()
 
 
 def output(command: list[str], folder: Path) -> str:

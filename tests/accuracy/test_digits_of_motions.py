@@ -48,9 +48,9 @@ def error(text: str, quantity: str, state: dict[str, list[float]]) -> float:
     program = schedule(selection.mechanics, selection.quantities, ("float64",))["float64"]
     (kernel,) = (one for one in program.kernels if one.name == quantity)
     (own,), (unit,) = RoundingErrors(kernel).with_units({part: np.array([values]) for part, values in state.items()})
-    found = float(own / unit)
-    assert found > 0
-    return found
+    units = float(own / unit)
+    assert units > 0
+    return units
 
 
 @pytest.mark.parametrize("quantity", MOTIONS)

@@ -70,10 +70,10 @@ def test_digits_stay_beside_the_ground(quantity: str, decade: int) -> None:
     program = draft.programs["float64"]
     kernel = next(one for one in program.kernels if one.name == quantity)
     state = leaning(10.0**-decade)
-    (found,) = outcomes(kernel, program.sincos, "float64", [state])
+    (outcome,) = outcomes(kernel, program.sincos, "float64", [state])
     truth = expectations(reference, state, [quantity], "float64", f"coin {decade}", all_literals=True)[quantity]
-    assert found.valid
-    assert truth.in_units(truth.distance(found.entries)) <= FACTOR
+    assert outcome.valid
+    assert truth.in_units(truth.distance(outcome.entries)) <= FACTOR
 
 
 def test_articulated_inertias_are_valid_where_nothing_holds_what_has_no_mass() -> None:
@@ -82,9 +82,9 @@ def test_articulated_inertias_are_valid_where_nothing_holds_what_has_no_mass() -
     assert definite_beside_rows(model)
     methods = Methods(model, genericity(System(model)))
     for quantity in MOTIONS:
-        found = methods.candidate(quantity, "articulated")
-        assert isinstance(found, Candidate)
-        assert methods.validity(found).admitted
+        candidate = methods.candidate(quantity, "articulated")
+        assert isinstance(candidate, Candidate)
+        assert methods.validity(candidate).admitted
 
 
 # A ring about a rod that turns: where it stands on the axis its own turn has no inertia, and a gear may hold it.

@@ -46,7 +46,7 @@ def test_u_keeps_its_digits_beside_an_input_that_moves_nothing(allocation: str) 
     expected = Expected(model, model.outputs, 32, lambda _: None)
     samples, worst = expected.samples("float64"), []
     for sample, values in zip(samples, expected.values("float64"), strict=True):
-        (found,) = outcomes(program.kernels[0], program.sincos, "float64", [sample.state])
+        (outcome,) = outcomes(program.kernels[0], program.sincos, "float64", [sample.state])
         truth = values["inverse_dynamics"]
-        worst.append(truth.in_units(truth.distance(found.entries)) if found.valid else FACTOR)
+        worst.append(truth.in_units(truth.distance(outcome.entries)) if outcome.valid else FACTOR)
     assert max(worst) <= FACTOR / 2

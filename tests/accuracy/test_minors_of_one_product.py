@@ -43,6 +43,6 @@ def test_u_keeps_its_digits_beside_a_stretched_knee_of_dependent_rows() -> None:
     for exponent in range(1, 7):
         state = State((0.1, -1.0, 10.0**-exponent), (0.2, -0.7, 0.4), (1.3, 0.6, -2.1), (1.0,), ())
         truth = expectations(reference, state, ["inverse_dynamics"], "float64", "press")["inverse_dynamics"]
-        (found,) = outcomes(program.kernels[0], program.sincos, "float64", [state])
-        assert found.valid
-        assert truth.in_units(truth.distance(found.entries)) <= FACTOR / 2
+        (outcome,) = outcomes(program.kernels[0], program.sincos, "float64", [state])
+        assert outcome.valid
+        assert truth.in_units(truth.distance(outcome.entries)) <= FACTOR / 2

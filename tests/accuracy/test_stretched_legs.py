@@ -99,17 +99,17 @@ def test_they_are_the_same_equations(text: str) -> None:
     mechanics = in_absolute_angles(load_text(text, "model.yaml"))
     assert mechanics is not None
     problem = Problem(mechanics, ())
-    found = apart(problem)
-    assert found is not None
+    separated = apart(problem)
+    assert separated is not None
     n, r = problem.n, problem.r
     graph, source = mechanics.graph, random.Random(1)
     unknown = tuple(graph.symbol(f"x_{j}") for j in range(n))
-    brought = found.brought_back(Motion(unknown, (), ())).accelerations
+    brought = separated.brought_back(Motion(unknown, (), ())).accelerations
     names = [str(symbol.payload) for symbol in (*mechanics.q, *mechanics.qd, *unknown)]
     point = {name: source.uniform(-2, 2) for name in (*names, "u_1", "push", "muscle")}
     point |= {p.name: 0.3 + 0.1 * i for i, p in enumerate(mechanics.model.parameters)}
     evaluate = Evaluator([*brought, *flatten(problem.mass_matrix), *flatten(problem.rows), *problem.force,
-                          *flatten(found.mass_matrix), *flatten(found.rows), *found.force])
+                          *flatten(separated.mass_matrix), *flatten(separated.rows), *separated.force])
     turn = np.zeros((n, n))
     for j in range(n):
         axis = {str(x.payload): float(i == j) for i, x in enumerate(unknown)}
@@ -122,7 +122,7 @@ def test_they_are_the_same_equations(text: str) -> None:
     assert whole_apart.reshape(n, n) == pytest.approx(turn.T @ whole.reshape(n, n) @ turn, abs=1e-12)
     assert rows_apart.reshape(r, n) == pytest.approx(rows.reshape(r, n) @ turn, abs=1e-12)
     assert force_apart == pytest.approx(turn.T @ force, abs=1e-12)
-    assert found.bias == problem.bias
+    assert separated.bias == problem.bias
 
 
 def test_nothing_is_divided_by_that_may_be_0() -> None:

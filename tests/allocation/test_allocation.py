@@ -168,9 +168,9 @@ def test_direction_has_the_documented_sign_along_every_null_space(text: str) -> 
         minors = [product.get((1 << forms.rows.n) - 1, mechanics.graph.zero) for product in forms.products[0][::-1]]
         evaluate = Evaluator([*minors, restriction.orientation(mechanics.graph)])
         for state, e in evaluations(made):
-            *found, sign = evaluate(point(made, state))
+            *values, sign = evaluate(point(made, state))
             z = [float(x) for x in internal_force(e, [ball(1)] * made.model.m).entries()]
-            signed = [sign * (-1) ** k * x for k, x in enumerate(found)]
+            signed = [sign * (-1) ** k * x for k, x in enumerate(values)]
             size = sum(x * x for x in signed) ** 0.5
             assert signed == pytest.approx([size * x for x in z], rel=1e-9, abs=1e-9 * size)
 
@@ -212,9 +212,9 @@ def test_reflections_of_the_inputs_give_the_same(text: str, monkeypatch: pytest.
         evaluate = Evaluator([*derivation.inverse_dynamics, *(guard.denominator for guard in guards)])
         for state, e in evaluations(made):
             wanted = [float(x) for x in QUANTITIES["inverse_dynamics"](e).entries()]
-            found = evaluate(point(made, state))
-            assert found[: len(wanted)] == pytest.approx(wanted, rel=1e-12, abs=1e-12 * max(map(abs, wanted)))
-            assert all(x > 0 for x in found[len(wanted) :])
+            values = evaluate(point(made, state))
+            assert values[: len(wanted)] == pytest.approx(wanted, rel=1e-12, abs=1e-12 * max(map(abs, wanted)))
+            assert all(x > 0 for x in values[len(wanted) :])
 
 
 def by_enumeration(made: System, state: State, e: Evaluation) -> Any | None:
@@ -290,11 +290,11 @@ def assert_pareto(made: System, state: State, e: Evaluation) -> None:
     z = internal_force(e, by_input(made, state, allocation.weights, 1))
 
     def excess(inputs: Any) -> list[Any]:
-        found = []
+        excesses = []
         for limit in allocation.limits:
             x = inputs[names.index(limit.input), 0]
-            found.append((x - values[limit.upper]).max(values[limit.lower] - x).max(ball(0)))
-        return found
+            excesses.append((x - values[limit.upper]).max(values[limit.lower] - x).max(ball(0)))
+        return excesses
 
     here = excess(u)
     assert any(x > 0 for x in here)

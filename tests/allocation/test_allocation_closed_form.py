@@ -47,10 +47,10 @@ def test_the_printed_parts_give_the_numbers_of_the_reference(name: str) -> None:
             values |= {c.name: state.q[k], c.rate: state.qd[k], c.acceleration: state.qdd[k]}
         for target, symbols, function in functions:
             values[target] = function(*(values[symbol.name] for symbol in symbols))
-        found = [values[f"input {k}"] for k in range(made.model.m)]
+        inputs = [values[f"input {k}"] for k in range(made.model.m)]
         wanted = [float(x) for x in made.reference.evaluate(state, ["inverse_dynamics"])["inverse_dynamics"]]
         size = max(map(abs, wanted))
-        assert found == pytest.approx(wanted, rel=1e-9, abs=1e-9 * size)
+        assert inputs == pytest.approx(wanted, rel=1e-9, abs=1e-9 * size)
 
 
 def test_a_notebook_is_told_where_the_parts_are() -> None:

@@ -33,8 +33,8 @@ def test_inputs_at_points() -> None:
         status, u = made.run("inverse_dynamics", sample.state)
         assert status is Status.OK
         expected = expectations(made.reference, sample.state, ["inverse_dynamics"], "float64", "bodies")
-        found = expected["inverse_dynamics"]
-        assert found.in_units(found.distance(u)) <= FACTOR
+        expectation = expected["inverse_dynamics"]
+        assert expectation.in_units(expectation.distance(u)) <= FACTOR
 
 
 def test_points_count_as_inputs_in_the_check() -> None:

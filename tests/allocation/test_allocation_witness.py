@@ -31,6 +31,6 @@ def test_witness_and_reference_agree(name: str) -> None:
         state = sample.state
         wanted = [float(x) for x in made.reference.evaluate(state, ["inverse_dynamics"])["inverse_dynamics"]]
         parts = {"q": state.q, "qd": state.qd, "qdd": state.qdd, "u": state.u, "p": state.parameters}
-        found = function(*(list(parts[argument]) for argument in function.name_in())).full().ravel()
+        u = function(*(list(parts[argument]) for argument in function.name_in())).full().ravel()
         size = max(map(abs, wanted))
-        assert list(found) == pytest.approx(wanted, rel=1e-9, abs=1e-9 * size)
+        assert list(u) == pytest.approx(wanted, rel=1e-9, abs=1e-9 * size)

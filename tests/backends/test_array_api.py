@@ -101,9 +101,9 @@ def test_the_interpreters_bits_and_statuses(name: str, scalar: Scalar) -> None:
     for kernel in program.kernels:
         arrays = [np.array([state[a.name] for state in drawn], dtype=scalar) for a in array_arguments(kernel)]
         with np.errstate(all="ignore"):
-            found = getattr(made, kernel.name)(xp, *arrays)
-        assert found[0].dtype == scalar
-        checked(kernel, found, expected(name, kernel.name, scalar))
+            results = getattr(made, kernel.name)(xp, *arrays)
+        assert results[0].dtype == scalar
+        checked(kernel, results, expected(name, kernel.name, scalar))
 
 
 @pytest.mark.parametrize("name", shipped.sparing(["front_car", "rapkm_2rrr_rr"]))
@@ -189,8 +189,8 @@ def test_twice_the_digits(scalar: Scalar) -> None:
     for kernel in program.kernels:
         arrays = [np.array([state[a.name] for state in drawn], dtype=scalar) for a in array_arguments(kernel)]
         with np.errstate(all="ignore"):
-            found = getattr(made, kernel.name)(with_pair(program), *arrays)
-        checked(kernel, found, [interpreter.run(kernel, state, parameters) for state in drawn])
+            results = getattr(made, kernel.name)(with_pair(program), *arrays)
+        checked(kernel, results, [interpreter.run(kernel, state, parameters) for state in drawn])
 
 
 @pytest.mark.parametrize("scalar", shipped.SCALARS)

@@ -148,9 +148,9 @@ def test_loop_over_states_is_vector_code(
     for path, text in (files | header).items():
         (tmp_path / Path(path).name).write_text(text)
     source = next(tmp_path / Path(path).name for path in files if path.endswith(".c"))
-    told = ["-fopt-info-vec-optimized"] if compiler == "gcc" else ["-Rpass=loop-vectorize"]
+    reporting = ["-fopt-info-vec-optimized"] if compiler == "gcc" else ["-Rpass=loop-vectorize"]
     common = ["-std=c99", "-ffp-contract=off", "-fno-math-errno", "-c", "-o", str(tmp_path / "out.o")]
-    command = [tool(compiler), *flags, *told, *common, str(source)]
+    command = [tool(compiler), *flags, *reporting, *common, str(source)]
     report = subprocess.run(command, capture_output=True, text=True, check=True).stderr
     lines = source.read_text().splitlines()
     loops = [k for k, line in enumerate(lines, 1) if "k < LANES" in line and "= from[0][k]" in lines[k]]

@@ -32,13 +32,13 @@ REGULAR = {"a_1": 0.3, "a_2": 0.3, "a_3": 0.3, "x": 0.02, "y": -0.03, "z": -0.75
 
 @cache
 def program(name: str) -> Program:
-    found = derive_quantities(shipped.model(name), (QUANTITY,))
-    return schedule(found.mechanics, found.quantities, ("float64",))["float64"]
+    selection = derive_quantities(shipped.model(name), (QUANTITY,))
+    return schedule(selection.mechanics, selection.quantities, ("float64",))["float64"]
 
 
 def kernel(name: str) -> Kernel:
-    (found,) = program(name).kernels
-    return found
+    (single,) = program(name).kernels
+    return single
 
 
 def states() -> dict[Status, list[float]]:
@@ -55,17 +55,17 @@ def states() -> dict[Status, list[float]]:
 
 
 def test_where_registers_run_out_nothing_waits_for_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
-    found = kernel("delta")
+    usual = kernel("delta")
     monkeypatch.setattr(lowering, "REGISTERS", 1000)
     (together,) = program.__wrapped__("delta").kernels
     assert not any(check.apart for block in together.blocks for check in block.checks)
-    assert waits(together) >= REGISTERS > waits(found)
-    (check,) = (check for block in found.blocks for check in block.checks if check.first is not None)
+    assert waits(together) >= REGISTERS > waits(usual)
+    (check,) = (check for block in usual.blocks for check in block.checks if check.first is not None)
     assert check.apart
     assert check.first is not None
-    loads = {load.local for load in found.loads}
+    loads = {load.local for load in usual.loads}
     own = {target for statement in check.first.statements for target in statement.targets}
-    pairs = {t for s in found.statements if s.operation == "sincos" for t in s.targets}
+    pairs = {t for s in usual.statements if s.operation == "sincos" for t in s.targets}
     assert names_of_blocks([check.first]) <= loads | own | pairs
 
 
@@ -89,10 +89,10 @@ def test_c_tells_the_causes_as_the_kernel_does(tool: Callable[[str], str], tmp_p
     zeros = [0.0] * model.n
     for status, q in states().items():
         array = ctypes.c_double * model.n
-        found = library.delta_inverse_dynamics(array(*q), array(*zeros), array(*zeros), ctypes.byref(parameters), u)
+        code = library.delta_inverse_dynamics(array(*q), array(*zeros), array(*zeros), ctypes.byref(parameters), u)
         arguments = {"q": q, "qd": zeros, "qdd": zeros}
-        told, _ = interpret(made.kernels[0], None, arguments, [numbers[p.name] for p in model.parameters])
-        assert found == int(told) == int(status)
+        interpreted, _ = interpret(made.kernels[0], None, arguments, [numbers[p.name] for p in model.parameters])
+        assert code == int(interpreted) == int(status)
 
 
 def test_every_file_of_one_state_has_the_function_once() -> None:

@@ -14,9 +14,9 @@ def run(lines: list[str], values: dict[str, float]) -> float:
     """`rest` after the lines, which are `[double] target op expression;` with one operation."""
     known = dict(values)
     for line in lines:
-        found = re.fullmatch(r"(?:double )?(\w+) ([*+]?=) (\w+)(?: - (\w+))?;", line)
-        assert found, line
-        target, operator, left, right = found.groups()
+        match = re.fullmatch(r"(?:double )?(\w+) ([*+]?=) (\w+)(?: - (\w+))?;", line)
+        assert match, line
+        target, operator, left, right = match.groups()
         # C would not compile a second declaration, nor a value that is none yet
         assert (target not in known) == line.startswith("double ")
         value = known[left] - known[right] if right else known[left]

@@ -102,11 +102,11 @@ def test_it_loads(way: Callable[[Path], Mapping[str, Any]], path: Path, tool: Ca
 
 
 def test_it_is_imported_in_another_process(path: Path) -> None:
-    told = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-W", "error", "-c", "import toy; print(toy.PARAMETERS.L, toy.StateError.__module__)"],
         env={**os.environ, "PYTHONPATH": str(path.parent)}, capture_output=True, text=True, check=True,
     )
-    assert told.stdout == "2.6 toy\n"
+    assert process.stdout == "2.6 toy\n"
 
 
 def test_errors_pass_between_processes(path: Path) -> None:
@@ -128,7 +128,7 @@ COMPILERS = {
 def test_an_odd_compiler_is_told_and_spoils_no_cache(
     case: str, path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    body, told = COMPILERS[case]
+    body, message = COMPILERS[case]
     odd = tmp_path / "oddcc"
     odd.write_text(f'#!/bin/sh\ncase "$*" in *-dM*) {"true" if case.startswith("makes") else body.splitlines()[0]} '
                    f";; *) {body} ;; esac\n")
@@ -137,7 +137,7 @@ def test_an_odd_compiler_is_told_and_spoils_no_cache(
     monkeypatch.setenv("CC", str(odd))
     module = load_generated(path)
     monkeypatch.setattr(module, "_LONGEST_COMPILATION", 0.5)
-    with pytest.raises(RuntimeError, match=told):
+    with pytest.raises(RuntimeError, match=message):
         module.compile()
     assert not list((tmp_path / "cache").rglob("*.so"))
     assert not list((tmp_path / "cache").rglob("*.tmp"))

@@ -35,11 +35,11 @@ def test_every_folder_is_registered_and_every_backend_has_its_folder() -> None:
 
 @pytest.mark.parametrize("name", BACKENDS)
 def test_has_the_modules_of_the_protocol(name: str) -> None:
-    found = {module: import_module(f"symgen.backends.{name}.{module}") for module in MODULES}
+    modules = {module: import_module(f"symgen.backends.{name}.{module}") for module in MODULES}
     made = backend(name)
     assert isinstance(made, Backend)
     assert (made.name, made.verified_as in USUAL) == (name, True)
-    (printer,) = (one for one in vars(found["statements"]).values() if is_printer(one))
+    (printer,) = (one for one in vars(modules["statements"]).values() if is_printer(one))
     # how it spells each kind of statement is its own, the walk over them is not
     assert not printer.__abstractmethods__
     assert not {"operand", "statement", "expression"} & set(vars(printer))

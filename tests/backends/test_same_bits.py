@@ -78,8 +78,8 @@ def write(folder: Path, files: Mapping[str, str]) -> None:
         (folder / Path(path).name).write_text(text)
 
 
-def same(found: list[float], wanted: list[float]) -> bool:
-    return np.asarray(found).tobytes() == np.asarray(wanted).tobytes()
+def same(values: list[float], wanted: list[float]) -> bool:
+    return np.asarray(values).tobytes() == np.asarray(wanted).tobytes()
 
 
 @pytest.mark.toolchain

@@ -62,13 +62,13 @@ def states(name: str, scalar: Scalar) -> list[dict[str, list[float]]]:
     def draw(count: int) -> list[float]:
         return [float(kind(source.uniform(-1, 1))) for _ in range(count)]
 
-    found = [{k: draw(n) for k, n in sizes.items()} for _ in range(STATES)]
-    found += [{k: [value] * n for k, n in sizes.items()} for value in (0.0, float("nan"))]
-    return found
+    drawn = [{k: draw(n) for k, n in sizes.items()} for _ in range(STATES)]
+    drawn += [{k: [value] * n for k, n in sizes.items()} for value in (0.0, float("nan"))]
+    return drawn
 
 
-def same(found: list[float], wanted: list[float]) -> bool:
-    return np.asarray(found).tobytes() == np.asarray(wanted).tobytes()
+def same(values: list[float], wanted: list[float]) -> bool:
+    return np.asarray(values).tobytes() == np.asarray(wanted).tobytes()
 
 
 @pytest.mark.toolchain
@@ -103,13 +103,13 @@ def test_c(tool: Callable[[str], str], tmp_path: Path, name: str, scalar: Scalar
             count, drawn = len(wanted), states(name, scalar)
             columns = [np.array([one[a.name] for one in drawn], scalar).T.copy() for a in array_arguments(kernel)]
             arrays = [column.ctypes.data_as(ctypes.c_void_p) for column in columns]
-            found, codes = np.empty((size, count), scalar), np.full(count, 9, np.uint8)
-            pointers = (found.ctypes.data_as(ctypes.c_void_p), codes.ctypes.data_as(ctypes.c_void_p))
+            outputs, codes = np.empty((size, count), scalar), np.full(count, 9, np.uint8)
+            pointers = (outputs.ctypes.data_as(ctypes.c_void_p), codes.ctypes.data_as(ctypes.c_void_p))
             refused = batch(ctypes.c_size_t(count), ctypes.c_size_t(count), *arrays, p, *pointers)
             assert refused == sum(status is not Status.OK for status, _ in wanted)
             assert [*codes] == [status for status, _ in wanted]
             for place, (status, entries) in enumerate(wanted):
-                assert status is not Status.OK or same(found[:, place].astype(float).tolist(), entries)
+                assert status is not Status.OK or same(outputs[:, place].astype(float).tolist(), entries)
 
 
 @pytest.mark.slow
@@ -124,17 +124,17 @@ def test_python(tmp_path: Path, name: str) -> None:
         wanted = expected(name, "float64")[kernel.name]
         for state, (status, entries) in zip(states(name, "float64"), wanted, strict=True):
             arguments = [np.array([state[a.name]] * 2) for a in array_arguments(kernel)]
-            found = getattr(module, kernel.name)(*arguments) if arguments else None
-            if found is not None and status is Status.OK:
-                assert same(found[1].ravel().tolist(), entries), (kernel.name, state)
-            elif found is not None:
-                assert np.isnan(found).all()
+            outputs = getattr(module, kernel.name)(*arguments) if arguments else None
+            if outputs is not None and status is Status.OK:
+                assert same(outputs[1].ravel().tolist(), entries), (kernel.name, state)
+            elif outputs is not None:
+                assert np.isnan(outputs).all()
 
 
 def test_values_share_places() -> None:
     """As many as are alive at once, a few hundred of ten thousand."""
     made = program("rapkm_two_drives", "float64")
     kernel = max(made.kernels[::2], key=lambda one: len(one.statements))
-    found = table(kernel, made)
-    assert len(found.rows) == len(kernel.statements) > 4 * found.size
-    assert max(place for row in found.rows for place in row[1:]) < found.size
+    step_table = table(kernel, made)
+    assert len(step_table.rows) == len(kernel.statements) > 4 * step_table.size
+    assert max(place for row in step_table.rows for place in row[1:]) < step_table.size

@@ -77,7 +77,7 @@ def test_both_halves_have_the_bits_of_sine_and_cosine(
     for path, text in emit_c(model, program).items():
         (tmp_path / Path(path).name).write_text(text, encoding="utf-8")
     stem = model.c_name
-    found = []
+    results = []
     for kind, flags in (("gnu", ()), ("other", ("-D__UCLIBC__",))):
         target = tmp_path / f"{kind}.so"
         command = [tool(compiler), "-O2", "-std=c99", "-Wall", "-Wextra", "-Werror", "-fPIC", "-shared", *flags]
@@ -91,9 +91,9 @@ def test_both_halves_have_the_bits_of_sine_and_cosine(
         for angle in (0.3, -2.0, 1e7):
             q, qd, qdd = ((ctypes.c_double * model.n)(1.0, 2.0, angle, angle / 3) for _ in range(3))
             status = getattr(library, f"{model.name}_inverse_dynamics")(q, qd, qdd, ctypes.byref(parameters), u)
-            found.append((kind, status, [value.hex() for value in u]))
-    gnu = [entry[1:] for entry in found if entry[0] == "gnu"]
-    assert gnu == [entry[1:] for entry in found if entry[0] == "other"]
+            results.append((kind, status, [value.hex() for value in u]))
+    gnu = [entry[1:] for entry in results if entry[0] == "gnu"]
+    assert gnu == [entry[1:] for entry in results if entry[0] == "other"]
     assert {status for status, _ in gnu} == {0}
 
 

@@ -45,8 +45,8 @@ def test_files_and_table(
     monkeypatch.setattr(charts, "SCALARS", ("float64",))
     monkeypatch.setattr(roster, "_engines", lambda: [CasadiEngine])
     assert main(["bench", SKATE, "--states", "8", "--out", str(tmp_path)]) == 0
-    told = capsys.readouterr()
-    assert "CasADi native" in told.out
+    printed = capsys.readouterr()
+    assert "CasADi native" in printed.out
     assert (tmp_path / "skate" / "bench.svg").read_text(encoding="utf-8").startswith("<?xml")
     data = json.loads((tmp_path / "skate" / "bench.json").read_text(encoding="utf-8"))
     comparison, projector = data["comparisons"]
@@ -63,7 +63,7 @@ def test_files_and_table(
         assert chosen["instructions"] < native["instructions"] < 400
     else:
         assert native["instructions"] is None
-        assert "valgrind" in told.err
+        assert "valgrind" in printed.err
 
 
 def test_without_gcc_it_is_wrong_use(

@@ -101,13 +101,13 @@ def test_lines_in_lanes_are_those_of_one_state(tool: Callable[[str], str], tmp_p
     source = np.random.default_rng(3)
     count, stride = 5, 8
     q, qd, qdd = (source.uniform(0.2, 1.0, size=(model.n, stride)) for _ in range(3))
-    p, found = source.uniform(0.5, 1.0, size=len(model.parameters)), np.zeros((model.m, stride))
-    many(ctypes.c_size_t(count), ctypes.c_size_t(stride), *map(_address, (q, qd, qdd, p, found)))
+    p, outputs = source.uniform(0.5, 1.0, size=len(model.parameters)), np.zeros((model.m, stride))
+    many(ctypes.c_size_t(count), ctypes.c_size_t(stride), *map(_address, (q, qd, qdd, p, outputs)))
     for k in range(stride):
         own = np.zeros(model.m)
         state = [np.ascontiguousarray(part[:, k]) for part in (q, qd, qdd)]
         one(*map(_address, (*state, p, own)))
-        assert found[:, k] == pytest.approx(own if k < count else np.zeros(model.m), rel=1e-12)
+        assert outputs[:, k] == pytest.approx(own if k < count else np.zeros(model.m), rel=1e-12)
 
 
 def _lean(model: Model) -> CCandidate:

@@ -46,7 +46,7 @@ def test_recursion_keeps_what_is_shared(name: str, most: int) -> None:
 
 @pytest.mark.parametrize("name", ["rapkm_bodies", "front_car_bodies", "arm7"])
 def test_frames_and_energies_give_the_same_equations(name: str) -> None:
-    found = []
+    balances = []
     for derive in (mechanics_by_frames, mechanics):
         s = derive(CasadiEngine(), model(name))
         arguments = [casadi.vertcat(*s.inputs[array]) for array in ("q", "qd", "qdd", "p")]
@@ -54,8 +54,8 @@ def test_frames_and_energies_give_the_same_equations(name: str) -> None:
         function = casadi.Function("f", arguments, [casadi.vertcat(*s.balance, *rows)])
         n = model(name).n
         state = drawn_states(model(name), 1)[0]
-        found.append(function(state[:n], state[n : 2 * n], state[2 * n : 3 * n], state[3 * n :]).full())
-    assert found[0] == pytest.approx(found[1], rel=1e-10, abs=1e-10)
+        balances.append(function(state[:n], state[n : 2 * n], state[2 * n : 3 * n], state[3 * n :]).full())
+    assert balances[0] == pytest.approx(balances[1], rel=1e-10, abs=1e-10)
 
 
 # Joints that turn and slide about slanted axes, an attitude on a branch, a rotor, wind.
@@ -94,8 +94,8 @@ def test_a_recursion_gives_the_same_equations(name: str) -> None:
     described = load_text(TREE, "crane.yaml") if name == "crane" else model(name)
     n, state = described.n, np.random.default_rng(3).uniform(0.2, 1.1, 3 * described.n + len(described.parameters))
     parts = state[:n], state[n : 2 * n], state[2 * n : 3 * n], state[3 * n :]
-    found = [balance_and_inputs(d, described)(*parts).full() for d in (mechanics_by_frames, mechanics_by_recursion)]
-    assert found[0] == pytest.approx(found[1], rel=1e-10, abs=1e-10)
+    balances = [balance_and_inputs(d, described)(*parts).full() for d in (mechanics_by_frames, mechanics_by_recursion)]
+    assert balances[0] == pytest.approx(balances[1], rel=1e-10, abs=1e-10)
 
 
 @pytest.mark.parametrize("name", ["arm7", "scara", "crane"])
@@ -110,8 +110,8 @@ def test_articulated_bodies_solve_the_equations(name: str) -> None:
     n, source = described.n, np.random.default_rng(6)
     q, qd, u, p = (source.uniform(0.2, 1.1, k) for k in (n, n, described.m, len(described.parameters)))
     qdd = solved(q, qd, u, p).full()[:, 0]
-    found = balance_and_inputs(mechanics_by_frames, described)(q, qd, qdd, p).full()[:, 0]
-    assert found[:n] == pytest.approx(found[n:].reshape(n, -1) @ u, rel=1e-9, abs=1e-9)
+    values = balance_and_inputs(mechanics_by_frames, described)(q, qd, qdd, p).full()[:, 0]
+    assert values[:n] == pytest.approx(values[n:].reshape(n, -1) @ u, rel=1e-9, abs=1e-9)
 
 
 @pytest.mark.toolchain
@@ -173,19 +173,19 @@ def test_as_written_is_native_or_else_along_directions() -> None:
     serial = [row("CasADi", "AD", 70), row("CasADi", "AD in world axes", 110), row("CasADi", "native", 900)]
     for peers, written, cheapest in ((looped, 100, 90), (serial, 110, 70), (looped[:1], 90, 90)):
         goals = [Goal(against, "libm", ()) for against in (AS_WRITTEN, CHEAPEST_WRITTEN)]
-        found = [mechanism_pages.ratio([row("symgen", "elimination, libm", 45), *peers], goal, None) for goal in goals]
-        assert [text.split("/ ")[1].split()[0] for text in found] == [str(written), str(cheapest)]
+        ratios = [mechanism_pages.ratio([row("symgen", "elimination, libm", 45), *peers], goal, None) for goal in goals]
+        assert [text.split("/ ")[1].split()[0] for text in ratios] == [str(written), str(cheapest)]
 
 
 def test_velocities_in_either_axes_give_the_same_equations() -> None:
     one = model("arm7")
     state = drawn_states(one, 1)[0]
-    found = []
+    balances = []
     for world_axes in (False, True):
         s = lagrange_by_frames(one, world_axes)
         function = casadi.Function("f", [s.q, s.qd, s.qdd, s.p], [direct_balance(s)])
-        found.append(function(state[:7], state[7:14], state[14:21], state[21:]).full())
-    assert found[0] == pytest.approx(found[1], rel=1e-11, abs=1e-11)
+        balances.append(function(state[:7], state[7:14], state[14:21], state[21:]).full())
+    assert balances[0] == pytest.approx(balances[1], rel=1e-11, abs=1e-11)
 
 
 @pytest.mark.parametrize(("name", "joints", "rows"), [("arm7", 7, 0), ("rapkm_bodies", 6, 4), ("chain8", 8, 2)])

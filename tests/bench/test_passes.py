@@ -14,11 +14,11 @@ PAGE = Path(__file__).parents[2] / "docs/passes.md"
 
 def test_a_pass_that_is_left_out_is_missed_where_it_works_and_is_back_afterwards() -> None:
     before = grouping.STEPS, grouping.BEGINNINGS
-    found = counted(shipped.model("double_pendulum"), ("inverse_dynamics",))
+    counts = counted(shipped.model("double_pendulum"), ("inverse_dynamics",))
     assert before == (grouping.STEPS, grouping.BEGINNINGS)
-    weights = {name: cost["inverse_dynamics"] for name, cost in found.without.items()}
+    weights = {name: cost["inverse_dynamics"] for name, cost in counts.without.items()}
     felt = weights[grouping.COMMON_FACTORS], weights[grouping.SHARED_PARTS]
-    assert min(felt) > found.whole["inverse_dynamics"]
+    assert min(felt) > counts.whole["inverse_dynamics"]
     assert list(weights) == list(grouping.PASSES)
 
 

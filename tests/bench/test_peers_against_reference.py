@@ -54,8 +54,8 @@ def test_inverse_dynamics_of_every_peer(name: str, tmp_path: Path) -> None:
     task = Task("inverse_dynamics", "qdd", described.m)
     samples = admissible_samples(reference, STATES, (task.quantity,))
     load = workload(reference, samples, task, "float64", quiet)
-    found = peers(described, task, load.states)
-    candidates = list(found.candidates)
+    all_peers = peers(described, task, load.states)
+    candidates = list(all_peers.candidates)
     if described.n <= 4:  # the other models' kernels are verified elsewhere, but not with the library's sine
         candidates += symgen_candidates(described, programs_of(described, task, ("float64",)), "float64")
     built = build(tmp_path, described, task, candidates, {"float64": load})
@@ -117,9 +117,9 @@ def test_matrices(quantity: str, tmp_path: Path) -> None:
 def test_matrices_of_rows_have_no_peer_where_there_are_none(quantity: str) -> None:
     described = model("double_pendulum")
     states = np.ones((1, 3 * described.n + len(described.parameters)))
-    found = peers(described, Task(quantity, "qdd", described.n**2), states)
-    assert found.candidates == ()
-    assert [name for name, _ in found.left_out] == ["peers"]
+    all_peers = peers(described, Task(quantity, "qdd", described.n**2), states)
+    assert all_peers.candidates == ()
+    assert [name for name, _ in all_peers.left_out] == ["peers"]
 
 
 def test_a_formula_that_is_singular_everywhere_is_no_peer() -> None:
@@ -133,9 +133,9 @@ inputs: {turn: {acts_on: {a: 1}}}
 """
     described = load_text(text, "board.yaml")
     states = np.ones((2, 3 * described.n))
-    found = peers(described, Task("projected_control_pseudoinverse", "qdd", 3), states)
-    assert found.candidates == ()
-    assert "inputs span less" in dict(found.left_out)["peers"]
+    all_peers = peers(described, Task("projected_control_pseudoinverse", "qdd", 3), states)
+    assert all_peers.candidates == ()
+    assert "inputs span less" in dict(all_peers.left_out)["peers"]
 
 
 def test_accelerations_of_an_arm_by_articulated_bodies(tmp_path: Path) -> None:

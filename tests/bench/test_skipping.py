@@ -19,10 +19,10 @@ CERTAIN = (
 
 @pytest.mark.parametrize("name", ["skate", "front_car", "slider_crank"])
 def test_keeping_something_never_costs_less(name: str) -> None:
-    found = skipped(shipped.model(name))
-    assert found.minor is not None
-    assert found.generated <= found.minor
-    kept = {one.what: one for one in found.kept}
+    counts = skipped(shipped.model(name))
+    assert counts.minor is not None
+    assert counts.generated <= counts.minor
+    kept = {one.what: one for one in counts.kept}
     for what in CERTAIN:
         weight = kept[what].weight
         assert weight is None or weight >= kept[what].without, what
@@ -31,8 +31,8 @@ def test_keeping_something_never_costs_less(name: str) -> None:
 
 
 def test_body_fixed_axes_save_a_third_of_the_parallel_robot() -> None:
-    found = skipped(shipped.model("rapkm_2rrr_rr"))
-    (axes,) = [one for one in found.kept if one.what == "body-fixed axes"]
+    counts = skipped(shipped.model("rapkm_2rrr_rr"))
+    (axes,) = [one for one in counts.kept if one.what == "body-fixed axes"]
     assert axes.weight is not None
     assert axes.without < 0.7 * axes.weight
 
@@ -60,7 +60,7 @@ def test_what_would_be_too_long_is_told_and_not_derived() -> None:
 
 @pytest.mark.bench
 def test_minors_of_many_rows_are_not_listed() -> None:
-    found = skipped(shipped.model("gough_loops"))
-    assert found.minor is None
-    assert [str(one) for one in found.kept[:-1]] == ["too long"] * len(BY_MINORS)
+    counts = skipped(shipped.model("gough_loops"))
+    assert counts.minor is None
+    assert [str(one) for one in counts.kept[:-1]] == ["too long"] * len(BY_MINORS)
     assert [one.what for one in skipped(shipped.model("skate")).kept[:-1]] == list(BY_MINORS)

@@ -56,7 +56,7 @@ def test_what_cannot_be_followed_counts_as_noticed() -> None:
 @pytest.mark.bench
 def test_half_and_twice_of_a_constant_that_decides_make_other_kernels() -> None:
     (one,) = (one for one in tuned() if one.name == "LARGEST_CORE_BY_MINORS")
-    found = measured([one], [ROOT / "models/delta.yaml"])
-    assert {change.how for change in found.changes} == {HALF, DOUBLE}
-    assert not any(change.idle or change.failed for change in found.changes)
-    assert found.constants == [Constant(one.module, one.name, "3", one.limits)]
+    measurements = measured([one], [ROOT / "models/delta.yaml"])
+    assert {change.how for change in measurements.changes} == {HALF, DOUBLE}
+    assert not any(change.idle or change.failed for change in measurements.changes)
+    assert measurements.constants == [Constant(one.module, one.name, "3", one.limits)]

@@ -86,8 +86,8 @@ def test_the_work_ends_with_its_parent(ending: signal.Signals) -> None:
     assert parent.stdout is not None
     child = int(parent.stdout.readline())
     parent.send_signal(ending)
-    _, told = parent.communicate(timeout=10)  # returns once nobody holds the pipes: the child is gone as well
-    assert told.count(b"Traceback") <= 1  # of the parent
+    _, errors = parent.communicate(timeout=10)  # returns once nobody holds the pipes: the child is gone as well
+    assert errors.count(b"Traceback") <= 1  # of the parent
     assert not _runs(child)
 
 

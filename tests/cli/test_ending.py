@@ -95,18 +95,18 @@ def test_a_signal_ends_compilers_and_says_what_was_written(
             time.sleep(0.02)
         started.send_signal(number)
         started.send_signal(number)  # a second one must not break off the cleaning up
-        told = started.stderr.read()
+        errors = started.stderr.read()
         code, word = ENDINGS[number]
         assert started.wait(30) == code
     assert not any(map(runs, map(int, marks.read_text().split())))
     assert not list(temporary.iterdir())
-    assert "Traceback" not in told
+    assert "Traceback" not in errors
     if first:
-        assert told.endswith(f"{word}; earlier output is unchanged\n")
+        assert errors.endswith(f"{word}; earlier output is unchanged\n")
         assert not (tmp_path / "out").exists()
     else:
         folder = tmp_path / "out/quick"
-        assert told.endswith(f"{word}; new files are in {folder}, each complete; all else is unchanged\n")
+        assert errors.endswith(f"{word}; new files are in {folder}, each complete; all else is unchanged\n")
         assert (folder / "c/quick.c").exists()
         assert not (tmp_path / "out/hanging").exists()
 
@@ -141,8 +141,8 @@ def test_the_guardian_lets_groups_that_have_ended_alone() -> None:
         "for group in groups:\n    guardian.watch(group.pid)\n"
         "guardian.forget(groups[0].pid)\nprint(*(group.pid for group in groups), flush=True)\nos._exit(0)\n"
     )
-    told = subprocess.run([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, check=True)
-    forgotten, watched = map(int, told.stdout.split())
+    process = subprocess.run([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, check=True)
+    forgotten, watched = map(int, process.stdout.split())
     try:
         assert not runs(watched)
         # the guardian has ended what it ends
@@ -195,10 +195,10 @@ def test_an_odd_compiler_is_an_error_with_a_remedy(
     out = tmp_path / "out"
     given = ["--only", "c", "--scalar", "float64", "--out", str(out), "--quiet"]
     assert main([str(model(tmp_path, "cart")), *given]) == code
-    told = capsys.readouterr().err
-    assert expected in told
-    assert compiling.REMEDY in told
-    assert "internal error" not in told
+    errors = capsys.readouterr().err
+    assert expected in errors
+    assert compiling.REMEDY in errors
+    assert "internal error" not in errors
     assert not (out / "cart").exists()
 
 
@@ -213,8 +213,8 @@ def test_bytes_that_are_no_text_are_printed_all_the_same(
 
 def test_a_tool_that_leaves_its_output_open_in_the_background_holds_nobody(tmp_path: Path) -> None:
     began = time.monotonic()
-    told = run(["sh", "-c", "echo done; sleep 20 &"], 10.0, tmp_path)
-    assert (told.returncode, told.stdout) == (0, "done\n")
+    completed = run(["sh", "-c", "echo done; sleep 20 &"], 10.0, tmp_path)
+    assert (completed.returncode, completed.stdout) == (0, "done\n")
     assert time.monotonic() - began < 10
 
 

@@ -44,10 +44,10 @@ def test_what_symgen_did_not_make_stays_and_is_told(tmp_path: Path) -> None:
     write_files(tmp_path, OLD)
     mine = {"c/main.c": "mine\n", "c/build/out.txt": "mine\n", "notes.txt": "mine\n"}
     put(tmp_path, mine)
-    told: list[str] = []
-    write_files(tmp_path, NEW, told.append)
+    notices: list[str] = []
+    write_files(tmp_path, NEW, notices.append)
     assert tree(tmp_path) == dict(sorted((NEW | mine).items()))
-    assert told == [
+    assert notices == [
         f"{tmp_path}: notice: not made by symgen, or changed since, and left as they are: c/main.c, c/build/out.txt"
     ]
     assert compare(tmp_path, NEW) == ()
@@ -57,19 +57,19 @@ def test_files_of_the_user_named_like_measurements_are_told_and_those_measured_a
     write_files(tmp_path, OLD | {"report/m.pdf": "measured\n", "bench.json": "{}\n"})
     mine = {"c/bench.c": "mine\n", "c/target.ld": "mine\n", "report/motor.pdf": "mine\n"}
     put(tmp_path, mine)
-    told: list[str] = []
-    write_files(tmp_path, OLD | {"report/m.html": "new\n"}, told.append)
+    notices: list[str] = []
+    write_files(tmp_path, OLD | {"report/m.html": "new\n"}, notices.append)
     assert {path: tree(tmp_path)[path] for path in mine} == mine
-    assert [line.partition("they are: ")[2] for line in told] == ["c/bench.c, c/target.ld, report/motor.pdf"]
+    assert [line.partition("they are: ")[2] for line in notices] == ["c/bench.c, c/target.ld, report/motor.pdf"]
 
 
 def test_a_file_that_was_changed_since_is_not_removed(tmp_path: Path) -> None:
     write_files(tmp_path, OLD)
     (tmp_path / "c/gone.c").write_text("now mine\n")
-    told: list[str] = []
-    write_files(tmp_path, NEW, told.append)
+    notices: list[str] = []
+    write_files(tmp_path, NEW, notices.append)
     assert (tmp_path / "c/gone.c").read_text() == "now mine\n"
-    assert "c/gone.c" in told[0]
+    assert "c/gone.c" in notices[0]
 
 
 def test_a_file_of_the_user_is_not_replaced(tmp_path: Path) -> None:
@@ -114,10 +114,10 @@ def test_what_git_checks_out_is_replaced_without_a_word(tmp_path: Path, listed: 
     if listed:
         write_files(tmp_path, {path: f"other {text}" for path, text in OLD.items()})
     put(tmp_path, OLD | {CHECKSUMS: checksums_text(OLD)})
-    told: list[str] = []
-    write_files(tmp_path, NEW | {"c/gone.c": "new\n"}, told.append)
+    notices: list[str] = []
+    write_files(tmp_path, NEW | {"c/gone.c": "new\n"}, notices.append)
     assert tree(tmp_path) == tree(tmp_path) | NEW | {"c/gone.c": "new\n"}
-    assert told == []
+    assert notices == []
 
 
 def test_a_folder_without_a_list_and_checksums_is_the_users(tmp_path: Path) -> None:
@@ -128,10 +128,10 @@ def test_a_folder_without_a_list_and_checksums_is_the_users(tmp_path: Path) -> N
     assert tree(tmp_path) == dict(sorted(OLD.items()))
     for path in set(OLD) & set(NEW):
         (tmp_path / path).unlink()
-    told: list[str] = []
-    write_files(tmp_path, NEW, told.append)
+    notices: list[str] = []
+    write_files(tmp_path, NEW, notices.append)
     assert tree(tmp_path) == dict(sorted((NEW | {"c/gone.c": "old\n"}).items()))
-    assert "c/gone.c" in told[0]
+    assert "c/gone.c" in notices[0]
 
 
 def test_a_measurement_in_a_folder_of_a_repository_leaves_its_files_to_symgen(tmp_path: Path) -> None:
@@ -179,24 +179,24 @@ STEPS = ("replace", "rename", "link", "unlink", "mkdir", "rmdir")
 
 def killed(folder: Path, limit: int) -> int:
     """How many steps a process of its own took to write NEW; it is killed before the step of this number."""
-    taken, told = os.pipe()
+    taken, writer = os.pipe()
     child = os.fork()
     if not child:
         # the copy of this process ends here whatever happens: what pytest would do at its end is the parent's
         try:
-            _dying(limit, told)
+            _dying(limit, writer)
             write_files(folder, NEW, silent)
             os._exit(0)
         finally:
             os._exit(1)
-    os.close(told)
+    os.close(writer)
     with open(taken, "rb") as steps:
         count = len(steps.read())
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == (-signal.SIGKILL if count == limit else 0)
     return count
 
 
-def _dying(limit: int, told: int) -> None:
+def _dying(limit: int, writer: int) -> None:
     """Every step tells that it comes, and the last one ends the process."""
     count = 0
 
@@ -204,7 +204,7 @@ def _dying(limit: int, told: int) -> None:
         def call(*arguments: Any, **named: Any) -> Any:
             nonlocal count
             count += 1
-            os.write(told, b".")
+            os.write(writer, b".")
             if count == limit:
                 os.kill(os.getpid(), signal.SIGKILL)
             return step(*arguments, **named)
@@ -226,14 +226,14 @@ def test_a_run_killed_anywhere_leaves_what_the_next_start_mends(tmp_path: Path) 
         write_files(folder, OLD)
         (folder / "c/main.c").write_text("mine\n")
         assert killed(folder, limit) == limit
-        told: list[str] = []
-        recover_folders(folder.parent, told.append)
-        found = tree(folder)
-        assert found.pop("c/main.c") == "mine\n"
-        found.pop(LOCK, None)  # empty; free again
-        assert found in (dict(sorted(OLD.items())), dict(sorted(NEW.items())))
+        messages: list[str] = []
+        recover_folders(folder.parent, messages.append)
+        files = tree(folder)
+        assert files.pop("c/main.c") == "mine\n"
+        files.pop(LOCK, None)  # empty; free again
+        assert files in (dict(sorted(OLD.items())), dict(sorted(NEW.items())))
         assert not (folder / STAGING).exists()
-        ways.add((found == dict(sorted(NEW.items())), bool(told)))
+        ways.add((files == dict(sorted(NEW.items())), bool(messages)))
         write_files(folder, NEW, silent)
         assert tree(folder) == dict(sorted((NEW | {"c/main.c": "mine\n"}).items()))
     assert ways == {(False, False), (True, True), (True, False)}
@@ -262,10 +262,10 @@ def test_runs_into_one_folder_leave_the_files_of_one(tmp_path: Path) -> None:
     folder = tmp_path / "m"
     runs = [subprocess.Popen([sys.executable, "-c", RACING, str(folder), name]) for name in ("one", "two", "three")]
     assert [run.wait(120) for run in runs] == [0, 0, 0]
-    found = tree(folder)
-    (text,) = {text for path, text in found.items() if not path.endswith(".h")}
+    files = tree(folder)
+    (text,) = {text for path, text in files.items() if not path.endswith(".h")}
     winner = text.split()[0]
-    assert found.keys() == {*(f"c/{k}.c" for k in range(30)), f"c/{winner}.h"}
+    assert files.keys() == {*(f"c/{k}.c" for k in range(30)), f"c/{winner}.h"}
     assert not (folder / LOCK).exists()
 
 
@@ -284,10 +284,10 @@ def test_a_lock_is_waited_for_told_and_free_after_death(tmp_path: Path) -> None:
     assert holder.stdout is not None
     with holder.stdout:
         assert holder.stdout.readline() == "held\n"
-        told: list[str] = []
-        with pytest.raises(LockedError, match=f"process {holder.pid}"), folder_lock(tmp_path, told.append, 1.0):
+        messages: list[str] = []
+        with pytest.raises(LockedError, match=f"process {holder.pid}"), folder_lock(tmp_path, messages.append, 1.0):
             pytest.fail("locked twice")
-        assert told == [f"{tmp_path}: waiting for another run of symgen (process {holder.pid}) that writes here"]
+        assert messages == [f"{tmp_path}: waiting for another run of symgen (process {holder.pid}) that writes here"]
         holder.kill()
         holder.wait()
     write_files(tmp_path, NEW)

@@ -28,9 +28,9 @@ def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def wait_for(stream: io.StringIO, lines: int) -> list[str]:
     limit = time.monotonic() + 30
-    while len(found := stream.getvalue().splitlines()) < lines and time.monotonic() < limit:
+    while len(written := stream.getvalue().splitlines()) < lines and time.monotonic() < limit:
         time.sleep(0.005)
-    return found
+    return written
 
 
 def test_a_log_is_told_what_a_step_is_at_until_it_is_done() -> None:

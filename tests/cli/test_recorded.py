@@ -31,8 +31,8 @@ def draft_of(path: Path, out: Path | None) -> Draft:
 
 
 def wide(draft: Draft) -> set[tuple[str, Scalar]]:
-    found = ((kernel, scalar) for scalar, program in draft.programs.items() for kernel in program.kernels)
-    return {(kernel.name, scalar) for kernel, scalar in found if works_with_pairs(kernel)}
+    kernels = ((kernel, scalar) for scalar, program in draft.programs.items() for kernel in program.kernels)
+    return {(kernel.name, scalar) for kernel, scalar in kernels if works_with_pairs(kernel)}
 
 
 def test_kernels_work_with_twice_the_digits_where_the_record_says_so(tmp_path: Path) -> None:
@@ -79,9 +79,9 @@ def test_a_record_that_is_of_no_use_is_told(
     else:
         file.write_text(spoilt(json.loads(file.read_bytes())))
     draft = draft_of(path, out)
-    (told,) = draft.notes
-    assert f"{file} {why}" in told
-    assert "derivation chooses" in told
+    (note,) = draft.notes
+    assert f"{file} {why}" in note
+    assert "derivation chooses" in note
     assert not wide(draft)
 
 
@@ -104,9 +104,9 @@ def test_what_verification_left_out_is_left_out_and_told(tmp_path: Path) -> None
     draft = draft_of(path, out)
     names = {scalar: {kernel.name for kernel in program.kernels} for scalar, program in draft.programs.items()}
     assert names == {"float64": {"inverse_dynamics", "forward_dynamics"}, "float32": {"inverse_dynamics"}}
-    told = "\n".join(draft.notes)
-    assert "forward_dynamics is left out in float32" in told
-    assert "singularity is left out in float64 and float32" in told
+    notes = "\n".join(draft.notes)
+    assert "forward_dynamics is left out in float32" in notes
+    assert "singularity is left out in float64 and float32" in notes
 
 
 def test_stress_takes_the_record(tmp_path: Path) -> None:

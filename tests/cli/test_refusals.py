@@ -24,7 +24,7 @@ outputs: OUTPUTS
 """
 
 
-def _told(tmp_path: Path, capsys: pytest.CaptureFixture[str], **parts: str) -> str:
+def _refusal(tmp_path: Path, capsys: pytest.CaptureFixture[str], **parts: str) -> str:
     text = MODEL
     for key, value in parts.items():
         text = text.replace(key, value)
@@ -44,9 +44,9 @@ def test_where_no_states_are_found_the_row_is_named(
         raise VerificationError("steep: only 0 regular configurations were found; give a start")
 
     monkeypatch.setattr("symgen.verify.expected.sample_states", none)
-    told = _told(tmp_path, capsys, FIELD="0", ROW="x**2 - y", OUTPUTS="inverse_dynamics")
-    assert "steep.yaml:8:10: only 0 regular configurations were found\n" in told
-    assert "remedy: give a start\n" in told
+    errors = _refusal(tmp_path, capsys, FIELD="0", ROW="x**2 - y", OUTPUTS="inverse_dynamics")
+    assert "steep.yaml:8:10: only 0 regular configurations were found\n" in errors
+    assert "remedy: give a start\n" in errors
 
 
 @pytest.mark.campaign
@@ -60,9 +60,9 @@ def test_states_are_found_where_functions_are_steep(tmp_path: Path) -> None:
 
 def test_a_number_beyond_float32_is_told_with_a_way_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """1e30 * 1e20 x is 1e50 in the kernel."""
-    told = _told(tmp_path, capsys, FIELD="1e30*sin(1e20*x)", ROW="x - y", OUTPUTS="potential_force")
-    assert "a number of about 1e50, which is beyond the range of float32" in told
-    assert "`--scalar float64`" in told
+    errors = _refusal(tmp_path, capsys, FIELD="1e30*sin(1e20*x)", ROW="x - y", OUTPUTS="potential_force")
+    assert "a number of about 1e50, which is beyond the range of float32" in errors
+    assert "`--scalar float64`" in errors
 
 
 @pytest.mark.campaign

@@ -26,7 +26,7 @@ SWING
 outputs: [inverse_dynamics, inverse_dynamics_residual]
 """
 SWING = "  tau: {unit: N*m, acts_on: {theta: 1}}"
-TOLD = "the inputs span 2 of 3 directions"
+NOTICE = "the inputs span 2 of 3 directions"
 
 
 @pytest.mark.parametrize("short", [True, False], ids=["two inputs", "three inputs"])
@@ -34,6 +34,6 @@ def test_inputs_that_do_not_span(tmp_path: Path, capsys: pytest.CaptureFixture[s
     path = tmp_path / "crane.yaml"
     path.write_text(CRANE.replace("SWING\n", "" if short else SWING + "\n"))
     assert cli.main([str(path), "--only", "c,python", "--no-verify", "--out", str(tmp_path)]) == 0
-    assert (f"notice: inverse_dynamics: {TOLD}" in capsys.readouterr().err) == short
+    assert (f"notice: inverse_dynamics: {NOTICE}" in capsys.readouterr().err) == short
     for written in ("c/crane.h", "python/crane.py"):
-        assert (TOLD in " ".join((tmp_path / "crane" / written).read_text().split())) == short
+        assert (NOTICE in " ".join((tmp_path / "crane" / written).read_text().split())) == short

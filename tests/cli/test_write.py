@@ -16,9 +16,9 @@ FILES = {"c/m.h": "header\n", "c/m.c": "source\n", "python/m.py": "python\n", "d
 
 def tree(folder: Path) -> dict[str, str]:
     """The files but the list of them; nothing else of symgen's is left."""
-    found = {p.relative_to(folder).as_posix(): p.read_text() for p in sorted(folder.rglob("*")) if p.is_file()}
-    assert {path for path in found if path.startswith(".")} <= {FILES_MADE}
-    return {path: text for path, text in found.items() if path != FILES_MADE}
+    files = {p.relative_to(folder).as_posix(): p.read_text() for p in sorted(folder.rglob("*")) if p.is_file()}
+    assert {path for path in files if path.startswith(".")} <= {FILES_MADE}
+    return {path: text for path, text in files.items() if path != FILES_MADE}
 
 
 def test_writes_and_returns_the_paths(tmp_path: Path) -> None:

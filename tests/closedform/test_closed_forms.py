@@ -168,21 +168,21 @@ STRUCTURES = {
 @pytest.mark.parametrize("name", sorted(STRUCTURES))
 def test_degrees_of_freedom(name: str) -> None:
     structure = shipped(name)[1].structure
-    found = (
+    numbers = (
         structure.local_freedom,
         structure.differential_freedom,
         structure.degree_of_actuation,
         structure.actuation,
     )
-    assert found == STRUCTURES[name]
+    assert numbers == STRUCTURES[name]
 
 
 def test_singular_sets_of_the_rear_car() -> None:
     _, forms = shipped("rear_car")
-    found = {s.kind: s.vanishing for s in forms.singular_sets}
-    assert found["constraint"] == ()
-    assert found["input"] == (cos(Symbol("phi")),)
-    assert found["parameter"] == (cos(Symbol("phi")) * cos(Symbol("theta")),)
+    by_kind = {s.kind: s.vanishing for s in forms.singular_sets}
+    assert by_kind["constraint"] == ()
+    assert by_kind["input"] == (cos(Symbol("phi")),)
+    assert by_kind["parameter"] == (cos(Symbol("phi")) * cos(Symbol("theta")),)
 
 
 def test_singular_sets_of_what_is_measured_and_of_a_task() -> None:
@@ -202,9 +202,9 @@ configuration: {a: 2.2, b: 0.9, c: 1, e: 2.2}
 """
     )
     a, b, c, e = map(Symbol, "abce")
-    found = {s.kind: s for s in forms.singular_sets}
-    (measured,), (task,) = found["measured"].vanishing, found["task"].vanishing
-    assert found["measured"].decided
+    by_kind = {s.kind: s for s in forms.singular_sets}
+    (measured,), (task,) = by_kind["measured"].vanishing, by_kind["task"].vanishing
+    assert by_kind["measured"].decided
     assert simplify(measured**2 - sin(b - e) ** 2) == 0
     assert simplify(task**2 - (sin(a - b) * sin(c - e)) ** 2) == 0
 
@@ -331,8 +331,8 @@ potential_energy: 0
 inputs: {f: {acts_on: {a: 1 + cos(a)}}}
 """
     )
-    (found,) = forms.singular_sets
-    assert found.vanishing == (cos(Symbol("a")) + 1,)
+    (singular_set,) = forms.singular_sets
+    assert singular_set.vanishing == (cos(Symbol("a")) + 1,)
     assert (
         forms.forms["projected_control_pseudoinverse"].matrix == Matrix([[1 / (cos(Symbol("a")) + 1)]]).as_immutable()
     )

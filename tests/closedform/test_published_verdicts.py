@@ -23,8 +23,8 @@ published:
 
 def verdict(entry: str) -> Verdict:
     model = load_text(PENDULUM + f"  - {entry}\n", "pendulum.yaml")
-    (found,) = decide_published(model, derive_closed_forms(model))
-    return found
+    (decision,) = decide_published(model, derive_closed_forms(model))
+    return decision
 
 
 def equation(left: str, right: str) -> str:
@@ -77,6 +77,6 @@ def test_verdicts(entry: str, expected: str) -> None:
 
 
 def test_evidence_is_given() -> None:
-    found = verdict(equation("x*x_dot", "y*y_dot"))
-    assert "its value is" in found.explanation
-    assert "x = " in found.explanation
+    decision = verdict(equation("x*x_dot", "y*y_dot"))
+    assert "its value is" in decision.explanation
+    assert "x = " in decision.explanation

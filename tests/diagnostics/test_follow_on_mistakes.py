@@ -116,7 +116,7 @@ SPOILED = (
 )
 
 
-def told(text: str) -> list[tuple[int, str]]:
+def mistakes_of(text: str) -> list[tuple[int, str]]:
     """Line and message of every mistake of a model."""
     with pytest.raises(ModelError) as raised:
         load_text(text, "spoiled.yaml")
@@ -130,26 +130,26 @@ def test_the_model_itself_has_no_mistake() -> None:
 @pytest.mark.parametrize(("before", "after"), SPOILED)
 def test_one_mistake_is_told_once(before: str, after: str) -> None:
     line = GOOD[: GOOD.index(before) + len(before) - 1].count("\n") + 1
-    found = told(GOOD.replace(before, after, 1))
-    assert [place for place, _ in found] == [line], found
+    mistakes = mistakes_of(GOOD.replace(before, after, 1))
+    assert [place for place, _ in mistakes] == [line], mistakes
 
 
 def test_a_joint_that_takes_the_coordinate_of_another_is_one_mistake() -> None:
-    found = told(GOOD.replace("coordinate: s}", "coordinate: c}"))
-    assert [message for line, message in found if line == 17] == [
+    mistakes = mistakes_of(GOOD.replace("coordinate: s}", "coordinate: c}"))
+    assert [message for line, message in mistakes if line == 17] == [
         "`c` is a coordinate of the joint `arm` (line 16) already"
     ]
 
 
 def test_a_name_that_is_taken_is_told_where_it_is_declared_again() -> None:
-    found = told(GOOD.replace("u: {joint: c}", "c: {joint: c}").replace("weights: {u", "weights: {c"))
-    assert [message for _, message in found] == ["`c` is already an input (line 35)"]
+    mistakes = mistakes_of(GOOD.replace("u: {joint: c}", "c: {joint: c}").replace("weights: {u", "weights: {c"))
+    assert [message for _, message in mistakes] == ["`c` is already an input (line 35)"]
 
 
 def test_other_mistakes_are_told_beside_it() -> None:
     spoiled = GOOD.replace("type: revolute", "type: revolut").replace("configuration: {c:", "configuration: {q:")
-    found = told(spoiled)
-    assert [message for _, message in found] == [
+    mistakes = mistakes_of(spoiled)
+    assert [message for _, message in mistakes] == [
         "`type` is `revolut`, which is not known",
         "`q` in `configuration` is no coordinate",
     ]
@@ -160,7 +160,7 @@ def test_a_faulty_declaration_that_hangs_on_nothing_is_two_mistakes() -> None:
     text = GOOD.replace("slide: {type: prismatic, parent: arm,", "slide: {type: prismatik, parent: armm,")
     with pytest.raises(ModelError) as raised:
         load_text(text, "model.yaml")
-    told = [mistake.message for mistake in raised.value.mistakes]
-    assert len(told) == 2
-    assert "`prismatik`" in told[0]
-    assert "unknown frame `armm`" in told[1]
+    messages = [mistake.message for mistake in raised.value.mistakes]
+    assert len(messages) == 2
+    assert "`prismatik`" in messages[0]
+    assert "unknown frame `armm`" in messages[1]

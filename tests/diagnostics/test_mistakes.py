@@ -26,11 +26,11 @@ def rendered(text: str) -> str:
 
 def sections(group: str) -> dict[str, str]:
     """The expected texts of a group by case."""
-    found: dict[str, str] = {}
+    by_case: dict[str, str] = {}
     for section in (EXPECTED / f"{group}.txt").read_text(encoding="utf-8").split("== ")[1:]:
         name, _, text = section.partition("\n")
-        found[name] = text
-    return found
+        by_case[name] = text
+    return by_case
 
 
 @pytest.mark.parametrize("group", GROUPS)

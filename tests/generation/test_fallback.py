@@ -197,11 +197,11 @@ def spoil_named(monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[Motion], Moti
     candidate = Methods.candidate
 
     def worse(methods: Methods, quantity: str, name: str) -> Candidate | str:
-        found = candidate(methods, quantity, name)
-        if quantity != "multipliers" or isinstance(found, str):
-            return found
-        motion = spoilt(Motion((), found.derived.outputs, found.derived.guards))
-        return replace(found, derived=replace(found.derived, outputs=motion.multipliers, guards=motion.guards))
+        original = candidate(methods, quantity, name)
+        if quantity != "multipliers" or isinstance(original, str):
+            return original
+        motion = spoilt(Motion((), original.derived.outputs, original.derived.guards))
+        return replace(original, derived=replace(original.derived, outputs=motion.multipliers, guards=motion.guards))
 
     monkeypatch.setattr(Methods, "candidate", worse)
 
@@ -374,9 +374,9 @@ def test_what_no_method_passes_is_left_out_alone(
     out = tmp_path / "out"
     common = [str(whole), "--out", str(out), "--states", "8", "--quiet"]
     assert cli.main(common) == 1
-    told = capsys.readouterr().err
-    assert "multipliers is left out" in told
-    assert "remedy: " in told
+    errors = capsys.readouterr().err
+    assert "multipliers is left out" in errors
+    assert "remedy: " in errors
     folder = out / "yoke"
     certificate = json.loads((folder / "certificate.json").read_bytes())
     assert not certificate["passed"]
@@ -423,9 +423,9 @@ def test_float64_stays_where_float32_alone_is_rejected(
     monkeypatch.setattr(fallback, "LONGEST_WIDENED", 20)
     common = [str(whole), "--out", str(tmp_path / "out"), "--states", "8", "--quiet"]
     assert cli.main(common) == 1
-    told = capsys.readouterr().err
-    assert "multipliers is left out in float32: " in told
-    assert "`--scalar float64`" in told
+    errors = capsys.readouterr().err
+    assert "multipliers is left out in float32: " in errors
+    assert "`--scalar float64`" in errors
     folder = tmp_path / "out/yoke"
     certificate = json.loads((folder / "certificate.json").read_bytes())
     assert [one["scalars"] for one in certificate["left_out"]] == [["float32"]]
@@ -490,8 +490,8 @@ def test_more_digits_in_float32_alone_take_nothing_from_more_in_both(
 
     def failing(self: Any, draft: Any, one: Alternative, scalars: Any, wide: Any, expected: Any) -> Any:
         tried.append(wide)
-        found = widened(self, draft, one, scalars, wide, expected)
-        return replace(found, scalars=()) if wide == ("float32",) else found
+        attempt = widened(self, draft, one, scalars, wide, expected)
+        return replace(attempt, scalars=()) if wide == ("float32",) else attempt
 
     monkeypatch.setattr(fallback.Fallback, "_with_pairs", failing)
     result = made(yoke)
@@ -535,8 +535,8 @@ def test_twice_the_digits_of_what_is_long_are_for_those_who_ask(
     result = made(yoke, replace(FAST, outputs=("multipliers",) if asked else ("all",)))
     assert result.left_out == ()
     assert ("multipliers" in derived(result)["kernels"]) is asked
-    told = [one for one in result.notices if "`all` leaves it out, as it loses digits" in one.message]
-    assert bool(told) is not asked
+    notices = [one for one in result.notices if "`all` leaves it out, as it loses digits" in one.message]
+    assert bool(notices) is not asked
 
 
 @pytest.mark.parametrize("asked", [True, False])
@@ -550,8 +550,8 @@ def test_methods_of_what_nobody_asked_for_are_tried_so_many_times(
     result = made(ROOT / "models" / "front_car.yaml", replace(FAST, outputs=(name,) if asked else ("all",)))
     assert result.left_out == ()
     assert (name in derived(result)["kernels"]) is asked
-    told = [one.message for one in result.notices if "methods of 25000 operations were tried" in one.message]
-    assert [name in message for message in told] == ([] if asked else [True])
+    messages = [one.message for one in result.notices if "methods of 25000 operations were tried" in one.message]
+    assert [name in message for message in messages] == ([] if asked else [True])
 
 
 @pytest.mark.campaign
@@ -587,9 +587,9 @@ def test_nothing_is_written_where_nothing_passes(
     out = tmp_path / "out"
     arguments = [str(yoke), "--out", str(out), "--outputs", "multipliers", "--only", "c", "--states", "8", "--quiet"]
     assert cli.main(arguments) == 1
-    told = capsys.readouterr().err
-    assert "verification failed, nothing is written" in told
-    assert "multipliers is left out" in told
+    errors = capsys.readouterr().err
+    assert "verification failed, nothing is written" in errors
+    assert "multipliers is left out" in errors
     assert not (out / "yoke").exists()
 
 

@@ -82,6 +82,6 @@ def test_what_all_leaves_out_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyP
     path = tmp_path / "row.yaml"
     path.write_text(TEXT)
     result = generate(path, Options(outputs=("all",), parts=("c",), verify=False), lambda _: None)
-    told = [notice.message for notice in result.notices if OF_ALL in notice.message]
-    assert any(message.startswith("projected_coriolis_matrix: ") for message in told)
-    assert all("name it in `outputs`" in message for message in told)
+    messages = [notice.message for notice in result.notices if OF_ALL in notice.message]
+    assert any(message.startswith("projected_coriolis_matrix: ") for message in messages)
+    assert all("name it in `outputs`" in message for message in messages)

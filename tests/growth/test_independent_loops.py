@@ -73,9 +73,9 @@ def test_zeros_are_looked_for_where_the_scalar_is() -> None:
     mechanics = System(model)
     graph, search = mechanics.graph, ZeroSearch(mechanics, genericity(mechanics))
     assert search.zero_of(graph.symbol("x2") + 5) is None
-    found = search.zero_of(graph.trig("sin", graph.symbol("s1")) - graph.const(1) / 10)
-    assert found is not None
-    point = dict(found.point)
+    zero = search.zero_of(graph.trig("sin", graph.symbol("s1")) - graph.const(1) / 10)
+    assert zero is not None
+    point = dict(zero.point)
     # a zero is told with all loops closed
     assert all(abs(point[f"x{k}"]) > Decimal("0.2") for k in range(4))
 

@@ -61,8 +61,8 @@ def test_a_parameter_that_is_positive_is_compared_as_it_is() -> None:
 
 def test_a_parameter_that_the_kernel_does_not_read() -> None:
     made = bounded(PLAIN, (Bound("reach", None, Fraction(5)),), PARAMETERS, {"reach"})
-    found = [Interpreter(None, "float64").run(made, {"q": (3.0,)}, (1.0, 1.0, reach))[0] for reach in (5.0, 5.1)]
-    assert found == [Status.OK, Status.PARAMETER_RANGE]
+    statuses = [Interpreter(None, "float64").run(made, {"q": (3.0,)}, (1.0, 1.0, reach))[0] for reach in (5.0, 5.1)]
+    assert statuses == [Status.OK, Status.PARAMETER_RANGE]
 
 
 def test_bounds_are_read_back() -> None:

@@ -84,6 +84,6 @@ def test_numbers_are_those_of_the_statements() -> None:
     )
     after = with_constants_evaluated(before)
     assert [statement.operation for statement in after.statements] == ["mul"]
-    found = [Interpreter(None).run(one, {"q": (1.0,)}, ()) for one in (before, after)]
-    assert abs(found[1][1][0] - (1 / 21 - 5)) <= 1e-15
-    assert abs(found[1][1][0] - found[0][1][0]) <= 2e-15
+    results = [Interpreter(None).run(one, {"q": (1.0,)}, ()) for one in (before, after)]
+    assert abs(results[1][1][0] - (1 / 21 - 5)) <= 1e-15
+    assert abs(results[1][1][0] - results[0][1][0]) <= 2e-15

@@ -36,9 +36,9 @@ def test_same_results(name: str) -> None:
             angles = [state["q"][load.index] for load in given.coordinates]
             trig = [half(angle) for angle in angles for half in (math.sin, math.cos)]
             status, wanted = interpreter.run(kernel, state, parameters)
-            found_status, found = interpreter.run(given.kernel, {**state, "sc": trig}, parameters)
-            assert found_status is status
-            assert found == pytest.approx(wanted, rel=1e-9, abs=1e-9)
+            given_status, outputs = interpreter.run(given.kernel, {**state, "sc": trig}, parameters)
+            assert given_status is status
+            assert outputs == pytest.approx(wanted, rel=1e-9, abs=1e-9)
 
 
 @pytest.mark.parametrize("name", shipped.sparing(shipped.SWEPT))
@@ -80,10 +80,10 @@ def test_sums_and_multiples_follow_by_addition() -> None:
     assert pairs == [(Local("e"),)], "a parameter is not the caller's to know the sine of"
     x, theta, length = 0.7, -0.4, 0.3
     trig = [math.sin(x), math.cos(x), math.sin(theta), math.cos(theta)]
-    status, found = Interpreter(None).run(given.kernel, {"q": [x, theta], "sc": trig}, [length])
+    status, outputs = Interpreter(None).run(given.kernel, {"q": [x, theta], "sc": trig}, [length])
     assert status is Status.OK
     angles = (x + theta, theta - x, -x, 2 * theta, x + length)
-    assert found == pytest.approx([half(angle) for angle in angles for half in (math.sin, math.cos)], rel=1e-14)
+    assert outputs == pytest.approx([half(angle) for angle in angles for half in (math.sin, math.cos)], rel=1e-14)
 
 
 @pytest.mark.parametrize("factor", ["1/2", "5"])

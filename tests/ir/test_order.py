@@ -69,15 +69,15 @@ def test_only_the_order_changes_and_tests_stay_before_what_they_protect(
 ) -> None:
     changed = 0
     for kernel in as_written(monkeypatch, name):
-        found = relaxed(kernel)
-        assert Counter(found.statements) == Counter(kernel.statements)
-        assert [c for b in found.blocks for c in b.checks] == [c for b in kernel.blocks for c in b.checks]
-        assert (found.loads, found.outputs, found.blocks[:2]) == (kernel.loads, kernel.outputs, kernel.blocks[:2])
-        assert not divisions_before_their_test(found)
-        if found is not kernel:
+        ordered = relaxed(kernel)
+        assert Counter(ordered.statements) == Counter(kernel.statements)
+        assert [c for b in ordered.blocks for c in b.checks] == [c for b in kernel.blocks for c in b.checks]
+        assert (ordered.loads, ordered.outputs, ordered.blocks[:2]) == (kernel.loads, kernel.outputs, kernel.blocks[:2])
+        assert not divisions_before_their_test(ordered)
+        if ordered is not kernel:
             changed += 1
             assert waiting(kernel) >= REGISTERS
-            assert waiting(found) < waiting(kernel)
+            assert waiting(ordered) < waiting(kernel)
     assert changed
 
 

@@ -25,12 +25,12 @@ QUANTITIES = ("inverse_dynamics", "forward_dynamics", "multipliers")
 def values(prepared: Prepared, program: Program, parameters: list[float]) -> list[float]:
     """What a call that prepares the parameters computes; it may hold infinities, which a kernel answers for."""
     once = Kernel("prepare", (), prepared.loads, (Block(prepared.statements, ()),), (), ())
-    found = []
+    computed = []
     for value in prepared.values:
         kernel = replace(once, outputs=(value,), shape=(1,))
         status, outputs = Interpreter(program.sincos, program.scalar).run(kernel, {}, parameters)
-        found += outputs if status is Status.OK else [float("inf")]
-    return found
+        computed += outputs if status is Status.OK else [float("inf")]
+    return computed
 
 
 @pytest.mark.parametrize("scalar", shipped.SCALARS)

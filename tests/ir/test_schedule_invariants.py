@@ -48,12 +48,12 @@ def walk(block: Block, known: set[str]) -> None:
 
 
 def used(block: Block) -> set[str]:
-    found = {name for statement in block.statements for name in names(*statement.operands)}
+    used_names = {name for statement in block.statements for name in names(*statement.operands)}
     for check in block.checks:
-        found |= names(check.value, check.limit)
+        used_names |= names(check.value, check.limit)
         if check.first is not None:
-            found |= used(check.first)
-    return found
+            used_names |= used(check.first)
+    return used_names
 
 
 @pytest.mark.parametrize("scalar", ["float64", "float32"])

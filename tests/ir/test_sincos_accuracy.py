@@ -127,16 +127,16 @@ def test_double_precision_over_the_wide_range() -> None:
 
 def hardest(most: int) -> list[float]:
     """Floats closest to multiples of a right angle: multiples of 2**e near numerators of its continued fraction."""
-    found = []
+    angles = []
     for exponent in range(-52, 1):
         rest, before, now = PI / 2 / Fraction(2) ** exponent, (0, 1), (1, 0)
         while now[1] <= most:
             whole = rest.numerator // rest.denominator
             before, now = now, (whole * now[0] + before[0], whole * now[1] + before[1])
             if 0 < now[0] < 2**53 and 0 < now[1] <= most:
-                found.append(float(now[0] * Fraction(2) ** exponent))
+                angles.append(float(now[0] * Fraction(2) ** exponent))
             rest = 1 / (rest - whole)
-    return found
+    return angles
 
 
 @pytest.mark.parametrize("wide", [False, True])

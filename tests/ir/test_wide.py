@@ -138,13 +138,13 @@ def given(scalar: Scalar) -> list[dict[str, tuple[float, ...]]]:
     """x and y that differ in the second half of their digits, and angles."""
     source = random.Random(5)
     eps = float(UNIT_ROUNDOFF[scalar])
-    found = []
+    states = []
     for _ in range(20):
         x = round_literal(Fraction(source.uniform(1, 2)), scalar)
         y = round_literal(Fraction(x * (1 + 2 * math.sqrt(eps) * source.randint(1, 9))), scalar)
         a = round_literal(Fraction(source.uniform(0.5, 1)), scalar)
-        found.append({"q": (a,), "qd": (x, y), "qdd": (), "u": (), "p": (a / 64,)})
-    return found
+        states.append({"q": (a,), "qd": (x, y), "qdd": (), "u": (), "p": (a / 64,)})
+    return states
 
 
 def _state(one: Mapping[str, Sequence[float]]) -> State:
@@ -328,9 +328,9 @@ def test_many_states_have_the_bits_of_one(build: Callable[[Lines], str], scalar:
     for kernel in (lines.kernel(last, checks=(limit,)), widened(lines.kernel(last, checks=(limit,)), scalar)):
         for function in (sincos(scalar), None):
             states = [*given(scalar), {"q": (math.nan,), "qd": (math.inf, 0.0), "qdd": (), "u": (), "p": (1.0,)}]
-            found = run_many(kernel, function, scalar, states)
+            results = run_many(kernel, function, scalar, states)
             interpreter = Interpreter(function, scalar)
-            assert found == [interpreter.run(kernel, one, one["p"]) for one in states]
+            assert results == [interpreter.run(kernel, one, one["p"]) for one in states]
 
 
 def _inner(last: str) -> Check:

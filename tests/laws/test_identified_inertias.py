@@ -46,10 +46,10 @@ def messages(text: str) -> list[str]:
 @pytest.mark.parametrize("moment", ["0.6", "-0.3"])
 def test_an_identified_arm_is_generated_and_its_links_are_told(moment: str) -> None:
     text = ARM.replace("NEGATIVE", moment)
-    told = ["the inertia of `shoulder` violates the triangle inequality"]
-    told += ["the inertia of `elbow` has a negative principal moment, -0.304951"] if moment == "-0.3" else []
-    found = messages(text)
-    assert found[: len(told)] == told
+    expected = ["the inertia of `shoulder` violates the triangle inequality"]
+    expected += ["the inertia of `elbow` has a negative principal moment, -0.304951"] if moment == "-0.3" else []
+    notices = messages(text)
+    assert notices[: len(expected)] == expected
     system = System(text, OUTPUTS)
     for sample in sample_states(system.reference, OUTPUTS, 8):
         system.assert_right(sample.state, OUTPUTS)

@@ -56,7 +56,7 @@ def determinant(q: Sequence[float], first: int, second: int) -> float:
 @pytest.mark.parametrize("pair", [(0, 1), (0, 2), (1, 2)])
 def test_where_a_pair_of_drives_is_singular(pair: tuple[int, int]) -> None:
     given = manipulator()
-    found = 0
+    sign_changes = 0
     path = list(along_the_path(given, 96))
     for left, right in zip(path, [*path[1:], path[0]], strict=True):
         values = [determinant(q, *pair) for q in (left, right)]
@@ -64,8 +64,8 @@ def test_where_a_pair_of_drives_is_singular(pair: tuple[int, int]) -> None:
             q = _zero(left, right, pair)
             given.assert_right(given.state(q), NAMES)
             given.assert_right(given.state(q, scalar="float32"), NAMES, "float32")
-            found += 1
-    assert found == 2
+            sign_changes += 1
+    assert sign_changes == 2
 
 
 def _zero(left: Sequence[float], right: Sequence[float], pair: tuple[int, int]) -> list[float]:

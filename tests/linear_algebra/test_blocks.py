@@ -42,8 +42,8 @@ def skates() -> System:
 
 def test_the_components(skates: System) -> None:
     names = [c.name for c in skates.model.coordinates]
-    found = [[names[j] for j in part.columns] for part in components(skates.derivations.mechanics.constraint_jacobian)]
-    assert found == [["p", "q"], ["k"], ["x", "y"], ["u", "v", "b"]]
+    parts = [[names[j] for j in part.columns] for part in components(skates.derivations.mechanics.constraint_jacobian)]
+    assert parts == [["p", "q"], ["k"], ["x", "y"], ["u", "v", "b"]]
 
 
 def test_values_are_those_of_the_reference(skates: System) -> None:

@@ -49,12 +49,12 @@ def test_projections_hold_locked_coordinates(dependent: bool) -> None:
     assert all(x.is_zero for x in along.space.project(mechanics.applied_force_at(along.admissible)))
     values = Evaluator([*flatten(projector), *flatten(along.space.pseudoinverse), *flatten(along.space.rows)])
     for point in configurations(mechanics):
-        found = np.array(values(point))
+        numbers = np.array(values(point))
         r = generic.r
-        rows = found[25 + 5 * r :].reshape(r, 5)
+        rows = numbers[25 + 5 * r :].reshape(r, 5)
         inverse = np.linalg.pinv(rows, rcond=1e-9)
-        assert found[:25].reshape(5, 5) == pytest.approx(np.eye(5) - inverse @ rows, abs=1e-12)
-        assert found[25 : 25 + 5 * r].reshape(5, r) == pytest.approx(inverse, abs=1e-10)
+        assert numbers[:25].reshape(5, 5) == pytest.approx(np.eye(5) - inverse @ rows, abs=1e-12)
+        assert numbers[25 : 25 + 5 * r].reshape(5, r) == pytest.approx(inverse, abs=1e-10)
 
 
 def test_what_is_held_along_a_branch_alone_is_not_locked() -> None:

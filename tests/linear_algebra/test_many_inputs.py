@@ -37,10 +37,10 @@ def test_least_norm_and_least_squares(size: int, count: int, degree: int) -> Non
     equations = ReflectedInputs(graph, columns, size, degree, everywhere=False)
     values = {f"a_{k}_{i}": matrix[i, k] for k in range(count) for i in range(size)}
     values |= {f"f_{i}": force[i] for i in range(size)}
-    found = Evaluator([*equations.solve(symbols(graph, "f", size)), equations.square()])(values)
-    assert found[:-1] == pytest.approx(np.linalg.pinv(matrix, rcond=1e-10) @ force, rel=1e-9, abs=1e-10)
+    numbers = Evaluator([*equations.solve(symbols(graph, "f", size)), equations.square()])(values)
+    assert numbers[:-1] == pytest.approx(np.linalg.pinv(matrix, rcond=1e-10) @ force, rel=1e-9, abs=1e-10)
     forms = ActuationForms(RowForms(graph, (), size, 0), columns, degree)
-    assert found[-1] == pytest.approx(Evaluator([forms.square()])(values)[0], rel=1e-8)
+    assert numbers[-1] == pytest.approx(Evaluator([forms.square()])(values)[0], rel=1e-8)
 
 
 @pytest.mark.parametrize(("size", "count", "degree"), SHAPES)
@@ -68,8 +68,8 @@ def test_a_component_that_all_but_vanishes_is_not_divided_by(place: int) -> None
     equations = ReflectedInputs(graph, columns, 6, 4, everywhere=False)
     values = {f"a_{k}_{i}": matrix[i, k] for k in range(6) for i in range(6)}
     values |= {f"f_{i}": force[i] for i in range(6)}
-    found = Evaluator(equations.solve(symbols(graph, "f", 6)))(values)
-    assert found == pytest.approx(np.linalg.pinv(matrix, rcond=1e-10) @ force, rel=1e-9, abs=1e-10)
+    solution = Evaluator(equations.solve(symbols(graph, "f", 6)))(values)
+    assert solution == pytest.approx(np.linalg.pinv(matrix, rcond=1e-10) @ force, rel=1e-9, abs=1e-10)
 
 
 @pytest.mark.slow
@@ -85,10 +85,10 @@ def test_a_form_is_found_where_components_of_inputs_vanish_in_turn() -> None:
     methods = Methods(model, genericity(System(model)))
     made = methods.candidate(INPUTS, "minor")
     assert isinstance(made, Candidate)
-    found = methods.validity(made)
-    assert found.singular == ()
+    validity = methods.validity(made)
+    assert validity.singular == ()
     # pivots are 0 only where the rank drops, by theorem; squares that pivoting compares may be, and are searched
-    assert found.proved > 0
+    assert validity.proved > 0
 
 
 def test_the_number_of_products_decides() -> None:
@@ -125,7 +125,7 @@ def test_twelve_directions_are_solved_and_measured(drives: int) -> None:
     point = {f"y_{k}": source.uniform(-1, 1) for k in range(13)}
     qdd = np.array([source.uniform(-1, 1) for _ in range(13)])
     still = {f"y_{k}_dot": 0.0 for k in range(13)}
-    found = Evaluator(outputs)(point | still | {f"y_{k}_ddot": qdd[k] for k in range(13)})
+    values = Evaluator(outputs)(point | still | {f"y_{k}_ddot": qdd[k] for k in range(13)})
     force = np.array([2 * (2 + np.sin(point[f"y_{k}"])) for k in range(13)]) * qdd
     row = np.array([1 + k % 3 + np.cos(point[f"y_{k}"]) for k in range(13)])
     projector = np.eye(13) - np.outer(row, row) / (row @ row)
@@ -133,15 +133,15 @@ def test_twelve_directions_are_solved_and_measured(drives: int) -> None:
     for k in range(drives):
         for j in range(3):
             control[(k + j) % 13, k] = j + 1
-    assert found[:drives] == pytest.approx(np.linalg.pinv(projector @ control, rcond=1e-9) @ force, rel=1e-7, abs=1e-8)
-    assert found[drives] == pytest.approx(1)
+    assert values[:drives] == pytest.approx(np.linalg.pinv(projector @ control, rcond=1e-9) @ force, rel=1e-7, abs=1e-8)
+    assert values[drives] == pytest.approx(1)
 
     def squared_minors(a: np.ndarray) -> float:
         """e(A), from the characteristic polynomial of A^T A."""
         coefficients = np.poly(np.linalg.eigvalsh(a.T @ a))
         return float(abs(coefficients[generic.alpha]))
 
-    assert found[drives + 1] == pytest.approx(squared_minors(projector @ control) / squared_minors(control), rel=1e-6)
+    assert values[drives + 1] == pytest.approx(squared_minors(projector @ control) / squared_minors(control), rel=1e-6)
 
 
 @pytest.mark.slow

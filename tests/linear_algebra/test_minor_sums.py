@@ -40,10 +40,10 @@ def test_no_digit_is_lost_between_many_minors(rows: int, number: int, degree: in
     ]
     assert not small_family([[0]], symbols, degree)
     point = {f"x{i}_{k}": column[i] for k, column in enumerate(columns) for i in range(rows) if column[i]}
-    (found,) = Evaluator([squared_minors(graph, symbols, degree)])(point)
+    (total,) = Evaluator([squared_minors(graph, symbols, degree)])(point)
     meant = exactly(columns, degree)
     # directions that are `near` apart are known to as many digits less
-    assert abs(Fraction(found) - meant) <= Fraction(200 * 2**-53 / near) * meant
+    assert abs(Fraction(total) - meant) <= Fraction(200 * 2**-53 / near) * meant
 
 
 def test_coordinates_without_entries_change_nothing() -> None:
@@ -62,5 +62,5 @@ def test_columns_that_depend_on_each_other_have_no_minors() -> None:
     column = tuple(graph.symbol(f"x{i}") for i in range(12))
     columns = [tuple(x * (k + 1) for x in column) for k in range(12)]
     point = {f"x{i}": 0.1 * i - 0.55 for i in range(12)}
-    (found,) = Evaluator([squared_minors(graph, columns, 4)])(point)
-    assert 0 <= found < 1e-30
+    (total,) = Evaluator([squared_minors(graph, columns, 4)])(point)
+    assert 0 <= total < 1e-30

@@ -50,8 +50,8 @@ def _rows(graph: Graph) -> Matrix:
 
 def test_columns_are_gathered_by_their_directions() -> None:
     rows = _rows(Graph())
-    found = families(rows, 7)
-    assert [family.entries for family in found] == [{0: 1, 2: Fraction(-2, 3), 5: -1}, {1: 1, 6: 3}, {4: 1}]
+    groups = families(rows, 7)
+    assert [family.entries for family in groups] == [{0: 1, 2: Fraction(-2, 3), 5: -1}, {1: 1, 6: 3}, {4: 1}]
 
 
 def test_columns_that_are_proportional_here_and_there_stay_apart() -> None:
@@ -79,10 +79,10 @@ def test_what_a_space_of_families_gives_is_what_columns_give(kept: tuple[int, ..
     drawn = np.random.default_rng(1)
     names = ("s", "t", *(f"x{j}" for j in range(n)), *(f"a{j}" for j in range(r)))
     point = {name: drawn.uniform(0.3, 1) for name in names}
-    found = np.array(Evaluator([*scalars, *plain])(point))
+    numbers = np.array(Evaluator([*scalars, *plain])(point))
     sizes = [r * n, n * n, n * (n - rank), n * r, n - rank, n, n, r]
     b, projector, basis, inverse, along, projected, lifted, multipliers = np.split(
-        found[: sum(sizes)], np.cumsum(sizes)[:-1]
+        numbers[: sum(sizes)], np.cumsum(sizes)[:-1]
     )
     b, projector, basis, inverse = b.reshape(r, n), projector.reshape(n, n), basis.reshape(n, -1), inverse.reshape(n, r)
     right = np.linalg.pinv(b, rcond=1e-10)
@@ -96,7 +96,7 @@ def test_what_a_space_of_families_gives_is_what_columns_give(kept: tuple[int, ..
     assert lifted == pytest.approx(right @ [point[f"a{i}"] for i in range(r)], rel=1e-9, abs=1e-9)
     assert multipliers == pytest.approx(right.T @ vector, rel=1e-9, abs=1e-9)
     if rank == r:
-        turned, usual = found[sum(sizes) :]
+        turned, usual = numbers[sum(sizes) :]
         reflections = HouseholderSpace(graph, rows, n)
         own = np.array(Evaluator(flatten(reflections.basis))(point)).reshape(n, -1)
         orders = [np.linalg.det(np.vstack([f.T, b])) for f in (basis, own)]
@@ -120,8 +120,8 @@ def test_the_null_space_is_constant_where_families_are_as_many_as_the_rank() -> 
     rates = {f"{c.name}_{dots}": drawn.normal() for c in mechanics.model.coordinates for dots in ("dot", "ddot")}
     values = Evaluator([*u.outputs, *mechanics.balance])
     for point in configurations(mechanics):
-        found = np.array(values(point | rates))
+        numbers = np.array(values(point | rates))
         across = np.array([1, 0, -1, 0]) / np.sqrt(2), np.array([0, 1.5, 0, 1]) / np.sqrt(3.25)
-        balance = found[2:][[1, 0, 3, 4]]
-        assert found[0] == pytest.approx(across[0] @ balance * np.sqrt(2), rel=1e-13)
-        assert found[1] == pytest.approx(across[1] @ balance * np.sqrt(3.25), rel=1e-13)
+        balance = numbers[2:][[1, 0, 3, 4]]
+        assert numbers[0] == pytest.approx(across[0] @ balance * np.sqrt(2), rel=1e-13)
+        assert numbers[1] == pytest.approx(across[1] @ balance * np.sqrt(3.25), rel=1e-13)

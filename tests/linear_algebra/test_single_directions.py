@@ -148,9 +148,9 @@ def test_rows_that_lean_on_leaning_rows_are_as_near_to_a_loss_as_all_of_them_tog
         assert all(passes(guard, values) for guard in guards) is regular
         # the smallest singular value, up to the root of the number of rows
         squares = [Evaluator([guard.denominator / guard.scale])(values)[0] for guard in guards if guard.scale]
-        found = math.sqrt(min(squares))
+        measure = math.sqrt(min(squares))
         smallest = np.linalg.svd([[values[f"x_{i}_{j}"] for j in range(SIZE)] for i in range(4)])[1][-1]
-        assert smallest * (1 - 1e-6) <= found <= smallest * 2
+        assert smallest * (1 - 1e-6) <= measure <= smallest * 2
 
 
 def test_what_rounding_leaves_of_a_dependent_row_beside_rows_that_are_nearly_parallel_is_no_direction() -> None:
@@ -224,8 +224,8 @@ def test_a_product_of_masses_is_lost_only_where_one_is_0() -> None:
     assert [check.limit for check in checks] == [Literal(Fraction(0))]
     masses = [(2.0, 0.3), (1e-9, 1e9), (-2.0, 0.3), (0.0, 0.3), (2.0, 0.0)]
     states = [State((0.1, 0.7, 0.2), (0.3, 0.2, 0.1), (), (1.0,), given) for given in masses]
-    found = [one.status for one in outcomes(kernel, program.sincos, "float64", states)]
-    assert found == [Status.OK] * 3 + [Status.MASS_RANK] * 2
+    statuses = [one.status for one in outcomes(kernel, program.sincos, "float64", states)]
+    assert statuses == [Status.OK] * 3 + [Status.MASS_RANK] * 2
 
 
 def test_what_cancels_somewhere_is_held_against_its_scale() -> None:
@@ -248,11 +248,11 @@ def test_a_light_body_between_heavy_ones_is_no_lost_direction() -> None:
     program = schedule(selection.mechanics, selection.quantities, ("float32",))["float32"]
     (kernel,) = (one for one in program.kernels if one.name == asked)
     state = State((0.1, 0.2, 0.3), (0.0,) * 3, (), (3.0, 1.0, 5.0), ())
-    (found,) = outcomes(kernel, program.sincos, "float32", [state])
+    (outcome,) = outcomes(kernel, program.sincos, "float32", [state])
     # of each body alone: m_1 a_1 = u_1 - u_2, m_2 a_2 = u_2 - u_3, m_3 a_3 = u_3
     first, second, third = (3 - 1) / 1000, (1 - 5) / 1e-6, 5 / 1000
-    assert found.status == Status.OK
-    assert found.entries == pytest.approx([first, second - first, third - second], rel=4 * float(SINGLE))
+    assert outcome.status == Status.OK
+    assert outcome.entries == pytest.approx([first, second - first, third - second], rel=4 * float(SINGLE))
 
 
 def test_pivots_of_a_mass_matrix_below_0_are_lost() -> None:
@@ -261,8 +261,8 @@ def test_pivots_of_a_mass_matrix_below_0_are_lost() -> None:
     program = schedule(selection.mechanics, selection.quantities, ("float64",))["float64"]
     (kernel,) = (one for one in program.kernels if one.name == asked)
     states = [State((0.1, 0.7, 0.2), (0.3, 0.2, 0.1), (), (1.0,), (k,)) for k in (0.4, 4.0)]
-    found = outcomes(kernel, program.sincos, "float64", states)
-    assert [one.status for one in found] == [Status.OK, Status.MASS_RANK]
+    results = outcomes(kernel, program.sincos, "float64", states)
+    assert [one.status for one in results] == [Status.OK, Status.MASS_RANK]
 
 
 @pytest.mark.campaign

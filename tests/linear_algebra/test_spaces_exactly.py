@@ -51,7 +51,7 @@ def _proportional(graph: Graph, draw: random.Random) -> Matrix:
     return tuple(zip(*columns, strict=True))
 
 
-def _told(space: NullSpace, x: Vector, a: Vector) -> list[Scalar]:
+def _invariants(space: NullSpace, x: Vector, a: Vector) -> list[Scalar]:
     """What a null space tells, whatever basis it has."""
     vectors = (space.project(x), space.lift(a), space.lift_transposed(x))
     return [*flatten(space.projector), *flatten(space.pseudoinverse), *(entry for v in vectors for entry in v)]
@@ -75,7 +75,7 @@ def test_a_null_space_by_reflections_is_that_by_minors(shape: tuple[int, int], s
     kept = [one - other for one, other in zip(flatten(identity(graph, n)), flatten(along), strict=True)]
     _same("1 - B^+ B", kept, flatten(minors.projector))
     for space in (HouseholderSpace(graph, rows, n), reflected(graph, rows, n, r)):
-        _same("reflections", _told(minors, x, a), _told(space, x, a))
+        _same("reflections", _invariants(minors, x, a), _invariants(space, x, a))
         across = transpose(space.basis, n - r)
         square_of_basis = matmul(graph, across, space.basis, n - r)
         _same("an orthonormal basis", flatten(square_of_basis), flatten(identity(graph, n - r)))
@@ -104,16 +104,16 @@ def test_dependent_rows_by_minors_have_the_pseudoinverse(seed: int) -> None:
 def test_spaces_of_families_and_of_blocks_are_the_space(seed: int) -> None:
     graph, draw = Graph(), random.Random(seed)
     rows = _proportional(graph, draw)
-    found = families(rows, 5)
-    assert len(found) <= 3
+    groups = families(rows, 5)
+    assert len(groups) <= 3
     x, a = _vectors(graph, 5, 2)
-    space = FamilySpace(graph, rows, 5, 2, found)
-    _same("families", _told(MinorSpace(graph, rows, 5, 2), x, a), _told(space, x, a))
+    space = FamilySpace(graph, rows, 5, 2, groups)
+    _same("families", _invariants(MinorSpace(graph, rows, 5, 2), x, a), _invariants(space, x, a))
     zero = (graph.zero,) * 2
     left, right = _rows(graph, draw, 1, 2, 0.0), _rows(graph, draw, 1, 2, 0.0)
     apart = (*((*row, *zero) for row in left), *((*zero, *row) for row in right))
     x, a = _vectors(graph, 4, 2)
-    _same("blocks", _told(MinorSpace(graph, apart, 4, 2), x, a), _told(BlockSpace(graph, apart, 4), x, a))
+    _same("blocks", _invariants(MinorSpace(graph, apart, 4, 2), x, a), _invariants(BlockSpace(graph, apart, 4), x, a))
 
 
 @pytest.mark.parametrize("everywhere", [False, True])
@@ -122,10 +122,10 @@ def test_solutions_of_square_systems_solve_them(seed: int, everywhere: bool) -> 
     graph, n = Graph(), 4
     matrix = _rows(graph, random.Random(seed), n, n)
     (_, right) = _vectors(graph, 0, n)
-    found = by_rows(graph, matrix, right, everywhere)
-    _same("A x", right, matvec(graph, matrix, found.values))
+    solution = by_rows(graph, matrix, right, everywhere)
+    _same("A x", right, matvec(graph, matrix, solution.values))
     determinant = wedge_all(unit(graph), matrix).get((1 << n) - 1, graph.zero)
-    _same("det A", [determinant * determinant], [graph.product(found.squares)])
+    _same("det A", [determinant * determinant], [graph.product(solution.squares)])
 
 
 @pytest.mark.parametrize("seed", SEEDS)

@@ -32,8 +32,10 @@ def solved(matrix: list[list[float]], right: list[float]) -> tuple[list[float], 
         at |= {f"a{i}{j}": x for j, x in enumerate(row)}
         rows.append(tuple(graph.symbol(f"a{i}{j}") if x else graph.zero for j, x in enumerate(row)))
     at |= {f"b{i}": x for i, x in enumerate(right)}
-    found = by_rows(graph, tuple(rows), tuple(graph.symbol(f"b{i}") for i in range(len(right))))
-    *values, product, bound = Evaluator([*found.values, graph.product(found.squares), graph.product(found.lengths)])(at)
+    solution = by_rows(graph, tuple(rows), tuple(graph.symbol(f"b{i}") for i in range(len(right))))
+    *values, product, bound = Evaluator(
+        [*solution.values, graph.product(solution.squares), graph.product(solution.lengths)]
+    )(at)
     return values, product, bound
 
 
@@ -67,8 +69,8 @@ def test_pivots_that_vanish_are_no_matter() -> None:
     at = {f"a{i}{j}": float(i + j == n - 1) * (i + 1) for i in range(n) for j in range(n)} | {
         f"b{i}": 1.0 for i in range(n)
     }
-    found = by_rows(graph, rows, tuple(graph.symbol(f"b{i}") for i in range(n)))
-    assert Evaluator(found.values)(at) == pytest.approx([1 / (n - j) for j in range(n)], rel=1e-14)
+    solution = by_rows(graph, rows, tuple(graph.symbol(f"b{i}") for i in range(n)))
+    assert Evaluator(solution.values)(at) == pytest.approx([1 / (n - j) for j in range(n)], rel=1e-14)
 
 
 def test_a_row_with_one_entry_takes_no_root() -> None:
@@ -84,8 +86,8 @@ def test_a_row_with_one_entry_takes_no_root() -> None:
     rows = tuple(
         tuple(graph.symbol(f"a{i}{j}") if x else graph.zero for j, x in enumerate(row)) for i, row in enumerate(matrix)
     )
-    found = by_rows(graph, rows, tuple(map(graph.const, (1, 2, 3, 4))))
-    assert all(node.op != "sqrt" for node in topological(found.values))
+    solution = by_rows(graph, rows, tuple(map(graph.const, (1, 2, 3, 4))))
+    assert all(node.op != "sqrt" for node in topological(solution.values))
 
 
 def test_small_rows_keep_their_digits() -> None:
@@ -95,8 +97,8 @@ def test_small_rows_keep_their_digits() -> None:
     x = [source.uniform(-2, 2) for _ in range(6)]
     scaled = [[entry * 2.0 ** (-9 * i) for entry in row] for i, row in enumerate(matrix)]
     right = [math.fsum(a * b for a, b in zip(row, x, strict=True)) for row in scaled]
-    found, _, _ = solved(scaled, right)
-    assert found == pytest.approx(x, rel=1e-11)
+    solution, _, _ = solved(scaled, right)
+    assert solution == pytest.approx(x, rel=1e-11)
 
 
 def test_a_row_of_zeros_divides_nothing_by_zero_where_it_must_not() -> None:
@@ -104,6 +106,6 @@ def test_a_row_of_zeros_divides_nothing_by_zero_where_it_must_not() -> None:
     names = [[f"a{i}{j}" for j in range(6)] for i in range(6)]
     at = {name: source.uniform(1, 2) * (i > 0) for i, row in enumerate(names) for name in row}
     matrix, right = tuple(tuple(map(graph.symbol, row)) for row in names), (graph.one,) * 6
-    found = by_rows(graph, matrix, right, everywhere=True)
-    assert Evaluator([graph.product(found.squares)])(at) == [0]
+    solution = by_rows(graph, matrix, right, everywhere=True)
+    assert Evaluator([graph.product(solution.squares)])(at) == [0]
     assert math.isnan(Evaluator([graph.product(by_rows(graph, matrix, right).squares)])(at)[0])

@@ -70,8 +70,8 @@ def test_what_is_solved_is_the_system(seed: int) -> None:
     marks = [[(f"a{i}{j}", mark) for j, mark in enumerate(row)] for i, row in enumerate(pattern)]
     a = np.array([[values[name] if mark == "x" else 0.0 for name, mark in row] for row in marks])
     exact = np.linalg.solve(a, [values[f"b{i}"] for i in range(size)])
-    found = Evaluator(solution.solve(right))(values)
-    assert np.allclose(found, exact, rtol=1e-9, atol=1e-9)
+    computed = Evaluator(solution.solve(right))(values)
+    assert np.allclose(computed, exact, rtol=1e-9, atol=1e-9)
     # the denominators vanish with the determinant of the whole, and with nothing else
     guards = solution.guards(Status.TASK_RANK, ())
     denominators = Evaluator([guard.denominator for guard in guards])(values)
@@ -102,8 +102,8 @@ def test_rows_that_have_nothing_to_give_stay() -> None:
 
 
 def plain(graph_values: dict[str, float], rows: Matrix) -> np.ndarray:
-    found = Evaluator([x for row in rows for x in row])(graph_values)
-    return np.array(found).reshape(len(rows), -1)
+    entries = Evaluator([x for row in rows for x in row])(graph_values)
+    return np.array(entries).reshape(len(rows), -1)
 
 
 def test_rows_of_numbers_are_solved_first() -> None:
@@ -121,9 +121,9 @@ def test_rows_of_numbers_are_solved_first() -> None:
     right = [graph.symbol(f"r{k}") for k in range(3)]
     values = {"b": 0.7, "c": -1.1, "d": 0.9, "r0": 0.3, "r1": -0.4, "r2": 0.8}
     left = np.linalg.solve(plain(values, rows.matrix), Evaluator(rows.of(right))(values))
-    found = Evaluator(rows.completed([graph.const(Fraction(float(x))) for x in left], right))(values)
-    assert np.allclose(plain(values, matrix) @ found, [0.3, -0.4, 0.8], atol=1e-14)
-    assert np.allclose(Evaluator(rows.kept([graph.const(Fraction(float(x))) for x in found]))(values), left, atol=0)
+    solution = Evaluator(rows.completed([graph.const(Fraction(float(x))) for x in left], right))(values)
+    assert np.allclose(plain(values, matrix) @ solution, [0.3, -0.4, 0.8], atol=1e-14)
+    assert np.allclose(Evaluator(rows.kept([graph.const(Fraction(float(x))) for x in solution]))(values), left, atol=0)
 
 
 @pytest.mark.parametrize("side", [1, -1])

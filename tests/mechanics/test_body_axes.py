@@ -107,9 +107,9 @@ def swept(model: Model) -> Quantity:
     mechanics.__dict__["geometric_jacobian"] = tuple(
         tuple(gradient(mechanics.graph, row, mechanics.q)) for row in mechanics.constraint_residual
     )
-    found = elimination_candidate(mechanics, genericity(System(model)))
-    assert found is not None
-    return found.derived
+    candidate = elimination_candidate(mechanics, genericity(System(model)))
+    assert candidate is not None
+    return candidate.derived
 
 
 def state(model: Model, seed: int, **given: float) -> dict[str, float]:
@@ -200,22 +200,22 @@ def test_models_without_such_bodies() -> None:
 
 def exactly(outputs: Sequence[Scalar], at: dict[str, float]) -> list[float]:
     """The scalars to 60 digits, rounded."""
-    found: dict[Scalar, arb] = {}
+    by_scalar: dict[Scalar, arb] = {}
     with ctx.workdps(60):
         for node in topological(outputs):
-            args = [found[argument] for argument in node.args]
+            args = [by_scalar[argument] for argument in node.args]
             match node.op:
                 case "symbol":
-                    found[node] = arb(at[str(node.payload)])
+                    by_scalar[node] = arb(at[str(node.payload)])
                 case "copysign":
-                    found[node] = abs(args[0]) if float(args[1]) >= 0 else -abs(args[0])
+                    by_scalar[node] = abs(args[0]) if float(args[1]) >= 0 else -abs(args[0])
                 case _ if node.constant is not None:
-                    found[node] = arb(node.constant.numerator) / node.constant.denominator
+                    by_scalar[node] = arb(node.constant.numerator) / node.constant.denominator
                 case "sin" | "cos" | "sqrt":
-                    found[node] = getattr(args[0], node.op)()
+                    by_scalar[node] = getattr(args[0], node.op)()
                 case _:
-                    found[node] = FUNCTIONS[node.op](*args)
-        return [float(found[output]) for output in outputs]
+                    by_scalar[node] = FUNCTIONS[node.op](*args)
+        return [float(by_scalar[output]) for output in outputs]
 
 
 @pytest.mark.parametrize("gap", [1e-2, 1e-4, 1e-6])
@@ -226,5 +226,5 @@ def test_digits_are_kept_towards_singularities(where: str, gap: float) -> None:
         at = state(model, seed)
         close = {"theta": math.pi / 2 - gap} if where == "steep" else {k: gap * at[k] for k in ("z", "theta", "phi")}
         expected = exactly(twists.outputs, at | close)
-        found = Evaluator(twists.outputs)(at | close)
-        assert found == pytest.approx(expected, rel=1e-11, abs=1e-13 * max(map(abs, expected)))
+        values = Evaluator(twists.outputs)(at | close)
+        assert values == pytest.approx(expected, rel=1e-11, abs=1e-13 * max(map(abs, expected)))

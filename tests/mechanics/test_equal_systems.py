@@ -103,16 +103,16 @@ def test_columns_beside_each_other_are_the_same_equations() -> None:
     turned = in_absolute_angles(load_text(CHAIN, "chain.yaml"))
     assert turned is not None
     problem = Problem(turned, ())
-    found = apart(problem)
-    assert found is not None
+    separated = apart(problem)
+    assert separated is not None
     graph, n = turned.graph, turned.n
-    axes = [found.brought_back(Motion(axis, (), ())).accelerations for axis in identity(graph, n)]
+    axes = [separated.brought_back(Motion(axis, (), ())).accelerations for axis in identity(graph, n)]
     t = transpose(tuple(axes), n)
     assert t != identity(graph, n)
     mass = matmul(graph, transpose(t, n), matmul(graph, problem.mass_matrix, t, n), n)
-    _same("T^T G T", flatten(mass), flatten(found.mass_matrix))
-    _same("B T", flatten(matmul(graph, problem.rows, t, n)), flatten(found.rows))
-    _same("T^T f", matvec(graph, transpose(t, n), problem.force), found.force)
+    _same("T^T G T", flatten(mass), flatten(separated.mass_matrix))
+    _same("B T", flatten(matmul(graph, problem.rows, t, n)), flatten(separated.rows))
+    _same("T^T f", matvec(graph, transpose(t, n), problem.force), separated.force)
 
 
 SLIDES = """model: slides
@@ -165,9 +165,9 @@ def test_sums_are_combined_term_by_term() -> None:
             sign = draw.choice((1, -1))
             x, y = x + sign * size * first, y + draw.choice((sign, 1, -1)) * size * second
         plain = graph.raw("add", (graph.raw("mul", (c, x)), graph.raw("mul", (s, y))))
-        found = combined(c, x, s, y)
-        _same("combining", [plain], [found])
-        paired += found.size < plain.size
+        combination = combined(c, x, s, y)
+        _same("combining", [plain], [combination])
+        paired += combination.size < plain.size
     assert paired > 10
 
 

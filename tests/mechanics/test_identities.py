@@ -37,14 +37,14 @@ CLOSE = 2e-9
 def states(name: str) -> tuple[State, ...]:
     """Regular states at random configurations, off the manifold too: identities hold everywhere."""
     given, source = shipped_system(name), random.Random(name)
-    found: list[State] = []
-    while len(found) < 3:
+    regular_states: list[State] = []
+    while len(regular_states) < 3:
         q = [source.uniform(-1.4, 1.4) for _ in given.model.coordinates]
         rates = [source.uniform(-2, 2) for _ in q]
         state = given.state(q, rates)
         if min(value for row in given.matrix("singularity", state) for value in row) > 1e-2 and _regular(given, state):
-            found.append(state)
-    return tuple(found)
+            regular_states.append(state)
+    return tuple(regular_states)
 
 
 def _regular(given: System, state: State) -> bool:
@@ -157,8 +157,8 @@ def test_rates_are_derivatives_along_the_motion(model: str) -> None:
     rates = [name for name in ("nullspace_projector_dot", "constraint_jacobian_dot") if name in given.names]
     for state in states(model):
         for name, exact in given.reference.evaluate(state, rates).items():
-            found = array(given, name, state)
-            assert near(found, np.array([float(entry) for entry in exact]).reshape(found.shape))
+            rate = array(given, name, state)
+            assert near(rate, np.array([float(entry) for entry in exact]).reshape(rate.shape))
 
 
 def rate_of(given: System, name: str, state: State, acceleration: np.ndarray | None = None) -> np.ndarray:
@@ -174,8 +174,8 @@ def rate_of(given: System, name: str, state: State, acceleration: np.ndarray | N
     for symbols, values in ((system.q, state.q), (system.qd, state.qd), (system.qdd, state.qdd)):
         numbers = chain(numbers, zip(symbols, values, strict=True))
     point = {str(symbol.payload): value for symbol, value in numbers}
-    found = Evaluator(derivative_along(graph, quantity.outputs, direction))(point)
-    return np.array(found).reshape(np.array(given.matrix(name, state)).shape)
+    derivative = Evaluator(derivative_along(graph, quantity.outputs, direction))(point)
+    return np.array(derivative).reshape(np.array(given.matrix(name, state)).shape)
 
 
 @pytest.mark.parametrize("model", MODELS)

@@ -50,13 +50,13 @@ def _shares(text: str) -> list[list[float]]:
     values = Evaluator([*(guard.denominator for guard in guards), *scales])
     assert len(scales) == len(guards)
     source = random.Random(3)
-    found = []
+    shares = []
     for _ in range(20):
         point = dict(parameter_values(mechanics))
         point |= {c.name: source.uniform(0.2, 0.9) for c in model.coordinates}
         got = values(point)
-        found.append([a / b for a, b in zip(got[: len(guards)], got[len(guards) :], strict=True)])
-    return found
+        shares.append([a / b for a, b in zip(got[: len(guards)], got[len(guards) :], strict=True)])
+    return shares
 
 
 def test_a_rod_a_million_times_thinner_than_long_resists_a_turn_about_itself() -> None:

@@ -80,17 +80,17 @@ def _values(scalars: list[Scalar], seed: int) -> np.ndarray:
 @pytest.mark.parametrize("frame", ["base", "slide", "arm", "hand", "bracket", "ball"])
 def test_frames_of_the_model_are_where_they_were(frame: str) -> None:
     _, plain, turned = _both()
-    found = []
+    poses = []
     for bodies in (plain, turned):
         kinematics = bodies.kinematics
         rows, twist = kinematics.axes(frame), kinematics.twist(frame)
-        found.append([*kinematics.origin(frame), *(x for row in rows for x in row), *twist.angular, *twist.linear])
-    assert _values(found[1], 1) == pytest.approx(_values(found[0], 1), abs=1e-13)
+        poses.append([*kinematics.origin(frame), *(x for row in rows for x in row), *twist.angular, *twist.linear])
+    assert _values(poses[1], 1) == pytest.approx(_values(poses[0], 1), abs=1e-13)
 
 
 def test_points_and_energies_are_what_they_were() -> None:
     _, plain, turned = _both()
-    found = [
+    scalars = [
         [
             bodies.kinetic_energy,
             bodies.potential_energy,
@@ -100,8 +100,8 @@ def test_points_and_energies_are_what_they_were() -> None:
         for bodies in (plain, turned)
     ]
     for seed in range(3):
-        assert _values(found[1], seed) == pytest.approx(_values(found[0], seed), rel=1e-13, abs=1e-14)
-    exact = ExactValues(signs=False)([a - b for a, b in zip(*found, strict=True)])
+        assert _values(scalars[1], seed) == pytest.approx(_values(scalars[0], seed), rel=1e-13, abs=1e-14)
+    exact = ExactValues(signs=False)([a - b for a, b in zip(*scalars, strict=True)])
     assert not any(exact)
 
 

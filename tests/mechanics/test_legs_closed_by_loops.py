@@ -95,9 +95,9 @@ def test_each_leg_is_a_direction_of_its_own(platform: Model, kind: type[System])
 
 def test_accelerations_measure_the_rank_of_b_where_they_reflect(platform: Model) -> None:
     """Legs of no length: one leaves B its rank, also where u is lost, four do not."""
-    found = articulated(platform, genericity(System(platform)))
-    assert found is not None
-    mechanics, motion = found
+    derived = articulated(platform, genericity(System(platform)))
+    assert derived is not None
+    mechanics, motion = derived
     guards = [guard for guard in motion.guards if guard.status == Status.CONSTRAINT_RANK]
     (guard,) = guards
     evaluate = Evaluator([guard.denominator])

@@ -66,8 +66,8 @@ def test_products_and_sums_of_u(name: str, most: int) -> None:
     one = described(name)
     made = Methods(one, genericity(System(one))).candidate(INPUTS, "elimination")
     assert isinstance(made, Candidate)
-    found = cost(share_angles(made.system.mechanics.graph, made.derived.outputs))
-    assert found.additive + found.multiplications <= most
+    operations = cost(share_angles(made.system.mechanics.graph, made.derived.outputs))
+    assert operations.additive + operations.multiplications <= most
 
 
 def test_angles_that_differ_by_fixed_ones_take_one_pair() -> None:
@@ -101,8 +101,8 @@ def test_numbers_of_rows() -> None:
     assert divided(graph, four, Fraction(2)) is 2 * (x * y)
     for value in (two, four, sum_of_twos, x, graph.function("sqrt", (x,))):
         at = {"x": 1.25, "y": 0.75}
-        (found,), (expected,) = evaluate([divided(graph, value, Fraction(3))], at), evaluate([value], at)
-        assert found == pytest.approx(expected / 3)
+        (quotient,), (expected,) = evaluate([divided(graph, value, Fraction(3))], at), evaluate([value], at)
+        assert quotient == pytest.approx(expected / 3)
 
 
 def test_rows_of_distances_lose_their_twos() -> None:

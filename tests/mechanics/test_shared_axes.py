@@ -56,5 +56,5 @@ def test_a_body_on_a_fixed_axis_has_one_inertia() -> None:
 
 
 def test_what_frames_share_is_computed_once() -> None:
-    found = cost(System(shipped_model("arm7")).balance)
-    assert found.additive + found.multiplications <= 720
+    operations = cost(System(shipped_model("arm7")).balance)
+    assert operations.additive + operations.multiplications <= 720

@@ -47,8 +47,8 @@ def reasons(text: str) -> dict[str, str]:
 
 def test_blocks_with_rank_and_freedom() -> None:
     structure = analysed(BLOCKS)
-    found = {block.rows: (block.coordinates, block.rank, block.delta) for block in structure.blocks}
-    assert found == {
+    by_rows = {block.rows: (block.coordinates, block.rank, block.delta) for block in structure.blocks}
+    assert by_rows == {
         ("one",): (("a",), 1, 0),
         ("two", "five"): (("b", "c"), 1, 1),
         ("three",): (("d", "e", "f"), 1, 2),
@@ -66,36 +66,36 @@ def test_blocks_with_rank_and_freedom() -> None:
 
 
 def test_every_block_has_its_reason() -> None:
-    found = reasons(BLOCKS)
-    assert found["coupling between constraint blocks"].startswith("the rows fall into 4 blocks: one on a; ")
-    assert found["(B Bᵀ)⁻¹ of one"] == "δ = 0 for 1 coordinate: locked, no velocity is left"
-    assert found["(B Bᵀ)⁻¹ of three"].startswith("δ = 2 for 3 coordinates: its minors")
+    explanations = reasons(BLOCKS)
+    assert explanations["coupling between constraint blocks"].startswith("the rows fall into 4 blocks: one on a; ")
+    assert explanations["(B Bᵀ)⁻¹ of one"] == "δ = 0 for 1 coordinate: locked, no velocity is left"
+    assert explanations["(B Bᵀ)⁻¹ of three"].startswith("δ = 2 for 3 coordinates: its minors")
 
 
 def test_zero_and_constant_parts() -> None:
-    found = reasons(BLOCKS)
-    assert found["38 of 50 entries of B"] == "they are zero"
-    assert found["rates of 6 of 50 entries of B"] == "they are constant"
-    assert found["17 of 20 entries of M"] == "they are zero"
-    assert found["8 of 10 potential forces"] == "they are zero"
-    assert found["44 of 45 couplings in G"] == "they are zero"
-    assert found["derivatives of 10 of 55 entries of G"] == "they are constant"
-    assert found["the values of b, e, k, i"] == "only their rates and accelerations matter"
+    explanations = reasons(BLOCKS)
+    assert explanations["38 of 50 entries of B"] == "they are zero"
+    assert explanations["rates of 6 of 50 entries of B"] == "they are constant"
+    assert explanations["17 of 20 entries of M"] == "they are zero"
+    assert explanations["8 of 10 potential forces"] == "they are zero"
+    assert explanations["44 of 45 couplings in G"] == "they are zero"
+    assert explanations["derivatives of 10 of 55 entries of G"] == "they are constant"
+    assert explanations["the values of b, e, k, i"] == "only their rates and accelerations matter"
 
 
 @pytest.mark.parametrize(("name", "looked_through"), [("chain8", True), ("chain16", False)])
 def test_a_large_mass_matrix_of_bodies_is_not_formed(name: str, looked_through: bool) -> None:
     """u does without it: to look through that of 32 links takes ten times as long as all the rest."""
     mechanics = System(shipped.model(name))
-    found = {decision.what for decision in analyse(mechanics, genericity(mechanics)).decisions}
+    subjects = {decision.what for decision in analyse(mechanics, genericity(mechanics)).decisions}
     assert ("mass_matrix" in vars(mechanics)) is looked_through
-    assert any("entries of G" in what or "couplings in G" in what for what in found) is looked_through
+    assert any("entries of G" in what or "couplings in G" in what for what in subjects) is looked_through
 
 
 def test_shared_work() -> None:
-    found = reasons(BLOCKS)
-    assert "sine and cosine of c + d" in found
-    assert any(what.startswith("repeated work on ") for what in found)
+    explanations = reasons(BLOCKS)
+    assert "sine and cosine of c + d" in explanations
+    assert any(what.startswith("repeated work on ") for what in explanations)
 
 
 def test_redundant_inputs_are_summed() -> None:

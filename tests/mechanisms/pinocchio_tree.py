@@ -92,9 +92,9 @@ class Tree:
 
     def _sorted(self, values: Any) -> Any:
         """Rows in the model's order."""
-        found = np.zeros((self.model.n, *np.shape(values)[1:]))
-        found[self.moved] = values
-        return found
+        ordered = np.zeros((self.model.n, *np.shape(values)[1:]))
+        ordered[self.moved] = values
+        return ordered
 
     def balance(self, q: Any, qd: Any, qdd: Any) -> Any:
         """tau of RNEA with the rotors (n)."""

@@ -66,8 +66,8 @@ def accelerations(
         for k, rate in zip(held, square.solve(arb_mat([[x] for x in right])).entries(), strict=True):
             rates[k] = rate
     state = State(at, tuple(rates), still, (0, -f[1], f[0]), parameters)
-    found = bicycle().matrices(state, ["forward_dynamics"])["forward_dynamics"]
-    by_name = dict(zip(names, found.entries(), strict=True))
+    qdd = bicycle().matrices(state, ["forward_dynamics"])["forward_dynamics"]
+    by_name = dict(zip(names, qdd.entries(), strict=True))
     return by_name["lean"], -by_name["steer"]
 
 

@@ -79,11 +79,11 @@ def on_graph(mechanics: System, quantity: str) -> list[Scalar]:
     """Entries of the same quantity on the graph."""
     if quantity == "energy":
         return [mechanics.kinetic_energy, mechanics.potential_energy]
-    found = getattr(mechanics.bodies if quantity.startswith("point_") else mechanics, quantity)
+    entries = getattr(mechanics.bodies if quantity.startswith("point_") else mechanics, quantity)
     return (
-        [x for row in found for x in row]
+        [x for row in entries for x in row]
         if quantity in ("mass_matrix", "constraint_jacobian", "control_matrix", "point_jacobian")
-        else [*found]
+        else [*entries]
     )
 
 
@@ -193,8 +193,8 @@ def test_rows_across_the_plane_are_left_out() -> None:
     assert [row.name for row in model.constraints] == ["loop_12_x", "loop_12_y", "loop_13_x", "loop_13_y"]
     state = a_state(model, 0)
     expected = exact(Reference(mechanism("rapkm_bodies")), state, "constraint_jacobian")
-    found = exact(Reference(model), state, "constraint_jacobian")
-    assert [abs(x) for x in found] == pytest.approx([abs(x) for x in expected], abs=1e-15)
+    jacobian = exact(Reference(model), state, "constraint_jacobian")
+    assert [abs(x) for x in jacobian] == pytest.approx([abs(x) for x in expected], abs=1e-15)
 
 
 def test_dependent_rows_of_a_full_joint() -> None:

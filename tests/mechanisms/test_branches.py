@@ -82,9 +82,9 @@ def test_a_scalar_that_vanishes_in_the_stretched_pose_alone_has_no_regular_zero(
     graph = mechanics.graph
     a, b = (graph.trig("sin", graph.symbol(name)) for name in ("a0", "b"))
     assert ZeroSearch(mechanics, genericity(mechanics)).zero_of(a * a + b * b) is None
-    found = ZeroSearch(mechanics, genericity(mechanics)).zero_of(a - Fraction(1, 2))
-    assert found is not None
-    assert math.sin(float(dict(found.point)["a0"])) == pytest.approx(0.5)
+    zero = ZeroSearch(mechanics, genericity(mechanics)).zero_of(a - Fraction(1, 2))
+    assert zero is not None
+    assert math.sin(float(dict(zero.point)["a0"])) == pytest.approx(0.5)
 
 
 def test_an_input_that_moves_nothing_on_the_declared_branch_gives_a_status_there() -> None:
@@ -139,8 +139,8 @@ kinetic_energy: x_dot**2 + 2*a_dot**2
 constraints: {geometric: {guide: 2.3*x - sin(a)}}
 inputs: {drive: {acts_on: {a: GAIN}}}
 """
-    found = genericity(System(load_text(text.replace("GAIN", gain), "guided.yaml")))
-    assert (found.rank, found.alpha) == (1, 1)
+    ranks = genericity(System(load_text(text.replace("GAIN", gain), "guided.yaml")))
+    assert (ranks.rank, ranks.alpha) == (1, 1)
 
 
 def test_a_force_along_the_arm_it_would_turn_moves_nothing() -> None:

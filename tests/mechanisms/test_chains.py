@@ -27,10 +27,10 @@ def derived(links: int, folder: Path, *outputs: str) -> Selection:
 def test_u_grows_linearly(tmp_path: Path) -> None:
     weights = []
     for links in (8, 16, 32):
-        found = derived(links, tmp_path, "inverse_dynamics").method_of_u
-        assert found is not None
-        assert [name for name, _ in found.costs] == ["elimination"]
-        weights += [weight for _, weight in found.costs]
+        choice = derived(links, tmp_path, "inverse_dynamics").method_of_u
+        assert choice is not None
+        assert [name for name, _ in choice.costs] == ["elimination"]
+        weights += [weight for _, weight in choice.costs]
     assert weights[2] - weights[1] == pytest.approx(2 * (weights[1] - weights[0]), rel=0.05)
 
 
@@ -38,9 +38,9 @@ def test_u_grows_linearly(tmp_path: Path) -> None:
 def test_accelerations_grow_linearly(tmp_path: Path) -> None:
     weights = []
     for links in (8, 12, 16):
-        found = derived(links, tmp_path, "forward_dynamics", "multipliers")
-        assert [choice.title for choice in found.choices] == [ARTICULATED, ARTICULATED]
-        weights.append([weight for choice in found.choices for _, weight in choice.costs])
+        selection = derived(links, tmp_path, "forward_dynamics", "multipliers")
+        assert [choice.title for choice in selection.choices] == [ARTICULATED, ARTICULATED]
+        weights.append([weight for choice in selection.choices for _, weight in choice.costs])
     for few, more, many in zip(*weights, strict=True):
         assert many - more == pytest.approx(more - few, rel=0.05)
 
@@ -48,10 +48,10 @@ def test_accelerations_grow_linearly(tmp_path: Path) -> None:
 def test_energies_written_out_are_derived_in_absolute_angles(tmp_path: Path) -> None:
     path = tmp_path / "chain6.yaml"
     path.write_text(chain(6).replace("gravity:", "kinetic_energy: J*a_1_dot**2/2\ngravity:"), encoding="utf-8")
-    found = derive_quantities(load_model(path), ("forward_dynamics", "multipliers"))
-    assert [choice.title for choice in found.choices] == [ABSOLUTE, ABSOLUTE]
-    known = {c.name for c in found.mechanics.model.coordinates}
-    for quantity in found.quantities:
+    selection = derive_quantities(load_model(path), ("forward_dynamics", "multipliers"))
+    assert [choice.title for choice in selection.choices] == [ABSOLUTE, ABSOLUTE]
+    known = {c.name for c in selection.mechanics.model.coordinates}
+    for quantity in selection.quantities:
         guards = [guard.denominator for guard in quantity.guards]
         symbols = {str(x.payload) for x in topological([*quantity.outputs, *guards]) if x.op == "symbol"}
         assert known <= symbols
@@ -68,10 +68,10 @@ def test_the_size_of_long_code_is_told(tmp_path: Path) -> None:
 
     assert notices(4, "c") == []
     assert notices(32, "python") == []
-    (told,) = notices(32, "c")
-    assert notices(32, "package") == [told]
-    assert "kB of machine code on a Cortex-M4" in told
-    assert "inverse_dynamics 1" in told
+    (message,) = notices(32, "c")
+    assert notices(32, "package") == [message]
+    assert "kB of machine code on a Cortex-M4" in message
+    assert "inverse_dynamics 1" in message
 
 
 @pytest.mark.mechanisms  # 400 states of a chain of 24 links, with the reference at the worst

@@ -27,8 +27,8 @@ def notices(folder: Path, more: str = "", options: Options = OPTIONS, body: str 
     lines += ["inputs:", "  M: {joint: a_0}", "outputs: [forward_dynamics]"]
     path = folder / "hanging.yaml"
     path.write_text("\n".join(lines) + "\n" + more)
-    found = generate(path, options, lambda _: None).notices
-    return [notice.message for notice in found if "mass matrix is factored" in notice.message]
+    reported = generate(path, options, lambda _: None).notices
+    return [notice.message for notice in reported if "mass matrix is factored" in notice.message]
 
 
 @pytest.fixture(autouse=True)
@@ -41,9 +41,9 @@ def test_bodies_alone_take_articulated_inertias_and_say_nothing(tmp_path: Path) 
 
 
 def test_a_written_part_of_the_energy_is_named(tmp_path: Path) -> None:
-    (told,) = notices(tmp_path, "kinetic_energy: 0.05*a_2_dot**2\n")
-    assert told.startswith("forward_dynamics (")
-    assert told.endswith("part of the kinetic energy is written out: describe it by bodies")
+    (message,) = notices(tmp_path, "kinetic_energy: 0.05*a_2_dot**2\n")
+    assert message.startswith("forward_dynamics (")
+    assert message.endswith("part of the kinetic energy is written out: describe it by bodies")
 
 
 def test_what_is_short_says_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -61,11 +61,11 @@ def test_inertias_that_prove_nothing_ask_for_their_ranges(tmp_path: Path, monkey
     monkeypatch.setattr(articulated, "definite_beside_rows", lambda *_: False)
     # without rows G is definite wherever the motion is determined
     assert notices(tmp_path) == []
-    (told,) = notices(tmp_path, "constraints: {geometric: {gear: a_1 - 2*a_2}}\n")
-    assert told.endswith("give masses and inertias a `range` above 0")
+    (message,) = notices(tmp_path, "constraints: {geometric: {gear: a_1 - 2*a_2}}\n")
+    assert message.endswith("give masses and inertias a `range` above 0")
 
 
 def test_coordinates_that_move_several_frames_are_told(tmp_path: Path) -> None:
     tip = "frames:\n  tip: {parent: j_4, rotation: [[x, a_0]]}\n"
-    (told,) = notices(tmp_path, tip, body="  tip: {mass: 0.3, com: [0, 0.1, 0]}")
-    assert told.endswith("give each joint a coordinate of its own")
+    (message,) = notices(tmp_path, tip, body="  tip: {mass: 0.3, com: [0, 0.1, 0]}")
+    assert message.endswith("give each joint a coordinate of its own")

@@ -34,9 +34,9 @@ class FiveBar:
 
     def ordered(self, values: Any) -> Any:
         """Pinocchio's order."""
-        found = np.zeros(4)
-        found[self.order] = values
-        return found
+        permuted = np.zeros(4)
+        permuted[self.order] = values
+        return permuted
 
     def load(self, q: Any, qd: Any, qdd: Any) -> Any:
         """What the inputs and the spindle must supply (4): RNEA, rotors, friction."""
@@ -85,8 +85,8 @@ def states() -> list[tuple[Any, Any, Any, Any]]:
     ]
 
 
-def close(found: Any, expected: Any) -> bool:
-    return bool(np.abs(found - expected).max() <= WITHIN * np.abs(expected).max())
+def close(computed: Any, expected: Any) -> bool:
+    return bool(np.abs(computed - expected).max() <= WITHIN * np.abs(expected).max())
 
 
 def test_torques_of_the_drives() -> None:

@@ -55,8 +55,8 @@ def crane() -> Reference:
 def places(q: tuple[float, ...]) -> dict[str, np.ndarray]:
     """The points at a configuration."""
     zero = (0,) * 3
-    found = crane().matrices(State(q, zero, zero, (0,) * 8, ()), ["point_position"])["point_position"]
-    rows = [[float(x) for x in row] for row in found.tolist()]
+    positions = crane().matrices(State(q, zero, zero, (0,) * 8, ()), ["point_position"])["point_position"]
+    rows = [[float(x) for x in row] for row in positions.tolist()]
     return {point.name: np.array(row) for point, row in zip(crane().model.mechanism.points, rows, strict=True)}
 
 

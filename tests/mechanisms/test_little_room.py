@@ -169,8 +169,8 @@ configuration: {a: 0.9, b: -2.2415926535897931, s: 0}
 def test_closed_forms_find_their_configurations_in_any_units_of_rows() -> None:
     """From a singular start, with rows 1e16 apart."""
     model = latch("1.3", along="1e-9", across="1e7", rest="configuration: {p: 0.3, q: -0.7, s: -0.4}")
-    found = derive_closed_forms(model).structure
-    assert (found.constraint_rank, found.degree_of_actuation) == (2, 1)
+    structure = derive_closed_forms(model).structure
+    assert (structure.constraint_rank, structure.degree_of_actuation) == (2, 1)
 
 
 def test_where_too_few_states_are_found_it_is_told_what_became_of_the_others() -> None:

@@ -95,7 +95,7 @@ gravity: [1, -2, -9]
         "tree.yaml",
     )
     hung = accelerations(tree, list(own) if spherical else [PLACE[name] for name in names])
-    found = accelerations(loop, q)
+    qdd = accelerations(loop, q)
 
     along, about = np.zeros(3), np.zeros(3)
     if spherical:
@@ -106,8 +106,8 @@ gravity: [1, -2, -9]
         about[2] = by_name.get("a", 0.0)
         along = np.array([by_name["s"], by_name["w"], 0]) if kind == "planar" else np.array([0, 0, by_name.get("s", 0)])
     e = np.array(q[3:])
-    angular = 2 * times(found[3:], np.array([e[0], *-e[1:]]))[1:]
-    assert found[:3] == pytest.approx(matrix(guide) @ along, abs=1e-12)
+    angular = 2 * times(qdd[3:], np.array([e[0], *-e[1:]]))[1:]
+    assert qdd[:3] == pytest.approx(matrix(guide) @ along, abs=1e-12)
     assert angular == pytest.approx(matrix(guide) @ about, abs=1e-12)
 
 
@@ -153,9 +153,9 @@ gravity: [0, 0, -10]
     )
     zero = (0,) * model.n
     state = State((0.3,) * model.n, zero, zero, (), (0.7,))
-    found = Reference(model).matrices(state, ["mass_matrix", "forward_dynamics"])
-    assert float(found["mass_matrix"][0, 0]) == pytest.approx(2, abs=1e-14)
-    assert float(found["forward_dynamics"][0, 0]) == pytest.approx(-8, abs=1e-13)
+    matrices = Reference(model).matrices(state, ["mass_matrix", "forward_dynamics"])
+    assert float(matrices["mass_matrix"][0, 0]) == pytest.approx(2, abs=1e-14)
+    assert float(matrices["forward_dynamics"][0, 0]) == pytest.approx(-8, abs=1e-13)
 
 
 LOCKED = """\

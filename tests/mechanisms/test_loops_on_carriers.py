@@ -130,6 +130,6 @@ def test_kernels_are_those_of_the_reference(loop: str) -> None:
         values |= zip((p.name for p in model.parameters), state.parameters, strict=True)
         expected = expectations(reference, state, model.outputs, "float64", "carriers")
         for quantity in derived:
-            found = Evaluator(quantity.outputs)(values)
+            entries = Evaluator(quantity.outputs)(values)
             one = expected[quantity.name]
-            assert one.in_units(one.distance(list(found))) <= 16
+            assert one.in_units(one.distance(list(entries))) <= 16

@@ -50,12 +50,12 @@ def test_both_references_agree() -> None:
 
 def test_both_derivations_agree() -> None:
     values = default_values(mixed().parameters) | VALUES
-    found = [
+    by_form = [
         {one.name: Evaluator(one.outputs)(values) for one in derive_quantities(model, model.outputs).quantities}
         for model in (mixed(), load_model(BODIES))
     ]
-    assert found[0].keys() == found[1].keys()
-    for name, expected in found[1].items():
-        assert found[0][name] == pytest.approx(expected, rel=1e-11), name
+    assert by_form[0].keys() == by_form[1].keys()
+    for name, expected in by_form[1].items():
+        assert by_form[0][name] == pytest.approx(expected, rel=1e-11), name
     balance = Evaluator(System(mixed()).balance)(values)
     assert balance == pytest.approx(Evaluator(System(load_model(BODIES)).balance)(values), rel=1e-12)

@@ -50,15 +50,15 @@ def states(model: Model, count: int) -> list[tuple[Any, Any, Any, Any]]:
 
 def rows(name: str, q: Any, qd: Any) -> tuple[Any, Any]:
     """B (r, n) and B-dot qd (r) of the loops."""
-    found = tree(name)
-    index = {coordinate.name: i for i, coordinate in enumerate(found.model.coordinates)}
+    body_tree = tree(name)
+    index = {coordinate.name: i for i, coordinate in enumerate(body_tree.model.coordinates)}
     B, bias = [], []
     for one, other in PINS.get(name, []):
-        p, a = found.point(one, q, qd), found.point(other, q, qd)
+        p, a = body_tree.point(one, q, qd), body_tree.point(other, q, qd)
         B += [*(p[1] - a[1])[:2]]
         bias += [*(p[2] - a[2])[:2]]
     for one, other, *length in [*RODS.get(name, []), *LEGS.get(name, [])]:
-        p, a = found.point(one, q, qd), found.point(other, q, qd)
+        p, a = body_tree.point(one, q, qd), body_tree.point(other, q, qd)
         across, jacobian, drift = (x - y for x, y in zip(p, a, strict=True))
         row, rest = across @ jacobian, across @ drift + (jacobian @ qd) @ (jacobian @ qd)
         for coordinate in length:
@@ -88,8 +88,8 @@ def control(model: Model) -> Any:
     return M
 
 
-def close(found: Any, expected: Any) -> bool:
-    return bool(np.abs(found - expected).max() <= WITHIN * np.abs(expected).max())
+def close(computed: Any, expected: Any) -> bool:
+    return bool(np.abs(computed - expected).max() <= WITHIN * np.abs(expected).max())
 
 
 @pytest.mark.parametrize("name", NAMES)

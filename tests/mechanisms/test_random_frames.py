@@ -229,13 +229,13 @@ class Tree:
     ) -> dict[str, Moving]:
         """Where everything is and how it moves."""
         zeros = [0.0] * len(q)
-        found, place = {"world": Moving()}, 0
+        by_name, place = {"world": Moving()}, 0
         for joint in self.joints:
             n = len(joint.coordinates)
             parts = [values[place : place + n] for values in (q, qd or zeros, qdd or zeros)]
-            found[joint.name] = joint.moved(found[joint.parent], *parts)
+            by_name[joint.name] = joint.moved(by_name[joint.parent], *parts)
             place += n
-        return found
+        return by_name
 
     def unit(self, i: int) -> list[float]:
         """A unit rate of one coordinate."""
@@ -264,18 +264,18 @@ class Tree:
     def rows(self) -> tuple[np.ndarray, np.ndarray]:
         """J and -J_dot qd of the loop and the quaternions."""
         n = len(self.names)
-        found, right = [], []
+        jacobian, right = [], []
         if self.loop:
-            found += [*np.array([self.point("p", self.unit(i)).v for i in range(n)]).T]
+            jacobian += [*np.array([self.point("p", self.unit(i)).v for i in range(n)]).T]
             right += [*-self.point("p", self.qd).a]
         for joint in self.joints:
             if "quaternion" in KINDS[joint.kind]:
                 place = self.names.index(joint.coordinates[-4])
                 row = np.zeros(n)
                 row[place : place + 4] = self.q[place : place + 4]
-                found.append(row)
+                jacobian.append(row)
                 right.append(-sum(x * x for x in self.qd[place : place + 4]))
-        return np.array(found).reshape(-1, n), np.array(right)
+        return np.array(jacobian).reshape(-1, n), np.array(right)
 
     def expected(self) -> dict[str, np.ndarray]:
         """The quantities that have a plain meaning, C q_dot in place of C."""

@@ -123,7 +123,7 @@ def test_surplus_rows_change_neither_u_nor_the_accelerations() -> None:
     assert one["inverse_dynamics"] == pytest.approx(other["inverse_dynamics"], rel=1e-11)
     assert one["forward_dynamics"] == pytest.approx(other["forward_dynamics"], rel=1e-11)
     # the multipliers differ, three of them are not unique, but the reactions do not
-    reactions = [jacobian(model, values).T @ found["multipliers"] for model, found in ((tilted, one), (flat, other))]
+    reactions = [jacobian(model, values).T @ output["multipliers"] for model, output in ((tilted, one), (flat, other))]
     assert reactions[0] == pytest.approx(reactions[1], rel=1e-10)
     # of all multipliers these are the smallest: none of them lies in the kernel of B^T
     surplus = np.linalg.svd(jacobian(tilted, values).T)[2][-1]
@@ -132,8 +132,8 @@ def test_surplus_rows_change_neither_u_nor_the_accelerations() -> None:
 
 def test_multipliers_that_are_not_unique_are_told() -> None:
     mechanics = System(four_bars()[0])
-    told = {one.what: one.why for one in analyse(mechanics, genericity(mechanics)).decisions}
-    assert "rank 2 of 3; none is dropped" in told["a unique set of multipliers"]
+    reasons = {one.what: one.why for one in analyse(mechanics, genericity(mechanics)).decisions}
+    assert "rank 2 of 3; none is dropped" in reasons["a unique set of multipliers"]
 
 
 def test_headers_and_packages_say_that_multipliers_are_not_unique() -> None:
@@ -159,14 +159,14 @@ def test_a_sleeve_without_mass_passes_its_force_on() -> None:
         -0.5 * np.sin(angles[0]) * rates[0] - 0.4 * np.sin(angles[1]) * rates[1],
         0.5 * np.cos(angles[0]) * rates[0] + 0.4 * np.cos(angles[1]) * rates[1],
     ]
-    found = kernels(sleeve, state(sleeve, [*place, angles[1], *q], [*speed, rates[1], *qd], (0,) * 5, u))
+    outputs = kernels(sleeve, state(sleeve, [*place, angles[1], *q], [*speed, rates[1], *qd], (0,) * 5, u))
     wanted = kernels(plain, state(plain, q, qd, (0, 0), u))
-    assert found["forward_dynamics"][3:] == pytest.approx(wanted["forward_dynamics"], rel=1e-11)
+    assert outputs["forward_dynamics"][3:] == pytest.approx(wanted["forward_dynamics"], rel=1e-11)
     # the loop passes the push on: all of it, and no torque
     values = state(sleeve, [*place, angles[1], *q], (0,) * 5, (0,) * 5, u)
-    reaction = jacobian(sleeve, values).T @ found["multipliers"]
+    reaction = jacobian(sleeve, values).T @ outputs["multipliers"]
     assert reaction[:3] == pytest.approx([7.0, 0, 0], abs=1e-11)
-    qdd = found["forward_dynamics"]
+    qdd = outputs["forward_dynamics"]
     back = kernels(sleeve, state(sleeve, [*place, angles[1], *q], [*speed, rates[1], *qd], qdd, u))
     assert back["inverse_dynamics"] == pytest.approx(u, rel=1e-11)
 

@@ -20,8 +20,8 @@ from sympy.physics.mechanics import (
 WITHIN = 1e-9
 
 
-def close(found: Any, expected: Any) -> bool:
-    return bool(np.abs(found - expected).max() <= WITHIN * np.abs(expected).max())
+def close(computed: Any, expected: Any) -> bool:
+    return bool(np.abs(computed - expected).max() <= WITHIN * np.abs(expected).max())
 
 
 def test_scara_by_lagrange() -> None:
@@ -107,5 +107,5 @@ def test_rolling_disc_by_kane() -> None:
         allowed = sympy.lambdify([plain_q, plain_v], sympy.Matrix(slip).subs(plain))
         rate[:3] = -allowed(at, rate).ravel()  # the centre's velocity enters each row with factor 1
         mass, forcing = values(at, rate, u)
-        found = np.linalg.solve(mass, forcing.ravel())
-        assert close(module.forward_dynamics(at, rate, u), np.concatenate([found[3:], found[:3]]))
+        solution = np.linalg.solve(mass, forcing.ravel())
+        assert close(module.forward_dynamics(at, rate, u), np.concatenate([solution[3:], solution[:3]]))

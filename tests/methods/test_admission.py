@@ -55,11 +55,11 @@ def test_a_fixed_partition_of_the_rapkm_is_rejected(drives: tuple[int, int]) -> 
     # N_B is divided by B B^T only, the first pivots
     of_inputs = tuple(divisor for divisor in made.divisors if divisor.size > 10_000)
     assert len(of_inputs) >= 2
-    found = validity_of(replace(made, divisors=of_inputs), measures("rapkm_2rrr_rr"), first_only=True)
-    assert not found.admitted
+    validity = validity_of(replace(made, divisors=of_inputs), measures("rapkm_2rrr_rr"), first_only=True)
+    assert not validity.admitted
     # at the state found (28)'s determinant has vanished while the ranks of B and M~ are beyond doubt
     third = ({0, 1, 2} - set(drives)).pop()
-    state = dict(found.singular[0].state)
+    state = dict(validity.singular[0].state)
     one, two = (f"{state[f'a_{k + 1}'] + state[f'b_{k + 1}']:.9f}" for k in drives)
     bent = abs(Evaluator([Graph().trig("sin", Graph().symbol("x"))])({"x": state[f"b_{third + 1}"]})[0])
     parallel = abs(Evaluator([Graph().trig("sin", Graph().symbol("x"))])({"x": float(one) - float(two)})[0])
@@ -68,9 +68,9 @@ def test_a_fixed_partition_of_the_rapkm_is_rejected(drives: tuple[int, int]) -> 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if model(name).inputs])
 def test_the_method_chosen_is_admitted_and_the_cheapest_of_those(name: str) -> None:
-    found = Methods(model(name), generic(name)).choose(INPUTS)
-    assert not isinstance(found, str)
-    chosen, choice = found
+    decision = Methods(model(name), generic(name)).choose(INPUTS)
+    assert not isinstance(decision, str)
+    chosen, choice = decision
     assert choice.validity.admitted
     assert choice.validity.searched == 0  # proofs are enough for the shipped models
     # the methods on whole matrices count more, so that leaving them out of the choice costs nothing
@@ -82,9 +82,9 @@ def test_the_method_chosen_is_admitted_and_the_cheapest_of_those(name: str) -> N
 
 
 def test_a_null_space_basis_of_the_rapkm_is_offered_with_its_singular_set() -> None:
-    found = Methods(model("rapkm_2rrr_rr"), generic("rapkm_2rrr_rr")).choose(INPUTS, "nullspace")
-    assert not isinstance(found, str)
-    _, choice = found
+    decision = Methods(model("rapkm_2rrr_rr"), generic("rapkm_2rrr_rr")).choose(INPUTS, "nullspace")
+    assert not isinstance(decision, str)
+    _, choice = decision
     assert not choice.validity.admitted
     assert choice.validity.explanation.startswith("this form is singular where")
     assert any("sin(" in entry.where_zero for entry in choice.validity.singular)
@@ -103,9 +103,9 @@ def test_a_cheaper_method_with_a_pole_is_not_chosen() -> None:
     graph = made.system.mechanics.graph
     pole = graph.trig("cos", graph.symbol("theta"))
     spoiled = replace(made, divisors=(*made.divisors, pole))
-    found = methods.validity(spoiled)
-    assert not found.admitted
-    assert found.singular[0].where_zero == "cos(theta)"
+    validity = methods.validity(spoiled)
+    assert not validity.admitted
+    assert validity.singular[0].where_zero == "cos(theta)"
     assert methods.validity(made).admitted
 
 
@@ -166,9 +166,9 @@ def test_the_search_ends_without_a_zero_where_there_is_none() -> None:
     positive = 2 + graph.trig("cos", graph.symbol("theta"))
     search = ZeroSearch(system.mechanics, system.generic)
     assert search.zero_of(positive) is None
-    found = search.zero_of(1 + graph.trig("cos", graph.symbol("theta")))
-    assert found is not None
-    assert abs(float(dict(found.point)["theta"]) % 6.283185307179586 - 3.141592653589793) < 1e-5
+    zero = search.zero_of(1 + graph.trig("cos", graph.symbol("theta")))
+    assert zero is not None
+    assert abs(float(dict(zero.point)["theta"]) % 6.283185307179586 - 3.141592653589793) < 1e-5
 
 
 def test_ways_that_come_no_closer_are_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -178,8 +178,8 @@ def test_ways_that_come_no_closer_are_given_up(monkeypatch: pytest.MonkeyPatch) 
 
     def work(scalar: Scalar) -> tuple[bool, int]:
         before = done()
-        found = ZeroSearch(system.mechanics, system.generic).zero_of(scalar)
-        return found is not None, done() - before
+        zero = ZeroSearch(system.mechanics, system.generic).zero_of(scalar)
+        return zero is not None, done() - before
 
     hopeless, far = 2 + angle, work(2 + angle)
     monkeypatch.setattr(search_module, "STALLED_STEPS", search_module.SEARCH_STEPS)
@@ -203,11 +203,11 @@ for name in ("front_car", "rapkm_2rrr_rr", "slider_crank"):
 
 @pytest.mark.slow
 def test_choice_and_singular_states_do_not_depend_on_the_hash_seed() -> None:
-    def told(seed: str) -> str:
+    def printed(seed: str) -> str:
         environment = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)}
         command = [sys.executable, "-c", SCRIPT]
         return subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=True).stdout
 
-    first = told("0")
+    first = printed("0")
     assert "singular where" in first
-    assert told("20120731") == first
+    assert printed("20120731") == first

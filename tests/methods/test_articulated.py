@@ -168,9 +168,9 @@ outputs: [forward_dynamics, multipliers]
 def compared(model: Model) -> float:
     """The largest relative difference of the two methods over a few states off and on the constraints."""
     generic = genericity(System(model))
-    found = articulated(model, generic)
-    assert found is not None
-    seen, motion = found
+    derived = articulated(model, generic)
+    assert derived is not None
+    seen, motion = derived
     mechanics = System(model)
     dense = schur_qr(Problem(mechanics, ()), mechanics.r)
     one = Evaluator([*motion.accelerations, *motion.multipliers])
@@ -207,9 +207,9 @@ def test_a_free_body_that_is_driven_by_its_coordinates(tmp_path: Path) -> None:
     path.write_text(FREE, encoding="utf-8")
     model = load_model(path)
     assert compared(model) < 1e-9
-    found = articulated(model, genericity(System(model)))
-    assert found is not None
-    last = Evaluator([found[1].guards[-1].denominator])
+    derived = articulated(model, genericity(System(model)))
+    assert derived is not None
+    last = Evaluator([derived[1].guards[-1].denominator])
     assert abs(last({"theta": 1.2})[0]) == pytest.approx(math.cos(1.2))
 
 
@@ -220,9 +220,9 @@ def test_weights_that_do_no_work_leave_no_rounding(com: str, weighs: bool, tmp_p
     path.write_text(STIRRER.replace("COM", com), encoding="utf-8")
     model = load_model(path)
     assert compared(model) < 1e-9
-    found = articulated(model, genericity(System(model)))
-    assert found is not None
-    outputs = (*found[1].accelerations, *found[1].multipliers)
+    derived = articulated(model, genericity(System(model)))
+    assert derived is not None
+    outputs = (*derived[1].accelerations, *derived[1].multipliers)
     assert ("g" in {str(node.payload) for node in reached(outputs) if node.op == "symbol"}) is weighs
 
 
@@ -274,8 +274,8 @@ def test_loops_in_space_by_accelerations_of_points(tmp_path: Path, text: str) ->
     point = parameter_values(plain) | {str(x.payload): source.uniform(-1, 1) for x in (*plain.q, *plain.qd)}
     for axes in (WORLD, *loop.frames):
         along = acceleration(mechanics, motions, loop, axes)
-        found = applied(mechanics.bodies.kinematics.axes(axes), along)[2]
-        assert Evaluator([found])(point)[0] == pytest.approx(Evaluator([expected])(point)[0], rel=1e-12)
+        component = applied(mechanics.bodies.kinematics.axes(axes), along)[2]
+        assert Evaluator([component])(point)[0] == pytest.approx(Evaluator([expected])(point)[0], rel=1e-12)
 
 
 @pytest.mark.parametrize("name", ["gough_stewart", "skate"])

@@ -158,5 +158,5 @@ def test_the_root_on_the_side_of_the_start_is_found(form: str, side: int) -> Non
     middle = {"linear": 0.0, "quadratic": 1.0, "angle": math.atan2(1, 2)}[form]
     exact = {"linear": 0.5, "quadratic": math.sqrt(1.5), "angle": math.acos(1.5 / math.sqrt(5))}[form]
     exact = exact if form == "linear" else middle + side * exact
-    found = exact + side * 0.2 + Evaluator([one.change])({"x": exact + side * 0.2, "c": 1.5})[0]
-    assert found == pytest.approx(exact, abs=4e-16)
+    root = exact + side * 0.2 + Evaluator([one.change])({"x": exact + side * 0.2, "c": 1.5})[0]
+    assert root == pytest.approx(exact, abs=4e-16)

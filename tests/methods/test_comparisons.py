@@ -80,9 +80,9 @@ def test_where_it_is_singular_is_told() -> None:
     assert not isinstance(fixed, str)
     assert not isinstance(switched, str)
     assert switched[1].validity.admitted
-    found = fixed[1].validity.singular
-    assert found
-    assert [math.sin(dict(one.state)["a"]) for one in found] == pytest.approx([0] * len(found), abs=1e-2)
+    singular = fixed[1].validity.singular
+    assert singular
+    assert [math.sin(dict(one.state)["a"]) for one in singular] == pytest.approx([0] * len(singular), abs=1e-2)
 
 
 def test_one_choice_of_inputs_needs_no_switching() -> None:
@@ -98,9 +98,9 @@ def test_what_is_not_chosen_is_labelled_where_it_is_offered(tmp_path: Path, caps
     assert {label(quantity, row.name) for row in METHODS for quantity in row.quantities if row.use < Use.LAST} == {""}
     with pytest.raises(SystemExit):
         main(["--help"])
-    told = "".join(capsys.readouterr().out.split())
-    assert f"householder,forcomparison{','.join(compared[:-1])}or{compared[-1]};" in told
-    assert "forcomparisonandaslastresortshiftedorkkt;" in told
+    printed = "".join(capsys.readouterr().out.split())
+    assert f"householder,forcomparison{','.join(compared[:-1])}or{compared[-1]};" in printed
+    assert "forcomparisonandaslastresortshiftedorkkt;" in printed
     file = tmp_path / "thrusters.yaml"
     file.write_text(PUCK)
     assert main(["explain", str(file), "forward_dynamics"]) == 0

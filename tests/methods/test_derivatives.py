@@ -79,20 +79,20 @@ def test_a_pendulum_on_a_cart_by_hand(tmp_path: Path) -> None:
     model = loaded(tmp_path, PENDULUM.replace("OUTPUTS", f"[{', '.join(ALL[:2])}]").replace("FLAG", "false"))
     a, a_dot, x_ddot, a_ddot = 0.4, -1.3, 0.8, 2.1
     point = {"x": 0.2, "a": a, "x_dot": 0.5, "a_dot": a_dot, "x_ddot": x_ddot, "a_ddot": a_ddot, "push": 3, "twist": -1}
-    found = values(derive_quantities(model, model.outputs), point)
+    by_quantity = values(derive_quantities(model, model.outputs), point)
     total, ml, mll, g, s, c = 2.5, 0.35, 0.245, 9.81, math.sin(a), math.cos(a)
     by_hand = [
         [0, -ml * (s * a_ddot + c * a_dot**2), 0.3, -2 * ml * s * a_dot, total, ml * c],
         [0, -ml * (s * x_ddot + g * c), 0, 0, ml * c, mll],
     ]
-    assert found["inverse_dynamics_jacobian"] == pytest.approx(np.array(by_hand), rel=1e-13)
+    assert by_quantity["inverse_dynamics_jacobian"] == pytest.approx(np.array(by_hand), rel=1e-13)
     inverse = np.linalg.inv([[total, ml * c], [ml * c, mll]])
-    by_u = found["forward_dynamics_jacobian"][:, 4:]
+    by_u = by_quantity["forward_dynamics_jacobian"][:, 4:]
     assert by_u == pytest.approx(inverse, rel=1e-12)
     drift = np.array([3 + ml * s * a_dot**2 - 0.3 * 0.5, -1 + ml * g * s])
     turned = np.array([[0, -ml * s], [-ml * s, 0]])
     by_a = inverse @ (np.array([ml * c * a_dot**2, ml * g * c]) - turned @ inverse @ drift)
-    assert found["forward_dynamics_jacobian"][:, 1] == pytest.approx(by_a, rel=1e-12)
+    assert by_quantity["forward_dynamics_jacobian"][:, 1] == pytest.approx(by_a, rel=1e-12)
 
 
 def test_forces_of_a_pendulum_by_its_parameters_by_hand(tmp_path: Path) -> None:
@@ -126,11 +126,11 @@ outputs: [multipliers_jacobian]
 """
     x, v, f_x, f_y, m, k, g = 0.6, -0.9, 2.0, -3.0, 1.3, 0.7, 9.81
     point = {"x": x, "y": k * x**2 / 2, "x_dot": v, "y_dot": k * x * v, "u_x": f_x, "u_y": f_y}
-    found = values(derive_quantities(loaded(tmp_path, text), ("multipliers_jacobian",)), point)["multipliers_jacobian"]
+    matrix = values(derive_quantities(loaded(tmp_path, text), ("multipliers_jacobian",)), point)["multipliers_jacobian"]
     over = 1 / (1 + (k * x) ** 2)
     force = (f_y - m * g - m * k * v**2 - k * x * f_x) * over
     by_hand = [-k * f_x * over - 2 * k**2 * x * force * over, 0, -2 * m * k * v * over, 0, -k * x * over, over]
-    assert found == pytest.approx(np.array([by_hand]), rel=1e-12, abs=1e-14)
+    assert matrix == pytest.approx(np.array([by_hand]), rel=1e-12, abs=1e-14)
 
 
 @pytest.mark.parametrize("name", ["rapkm_2rrr_rr", "front_car", "rolling_disc", "delta", "double_pendulum"])
@@ -139,16 +139,16 @@ def test_gradients_are_weighted_rows_of_jacobians(name: str) -> None:
         "forward_dynamics_gradient", "forward_dynamics_jacobian",
     )  # fmt: skip
     selection = derive_quantities(shipped.model(name), tuple(one for pair in names for one in pair))
-    found = {derived.name: derived for derived in selection.quantities}
+    by_name = {derived.name: derived for derived in selection.quantities}
     graph = selection.mechanics.graph
     for (gradient, jacobian), weights in zip(names, selection.mechanics.further("w_u", "w_qdd"), strict=True):
-        rows, columns = found[jacobian].shape
-        entries = found[jacobian].outputs
+        rows, columns = by_name[jacobian].shape
+        entries = by_name[jacobian].outputs
         products = [
             graph.sum(weights[i] * entries[columns * i + j] for i in range(rows)) for j in range(columns)
         ]
         with every_identity_evaluated():
-            same_values(gradient, products, found[gradient].outputs)
+            same_values(gradient, products, by_name[gradient].outputs)
 
 
 @pytest.mark.parametrize("quantity", ["inverse_dynamics_gradient", "forward_dynamics_gradient"])
@@ -212,10 +212,10 @@ def test_changes_that_constraints_allow_keep_them(name: str) -> None:
 
     def held(step: Array) -> Array:
         moved = {key: place[key] + float(d) for key, d in zip(names, step, strict=True)}
-        found = values(selection, moved)
+        by_quantity = values(selection, moved)
         qd, qdd = (np.array([moved[key] for key in names[k * n : (k + 1) * n]]) for k in (1, 2))
-        rows, rates = found["constraint_jacobian"], found["constraint_jacobian_dot"]
-        return np.concatenate([found.get("constraint_residual", np.zeros(0)), rows @ qd, rows @ qdd + rates @ qd])
+        rows, rates = by_quantity["constraint_jacobian"], by_quantity["constraint_jacobian_dot"]
+        return np.concatenate([by_quantity.get("constraint_residual", np.zeros(0)), rows @ qd, rows @ qdd + rates @ qd])
 
     for _ in range(3):
         change = variations @ np.array([source.uniform(-1, 1) for _ in names])
@@ -236,9 +236,9 @@ def test_derivatives_keep_their_digits_where_coordinates_fail(exponent: int) -> 
     for arm in (1, 2, 3):
         point = {str(node.payload): math.sin(1.7 * k + 0.3) for k, node in enumerate(selection.mechanics.motion)}
         point[f"b_{arm}"] = 10.0**-exponent
-        found = values(selection, point)[ALL[0]]
+        jacobian = values(selection, point)[ALL[0]]
         q, qd, qdd = np.array(list(point.values())).reshape(3, -1).tolist()
         given = tuple(parameters[parameter.name] for parameter in model.parameters)
         state = State(tuple(q), tuple(qd), tuple(qdd), (0.0,) * model.m, given)
         exact = np.array([float(x.mid()) for x in reference.evaluate(state, (ALL[0],))[ALL[0]]])
-        assert np.linalg.norm(found.ravel() - exact) < 1e-14 * np.linalg.norm(exact)
+        assert np.linalg.norm(jacobian.ravel() - exact) < 1e-14 * np.linalg.norm(exact)

@@ -61,9 +61,9 @@ def test_u_of_what_no_row_holds_has_no_rank_to_test() -> None:
     assert not any(statement.operation in ("sincos", "div") for statement in kernel.statements)
     quarter = 1.5707963267948966
     state = State((0.0, 0.0, 0.3, 0.1, quarter, quarter), (0.0,) * 6, (1.0, 2.0, 3.0, 4.0, 5.0, 6.0), (), (6, 0.2, 0.1))
-    (found,) = outcomes(kernel, program.sincos, "float64", [state])
-    assert found.status == Status.OK
-    assert found.entries == pytest.approx([0.02 * 7, 0.002 * 8, 0.002 * 9], rel=1e-15)
+    (outcome,) = outcomes(kernel, program.sincos, "float64", [state])
+    assert outcome.status == Status.OK
+    assert outcome.entries == pytest.approx([0.02 * 7, 0.002 * 8, 0.002 * 9], rel=1e-15)
 
 
 def test_an_input_on_what_rows_hold_keeps_their_test() -> None:
@@ -73,9 +73,9 @@ def test_an_input_on_what_rows_hold_keeps_their_test() -> None:
 @pytest.mark.parametrize(("on", "kept"), [("a", ("first",)), ("y", ("second",)), ("s", ())])
 def test_rows_of_blocks_that_an_input_acts_in_are_kept(on: str, kept: tuple[str, ...]) -> None:
     model = load_text(PAIR.format(on=on), "pair.yaml")
-    found = where_inputs_act(model, genericity(System(model)))
-    assert found is not None
-    smaller, generic = found
+    driven_part = where_inputs_act(model, genericity(System(model)))
+    assert driven_part is not None
+    smaller, generic = driven_part
     assert tuple(row.name for row in smaller.constraints) == kept
     assert (generic.r, generic.rank, generic.geometric_rank, generic.delta) == (len(kept),) * 3 + (5 - len(kept),)
     assert bool(statuses(PAIR.format(on=on))) == bool(kept)
@@ -141,9 +141,9 @@ def test_torques_on_a_flying_body_are_those_of_euler(forces: str, most: int) -> 
     force = 2 * axes.T @ (place + np.array([0, 0, 9.81]))
     torque = inertia * turned + np.cross(spin, inertia * spin)
     state = State((0.1, 0.2, 0.3, *e), (0.4, 0.5, 0.6, *rates), (*place, *rates_dot), (), (2.0, *inertia))
-    (found,) = outcomes(kernel, program.sincos, "float64", [state])
-    assert found.status == Status.OK
-    assert found.entries == pytest.approx([*(force if forces == ALL_FORCES else force[2:]), *torque], rel=1e-12)
+    (outcome,) = outcomes(kernel, program.sincos, "float64", [state])
+    assert outcome.status == Status.OK
+    assert outcome.entries == pytest.approx([*(force if forces == ALL_FORCES else force[2:]), *torque], rel=1e-12)
 
 
 def test_inputs_that_are_one_more_than_they_span_are_shared_by_their_norm() -> None:
@@ -152,5 +152,5 @@ def test_inputs_that_are_one_more_than_they_span_are_shared_by_their_norm() -> N
     model = load_text(text, "hull.yaml")
     program = draft_of(model, model.outputs, Options()).programs["float64"]
     state = State((0.0,) * 3 + (1.0,) + (0.0,) * 3, (0.0,) * 7, (0.0,) * 7, (), (2.0, 0.02, 0.03, 0.05))
-    (found,) = outcomes(program.kernels[0], program.sincos, "float64", [state])
-    assert found.entries == pytest.approx([9.81, 9.81, 0, 0, 0], abs=1e-12)
+    (outcome,) = outcomes(program.kernels[0], program.sincos, "float64", [state])
+    assert outcome.entries == pytest.approx([9.81, 9.81, 0, 0, 0], abs=1e-12)

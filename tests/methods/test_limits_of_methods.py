@@ -135,9 +135,9 @@ def test_methods_of_long_systems_are_not_derived_to_say_where_they_fail(monkeypa
 
 
 @pytest.mark.parametrize(
-    ("names", "inputs", "told"), [("xyz", 6, ""), ("xy", 6, ""), ("xy", 7, "there are 21 choices of inputs")]
+    ("names", "inputs", "reason"), [("xyz", 6, ""), ("xy", 6, ""), ("xy", 7, "there are 21 choices of inputs")]
 )
-def test_the_printed_method_is_not_made_of_more_than_twenty_choices(names: str, inputs: int, told: str) -> None:
+def test_the_printed_method_is_not_made_of_more_than_twenty_choices(names: str, inputs: int, reason: str) -> None:
     drives = "\n".join(f"  u_{k}: {{acts_on: {{{', '.join(f'{n}: {1 + k**i}' for i, n in enumerate(names))}}}}}"
                        for k in range(inputs))
     energy = " + ".join(f"{name}_dot**2" for name in names)
@@ -146,4 +146,4 @@ def test_the_printed_method_is_not_made_of_more_than_twenty_choices(names: str, 
     model = load_text(text, "pushed.yaml")
     generic: Genericity = genericity(System(model))
     made = printed_candidate(MethodInput.fresh(model, generic))
-    assert made == told if told else isinstance(made, Candidate)
+    assert made == reason if reason else isinstance(made, Candidate)

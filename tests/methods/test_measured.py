@@ -109,9 +109,9 @@ def test_a_linkage_is_where_it_is_by_hand_or_refused_with_the_output_untouched(t
     moved = before + 10.0 ** random.uniform(-4, 0.5, 4000) * random.choice((-1, 1), 4000)
     for side in (1.0, -1.0):
         near = closed_by_hand(before, side)
-        found = module.configuration_from_measured(moved[:, None], near)
-        kept = np.isfinite(found).all(axis=1)
-        off = np.abs(turned_to(closed_by_hand(moved, side), found) - found)
+        configurations = module.configuration_from_measured(moved[:, None], near)
+        kept = np.isfinite(configurations).all(axis=1)
+        off = np.abs(turned_to(closed_by_hand(moved, side), configurations) - configurations)
         assert off[kept].max() < 1e-13
         # the crank turns all the way: no move is too far
         assert kept.all()
@@ -119,14 +119,14 @@ def test_a_linkage_is_where_it_is_by_hand_or_refused_with_the_output_untouched(t
     rocker = closed_by_hand(before)[:, 2:] + (moved - before)[random.permutation(4000), None]
     (tmp_path / "rocker").mkdir()
     other = kernels(linkage("[c]"), tmp_path / "rocker")
-    found = other.configuration_from_measured(rocker, closed_by_hand(before))
-    kept = np.isfinite(found).all(axis=1)
+    configurations = other.configuration_from_measured(rocker, closed_by_hand(before))
+    kept = np.isfinite(configurations).all(axis=1)
     tip = L0 + L3 * np.exp(1j * rocker[:, 0])
     reach = (np.abs(tip) <= L1 + L2) & (np.abs(tip) >= L2 - L1)
     assert not kept[~reach].any()
     assert np.isin(True, kept)
     assert kept[np.abs(rocker[:, 0] - closed_by_hand(before)[:, 2]) < 1e-3].mean() > 0.9
-    closes = found[kept]
+    closes = configurations[kept]
     gap = L1 * np.exp(1j * closes[:, 0]) + L2 * np.exp(1j * closes[:, 1]) - L0 - L3 * np.exp(1j * closes[:, 2])
     assert np.abs(gap).max() < 2e-15
     # on the side of the start: crank and coupler bend the same way
@@ -152,20 +152,20 @@ def test_rates_and_accelerations_are_those_of_the_motion(tmp_path: Path) -> None
 def test_of_too_many_encoders_the_nearest_configuration_is_taken(tmp_path: Path) -> None:
     module = kernels(linkage("[c, a]"), tmp_path)
     near = closed_by_hand(np.array(0.6))
-    told = near[[2, 0]] + [0.02, -0.03]
-    found = module.configuration_from_measured(told, near)
-    assert np.abs(found - closed_by_hand(found[0])).max() < 1e-14
+    readings = near[[2, 0]] + [0.02, -0.03]
+    configuration = module.configuration_from_measured(readings, near)
+    assert np.abs(configuration - closed_by_hand(configuration[0])).max() < 1e-14
 
     def away(crank: Array) -> Array:
-        return np.sum((closed_by_hand(crank)[..., [2, 0]] - told) ** 2, axis=-1)
+        return np.sum((closed_by_hand(crank)[..., [2, 0]] - readings) ** 2, axis=-1)
 
     # the slope of the distance along the motion vanishes
     step = 1e-4
-    slope = (away(found[0] + step) - away(found[0] - step)) / (2 * step)
-    bend = (away(found[0] + step) + away(found[0] - step) - 2 * away(found[0])) / step**2
+    slope = (away(configuration[0] + step) - away(configuration[0] - step)) / (2 * step)
+    bend = (away(configuration[0] + step) + away(configuration[0] - step) - 2 * away(configuration[0])) / step**2
     assert bend > 0
     assert abs(slope / bend) < 1e-9
-    assert away(found[0]) < away(near[0])
+    assert away(configuration[0]) < away(near[0])
 
 
 @pytest.mark.slow
@@ -197,10 +197,10 @@ def test_no_move_ends_on_another_branch(name: str, measured: str, tmp_path: Path
     for _ in range(3):  # beside a singularity it takes more of them to reach the last digits
         rows, left = module.constraint_jacobian(place)[:, :, free], module.constraint_residual(place)
         place[:, free] -= np.where(lost[:, None], 0.0, np.linalg.solve(rows, left[..., None])[..., 0])
-    found = module.configuration_from_measured(place[:, held], start)
-    kept = np.isfinite(found).all(axis=1)
+    configurations = module.configuration_from_measured(place[:, held], start)
+    kept = np.isfinite(configurations).all(axis=1)
     followed = ~lost & kept
-    assert np.abs(found - place)[followed].max() < 1e-9
+    assert np.abs(configurations - place)[followed].max() < 1e-9
     assert followed.sum() > 0.6 * len(start)
     back = kept & lost
     if name == "delta":
@@ -209,7 +209,7 @@ def test_no_move_ends_on_another_branch(name: str, measured: str, tmp_path: Path
     # in closed form: what comes back from beyond one is in the mode of the start, told by each loop's own determinant
     for k in (1, 2):
         loop = np.ix_(np.flatnonzero(back), range(2 * k - 2, 2 * k), [free.index(3), free.index(3 + k)])
-        pairs = (module.constraint_jacobian(q)[:, :, free] for q in (start, found))
+        pairs = (module.constraint_jacobian(q)[:, :, free] for q in (start, configurations))
         first, second = (np.linalg.det(rows[loop]) for rows in pairs)
         assert (first * second > 0).all()
 
@@ -244,8 +244,8 @@ def test_a_car_is_led_by_rates_and_its_place_is_not_found(tmp_path: Path) -> Non
     module = kernels(CAR.replace("MEASURED", "[x, phi]"), tmp_path)
     theta, phi, speed = 0.4, 0.3, 2.0
     q = [1.0, 2.0, theta, phi]
-    found = module.velocity_from_measured(q, [speed * np.cos(theta), 0.1])
-    assert np.allclose(found, [speed * np.cos(theta), speed * np.sin(theta), speed * np.tan(phi) / 2, 0.1])
+    rates = module.velocity_from_measured(q, [speed * np.cos(theta), 0.1])
+    assert np.allclose(rates, [speed * np.cos(theta), speed * np.sin(theta), speed * np.tan(phi) / 2, 0.1])
     assert not hasattr(module, "configuration_from_measured")
 
 

@@ -59,8 +59,8 @@ def test_a_singular_method_is_made_and_says_where_it_fails(tmp_path: Path, capsy
 
 def test_a_method_the_system_does_not_have(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([PENDULUM, *FEW, "--out", str(tmp_path), "--form", "householder"]) == 2
-    told = capsys.readouterr().err
-    assert "double_pendulum has no method 'householder' of inverse_dynamics: there are no constraints" in told
+    errors = capsys.readouterr().err
+    assert "double_pendulum has no method 'householder' of inverse_dynamics: there are no constraints" in errors
     assert not [*tmp_path.iterdir()]
 
 
@@ -103,9 +103,9 @@ def test_a_method_of_accelerations_that_fails_says_where(tmp_path: Path, capsys:
     file.write_text(MASSLESS)
     given = (str(file), "--only", "c", "--no-verify", "--out", str(tmp_path))
     assert main([*given, "--form", "forward_dynamics=schur_qr"]) == 0
-    told = " ".join(capsys.readouterr().out.split())
+    printed = " ".join(capsys.readouterr().out.split())
     where = "this form is singular where the pivot of y in G, m*cos(turn)**2 = 0"
-    assert f"validity of forward_dynamics at every regular state form schur_qr: {where}" in told
+    assert f"validity of forward_dynamics at every regular state form schur_qr: {where}" in printed
     derivation = json.loads((tmp_path / "massless" / "derivation.json").read_text())
     method = derivation["form_of_forward_dynamics"]
     assert method["valid_at_every_regular_state"] is False
@@ -113,8 +113,8 @@ def test_a_method_of_accelerations_that_fails_says_where(tmp_path: Path, capsys:
     # lambda was left to symgen, and takes none that fails
     assert derivation["kernels"]["multipliers"]["form"] != "schur_qr"
     assert main(["explain", str(file), "multipliers"]) == 0
-    told = " ".join(capsys.readouterr().out.split())
-    assert re.search(r"schur_qr \(\d+\): " + re.escape(where), told)
+    printed = " ".join(capsys.readouterr().out.split())
+    assert re.search(r"schur_qr \(\d+\): " + re.escape(where), printed)
 
 
 def test_the_report_names_methods_of_the_multipliers_that_fail(tmp_path: Path) -> None:
@@ -127,18 +127,18 @@ def test_the_report_names_methods_of_the_multipliers_that_fail(tmp_path: Path) -
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         ("multiplier=kkt", "'multiplier' has no methods; did you mean `multipliers`?"),
         ("multipliers=range", "'range' is no method of multipliers: choose from auto, minor, schur_qr"),
         ("energy=kkt", "'energy' has no methods; those that have methods are inverse_dynamics, forward_dynamics"),
     ],
 )
-def test_methods_that_do_not_exist(text: str, told: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_methods_that_do_not_exist(text: str, message: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as left:
         main([CAR, "--form", text])
     assert left.value.code == 2
-    assert told in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 def test_methods_a_system_lacks_and_methods_of_what_is_not_generated(

@@ -25,8 +25,8 @@ DRIVEN = [name for name in NAMES if model(name).inputs]
 
 def programs_of(given: Model) -> dict[str, dict[Scalar, Program]]:
     return {
-        method: schedule(mechanics, found, ("float64", "float32"))
-        for method, mechanics, found in every_method(given, ("inverse_dynamics",))
+        method: schedule(mechanics, quantities, ("float64", "float32"))
+        for method, mechanics, quantities in every_method(given, ("inverse_dynamics",))
     }
 
 

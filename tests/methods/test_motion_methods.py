@@ -56,10 +56,10 @@ configuration: {a: 0.9, b: 0.9, d: 0.9, x: 0.62, y: 0.78, p: 0, z: 0, w: 0}
 def point(mechanics: System, q: dict[str, float] | None = None) -> dict[str, float]:
     """A configuration on V with random rates and inputs."""
     source = random.Random(7)
-    found = dict(configurations(mechanics, 1)[0]) | (q or {})
+    values = dict(configurations(mechanics, 1)[0]) | (q or {})
     for symbol in (*mechanics.qd, *mechanics.u):
-        found[str(symbol.payload)] = source.uniform(-1, 1)
-    return found
+        values[str(symbol.payload)] = source.uniform(-1, 1)
+    return values
 
 
 def numbers(scalars: Any, at: dict[str, float], *shape: int) -> Any:
@@ -77,11 +77,11 @@ def solution(mechanics: System, at: dict[str, float]) -> tuple[Any, Any]:
     return qdd, np.linalg.pinv(B.T, rcond=1e-8) @ (f - G @ qdd)
 
 
-def check(mechanics: System, found: Motion, at: dict[str, float]) -> None:
+def check(mechanics: System, motion: Motion, at: dict[str, float]) -> None:
     qdd, multipliers = solution(mechanics, at)
-    assert numbers(found.accelerations, at, mechanics.n) == pytest.approx(qdd, rel=1e-9, abs=1e-9)
-    assert numbers(found.multipliers, at, mechanics.r) == pytest.approx(multipliers, rel=1e-9, abs=1e-9)
-    for guard in found.guards:
+    assert numbers(motion.accelerations, at, mechanics.n) == pytest.approx(qdd, rel=1e-9, abs=1e-9)
+    assert numbers(motion.multipliers, at, mechanics.r) == pytest.approx(multipliers, rel=1e-9, abs=1e-9)
+    for guard in motion.guards:
         value, scale = Evaluator([guard.denominator, guard.denominator if guard.scale is None else guard.scale])(at)
         assert 1e-6 < abs(value) / abs(scale) <= 1 + 1e-12
 
@@ -121,8 +121,8 @@ def test_dependent_rows_with_three_degrees_of_freedom(crank: float) -> None:
     derivation = Derivation(mechanics, generic, space)
     motions = motions_along(derivation)
     assert [*motions] == ["schur_qr", "nullspace"]
-    for found in motions.values():
-        check(mechanics, found, at)
+    for motion in motions.values():
+        check(mechanics, motion, at)
     B = numbers(flatten(space.rows), at, 6, 8)
     assert numbers(flatten(space.pseudoinverse), at, 8, 6) == pytest.approx(np.linalg.pinv(B, rcond=1e-8), abs=1e-13)
     exact = np.eye(8) - np.linalg.pinv(B, rcond=1e-8) @ B

@@ -36,8 +36,8 @@ def test_a_large_load_of_a_drive_leaves_the_other_inputs_alone() -> None:
         for _ in range(20):
             names = [f"{q}{rate}" for q in "abcd" for rate in ("", "_dot", "_ddot")]
             point = {"m": 1000.0, "g": 9.81} | dict(zip(names, drawn.uniform(-1, 1, len(names)), strict=True))
-            found = np.array(evaluate(point))
-            u, residual, row, force = found[:2], found[2:6], found[6:10], found[10:]
+            values = np.array(evaluate(point))
+            u, residual, row, force = values[:2], values[2:6], values[6:10], values[10:]
             # independent of what is loaded: the same with the load of the first drive taken off
             projector = np.eye(4) - np.outer(row, row) / (row @ row)
             control = np.array([[1.0, 0], [0, 0], [0, -3], [0, 0]])

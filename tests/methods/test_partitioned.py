@@ -95,8 +95,8 @@ def made(text: str) -> tuple[System, Motion]:
     """q_ddot and lambda by substitution, on the system's graph."""
     model = load_text(text, "model.yaml")
     workspace = Workspace(model, genericity(System(model)))
-    found = [PARTITIONED.build(workspace, quantity) for quantity in ("forward_dynamics", "multipliers")]
-    q_ddot, multipliers = (one for one in found if isinstance(one, Candidate))
+    candidates = [PARTITIONED.build(workspace, quantity) for quantity in ("forward_dynamics", "multipliers")]
+    q_ddot, multipliers = (one for one in candidates if isinstance(one, Candidate))
     motion = Motion(q_ddot.derived.outputs, multipliers.derived.outputs, q_ddot.derived.guards, q_ddot.divisors)
     return q_ddot.system.mechanics, motion
 
@@ -108,8 +108,8 @@ def test_they_solve_the_equations_of_motion(text: str) -> None:
     # the reference stands on a graph of its own: beside each other equal functions are one node
     own = System(mechanics.model)
     problem, n, r = Problem(own, ()), own.n, own.r
-    for found in configurations(own, 3):
-        at = dict(found)
+    for configuration in configurations(own, 3):
+        at = dict(configuration)
         at |= {str(symbol.payload): source.uniform(-1, 1) for symbol in (*own.qd, *own.u)}
         given = Evaluator([*flatten(problem.mass_matrix), *flatten(problem.rows), *problem.force, *problem.bias])(at)
         mass, rows, force, bias = np.split(np.array(given), np.cumsum([n * n, r * n, n]))
@@ -150,15 +150,15 @@ def test_a_leg_of_no_length_has_a_status() -> None:
 def test_pivots_that_are_no_numbers_are_searched_for_zeros() -> None:
     model = load_text(TRIPOD, "model.yaml")
     methods = Methods(model, genericity(System(model)))
-    found = methods.candidate("forward_dynamics", "partitioned")
-    assert isinstance(found, Candidate)
-    validity = methods.validity(found)
+    candidate = methods.candidate("forward_dynamics", "partitioned")
+    assert isinstance(candidate, Candidate)
+    validity = methods.validity(candidate)
     assert validity.admitted
     assert validity.proved + validity.searched == 3
     # one that vanishes at regular states, as a sine does, is seen
-    angle = found.system.mechanics.graph.symbol("a")
-    sine = found.system.mechanics.graph.trig("sin", angle)
-    assert not methods.validity(replace(found, divisors=(sine,))).admitted
+    angle = candidate.system.mechanics.graph.symbol("a")
+    sine = candidate.system.mechanics.graph.trig("sin", angle)
+    assert not methods.validity(replace(candidate, divisors=(sine,))).admitted
 
 
 def test_rows_that_give_coordinates_cost_little() -> None:

@@ -93,11 +93,11 @@ MODELS = {
 def test_as_along_an_orthonormal_basis(model: Model) -> None:
     """At random states, where no quaternion has length 1 and no row is 0."""
     generic = genericity(System(model))
-    found = articulated(model, generic)
-    assert found is not None
+    derived = articulated(model, generic)
+    assert derived is not None
     methods, mechanics = Methods(model, generic), System(model)
     made = [methods.candidate(quantity, "nullspace") for quantity in MOTIONS]
-    one = Evaluator([*found[1].accelerations, *found[1].multipliers])
+    one = Evaluator([*derived[1].accelerations, *derived[1].multipliers])
     other = Evaluator([x for one in made if isinstance(one, Candidate) for x in one.derived.outputs])
     source = random.Random(5)
     for _ in range(4):
@@ -112,11 +112,11 @@ def test_as_along_an_orthonormal_basis(model: Model) -> None:
 
 def test_what_holds_a_length_is_free_of_force() -> None:
     """Exactly 0 as long as nothing acts on the coordinates themselves; a cable acts on a body."""
-    found = articulated(swing(), genericity(System(swing())))
+    derived = articulated(swing(), genericity(System(swing())))
     driven = articulated(swing(inputs=DRIVEN), genericity(System(swing())))
-    assert found is not None
+    assert derived is not None
     assert driven is not None
-    assert [x.is_zero for x in found[1].multipliers] == [True, True]
+    assert [x.is_zero for x in derived[1].multipliers] == [True, True]
     assert [x.is_zero for x in driven[1].multipliers] == [True, False]
 
 
@@ -167,8 +167,8 @@ def test_lengths_are_completed_as_the_equations_have_it(model: Model) -> None:
         for name in (x for c in model.coordinates for x in (c.name, c.rate)):
             point[name] = source.uniform(0.2, 0.9)
         point |= {control.name: source.uniform(-1, 1) for control in model.inputs}
-        found = values(point)
-        assert found[: len(rows)] == pytest.approx(found[len(rows) :], rel=1e-9, abs=1e-9)
+        numbers = values(point)
+        assert numbers[: len(rows)] == pytest.approx(numbers[len(rows) :], rel=1e-9, abs=1e-9)
 
 
 @pytest.mark.parametrize("name", ["nullspace", "shifted", "kkt"])
@@ -207,9 +207,9 @@ def test_turning_rates_are_those_of_the_angular_velocity() -> None:
         e_ddot = [graph.symbol(f"{names[j]}_ddot") for j in parts]
         turning = bodies.kinematics.joint(frame).turning
         moved = derivative_along(graph, turning, dict(zip((*e, *e_dot), (*e_dot, *e_ddot), strict=True)))
-        found = turning_rate(e, e_dot, e_ddot, turning)
-        assert [one.value for one in found] == [other.value for other in moved]
-        assert cost(found).weight < cost(moved).weight
+        rates = turning_rate(e, e_dot, e_ddot, turning)
+        assert [one.value for one in rates] == [other.value for other in moved]
+        assert cost(rates).weight < cost(moved).weight
 
 
 def test_a_rotor_resists_a_coordinate_and_no_turn() -> None:

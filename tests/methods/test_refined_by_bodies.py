@@ -118,7 +118,7 @@ def motions(text: str, name: str) -> Evaluator:
     """q_ddot and lambda by a method."""
     methods = Methods(table(text), genericity(System(table(text))))
     made = [methods.candidate(quantity, name) for quantity in MOTIONS]
-    return Evaluator([x for found in made if isinstance(found, Candidate) for x in found.derived.outputs])
+    return Evaluator([x for candidate in made if isinstance(candidate, Candidate) for x in candidate.derived.outputs])
 
 
 @cache
@@ -129,7 +129,7 @@ def expected(text: str) -> Expected:
 def points(model: Model) -> list[dict[str, float]]:
     """States of the table on the constraint manifold."""
     source = random.Random(3)
-    found = []
+    states = []
     for _ in range(3):
         turn, rate = source.uniform(0.3, 1.2), source.uniform(-2, 2)
         way = (0.5 * math.cos(turn), 0.5 * math.sin(turn))
@@ -138,8 +138,8 @@ def points(model: Model) -> list[dict[str, float]]:
         point = dict(parameter_values(System(model)))
         for c in model.coordinates:
             point |= {c.name: at.get(c.name, turn), c.rate: moving.get(c.name, 0.0 if c.name in at else rate)}
-        found.append(point | {control.name: source.uniform(-1, 1) for control in model.inputs})
-    return found
+        states.append(point | {control.name: source.uniform(-1, 1) for control in model.inputs})
+    return states
 
 
 @pytest.mark.parametrize("method", ["articulated", "articulated_by_bodies"])
@@ -170,8 +170,8 @@ def test_weighted_projections_with_dependent_rows(quantity: str) -> None:
     assert one is not None
     assert other is not None
     for point in points(table(PLANE)):
-        found, wanted = Evaluator(one.derived.outputs)(point), Evaluator(other.derived.outputs)(point)
-        assert found == pytest.approx(wanted, rel=1e-9, abs=1e-9)
+        entries, wanted = Evaluator(one.derived.outputs)(point), Evaluator(other.derived.outputs)(point)
+        assert entries == pytest.approx(wanted, rel=1e-9, abs=1e-9)
 
 
 @pytest.mark.campaign

@@ -94,7 +94,7 @@ def same(one: Selection, other: Selection) -> bool:
     ratios = {"a": 1, "b": 2, "c": 3, "d": 6}
     point = {f"{name}{dots}": 0.4 * ratio for name, ratio in ratios.items() for dots in ("", "_dot", "_ddot")}
     point |= {"T": 1.7, "J": 0.2, "K": 0.7}
-    values = [[x for q in found.quantities for x in Evaluator(q.outputs)(point)] for found in (one, other)]
+    values = [[x for q in selection.quantities for x in Evaluator(q.outputs)(point)] for selection in (one, other)]
     return values[0] == pytest.approx(values[1], rel=1e-12)
 
 
@@ -108,9 +108,9 @@ def test_a_new_method_of_u_is_chosen_where_it_counts_least(drums: Model, monkeyp
     assert same(before, after)
 
 
-@pytest.mark.parametrize(("solved", "told"), [(over_angle, FAILS), (longer, "not examined")])
+@pytest.mark.parametrize(("solved", "beginning"), [(over_angle, FAILS), (longer, "not examined")])
 def test_one_that_is_singular_or_longer_is_not(
-    solved: Callable[[Workspace], Candidate | str], told: str, drums: Model, monkeypatch: pytest.MonkeyPatch
+    solved: Callable[[Workspace], Candidate | str], beginning: str, drums: Model, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     before = derive_quantities(drums, (INPUTS,))
     register(monkeypatch, (INPUTS,), OfInputs(solved))
@@ -118,7 +118,7 @@ def test_one_that_is_singular_or_longer_is_not(
     assert taken(after) == taken(before)
     assert after.method_of_u is not None
     (remark,) = (remark for name, _, remark in after.method_of_u.others if name == NAME)
-    assert remark.startswith(told)
+    assert remark.startswith(beginning)
 
 
 def test_a_new_method_of_motion_is_chosen_where_it_counts_least(drums: Model, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -138,13 +138,13 @@ def test_fallback_and_names_find_it_in_the_table(drums: Model, monkeypatch: pyte
     assert derive_quantities(drums, (INPUTS,)).choices[0] == choice
     others = Alternatives(drums, generic, None).of(INPUTS, choice, 0)
     assert others[0].choice.title == NAME
-    found = Methods(drums, generic).choose(INPUTS, NAME)
-    assert not isinstance(found, str)
-    assert found[1].name == NAME
+    decision = Methods(drums, generic).choose(INPUTS, NAME)
+    assert not isinstance(decision, str)
+    assert decision[1].name == NAME
     # a comparison is there for those who ask, and for nobody else
     register(monkeypatch, (INPUTS,), OfInputs(of_one_wheel), Use.COMPARISON)
     tiers = [Alternatives(drums, generic, None).of(INPUTS, choice, tier) for tier in (0, 1)]
-    assert NAME not in {one.choice.title for found in tiers for one in found}
+    assert NAME not in {one.choice.title for alternatives in tiers for one in alternatives}
 
 
 def test_every_row_leads_to_a_method_with_a_name_of_its_own() -> None:

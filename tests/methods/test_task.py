@@ -80,16 +80,16 @@ def test_an_arm_reaches_a_place_as_by_hand_or_refuses_with_the_output_untouched(
     module, random = kernels(ARM, tmp_path), np.random.default_rng(1)
     before = np.stack((random.uniform(-3, 3, 4000), random.choice((-1, 1), 4000) * random.uniform(0.3, 2.8, 4000)), 1)
     moved = place(before) + 10.0 ** random.uniform(-4, 0, (4000, 1)) * random.normal(size=(4000, 2))
-    found = module.configuration_from_task(moved, before)
-    kept = np.isfinite(found).all(axis=1)
+    configurations = module.configuration_from_task(moved, before)
+    kept = np.isfinite(configurations).all(axis=1)
     reach = np.linalg.norm(moved, axis=1)
     assert not kept[(reach > L1 + L2) | (reach < L1 - L2)].any()
     for side in (1.0, -1.0):
         these = kept & (before[:, 1] * side > 0)
         a, end = bent(moved[these], L1, L2, side)
-        exact = turned_to(np.stack((a, end - a), axis=1), found[these])
+        exact = turned_to(np.stack((a, end - a), axis=1), configurations[these])
         # beside a stretched pose a place leaves angles open by the root of what it is rounded by
-        assert np.abs(exact - found[these]).max() < 1e-12
+        assert np.abs(exact - configurations[these]).max() < 1e-12
     assert kept[np.linalg.norm(moved - place(before), axis=1) < 0.01].all()
     assert 0.3 < kept.mean() < 0.95
 
@@ -175,8 +175,8 @@ configuration: {{x: {L1}, y: 0, a: 0}}
 """
     module, q = kernels(text, tmp_path), np.array([L1 * np.cos(0.7), L1 * np.sin(0.7), 0.7])
     out, across = np.array([np.cos(0.7), np.sin(0.7)]), np.array([-np.sin(0.7), np.cos(0.7)])
-    found = module.acceleration_from_task(q, [1.3], [-0.4])
-    assert np.allclose(found[:2], L1 * (-0.4 * across - 1.3**2 * out), atol=1e-15, rtol=0)
+    accelerations = module.acceleration_from_task(q, [1.3], [-0.4])
+    assert np.allclose(accelerations[:2], L1 * (-0.4 * across - 1.3**2 * out), atol=1e-15, rtol=0)
     assert np.allclose(module.velocity_from_task(q, [1.3]), [*(1.3 * L1 * across), 1.3], atol=1e-15, rtol=0)
 
 
@@ -186,10 +186,10 @@ def test_a_five_bar_is_where_two_circles_meet(tmp_path: Path) -> None:
     x = x[np.isfinite(legs(x)).all(axis=1)]
     moved = x + 1e-3 * random.normal(size=x.shape)
     wanted = legs(moved)
-    found = module.configuration_from_task(moved, legs(x))
-    kept = np.isfinite(found).all(axis=1)
+    configurations = module.configuration_from_task(moved, legs(x))
+    kept = np.isfinite(configurations).all(axis=1)
     assert kept.mean() > 0.97
-    assert np.abs(turned_to(wanted, found) - found)[kept].max() < 1e-12
+    assert np.abs(turned_to(wanted, configurations) - configurations)[kept].max() < 1e-12
 
 
 @pytest.mark.parametrize("over", [1.0, -1.0])
@@ -216,15 +216,15 @@ configuration: {{a: 0.3, b: 0.8, c: 0.5, d: -1.3}}
     moved[:, :3] += 10.0 ** random.uniform(-4, -1, (3000, 1)) * random.normal(size=(3000, 3))
     moved[:, 3] = -moved[:, 1] - moved[:, 2]
     aim = module.task_position(moved)
-    found = module.configuration_from_task(aim, before)
-    kept = np.isfinite(found).all(axis=1)
+    configurations = module.configuration_from_task(aim, before)
+    kept = np.isfinite(configurations).all(axis=1)
     same = (np.sin(moved[:, 2]) * np.sin(c) > 0) & (np.abs(moved - before).max(axis=1) < 0.5)
     reach = [L1 * np.cos(q[:, 1]) + L2 * np.cos(q[:, 1] + q[:, 2]) + 0.1 for q in (before, moved)]
     same &= (reach[0] * reach[1] > 0) & (np.abs(reach).min(axis=0) > 1e-3)
     assert same.mean() > 0.9
     assert kept[same].mean() > 0.99
-    assert np.abs(found - moved)[kept & same].max() < 1e-9
-    assert np.median(np.abs(found - moved)[kept & same].max(axis=1)) < 1e-15
+    assert np.abs(configurations - moved)[kept & same].max() < 1e-9
+    assert np.median(np.abs(configurations - moved)[kept & same].max(axis=1)) < 1e-15
 
 
 def test_of_too_many_coordinates_the_nearest_configuration_is_taken(tmp_path: Path) -> None:
@@ -233,14 +233,14 @@ def test_of_too_many_coordinates_the_nearest_configuration_is_taken(tmp_path: Pa
     consistent = np.array([*place(q + 0.01), q[0] + 0.01 + (q[1] + 0.01) / 2])
     assert np.allclose(module.configuration_from_task(consistent, q), q + 0.01, atol=1e-14, rtol=0)
     aim = consistent + np.array([0.02, -0.01, 0.03])
-    found = module.configuration_from_task(aim, q)
-    left = module.task_position(found) - aim
-    slopes = module.task_jacobian(found)
+    configuration = module.configuration_from_task(aim, q)
+    left = module.task_position(configuration) - aim
+    slopes = module.task_jacobian(configuration)
     assert np.linalg.norm(left) > 1e-3
     assert np.abs(slopes.T @ left).max() < 1e-15
     rates = np.array([0.3, -0.2, 0.5])
     least = np.linalg.lstsq(slopes, rates, rcond=None)[0]
-    assert np.allclose(module.velocity_from_task(found, rates), least, atol=1e-14, rtol=0)
+    assert np.allclose(module.velocity_from_task(configuration, rates), least, atol=1e-14, rtol=0)
 
 
 def test_what_a_task_leaves_open_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -248,10 +248,10 @@ def test_what_a_task_leaves_open_is_said(tmp_path: Path, capsys: pytest.CaptureF
     path = tmp_path / "arm.yaml"
     path.write_text(text, encoding="utf-8")
     assert main([str(path), "--only", "python", "--no-verify", "--out", str(tmp_path)]) == 0
-    told = capsys.readouterr().err
+    printed = capsys.readouterr().err
     for name in ("configuration_from_task", "velocity_from_task", "acceleration_from_task"):
-        assert name in told
-    assert "the task leaves 1 direction open" in " ".join(told.split())
+        assert name in printed
+    assert "the task leaves 1 direction open" in " ".join(printed.split())
     made = (tmp_path / "arm" / "python" / "arm.py").read_text(encoding="utf-8")
     assert "def task_jacobian" in made
     assert "def velocity_from_task" not in made
@@ -282,9 +282,9 @@ def test_a_coordinate_of_the_task_that_is_one_of_the_model_is_taken_as_it_is(tmp
     text = ARM.replace("rad}}", "rad}, x: {unit: rad}}").replace("b_dot**2)", "b_dot**2 + x_dot**2)")
     text = text.replace("task: {x: ", "task: {l_1: x, x: ").replace("b: 0.8}", "b: 0.8, x: 0.2}")
     module, q = kernels(text, tmp_path), np.array([0.5, 0.9, -0.3])
-    found = module.configuration_from_task([0.11, *place(q[:2] + 0.02)], q)
-    assert found[2] == 0.11
-    assert np.allclose(found[:2], q[:2] + 0.02, atol=1e-14, rtol=0)
+    configuration = module.configuration_from_task([0.11, *place(q[:2] + 0.02)], q)
+    assert configuration[2] == 0.11
+    assert np.allclose(configuration[:2], q[:2] + 0.02, atol=1e-14, rtol=0)
 
 
 def test_a_car_is_led_by_a_point_ahead_and_its_place_is_not_found(tmp_path: Path) -> None:
@@ -325,7 +325,7 @@ def test_statuses_of_a_task_stand_in_models_that_have_one_alone() -> None:
 
 
 @pytest.mark.parametrize(
-    ("task", "told"),
+    ("task", "message"),
     [
         ("{x: l_1 + 2}", "`x` of the task does not move"),
         ("{x: a_dot}", "`a_dot` is a rate"),
@@ -334,8 +334,8 @@ def test_statuses_of_a_task_stand_in_models_that_have_one_alone() -> None:
         ("[a, b]", "task"),
     ],
 )
-def test_mistakes_are_told(task: str, told: str) -> None:
+def test_mistakes_are_told(task: str, message: str) -> None:
     text = "\n".join(f"task: {task}" if line.startswith("task:") else line for line in ARM.splitlines())
     with pytest.raises(ModelError) as caught:
         load_text(text, "arm.yaml")
-    assert told in str(caught.value)
+    assert message in str(caught.value)

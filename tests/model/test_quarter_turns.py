@@ -32,9 +32,9 @@ def _first_angle(model: Model) -> Expression:
 def test_they_stand_for_multiples_of_pi(written: str) -> None:
     turns = round(float(written) / 1.5707963)
     model, exact = (load_text(TEXT.replace("ANGLE", angle), "turned.yaml") for angle in (written, f"{turns}/2*pi"))
-    found, meant = (exact_sine_and_cosine(_first_angle(one)) for one in (model, exact))
-    assert found is not None
-    assert found == meant
+    sine_and_cosine, meant = (exact_sine_and_cosine(_first_angle(one)) for one in (model, exact))
+    assert sine_and_cosine is not None
+    assert sine_and_cosine == meant
     assert f"`{written}` is taken for {turns}*pi/2" in [notice.message for notice in model.notices]
 
 

@@ -56,9 +56,9 @@ def test_a_row_that_rounding_leaves_is_the_empty_row() -> None:
     assert all(empty for name, empty in rows.items() if "tilt" in name)
     assert model.assembly is not None
     assert model.assembly.ranks.constraints == 2
-    told = [notice.message for notice in model.notices if "nothing" in notice.message]
-    assert len(told) == 1, "one message for a loop"
-    assert "zero for all configurations" in told[0]
+    messages = [notice.message for notice in model.notices if "nothing" in notice.message]
+    assert len(messages) == 1, "one message for a loop"
+    assert "zero for all configurations" in messages[0]
 
 
 def test_a_gap_that_no_motion_closes_is_a_mistake() -> None:
@@ -120,9 +120,9 @@ def test_what_would_make_an_empty_row_count_is_a_number(parameters: str, row: st
     assert not {parameter.name for parameter in model.parameters} & taken.keys()
     left = repr((model.parameters, model.kinetic_energy, model.constraints, model.inputs, model.paths))
     assert not any(f"Name(name='{name}')" in left for name in taken)
-    told = [notice.message for notice in model.notices if "taken as the number" in notice.message]
-    assert len(told) == len(taken)
-    assert ("in spite of its range" in told[0]) == ("range" in parameters)
+    messages = [notice.message for notice in model.notices if "taken as the number" in notice.message]
+    assert len(messages) == len(taken)
+    assert ("in spite of its range" in messages[0]) == ("range" in parameters)
 
 
 def test_an_offset_of_nothing_in_a_plane_of_a_frame_that_cannot_turn() -> None:
@@ -195,9 +195,9 @@ configuration: {{a_0: 0.5, a_1: 0.5, a_2: 0.5, x: 0.4, y: 0.2}}
 """
     model = load_text(text, "cranks.yaml")
     assert model.assembly is not None
-    told = [notice.message for notice in model.notices if "in spite of" in notice.message]
+    messages = [notice.message for notice in model.notices if "in spite of" in notice.message]
     assert model.assembly.tied == ("l_3",)
-    assert told == [
+    assert messages == [
         "`l_3` keeps its default in spite of its range: rows that depend on each other can be closed for no other value"
     ]
 
@@ -240,9 +240,9 @@ constraints:
   geometric:
 {dyads}
 """
-    told = [notice.message for notice in load_text(text, "dyads.yaml").notices]
-    assert len(told) == 1
-    assert told[0].startswith("`b_1` .. `b_10` cannot move: the constraints hold b_1 = ")
+    messages = [notice.message for notice in load_text(text, "dyads.yaml").notices]
+    assert len(messages) == 1
+    assert messages[0].startswith("`b_1` .. `b_10` cannot move: the constraints hold b_1 = ")
 
 
 def test_a_length_that_no_motion_makes_up_for_is_tied_in_any_axes() -> None:
@@ -266,9 +266,9 @@ constraints: {geometric: {plane: e_3 - 0.6, still: EXPRESSION}}
 configuration: {e_0: 0.8, e_3: 0.6}
 """
     for expression in ("e_3 + e_1 - 0.6", "s - 0.2"):
-        told = [x.message for x in load_text(text.replace("EXPRESSION", expression), "hinged.yaml").notices]
-        assert sum("`e_3`" in x and "cannot move" in x for x in told) == 1
-        assert not any("leave the coordinate" in x for x in told)
+        messages = [x.message for x in load_text(text.replace("EXPRESSION", expression), "hinged.yaml").notices]
+        assert sum("`e_3`" in x and "cannot move" in x for x in messages) == 1
+        assert not any("leave the coordinate" in x for x in messages)
     alone = load_text(text.replace("plane: e_3 - 0.6, still: EXPRESSION", "still: s - 0.2"), "hinged.yaml")
     assert any("else leave the coordinate out" in notice.message for notice in alone.notices)
 

@@ -82,6 +82,6 @@ def test_refused(text: str) -> None:
 )
 def test_what_was_run_together_is_taken_apart(written: str, remedy: str) -> None:
     text = f"model: m\ncoordinates: {{x: {{unit: {written}}}}}\nkinetic_energy: x_dot**2\n"
-    with pytest.raises(ModelError) as told:
+    with pytest.raises(ModelError) as raised:
         load_text(text, "m.yaml")
-    assert told.value.mistakes[0].remedy.startswith(remedy)
+    assert raised.value.mistakes[0].remedy.startswith(remedy)

@@ -133,11 +133,11 @@ def test_mistakes_of_words_name_what_was_meant() -> None:
 
 
 def test_mistakes_of_a_built_model_stand_in_its_text() -> None:
-    with pytest.raises(symgen.ModelError) as told:
+    with pytest.raises(symgen.ModelError) as raised:
         cart().kinetic_energy("m_q*x_dot**2").input("T", acts_on={"b": 1}).derive()
-    assert [mistake.remedy for mistake in told.value.mistakes]
-    assert "cart:10:17: unknown name `m_q` in the kinetic energy" in str(told.value)
-    assert "T: {acts_on: {b: 1}}" in str(told.value)
+    assert [mistake.remedy for mistake in raised.value.mistakes]
+    assert "cart:10:17: unknown name `m_q` in the kinetic energy" in str(raised.value)
+    assert "T: {acts_on: {b: 1}}" in str(raised.value)
 
 
 def test_a_model_is_loaded_from_path_text_and_blocks(tmp_path: Path) -> None:

@@ -22,9 +22,9 @@ def test_the_code_of_the_page_runs(
     names: dict[str, object] = {}
     for block in blocks:
         exec(compile(block, str(PAGE), "exec"), names)
-    told = capsys.readouterr().out
-    assert "unknown name `M_c` in the kinetic energy" in told
-    assert "forces act on coordinates; name one of them: x, a" in told
+    printed = capsys.readouterr().out
+    assert "unknown name `M_c` in the kinetic energy" in printed
+    assert "forces act on coordinates; name one of them: x, a" in printed
     assert (tmp_path / "build" / "example" / "cart" / "c" / "cart.c").is_file()
     assert (tmp_path / "arm.svg").read_text(encoding="utf-8").startswith("<?xml")
     assert "<html" in (tmp_path / "arm.html").read_text(encoding="utf-8")

@@ -86,9 +86,9 @@ EXPECTED = {
 def test_verdicts_of_the_errata_table(name: str) -> None:
     model, forms = derived(name)
     verdicts = decide_published(model, forms)
-    found = [(i.equation, kind(i), v.verdict) for i, v in zip(model.published, verdicts, strict=True)]
+    decided = [(i.equation, kind(i), v.verdict) for i, v in zip(model.published, verdicts, strict=True)]
     for expected in EXPECTED[name]:
-        assert expected in found
+        assert expected in decided
     for verdict in verdicts:
         assert verdict.corrected_proven is (True if verdict.verdict == MISPRINTED else None), verdict
         assert verdict.explanation
@@ -178,9 +178,9 @@ def variants(item: Published) -> Iterator[Published]:
 @pytest.mark.parametrize("name", PAPER)
 def test_a_flipped_sign_changes_the_verdict(name: str) -> None:
     for item in derived(name)[0].published:
-        found = [decide(name, variant).verdict for variant in variants(item)]
-        assert found, item.equation
-        assert set(found) == {MISPRINTED}, item.equation
+        verdicts = [decide(name, variant).verdict for variant in variants(item)]
+        assert verdicts, item.equation
+        assert set(verdicts) == {MISPRINTED}, item.equation
 
 
 @pytest.mark.parametrize("name", PAPER)

@@ -64,16 +64,16 @@ def alarms(tool: Callable[[str], str], name: str, limit: Fraction | None, folder
         *others, last = system.coordinates
         system = replace(system, coordinates=(*others, replace(last, range=(-limit, limit))))
     write(folder, sources(name) | emit_eva(system, programs(name)["float32"]))
-    told = run(
+    printed = run(
         tool("frama-c"), "-eva", "-eva-precision", "1", "-warn-special-float", "non-finite",
         f"-cpp-extra-args=-I{folder}/c", "-main", "eva_inverse_dynamics",
         folder / f"proof/{name}_f_eva.c", folder / f"c/{name}_f.c",
     )  # fmt: skip
-    found = re.search(r"(\d+) alarms? generated", told)
-    assert found, told
-    unproved = re.search(r"Assertions +\d+ valid +(\d+) unknown +(\d+) invalid", told)
-    assert unproved, told
-    return int(found[1]) + int(unproved[1]) + int(unproved[2])
+    counted = re.search(r"(\d+) alarms? generated", printed)
+    assert counted, printed
+    unproved = re.search(r"Assertions +\d+ valid +(\d+) unknown +(\d+) invalid", printed)
+    assert unproved, printed
+    return int(counted[1]) + int(unproved[1]) + int(unproved[2])
 
 
 def test_front_car_has_no_alarm_in_its_box(tool: Callable[[str], str], tmp_path: Path) -> None:
@@ -97,12 +97,12 @@ def test_drivers_compile(tool: Callable[[str], str], tmp_path: Path, name: str) 
 
 @pytest.mark.parametrize("scalar", SCALARS)
 def test_slices_cover_the_range_without_overlap(scalar: Scalar) -> None:
-    found = slices(scalar, (Fraction(-33, 10), Fraction(33, 10)))
-    assert all(cut.low <= cut.high for cut in found)
-    gaps = [after.low - before.high for before, after in pairwise(found)]
+    cuts = slices(scalar, (Fraction(-33, 10), Fraction(33, 10)))
+    assert all(cut.low <= cut.high for cut in cuts)
+    gaps = [after.low - before.high for before, after in pairwise(cuts)]
     assert all(0 <= gap < 1e-6 for gap in gaps)
     assert sum(gap > 0 for gap in gaps) == 4  # the multiple of pi/2 changes between two floats
-    assert found[0].low == -found[-1].high
+    assert cuts[0].low == -cuts[-1].high
 
 
 @pytest.mark.parametrize(
@@ -117,8 +117,8 @@ def test_gappa_certifies_a_rounding_bound_above_the_measured_error(
     assert set(files) == {script, measuring}
     few = {measuring: files[measuring].replace("1000000ul", "20000ul")}
     write(tmp_path, files | sources(name) | few)
-    told = run(tool("gappa"), tmp_path / script)
-    bounds = [float(bound) for bound in re.findall(r"\{([0-9.e+-]+),", told)]
+    printed = run(tool("gappa"), tmp_path / script)
+    bounds = [float(bound) for bound in re.findall(r"\{([0-9.e+-]+),", printed)]
     assert len(bounds) == files[script].count(" in ?")
     made = [measuring, f"c/{name}.c", f"c/{name}_f.c"]
     run(tool("gcc"), "-std=c99", "-O1", "-ffp-contract=off", "-Ic", *made, "-o", "error", "-lm", folder=tmp_path)
@@ -166,8 +166,8 @@ def test_short_campaign(tool: Callable[[str], str], tmp_path: Path, name: str, c
     write(tmp_path, files)
     made = [f"proof/{name}_fuzz.c", *(path for path in files if path.startswith("c/") and path.endswith(".c"))]
     run(tool(compiler), *SANITIZE, *CAMPAIGNS[compiler], "-Ic", *made, "-o", "fuzz", "-lm", folder=tmp_path)
-    told = run(tmp_path / "fuzz", "10000")
-    counted = re.findall(r"^(\w+): (\d+) compared, (\d+) beyond", told, re.MULTILINE)
+    printed = run(tmp_path / "fuzz", "10000")
+    counted = re.findall(r"^(\w+): (\d+) compared, (\d+) beyond", printed, re.MULTILINE)
     functions = {kernel for kernel, _, _ in counted}
     assert {k.name for k in programs(name)["float64"].kernels if k.name in SHORT} <= functions
     assert "inverse_dynamics_sc" in functions
@@ -189,8 +189,8 @@ def test_short_campaign_with_twice_the_digits_in_one_type(
     made = [f"c/{file.name}" for file in (folder / "c").glob("*.c") if "_batch" not in file.name]
     options = [*SANITIZE, *CAMPAIGNS[compiler], "-Ic", f"proof/{NAME}_fuzz.c", *made, "-o", "fuzz", "-lm"]
     run(tool(compiler), *options, folder=folder)
-    told = run(folder / "fuzz", "10000")
-    counted = re.findall(r"^(\w+): (\d+) compared, (\d+) beyond", told, re.MULTILINE)
+    printed = run(folder / "fuzz", "10000")
+    counted = re.findall(r"^(\w+): (\d+) compared, (\d+) beyond", printed, re.MULTILINE)
     often = {kernel for kernel, compared, _ in counted if int(compared) > 100}
     assert often >= {"inverse_dynamics", "forward_dynamics"}
 
@@ -240,11 +240,11 @@ def test_static_analysis_has_listed_deviations_only(tool: Callable[[str], str], 
     """package/DEVIATIONS.md lists them; each is found, so none is stale."""
     write(tmp_path, {path: text for path, text in sources("skate").items() if "batch" not in path})
     given = ["--std=c99", "--addon=misra", "--enable=warning,style,performance,portability", "-q", "c/skate_f.c"]
-    told = run(tool("cppcheck"), *given, folder=tmp_path)
-    assert set(re.findall(r"\[([\w.-]+)\]$", told, re.MULTILINE)) == {"misra-c2012-15.5"}
+    printed = run(tool("cppcheck"), *given, folder=tmp_path)
+    assert set(re.findall(r"\[([\w.-]+)\]$", printed, re.MULTILINE)) == {"misra-c2012-15.5"}
     checks = "-checks=-*,bugprone-*,cert-*,clang-analyzer-*,-bugprone-easily-swappable-parameters"
-    told = run(tool("clang-tidy"), "--quiet", checks, "c/skate.c", "c/skate_f.c", "--", "-std=c99", folder=tmp_path)
-    assert "warning:" not in told
+    printed = run(tool("clang-tidy"), "--quiet", checks, "c/skate.c", "c/skate_f.c", "--", "-std=c99", folder=tmp_path)
+    assert "warning:" not in printed
 
 
 @pytest.mark.campaign
@@ -255,8 +255,8 @@ def test_static_analysis_of_kernels_with_twice_the_digits(tool: Callable[[str], 
     sources = [f"out/{NAME}/c/{NAME}{suffix}.c" for suffix in ("", "_f")]
     assert all("_steps" in (tmp_path / source).read_text() for source in sources)
     given = ["--std=c99", "--addon=misra", "--enable=warning,style,performance,portability", "-q", sources[1]]
-    told = run(tool("cppcheck"), *given, folder=tmp_path)
-    assert set(re.findall(r"\[([\w.-]+)\]$", told, re.MULTILINE)) == {"misra-c2012-15.5"}
+    printed = run(tool("cppcheck"), *given, folder=tmp_path)
+    assert set(re.findall(r"\[([\w.-]+)\]$", printed, re.MULTILINE)) == {"misra-c2012-15.5"}
     checks = "-checks=-*,bugprone-*,cert-*,clang-analyzer-*,-bugprone-easily-swappable-parameters"
-    told = run(tool("clang-tidy"), "--quiet", checks, *sources, "--", "-std=c99", folder=tmp_path)
-    assert "warning:" not in told
+    printed = run(tool("clang-tidy"), "--quiet", checks, *sources, "--", "-std=c99", folder=tmp_path)
+    assert "warning:" not in printed

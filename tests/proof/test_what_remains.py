@@ -62,9 +62,9 @@ def test_friction_by_tanh_has_no_alarm(tool: Callable[[str], str], tmp_path: Pat
     command = [tool("frama-c"), "-eva", "-eva-precision", "1", "-warn-special-float", "non-finite"]
     command += [f"-cpp-extra-args=-I{tmp_path / 'c'}", "-main", "eva_inverse_dynamics"]
     files = [str(tmp_path / "proof/scara_f_eva.c"), str(tmp_path / "c/scara_f.c")]
-    told = subprocess.run([*command, *files], capture_output=True, text=True, check=True).stdout
-    assert "0 alarms generated" in told
-    assert re.search(r"Assertions +1 valid +0 unknown +0 invalid", told)
+    printed = subprocess.run([*command, *files], capture_output=True, text=True, check=True).stdout
+    assert "0 alarms generated" in printed
+    assert re.search(r"Assertions +1 valid +0 unknown +0 invalid", printed)
 
 
 def test_alarms_are_told_by_kind_with_the_first_statement(tmp_path: Path) -> None:
@@ -77,10 +77,10 @@ def test_alarms_are_told_by_kind_with_the_first_statement(tmp_path: Path) -> Non
     script = "import sys; from pathlib import Path; import proof_table as t; "
     script += "print(*t.origins(sys.argv[1], Path(sys.argv[2])), sep='\\n')"
     tools = Path(__file__).resolve().parents[2] / "tools"
-    told = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-c", script, EVA, str(tmp_path)], capture_output=True, text=True, check=True, cwd=tools
     )
-    assert told.stdout.splitlines() == [
+    assert process.stdout.splitlines() == [
         "2 × non-finite float value, first `t1 = a * b`",
         "1 × accessing uninitialized left-value, first `return c`",
         "no bounds are known of `sinhf`",

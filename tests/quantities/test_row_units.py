@@ -49,9 +49,9 @@ def test_quantities_are_those_of_the_rows_in_the_file(quantity: str) -> None:
     usual, scaled = _model("1", "1", "1"), _model("3e9", "1e-7", "7e5")
     assert in_ordinary_units(usual) is usual
     assert all(in_ordinary_units(scaled).row_units)
-    plain, found = _values(usual, quantity), _values(scaled, quantity)
+    plain, rescaled = _values(usual, quantity), _values(scaled, quantity)
     rows = list(factors.values())
-    for entry, (x, y) in enumerate(zip(plain, found, strict=True)):
+    for entry, (x, y) in enumerate(zip(plain, rescaled, strict=True)):
         if quantity in ("constraint_residual", "multipliers"):
             row = rows[entry]
         elif "jacobian" in quantity:

@@ -19,12 +19,12 @@ SOURCES = {"c/skate.c": "int x;\n", "c/skate_f.c": "int y;\n"}
 
 def _written(folder: Path, **changed: object) -> Path:
     sources = {Path(path).name: hashlib.sha256(text.encode()).hexdigest() for path, text in SOURCES.items()}
-    found: dict[str, object] = {
+    record: dict[str, object] = {
         "model": "skate", "sources": sources, "unproven": "0", "bounds": {"0": 4.75e-7, "1": 5.1e-5},
         "measured": {"0": 4.7e-7, "1": 2.2e-5}, "without": "", "denominators": [], "others": [],
     }
     path = folder / "proof.json"
-    path.write_text(json.dumps(found | changed))
+    path.write_text(json.dumps(record | changed))
     return path
 
 

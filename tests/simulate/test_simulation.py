@@ -117,9 +117,9 @@ def test_kernels_that_verification_rejects_are_not_integrated(
     variants = Variant(wrong), *backend.BACKEND.variants[1:]
     monkeypatch.setattr(backend, "BACKEND", replace(backend.BACKEND, variants=variants))
     assert run(str(MODELS / "skate.yaml"), "--duration", "0.1", "--out", str(out)) == 1
-    told = capsys.readouterr().err
-    assert "skate.yaml: not simulated: verification rejects what would be integrated" in told
-    assert "forward_dynamics" in told
+    errors = capsys.readouterr().err
+    assert "skate.yaml: not simulated: verification rejects what would be integrated" in errors
+    assert "forward_dynamics" in errors
     assert not list(out.iterdir())
 
 
@@ -162,9 +162,9 @@ def test_a_new_model_works_and_is_animated(out: Path, monkeypatch: pytest.Monkey
     assert run("my_cart.yaml", "--duration", "1", "--inputs", "drive=2", "--out", str(out)) == 0
     page = (out / "my_cart" / "simulation.html").read_text(encoding="utf-8")
     assert "<b>" not in page
-    found = re.search(r'<script type="application/json" id="motion">(.*?)</script>', page)
-    assert found is not None
-    data = json.loads(found.group(1))
+    match = re.search(r'<script type="application/json" id="motion">(.*?)</script>', page)
+    assert match is not None
+    data = json.loads(match.group(1))
     assert data["names"] == ["cart", "rod", "tip"]
     assert data["planar"]
     # the tip hangs on the rod at its length, and the cart has moved

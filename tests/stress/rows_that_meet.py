@@ -54,7 +54,7 @@ def beside(reference: Reference, apart: float, seed: int, scalar: Scalar) -> Sta
     state = State(tuple(q), qd, qdd, u, tuple(map(float, default_parameters(model))))
     if seed % 2 == 0:
         names = ("admissible_velocity", "admissible_acceleration")
-        found = reference.matrices(state, names, BITS)
-        qd, qdd = (tuple(map(float, found[name].entries())) for name in names)
+        matrices = reference.matrices(state, names, BITS)
+        qd, qdd = (tuple(map(float, matrices[name].entries())) for name in names)
         state = replace(state, qd=qd, qdd=qdd)
     return rounded_state(state, scalar)

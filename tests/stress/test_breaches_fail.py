@@ -32,10 +32,10 @@ class Spoilt:
         self._kernels, self.names = kernels, kernels.names
 
     def run(self, name: str, state: Any, scalar: str) -> Outcome:
-        found: Outcome = self._kernels.run(name, state, scalar)
+        outcome: Outcome = self._kernels.run(name, state, scalar)
         if name == "forward_dynamics" and scalar == "float32":
-            return Outcome(found.status, tuple(1.001 * x for x in found.entries))
-        return Outcome(Status.ACTUATION_RANK, found.entries) if name == "inverse_dynamics" else found
+            return Outcome(outcome.status, tuple(1.001 * x for x in outcome.entries))
+        return Outcome(Status.ACTUATION_RANK, outcome.entries) if name == "inverse_dynamics" else outcome
 
 
 # nothing is broken where kernels are as they are: `test_units` runs the command, too
@@ -49,11 +49,11 @@ def test_breaches_of_the_rule_fail(
     if spoilt:
         monkeypatch.setattr(run, "counted", lambda r, kernels, *rest: counted(r, Spoilt(kernels), *rest))  # type: ignore[arg-type]
     code = command.run_stress(tmp_path / "rod.yaml", tmp_path / "out", 0, False, lambda _: None)
-    told = capsys.readouterr()
+    printed = capsys.readouterr()
     assert code == spoilt
-    assert ("the rule is broken by" in told.out) == spoilt
+    assert ("the rule is broken by" in printed.out) == spoilt
     if spoilt:
-        table = told.out[told.out.index("the rule is broken by") :].splitlines()
+        table = printed.out[printed.out.index("the rule is broken by") :].splitlines()
         assert [line.split()[:2] for line in table[2:5]] == [["u", "float64"], ["u", "float32"], ["qdd", "float32"]]
-        assert "forward_dynamics, float32: " in told.err
-        assert "while no measure is below its threshold, as status 3" in told.err
+        assert "forward_dynamics, float32: " in printed.err
+        assert "while no measure is below its threshold, as status 3" in printed.err

@@ -33,10 +33,10 @@ configuration: {a: 1.2, b: 0.5, c: 1.2}
 def test_a_four_bar_at_its_change_point(tmp_path: Path) -> None:
     reference = Reference(load_text(FOUR_BAR, "parallelogram.yaml"))
     (trouble,) = [t for kind, t in common_troubles(choices(reference)) if kind == "constraint"]
-    found = places(reference, trouble, 1)
-    assert [_kind(reference, place) for place in found] == ["constraint"]
+    singular_places = places(reference, trouble, 1)
+    assert [_kind(reference, place) for place in singular_places] == ["constraint"]
     names = ("inverse_dynamics", "forward_dynamics", "nullspace_projector")
-    family = _family(reference, "constraint", trouble, found)
+    family = _family(reference, "constraint", trouble, singular_places)
     sweeper = Sweeper(reference, RunnableKernels(reference.model, tmp_path, names), [family])
     sweeper.family(0)
     result = sweeper.result()

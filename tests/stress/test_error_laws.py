@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from shipped import model
-from test_families import found, known, reference
+from test_families import families_of, known, reference
 
 from symgen.generation.runnable import PIECES, Outcome, RunnableKernels
 from symgen.ir.kernel import Scalar
@@ -52,7 +52,7 @@ def test_pairs_of_drives_lose_digits_that_the_generated_kernel_keeps(tmp_path: P
 
 @pytest.mark.parametrize("name", ["rear_car"])
 def test_statuses_come_from_both_sides_of_an_input_singularity(name: str, tmp_path: Path) -> None:
-    (family,) = [family for family in found(name).families if family.kind == "input"]
+    (family,) = [family for family in families_of(name).families if family.kind == "input"]
     _, sweeper = swept(name, family, tmp_path, ("inverse_dynamics", "forward_dynamics", "nullspace_projector"))
     result = sweeper.result()
     assert result.failures == ()
@@ -65,7 +65,7 @@ def test_statuses_come_from_both_sides_of_an_input_singularity(name: str, tmp_pa
 
 def test_a_wrong_kernel_is_found_out(tmp_path: Path) -> None:
     """The sweep fails when results carry an error, and when a refusal is missing."""
-    (family,) = [family for family in found("rear_car").families if family.kind == "input"]
+    (family,) = [family for family in families_of("rear_car").families if family.kind == "input"]
     kernels = RunnableKernels(model("rear_car"), tmp_path, ("inverse_dynamics",))
 
     class Spoiled:

@@ -19,7 +19,7 @@ def reference(name: str) -> Reference:
 
 
 @cache
-def found(name: str) -> SingularFamilies:
+def families_of(name: str) -> SingularFamilies:
     return search(reference(name))
 
 
@@ -30,25 +30,25 @@ def known(name: str) -> Choices:
 
 def singular(name: str) -> dict[str, str]:
     kinds = ("constraint", "input", "parameter")
-    return {family.label: family.kind for family in found(name).families if family.kind in kinds}
+    return {family.label: family.kind for family in families_of(name).families if family.kind in kinds}
 
 
 def test_front_car_has_parameter_singularities_only() -> None:
     assert singular("front_car") == dict.fromkeys(("cos θ", "sin θ", "cos φ", "sin φ"), "parameter")
-    failing = {family.label: set(family.partitions) for family in found("front_car").families}
+    failing = {family.label: set(family.partitions) for family in families_of("front_car").families}
     # coordinates x, y, theta, phi: (x, phi) fails at cos theta cos phi = 0, (y, phi) at sin theta cos phi = 0
     assert [label for label in failing if (0, 3) in failing[label]] == ["cos θ", "cos φ"]
     assert {label for label in failing if (1, 3) in failing[label]} == {"sin θ", "cos φ"}
-    assert "the degree of actuation drops nowhere" in found("front_car").nowhere
+    assert "the degree of actuation drops nowhere" in families_of("front_car").nowhere
 
 
 def test_every_choice_of_coordinates_that_can_fail_does_along_a_family() -> None:
     # no row of the car holds the rate of phi, so that phi is in each of the choices
     assert known("front_car").partitions == ((0, 3), (1, 3), (2, 3))
-    assert (found("front_car").partitions, found("front_car").failing) == (3, 3)
+    assert (families_of("front_car").partitions, families_of("front_car").failing) == (3, 3)
     # the rod is never upright
-    assert (found("slider_crank").partitions, found("slider_crank").failing) == (3, 2)
-    assert any(line.startswith("cos β = 0: not found") for line in found("slider_crank").nowhere)
+    assert (families_of("slider_crank").partitions, families_of("slider_crank").failing) == (3, 2)
+    assert any(line.startswith("cos β = 0: not found") for line in families_of("slider_crank").nowhere)
 
 
 def test_rear_car_has_an_input_singularity() -> None:
@@ -59,9 +59,9 @@ def test_rear_car_has_an_input_singularity() -> None:
 def test_slider_crank() -> None:
     # the slider as a coordinate fails at the dead centres, the rod where the crank is upright
     assert singular("slider_crank") == {"cos α": "parameter", "sin(α + β)": "parameter"}
-    kinds = {family.kind for family in found("slider_crank").families}
+    kinds = {family.kind for family in families_of("slider_crank").families}
     assert kinds >= {"large angles", "small angles", "mass ratios", "drift", "incompatible inputs"}
-    masses = {family.label for family in found("slider_crank").families if family.kind == "mass ratios"}
+    masses = {family.label for family in families_of("slider_crank").families if family.kind == "mass ratios"}
     assert masses == {"m_crank", "m_rod", "m_s", "J_crank", "J_rod"}
 
 

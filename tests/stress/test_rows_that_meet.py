@@ -41,7 +41,7 @@ def test_no_digit_is_lost_twice(name: str, tmp_path: Path) -> None:
 
 def _beyond(model: Model, generated: RunnableKernels, methods: MethodKernels) -> list[str]:
     """What is beyond the tolerance with status 0; each kernel has to answer at most states."""
-    reference, found = Reference(model), list[str]()
+    reference, breaches = Reference(model), list[str]()
     for scalar in SCALARS:
         for apart in APART:
             for seed in range(3):
@@ -60,5 +60,5 @@ def _beyond(model: Model, generated: RunnableKernels, methods: MethodKernels) ->
                         one = of_more_draws(reference, state, name, scalar, f"{apart} {seed}", one)
                     units = one.in_units(one.distance(entries))
                     if not units <= FACTOR:
-                        found.append(f"{label} {name} {scalar} at {apart}: {units:.3g}")
-    return found
+                        breaches.append(f"{label} {name} {scalar} at {apart}: {units:.3g}")
+    return breaches

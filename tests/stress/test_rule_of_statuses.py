@@ -101,10 +101,10 @@ def test_what_is_wrong_is_found(tmp_path: Path) -> None:
 
     class Off(RunnableKernels):
         def run(self, name: str, state: State, scalar: Scalar) -> Outcome:
-            found = super().run(name, state, scalar)
+            outcome = super().run(name, state, scalar)
             if name == "multipliers":
-                return Outcome(2, found.entries)
-            return Outcome(found.status, tuple(x * (1 + 1e-6) for x in found.entries))
+                return Outcome(2, outcome.entries)
+            return Outcome(outcome.status, tuple(x * (1 + 1e-6) for x in outcome.entries))
 
     held = counted(reference, Off(reference.model, tmp_path), states)
     for one in held:
@@ -156,11 +156,11 @@ def test_rows_that_masses_make_one_have_a_status() -> None:
     )
     for scalar, light, expected in cases:
         state = rounded_state(State((0.5,) * 4, (0.0,) * 4, (0.0,) * 4, (1.0,), (light, 1.0)), scalar)
-        found = expectations(reference, state, model.outputs, scalar, "light")
+        by_quantity = expectations(reference, state, model.outputs, scalar, "light")
         for kernel in programs[scalar].kernels:
             run = Interpreter(programs[scalar].sincos, scalar).run
             status, entries = run(kernel, {"q": state.q, "qd": state.qd, "u": state.u}, state.parameters)
             assert status == expected
             if not status:
-                one = found[kernel.name]
+                one = by_quantity[kernel.name]
                 assert one.in_units(one.distance(entries)) <= 16

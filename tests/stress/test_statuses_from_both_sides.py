@@ -41,7 +41,7 @@ def regular(name: str) -> tuple[State, ...]:
 
 def beside_special_angles(name: str) -> list[State]:
     """Configurations, mostly off V, at tiny distances from quarter turns, where determinants have their zeros."""
-    source, found = random.Random(name), []
+    source, states = random.Random(name), []
     for _ in range(STATES):
         given = source.choice(regular(name))
         d = 10 ** source.uniform(-16, -1) if source.random() < 0.8 else 0.0
@@ -49,8 +49,8 @@ def beside_special_angles(name: str) -> list[State]:
             source.randrange(-1, 3) * QUARTER + d * source.uniform(-1, 1) if c.is_angle and source.random() < 0.7 else x
             for x, c in zip(given.q, model(name).coordinates, strict=True)
         ]
-        found.append(replace(given, q=tuple(q)))
-    return found
+        states.append(replace(given, q=tuple(q)))
+    return states
 
 
 @cache

@@ -35,11 +35,11 @@ def slider_crank(tmp_path_factory: pytest.TempPathFactory) -> tuple[RunnableKern
 
 
 def test_powers_of_two_change_no_bit_of_the_inputs(slider_crank: tuple[RunnableKernels, Path], tmp_path: Path) -> None:
-    found, failures = scaling(reference("slider_crank"), slider_crank[0], tmp_path)
+    scaled, failures = scaling(reference("slider_crank"), slider_crank[0], tmp_path)
     assert failures == ()
     changes = {"lengths", "masses", "times", "all three", "m in mm", "rad in deg"}
-    assert {one.change for one in found} == changes
-    u = [one for one in found if one.quantity == "inverse_dynamics"]
+    assert {one.change for one in scaled} == changes
+    u = [one for one in scaled if one.quantity == "inverse_dynamics"]
     for one in u:
         binary = one.change not in ("m in mm", "rad in deg")
         assert one.covariant
@@ -50,9 +50,9 @@ def test_powers_of_two_change_no_bit_of_the_inputs(slider_crank: tuple[RunnableK
 def test_no_odd_number_gives_an_odd_result_with_status_0(tmp_path: Path) -> None:
     kernels = RunnableKernels(model("skate"), tmp_path, STRESSED)
     states = [sample.state for sample in sample_states(reference("skate"), (), 8)][:2]
-    found, failures = odd_numbers(kernels, [name for name in STRESSED if name in kernels.names], states)
+    counts, failures = odd_numbers(kernels, [name for name in STRESSED if name in kernels.names], states)
     assert failures == ()
-    assert all(0 < one.answered < one.calls for one in found)
+    assert all(0 < one.answered < one.calls for one in counts)
 
 
 @pytest.mark.toolchain

@@ -18,25 +18,25 @@ SEEDS = range(80)
 
 def _grown(graph: Graph, draw: random.Random, leaves: list[Scalar]) -> list[Scalar]:
     """Sums, products, quotients, sines of sums, roots and signs; the same draws from other leaves are their images."""
-    found = [*leaves, graph.const(Fraction(3, 2)), graph.const(PI / 6)]
+    scalars = [*leaves, graph.const(Fraction(3, 2)), graph.const(PI / 6)]
     angles = [*leaves]
     for _ in range(14):
-        x, y = draw.choice(found), draw.choice(found)
+        x, y = draw.choice(scalars), draw.choice(scalars)
         angle = draw.choice(angles) + draw.choice((1, -1, 2)) * draw.choice(angles)
         match draw.randrange(8):
             case 0 | 1:
-                found.append(x + y)
+                scalars.append(x + y)
             case 2 | 3:
-                found.append(x * y)
+                scalars.append(x * y)
             case 4:
-                found.append(x - 2 * y)
+                scalars.append(x - 2 * y)
             case 5:
-                found.append(graph.trig(draw.choice(("sin", "cos")), angle))
+                scalars.append(graph.trig(draw.choice(("sin", "cos")), angle))
             case 6:
-                found.append(x / (y * y + 1))
+                scalars.append(x / (y * y + 1))
             case _:
-                found.append(graph.function(draw.choice(("abs", "tanh")), (x,)))
-    return found[-6:]
+                scalars.append(graph.function(draw.choice(("abs", "tanh")), (x,)))
+    return scalars[-6:]
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -45,10 +45,10 @@ def test_they_are_the_same_on_another_graph(seed: int) -> None:
     outputs = _grown(graph, random.Random(seed), [graph.symbol(name) for name in NAMES])
     # what is known there already, in another order
     _grown(other, random.Random(seed + 1), [other.symbol(name) for name in reversed(NAMES)])
-    found = transplanted(other, outputs)
-    assert all(scalar.graph is other for scalar in found)
+    carried = transplanted(other, outputs)
+    assert all(scalar.graph is other for scalar in carried)
     with every_identity_evaluated():
-        same_values("carrying over", outputs, found)
+        same_values("carrying over", outputs, carried)
 
 
 @pytest.mark.parametrize("seed", SEEDS)

@@ -8,8 +8,8 @@ from symgen.symbolic.scalar import Graph, Scalar
 
 def shortened(graph: Graph, output: Scalar) -> Scalar:
     coordinates = [graph.symbol(name) for name in "xyz"]
-    (found,) = Factoring(graph, [graph.symbol("a")], coordinates).shorten([output])
-    return found
+    (shorter,) = Factoring(graph, [graph.symbol("a")], coordinates).shorten([output])
+    return shorter
 
 
 def test_squares_stay_whole_and_signs_and_multiples_are_one_atom() -> None:

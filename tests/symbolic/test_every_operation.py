@@ -51,8 +51,8 @@ def test_its_derivatives_are_those_of_small_differences(op: str) -> None:
         expected = value(node, **{name: POINT[name] + STEP}) - value(node, **{name: POINT[name] - STEP})
         (forward,) = derivative_along(graph, [node], {graph.symbol(name): graph.one})
         (backward,) = gradient(graph, node, [graph.symbol(name)])
-        for found in (forward, backward):
-            assert value(found) == pytest.approx(expected / (2 * STEP), rel=1e-8, abs=1e-9)
+        for derivative in (forward, backward):
+            assert value(derivative) == pytest.approx(expected / (2 * STEP), rel=1e-8, abs=1e-9)
 
 
 @pytest.mark.parametrize("op", operations())

@@ -45,8 +45,8 @@ def test_what_a_constant_holds_of_pi_is_found() -> None:
 @pytest.mark.parametrize("more", [0, 1])
 def test_half_turns_are_found_beside_powers_of_pi_up_to_one(more: int) -> None:
     """A constant that holds none, such as a quotient by pi, would be looked through without end."""
-    found = half_turns(PI ** (MOST_DEGREE + more) / 7 + PI**2 + PI / 3 - 2)
-    assert found == (None if more else Fraction(1, 3))
+    turns = half_turns(PI ** (MOST_DEGREE + more) / 7 + PI**2 + PI / 3 - 2)
+    assert turns == (None if more else Fraction(1, 3))
 
 
 def test_identities_hold_and_others_do_not() -> None:

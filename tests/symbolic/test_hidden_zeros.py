@@ -22,11 +22,11 @@ def _turned(graph: Graph, axis: tuple[Scalar, ...], angle: Scalar) -> list[Scala
     x, y, z = axis
     c, s = graph.trig("cos", angle), graph.trig("sin", angle)
     cross = ((graph.zero, -z, y), (z, graph.zero, -x), (-y, x, graph.zero))
-    found = []
+    zeros = []
     for i, e in enumerate(axis):
         row = [(1 - c) * e * other + s * cross[i][j] + (c if i == j else 0) for j, other in enumerate(axis)]
-        found.append(graph.sum(a * b for a, b in zip(row, axis, strict=True)) - e)
-    return found
+        zeros.append(graph.sum(a * b for a, b in zip(row, axis, strict=True)) - e)
+    return zeros
 
 
 @pytest.mark.parametrize("axis", [("2", "3", "0"), ("0.3", "0.7", "0.9"), ("0.9104909891213981", "-0.337", "0.24")])
@@ -86,9 +86,9 @@ def test_only_zeros_are_taken_for_zeros(seed: int) -> None:
         for part in draw.sample(parts, draw.randrange(1, 3)):
             total = total + draw.choice((1, -1, 3)) * part * draw.choice((graph.one, x, y))
         scalars.append(total)
-    found = without_hidden_zeros(scalars)
+    simplified = without_hidden_zeros(scalars)
     with every_identity_evaluated():
-        same_values("hidden zeros", scalars, found)
+        same_values("hidden zeros", scalars, simplified)
 
 
 STOP = """model: stop

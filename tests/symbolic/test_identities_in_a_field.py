@@ -56,7 +56,7 @@ def test_parts_that_stand_in_a_sum_with_both_signs_are_told_apart() -> None:
             graph = Graph()
             parts = [graph.symbol(name) for name in "abcd"]
             outputs = [_sum(graph, draw, op, parts) for _ in range(4)]
-            found = step(graph, outputs)
-            assert [x.value for x in found] == [x.value for x in outputs]
-            changed += found != outputs
+            rewritten = step(graph, outputs)
+            assert [x.value for x in rewritten] == [x.value for x in outputs]
+            changed += rewritten != outputs
     assert changed > DRAWS

@@ -33,11 +33,11 @@ class Drawn:
         }
 
     def terms(self, count: int, powers: tuple[int, int]) -> Terms:
-        found: Terms = {}
+        polynomial: Terms = {}
         for _ in range(count):
             key = sum(unit * self.source.randint(*powers) for unit in self.atoms.values())
-            found[key] = found.get(key, 0) + self.source.choice([-2, -1, 1, 3, Fraction(1, 2)])
-        return {key: value for key, value in found.items() if value}
+            polynomial[key] = polynomial.get(key, 0) + self.source.choice([-2, -1, 1, 3, Fraction(1, 2)])
+        return {key: value for key, value in polynomial.items() if value}
 
     def value(self, terms: Terms) -> float:
         def power(key: int) -> float:
@@ -98,8 +98,8 @@ def test_squares_become_sines_where_both_terms_stand() -> None:
     a, m = graph.symbol("a"), graph.symbol("m")
     c = graph.trig("cos", a)
     multiplier = Multiplier(graph, lambda _: False)
-    found = multiplier.polynomial(graph.sub(m, graph.mul(m, graph.mul(c, c))))
-    assert found == {tuple(sorted(((m.serial, 1), (graph.trig("sin", a).serial, 2)))): 1}
+    polynomial = multiplier.polynomial(graph.sub(m, graph.mul(m, graph.mul(c, c))))
+    assert polynomial == {tuple(sorted(((m.serial, 1), (graph.trig("sin", a).serial, 2)))): 1}
 
 
 def test_squared_roots_of_numbers_are_numbers() -> None:

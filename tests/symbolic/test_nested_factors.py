@@ -26,10 +26,10 @@ def test_blocks_in_a_row_are_told_apart() -> None:
     inner = a * b - c * d
     middle = g * (h * inner) - b * (c * inner)
     outer = (e * a) * (d * middle) - (e * f) * (middle * g)
-    found = nested_factors(outer, _fixed)
+    factors = nested_factors(outer, _fixed)
     # the fixed factor belongs to the first of the others
-    assert found == (e * inner, g * h - b * c, a * d - f * g)
-    first, second, third, whole = _values([*found, outer])
+    assert factors == (e * inner, g * h - b * c, a * d - f * g)
+    first, second, third, whole = _values([*factors, outer])
     assert abs(first * second * third / whole - 1) < 1e-13
 
 

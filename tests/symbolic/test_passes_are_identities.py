@@ -94,10 +94,10 @@ def test_a_pass_keeps_every_value(name: str) -> None:
     for seed in SEEDS:
         graph = Graph()
         outputs = _sums(graph, random.Random(seed))
-        found = PASSES[name](graph, Factoring(graph, [graph.symbol(x) for x in PARAMETERS]), outputs)
+        rewritten = PASSES[name](graph, Factoring(graph, [graph.symbol(x) for x in PARAMETERS]), outputs)
         with every_identity_evaluated():
-            same_values(name, outputs, found)
-        changed += any(one is not other for one, other in zip(outputs, found, strict=True))
+            same_values(name, outputs, rewritten)
+        changed += any(one is not other for one, other in zip(outputs, rewritten, strict=True))
     assert changed, "no draw gives this pass anything to do"
 
 

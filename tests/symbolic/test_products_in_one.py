@@ -57,10 +57,10 @@ def test_what_is_one_product_is_written_as_the_same() -> None:
         graph, draw, factoring, symbols = _made(seed)
         given = [_hidden_product(graph, draw, symbols) for _ in range(3)]
         with every_identity_evaluated():
-            found = [factoring.as_one_product(scalar) for scalar in given]
-            same_values("one product", given, found)
+            products = [factoring.as_one_product(scalar) for scalar in given]
+            same_values("one product", given, products)
             same_values("cancelling", given, [factoring.cancelled(scalar) for scalar in given])
-        for one, other in zip(given, found, strict=True):
+        for one, other in zip(given, products, strict=True):
             if one is not other:
                 written += 1
                 powers = graph.products.monomial(other)[1]
@@ -87,10 +87,10 @@ def test_differences_are_multiples_of_their_atoms() -> None:
         nodes += [_raw(graph, "mul", graph.const(Fraction(-3, 4)), node) for node in nodes]
         atoms: set[Scalar] = set()
         for node in nodes:
-            found = differences.read(node)
-            if found is None:
+            multiple = differences.read(node)
+            if multiple is None:
                 continue
-            atom, factor = found
+            atom, factor = multiple
             with every_identity_evaluated():
                 same_values("reading", [node], [graph.raw("mul", (graph.const(factor), atom))])
             shared += atom in atoms
@@ -113,18 +113,18 @@ def test_products_of_differences_keep_their_values() -> None:
             outputs.append(_raw(graph, "div", total, draw.choice(pool)) if draw.random() < 0.3 else total)
         kept = frozenset(draw.sample(pool, 1)) if draw.random() < 0.5 else frozenset[Scalar]()
         with every_identity_evaluated():
-            found = factoring.shorten(outputs, kept)
-            same_values("shortening", outputs, found)
-        changed += any(one is not other for one, other in zip(outputs, found, strict=True))
+            shortened = factoring.shorten(outputs, kept)
+            same_values("shortening", outputs, shortened)
+        changed += any(one is not other for one, other in zip(outputs, shortened, strict=True))
     assert changed > len(SEEDS) // 2
 
 
 def _terms(draw: random.Random, units: list[int], powers: tuple[int, int], count: int) -> Terms:
-    found: Terms = {}
+    polynomial: Terms = {}
     for _ in range(count):
         key = sum(unit * draw.randint(*powers) for unit in units)
-        found[key] = found.get(key, 0) + draw.choice((-2, -1, 1, 3, Fraction(1, 2)))
-    return {key: value for key, value in found.items() if value}
+        polynomial[key] = polynomial.get(key, 0) + draw.choice((-2, -1, 1, 3, Fraction(1, 2)))
+    return {key: value for key, value in polynomial.items() if value}
 
 
 def _value(graph: Graph, monomials: Monomials, terms: Terms) -> int:
@@ -147,8 +147,8 @@ def test_products_of_sums_of_monomials_are_exact(powers: tuple[int, int]) -> Non
         atoms = [*symbols[:2], *(graph.trig(op, angle) for angle in symbols[3:5] for op in ("sin", "cos"))]
         units = [monomials.unit(atom.serial) for atom in draw.sample(atoms, len(atoms))]
         a, b = (_terms(draw, units, powers, count) for count in (5, 4))
-        found = monomials.product(a, b)
-        assert _value(graph, monomials, found) == _value(graph, monomials, a) * _value(graph, monomials, b) % PRIME
+        product = monomials.product(a, b)
+        assert _value(graph, monomials, product) == _value(graph, monomials, a) * _value(graph, monomials, b) % PRIME
 
 
 def test_what_is_multiplied_out_is_factored_to_the_same() -> None:

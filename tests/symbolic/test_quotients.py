@@ -35,15 +35,15 @@ def _factors(graph: Graph, draw: random.Random) -> list[Scalar]:
 
 def _multiplied(graph: Graph, draw: random.Random, powers: Mapping[Scalar, int], raw: bool) -> Scalar:
     """A number times the powers, one factor after the other in any order."""
-    found = graph.const(draw.choice(NUMBERS))
+    whole = graph.const(draw.choice(NUMBERS))
     each = [(factor, count > 0) for factor, count in powers.items() for _ in range(abs(count))]
     for factor, up in draw.sample(each, len(each)):
         op = "mul" if up else "div"
-        found = graph.raw(op, (found, factor)) if raw else graph.mul(found, factor) if up else graph.div(found, factor)
-    return found
+        whole = graph.raw(op, (whole, factor)) if raw else graph.mul(whole, factor) if up else graph.div(whole, factor)
+    return whole
 
 
-def _is_quotient(graph: Graph, found: Scalar, a: Scalar, powers: Mapping[Scalar, int], number: int | Fraction) -> bool:
+def _is_quotient(graph: Graph, scalar: Scalar, a: Scalar, powers: Mapping[Scalar, int], number: int | Fraction) -> bool:
     """By fingerprints and by exact evaluation, which does not rely on the rules of the graph."""
     value, asked = a.value * pow(residue(Fraction(number)), -1, PRIME), graph.raw("div", (a, graph.const(number)))
     for factor, count in powers.items():
@@ -52,10 +52,10 @@ def _is_quotient(graph: Graph, found: Scalar, a: Scalar, powers: Mapping[Scalar,
             asked = graph.raw("div" if count > 0 else "mul", (asked, factor))
     try:
         with every_identity_evaluated():
-            same_values("the quotient", [asked], [found])
+            same_values("the quotient", [asked], [scalar])
     except SymgenBug:
         return False
-    return bool(found.value == value % PRIME)
+    return bool(scalar.value == value % PRIME)
 
 
 def _drawn(seed: int) -> tuple[Graph, Scalar, dict[Scalar, int], int | Fraction]:
@@ -74,8 +74,8 @@ def test_a_quotient_is_what_is_asked_for() -> None:
     held = other = 0
     for seed in range(DRAWS):
         graph, a, powers, number = _drawn(seed)
-        found = graph.products.quotient(a, powers, number)
-        assert _is_quotient(graph, found, a, powers, number), f"draw {seed}"
+        quotient = graph.products.quotient(a, powers, number)
+        assert _is_quotient(graph, quotient, a, powers, number), f"draw {seed}"
         own = graph.products.monomial(a)[1]
         held += any(own.get(f, 0) >= count > 0 for f, count in powers.items())
         other += any(count > 0 and f not in own for f, count in powers.items())

@@ -40,9 +40,9 @@ def multiplications(outputs: Sequence[Scalar]) -> int:
 def test_a_factor_leaves_terms_that_are_no_neighbours(graph: Graph) -> None:
     a, b, c, f, g, h, *_ = symbols(graph)
     outputs = [((a * f) * b + g * h) - c * f]
-    found = with_common_factors(graph, outputs)
-    assert multiplications(found) == multiplications(outputs) - 1
-    assert values(found) == pytest.approx(values(outputs))
+    regrouped = with_common_factors(graph, outputs)
+    assert multiplications(regrouped) == multiplications(outputs) - 1
+    assert values(regrouped) == pytest.approx(values(outputs))
 
 
 def test_what_a_sum_adds_and_another_term_takes_off_is_gone(graph: Graph) -> None:
@@ -51,15 +51,15 @@ def test_what_a_sum_adds_and_another_term_takes_off_is_gone(graph: Graph) -> Non
         rest = outer - a if outer.args[0] is a or outer.args[1] is a else None
         # the sum is needed by itself, too, so that it stays whole when terms are collected
         outputs = [(outer * f - g) - a * f, outer]
-        (found, whole) = with_common_factors(graph, outputs)
-        (inner,) = [node for node in topological([found]) if node.op == "mul" and f in node.args]
+        (regrouped, whole) = with_common_factors(graph, outputs)
+        (inner,) = [node for node in topological([regrouped]) if node.op == "mul" and f in node.args]
         assert a not in topological([inner])
         assert whole is outer
         assert rest is None or rest in inner.args
-        assert values([found]) == pytest.approx(values(outputs[:1]))
+        assert values([regrouped]) == pytest.approx(values(outputs[:1]))
     big = {**POINT, "a": 1e20}
-    (found, _) = with_common_factors(graph, [((a + b) * f - g) - a * f, a + b])
-    assert Evaluator([found])(big) == pytest.approx(values([b * f - g]))
+    (regrouped, _) = with_common_factors(graph, [((a + b) * f - g) - a * f, a + b])
+    assert Evaluator([regrouped])(big) == pytest.approx(values([b * f - g]))
 
 
 def test_what_is_taken_off_by_a_sign_within_a_product_is_gone(graph: Graph) -> None:
@@ -67,8 +67,8 @@ def test_what_is_taken_off_by_a_sign_within_a_product_is_gone(graph: Graph) -> N
     a, b, c, f, g, h, _, x, y, _ = symbols(graph)
     inner, opposite = f * (x * c - y * h), f * (y * h - x * c)
     outputs = [((a + b) * inner - g) + a * opposite, inner]
-    found = grouped(graph, Factoring(graph, ()), outputs)
-    assert Evaluator(found)({**POINT, "a": 1e20}) == pytest.approx(values([b * inner - g, inner]))
+    regrouped = grouped(graph, Factoring(graph, ()), outputs)
+    assert Evaluator(regrouped)({**POINT, "a": 1e20}) == pytest.approx(values([b * inner - g, inner]))
 
 
 def test_a_sum_of_terms_taken_off_is_taken_off_whole(graph: Graph) -> None:
@@ -88,25 +88,25 @@ def test_signs_of_operands_are_taken_out(graph: Graph, sign: int) -> None:
     a, b, c, *_ = symbols(graph)
     left, right = (-x if sign >> k & 1 else x for k, x in enumerate((a, b)))
     node = graph.raw(["add", "sub", "mul"][sign % 3], (c, a))
-    found = rebuilt(graph, node, (left, right))
-    assert values([found]) == values([graph.raw(node.op, (left, right))])
-    assert cost([found]).signs <= cost([left, right]).signs
+    result = rebuilt(graph, node, (left, right))
+    assert values([result]) == values([graph.raw(node.op, (left, right))])
+    assert cost([result]).signs <= cost([left, right]).signs
 
 
 def test_terms_without_a_partner_and_all_signs(graph: Graph) -> None:
     a, b, c, f, g, *_ = symbols(graph)
     for outputs in ([graph.neg(a * f) - b * f], [g - a * f - b * f - c], [a * f - (b * f - c * f)]):
-        found = with_common_factors(graph, outputs)
-        assert multiplications(found) < multiplications(outputs)
-        assert values(found) == pytest.approx(values(outputs))
+        regrouped = with_common_factors(graph, outputs)
+        assert multiplications(regrouped) < multiplications(outputs)
+        assert values(regrouped) == pytest.approx(values(outputs))
 
 
 def test_a_factor_that_is_a_term_itself_leaves_a_one(graph: Graph) -> None:
     a, f, g, *_ = symbols(graph)
     outputs = [(f * a) * g + f * g]
-    found = with_common_factors(graph, outputs)
-    assert multiplications(found) < multiplications(outputs)
-    assert values(found) == pytest.approx(values(outputs))
+    regrouped = with_common_factors(graph, outputs)
+    assert multiplications(regrouped) < multiplications(outputs)
+    assert values(regrouped) == pytest.approx(values(outputs))
 
 
 def test_products_that_are_needed_elsewhere_stay(graph: Graph) -> None:
@@ -128,9 +128,9 @@ def test_results_and_divisors_get_their_factor_back(graph: Graph) -> None:
     a, b, c, f, g, _, k, x, y, _ = symbols(graph)
     first, second, third = f * (a + x), f * (b + y), f * (c + g)
     outputs = [k * (x * first), k * (y * second), k * third, first, graph.one / second]
-    found = grouped(graph, Factoring(graph, [f, k]), outputs)
-    assert cost(found).weight <= cost(outputs).weight
-    assert values(found) == pytest.approx(values(outputs))
+    regrouped = grouped(graph, Factoring(graph, [f, k]), outputs)
+    assert cost(regrouped).weight <= cost(outputs).weight
+    assert values(regrouped) == pytest.approx(values(outputs))
 
 
 def test_an_operation_made_twice_counts_once(graph: Graph) -> None:
@@ -145,6 +145,6 @@ def test_a_reciprocal_that_serves_one_product_is_a_quotient(graph: Graph) -> Non
     a, b, c, *_ = symbols(graph)
     once, twice = graph.raw("div", (graph.one, b)), graph.raw("div", (graph.one, c))
     outputs = [graph.raw("mul", (a, once)), graph.raw("mul", (a, twice)), graph.raw("mul", (b, twice))]
-    found = with_quotients(graph, outputs)
-    assert [node.op for node in found] == ["div", "mul", "mul"]
-    assert values(found) == pytest.approx(values(outputs))
+    quotients = with_quotients(graph, outputs)
+    assert [node.op for node in quotients] == ["div", "mul", "mul"]
+    assert values(quotients) == pytest.approx(values(outputs))

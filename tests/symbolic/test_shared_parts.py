@@ -34,10 +34,10 @@ def sum_of(graph: Graph, signed: Sequence[tuple[int, Scalar]]) -> Scalar:
 
 def taken(step: Step, graph: Graph, outputs: Sequence[Scalar], operations: int) -> list[Scalar]:
     """The outputs after a step, checked to keep their values and to take so many operations."""
-    found = step(graph, outputs)
-    assert list(Evaluator(found)(VALUES)) == pytest.approx(list(Evaluator(outputs)(VALUES)), rel=1e-14)
-    assert cost(found).weight == operations
-    return found
+    rewritten = step(graph, outputs)
+    assert list(Evaluator(rewritten)(VALUES)) == pytest.approx(list(Evaluator(outputs)(VALUES)), rel=1e-14)
+    assert cost(rewritten).weight == operations
+    return rewritten
 
 
 def test_pairs_of_terms_are_added_once_whatever_their_sign() -> None:
@@ -92,5 +92,5 @@ def test_the_bound_of_a_square_core_is_that_of_its_determinant() -> None:
     (whole,) = magnitude(graph, [guard.denominator])
     names = [node.payload for node in reached([whole, guard.scale]) if node.op == "symbol"]
     values = {str(name): 0.2 + 0.3 * k for k, name in enumerate(sorted(map(str, names)))}
-    found, given = Evaluator([guard.scale, whole])(values)
-    assert found == pytest.approx(given, rel=1e-13)
+    bound, given = Evaluator([guard.scale, whole])(values)
+    assert bound == pytest.approx(given, rel=1e-13)

@@ -71,21 +71,21 @@ def _symgen(name: str, folder: Path) -> tuple[dict[str, int], int]:
     inputs = folder / states_file("float32")
     inputs.write_bytes(pack_states(_states(name), "float32", model(name)))
     counter = build_counter(folder)
-    found = {}
+    counts = {}
     for level in LEVELS:
         target = shop.compile(f"{name}_f.c", level)
         image = shop.link(f"u{level}", [*shop.harness("driver.c", 0), target])
         stage(image, [inputs])
-        found[level] = max(count_calls(CORE, image, counter, addresses(shop, image, [function]))[function])
-    return found, footprints(shop, target, [function])[function].linked
+        counts[level] = max(count_calls(CORE, image, counter, addresses(shop, image, [function]))[function])
+    return counts, footprints(shop, target, [function])[function].linked
 
 
 def _casadi(name: str, folder: Path) -> dict[str, float]:
     """Mean instructions of u at -O2 by every method CasADi takes part in."""
     m = model(name)
     rows = np.array([(*s.q, *s.qd, *s.qdd, *s.parameters) for s in _states(name)])
-    found = peers(m, Task("inverse_dynamics", "qdd", m.m), rows).candidates
-    candidates = [in_single(c) for c in found if c.generator == "CasADi" and not c.flags]
+    all_candidates = peers(m, Task("inverse_dynamics", "qdd", m.m), rows).candidates
+    candidates = [in_single(c) for c in all_candidates if c.generator == "CasADi" and not c.flags]
     assert len(candidates) >= 3
     return {candidate.form: _counted(name, candidate, folder) for candidate in candidates}
 
@@ -115,7 +115,7 @@ def test_u_on_a_cortex_m4f_meets_its_goals(tool: Callable[[str], str], tmp_path:
     instructions, size, share = GOALS[name]
     counts, code = _symgen(name, tmp_path)
     casadi = _casadi(name, tmp_path)
-    told = f"{name}: {counts}, {code} bytes; CasADi {({method: round(count) for method, count in casadi.items()})}"
-    assert counts["-O2"] <= share * min(casadi.values()), told
-    assert counts["-O2"] <= instructions, told
-    assert code <= size, told
+    message = f"{name}: {counts}, {code} bytes; CasADi {({method: round(count) for method, count in casadi.items()})}"
+    assert counts["-O2"] <= share * min(casadi.values()), message
+    assert counts["-O2"] <= instructions, message
+    assert code <= size, message

@@ -40,11 +40,11 @@ def test_missing_tools_are_named_with_their_packages(
     path.write_text("model: cart\ncoordinates: {x: {unit: m}}\nkinetic_energy: x_dot**2\n")
     monkeypatch.setenv("PATH", str(tmp_path))
     assert main(["target", str(path), "--cpu", "cortex-m4f", "--cpu", "rv32imac", "--out", str(tmp_path)]) == 2
-    told = capsys.readouterr().err
+    errors = capsys.readouterr().err
     packages = ("gcc-arm-none-eabi", "libnewlib-arm-none-eabi", "qemu-system-arm", "gcc-riscv64-unknown-elf",
                 "picolibc-riscv64-unknown-elf", "qemu-system-misc")
-    assert all(package in told for package in packages)
-    assert "apt-get install" in told
+    assert all(package in errors for package in packages)
+    assert "apt-get install" in errors
     assert not (tmp_path / "cart").exists()
 
 
@@ -85,10 +85,10 @@ def test_results_are_read_back_and_short_files_refused() -> None:
     entries = _entries()
     rows = [struct.pack("<I2f", 0, *values) for values in ((1.0, 2.0), (3.0, 4.0))] * 2
     data = b"".join(rows) + struct.pack("<2I", 24, 32)
-    found = unpack_results(data, entries, 2)
+    results = unpack_results(data, entries, 2)
     names = [entry.name for entry in entries.functions]
-    assert [found.records[name][1].outputs for name in names] == [rows[0][4:], rows[1][4:]]
-    assert [found.stack[name] for name in names] == [24, 32]
+    assert [results.records[name][1].outputs for name in names] == [rows[0][4:], rows[1][4:]]
+    assert [results.stack[name] for name in names] == [24, 32]
     with pytest.raises(ValueError, match="instead of"):
         unpack_results(data[:-1], entries, 2)
 
@@ -101,9 +101,9 @@ def test_one_bit_or_one_status_is_a_difference() -> None:
     assert not same.wrong
     next_float = struct.unpack("<f", struct.pack("<I", 0x3F800001))[0]
     for other in (_results(next_float), _results(1.0, status=1)):
-        found = compare(entries, True, _results(1.0), other, units, 2)
-        assert found.different == 4
-        assert len(found.wrong) == 2
+        differences = compare(entries, True, _results(1.0), other, units, 2)
+        assert differences.different == 4
+        assert len(differences.wrong) == 2
 
 
 def test_a_library_may_differ_within_the_bound_at_regular_states() -> None:

@@ -113,11 +113,11 @@ def test_calls_are_counted_exactly(tool: Callable[[str], str], tmp_path: Path) -
     shop = Workshop(tmp_path, BY_NAME["cortex-m4f"])
     shop.write({"counted.c": COUNTED})
     image = shop.link("counted", shop.harness("counted.c", 0))
-    found = count_calls(BY_NAME["cortex-m4f"], image, build_counter(tmp_path), addresses(shop, image, ["two", "loop"]))
-    assert found == {"two": (2, 2), "loop": (17, 17)}
+    counts = count_calls(BY_NAME["cortex-m4f"], image, build_counter(tmp_path), addresses(shop, image, ["two", "loop"]))
+    assert counts == {"two": (2, 2), "loop": (17, 17)}
     functions = addresses(shop, image, ["outer", "loop"])
-    found = count_calls(BY_NAME["cortex-m4f"], image, build_counter(tmp_path), functions)
-    assert found == {"outer": (20,), "loop": (17,)}  # a call inside a call belongs to the outer one
+    counts = count_calls(BY_NAME["cortex-m4f"], image, build_counter(tmp_path), functions)
+    assert counts == {"outer": (20,), "loop": (17,)}  # a call inside a call belongs to the outer one
 
 
 def test_footprints_see_data_helpers_and_libraries(tool: Callable[[str], str], tmp_path: Path) -> None:
@@ -125,11 +125,11 @@ def test_footprints_see_data_helpers_and_libraries(tool: Callable[[str], str], t
         tool(name)
     shop = Workshop(tmp_path, BY_NAME["cortex-m4f"])
     shop.write({"hungry.c": HUNGRY})
-    found = footprints(shop, shop.compile("hungry.c", "-O0"), ["with_data", "with_library"])
-    assert found["with_data"].ram == 12
-    assert found["with_data"].undefined == ()
-    assert found["with_library"].undefined == ("sinf",)
-    assert found["with_library"].linked > found["with_library"].code
+    by_name = footprints(shop, shop.compile("hungry.c", "-O0"), ["with_data", "with_library"])
+    assert by_name["with_data"].ram == 12
+    assert by_name["with_data"].undefined == ()
+    assert by_name["with_library"].undefined == ("sinf",)
+    assert by_name["with_library"].linked > by_name["with_library"].code
 
 
 @pytest.mark.parametrize("name", [core.name for core in CORES])

@@ -75,5 +75,5 @@ def test_no_compiler_makes_a_call_of_a_table(
     shop.write({name: (emitted / name).read_text() for name in (f"{NAME}_f.c", f"{NAME}_f.h")})
     assert "_steps_f(" in (shop.folder / f"{NAME}_f.c").read_text()
     made = shop.compile(f"{NAME}_f.c", level, "gcc" if compiler == "gcc" else "clang")
-    told = run(["arm-none-eabi-nm", "-u", str(made)]).stdout
-    assert "mem" not in told
+    symbols = run(["arm-none-eabi-nm", "-u", str(made)]).stdout
+    assert "mem" not in symbols

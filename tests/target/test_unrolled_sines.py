@@ -29,8 +29,8 @@ def test_where_the_unit_computes_in_the_type(
 
     def unrolled(level: str) -> bool:
         command = [compiler, *toolchain(core.family).specs, *core.gcc, "-std=c99", level, "-dM", "-E", source]
-        told = subprocess.run(command, cwd=tmp_path / "c", capture_output=True, text=True, check=True).stdout
-        (line,) = (line for line in told.splitlines() if line.split()[:2] == ["#define", macro])
+        macros = subprocess.run(command, cwd=tmp_path / "c", capture_output=True, text=True, check=True).stdout
+        (line,) = (line for line in macros.splitlines() if line.split()[:2] == ["#define", macro])
         return "_Pragma" in line
 
     assert unrolled("-O2") == (scalar in core.native)

@@ -229,13 +229,13 @@ def test_models_live_in_one_program(tool: Callable[[str], str], neighbours: Path
 
 
 def test_a_model_that_is_called_otherwise_is_told_so(tmp_path: Path) -> None:
-    told = {}
+    messages = {}
     for name in ("rob", "rob_f"):
         (tmp_path / f"{name}.yaml").write_text(places_text(name, words("alpha beta gain share lift push")))
         result = generate(tmp_path / f"{name}.yaml", Options(parts=("c",), verify=False), lambda _: None)
-        told[name] = [notice.message for notice in result.notices]
-    assert told["rob"] == []
-    (message,) = told["rob_f"]
+        messages[name] = [notice.message for notice in result.notices]
+    assert messages["rob"] == []
+    (message,) = messages["rob_f"]
     assert "rob_f_model" in message
 
 

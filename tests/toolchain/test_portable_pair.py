@@ -58,9 +58,9 @@ def test_single_precision_everywhere(
 ) -> None:
     limit = int(angle_limit("float32", wide))
     flags = [*EXACT, "-O3", f"-DLIMIT={limit}.0f"]
-    found = run(compiled(tmp_path, tool("gcc"), flags, "sweep_pair.c", "_f", wide)).split()
-    sine, cosine, near, far, asymmetric, uncontrolled, compared = found
-    for name, figure in zip(FIGURES, found, strict=True):
+    figures = run(compiled(tmp_path, tool("gcc"), flags, "sweep_pair.c", "_f", wide)).split()
+    sine, cosine, near, far, asymmetric, uncontrolled, compared = figures
+    for name, figure in zip(FIGURES, figures, strict=True):
         record_property(name, figure)
     # numbers of one sign in order have bits in order, so that those of the last one count them
     assert int(compared) == struct.unpack("<I", struct.pack("<f", limit))[0] // STRIDE + 1

@@ -72,9 +72,9 @@ def _every(folder: Path) -> list[Path]:
     stems = [f"{NAME}{kind}{suffix}" for kind in KINDS for suffix in ("", "_f")]
     kept = [stem for stem in stems if (folder / "c" / f"{stem}.c").exists()]
     single = [_single_header(folder, stem) for stem in kept if (folder / "package/src" / f"{stem}.h").exists()]
-    found = [folder / "c" / f"{stem}.c" for stem in kept] + [*(folder / "package/src").glob("*.c"), *single]
-    assert len(found) > 12
-    return found
+    paths = [folder / "c" / f"{stem}.c" for stem in kept] + [*(folder / "package/src").glob("*.c"), *single]
+    assert len(paths) > 12
+    return paths
 
 
 @pytest.mark.parametrize("flags", [("-m32", "-O2"), ("-m32", "-std=c99"), ("-m32", "-mfpmath=387", "-msse2")])
@@ -143,12 +143,12 @@ def test_bits_of_32_are_those_of_64(gcc32: str, folder: Path, suffix: str) -> No
         '        for (j = 0; j < sizeof u; j++) printf("%02x", b[j]);\n'
         '        printf("\\n");\n    }\n    return 0;\n}\n'
     )
-    told = []
+    printed = []
     for flags in ((), SSE):
         made = folder / f"bits{suffix}{len(flags)}"
         source = folder / "c" / f"{NAME}{suffix}.c"
         built = _run(gcc32, "-std=c99", "-O2", *flags, "-I", folder, program, source, "-o", made, "-lm")
         assert built.returncode == 0, built.stderr
-        told.append(_run(made).stdout)
-    assert told[0] == told[1]
-    assert sum(line.startswith("0 ") for line in told[0].splitlines()) > 100
+        printed.append(_run(made).stdout)
+    assert printed[0] == printed[1]
+    assert sum(line.startswith("0 ") for line in printed[0].splitlines()) > 100

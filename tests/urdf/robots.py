@@ -84,8 +84,8 @@ def state_of(model: Model, seed: int) -> dict[str, float]:
 def balance(model: Model, state: dict[str, float]) -> dict[str, float]:
     """The generalized forces that a motion needs, by coordinates."""
     defaults = {p.name: 1.0 for p in model.parameters}
-    found = Evaluator(System(model).balance)({**defaults, **state})
-    return dict(zip((c.name for c in model.coordinates), found, strict=True))
+    forces = Evaluator(System(model).balance)({**defaults, **state})
+    return dict(zip((c.name for c in model.coordinates), forces, strict=True))
 
 
 def mass_matrix(model: Model, state: dict[str, float]) -> list[float]:

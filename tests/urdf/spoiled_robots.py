@@ -16,7 +16,7 @@ def changed(*pieces: str) -> Case:
     return text, HEAD
 
 
-def told(urdf: str) -> Case:
+def imported_as(urdf: str) -> Case:
     """The good robot, imported in another way."""
     return ARM, HEAD.replace("robot.urdf", urdf)
 
@@ -53,14 +53,14 @@ HOSTILE: dict[str, Case] = {
     "code_for_a_number": changed('value="2"', "value=\"__import__('os')\""),
 }
 PATHS: dict[str, Case] = {
-    "absolute": told("/etc/passwd"),
-    "above": told("meshes/../../robot.urdf"),
-    "windows": told("'C:\\robot.urdf'"),
-    "address": told("'http://example.org/robot.urdf'"),
-    "absent": told("robots.urdf"),
-    "folder": told("."),
-    "unknown_key": told("{file: robot.urdf, leave: [a]}"),
-    "no_file": told("{leave_out: [a]}"),
+    "absolute": imported_as("/etc/passwd"),
+    "above": imported_as("meshes/../../robot.urdf"),
+    "windows": imported_as("'C:\\robot.urdf'"),
+    "address": imported_as("'http://example.org/robot.urdf'"),
+    "absent": imported_as("robots.urdf"),
+    "folder": imported_as("."),
+    "unknown_key": imported_as("{file: robot.urdf, leave: [a]}"),
+    "no_file": imported_as("{leave_out: [a]}"),
 }
 TREE: dict[str, Case] = {
     "not_a_robot": ("<sdf><model/></sdf>\n", HEAD),
@@ -77,8 +77,8 @@ TREE: dict[str, Case] = {
     "joint_and_link_of_one_name": changed('joint name="elbow"', 'joint name="lower"'),
     "reserved_name": changed('joint name="elbow"', 'joint name="while"'),
     "long_name": changed('joint name="elbow"', f'joint name="{"a" * 60}"'),
-    "unknown_renamed": told("{file: robot.urdf, coordinates: {a_1: sholder}, frames: {b: elbow}}"),
-    "named_twice": told("{file: robot.urdf, coordinates: {a_1: elbow, a_2: elbow}}"),
+    "unknown_renamed": imported_as("{file: robot.urdf, coordinates: {a_1: sholder}, frames: {b: elbow}}"),
+    "named_twice": imported_as("{file: robot.urdf, coordinates: {a_1: elbow, a_2: elbow}}"),
     "taken_by_the_model_file": (ARM, f"{HEAD}parameters: {{elbow: 1}}\n"),
     "second_mass": (ARM, f"{HEAD}bodies: {{upper: {{mass: 1}}}}\n"),
 }

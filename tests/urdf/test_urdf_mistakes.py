@@ -82,9 +82,9 @@ def test_entities_are_refused_before_they_are_read() -> None:
     for name, (text, _) in HOSTILE.items():
         if "<!DOCTYPE" in text:
             head, _, tail = text.partition("<!DOCTYPE")
-            found = parse_xml(f"{head}<!-- a robot -->\n<!DOCTYPE{tail}", "r.urdf")
-            assert isinstance(found, Mistake), name
-            assert found.message == "document types and entities are not read", name
+            mistake = parse_xml(f"{head}<!-- a robot -->\n<!DOCTYPE{tail}", "r.urdf")
+            assert isinstance(mistake, Mistake), name
+            assert mistake.message == "document types and entities are not read", name
 
 
 def test_damaged_robots_are_mistakes_and_nothing_else(tmp_path: Path) -> None:

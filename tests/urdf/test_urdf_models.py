@@ -81,7 +81,7 @@ def test_what_takes_no_part_is_told_by_name(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("inputs", "told"),
+    ("inputs", "endings"),
     [
         ("", [""]),
         ("inputs: {s: {unit: N*m, joint: shoulder}, e: {unit: N*m, joint: elbow}}\n", [""]),
@@ -96,10 +96,10 @@ def test_what_takes_no_part_is_told_by_name(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_limits_of_drives_are_offered_where_they_can_be_kept(tmp_path: Path, inputs: str, told: list[str]) -> None:
+def test_limits_of_drives_are_offered_where_they_can_be_kept(tmp_path: Path, inputs: str, endings: list[str]) -> None:
     messages = [notice.message for notice in load(tmp_path, ARM, HEAD + inputs).notices]
     start = "effort limits of the URDF bound no input (shoulder 50)"
-    assert [message.removeprefix(start) for message in messages if message.startswith(start)] == told
+    assert [message.removeprefix(start) for message in messages if message.startswith(start)] == endings
 
 
 def test_links_on_fixed_joints_are_carried_by_one_body(tmp_path: Path) -> None:
@@ -138,8 +138,8 @@ def test_ways_have_axes_of_length_one(tmp_path: Path) -> None:
     model = load(tmp_path, robot(*parts))
     assert model.coordinates[0].unit == "m"
     assert mass_matrix(model, {"s": 0.3}) == pytest.approx([2.0], rel=1e-14)
-    found = balance(model, {"s": 0.1, "s_dot": 0.2, "s_ddot": 0.0})
-    assert found["s"] == pytest.approx(2 * 9.81 * 0.8)
+    forces = balance(model, {"s": 0.1, "s_dot": 0.2, "s_ddot": 0.0})
+    assert forces["s"] == pytest.approx(2 * 9.81 * 0.8)
 
 
 def test_the_axis_of_a_joint_is_x_where_none_is_given(tmp_path: Path) -> None:

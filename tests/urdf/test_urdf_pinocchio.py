@@ -58,8 +58,8 @@ def check_agreement(model: Model, path: Path, tolerance: float) -> None:
         matrix = pinocchio.crba(other, data, q)
         matrix = numpy.triu(matrix) + numpy.triu(matrix, 1).T
         size = max(abs(force))
-        found = balance(frictionless(model), state)
-        assert [found[name] for name in names] == pytest.approx(
+        forces = balance(frictionless(model), state)
+        assert [forces[name] for name in names] == pytest.approx(
             [force[places[name]] for name in names], rel=0, abs=tolerance * size
         )
         expected = [matrix[places[row], places[column]] for row in names for column in names]

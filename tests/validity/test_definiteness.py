@@ -35,8 +35,8 @@ def noisy(function: Callable[[float], float], source: random.Random) -> Callable
 
 def place(model: Model) -> tuple[tuple[str, float], ...] | None:
     indefinite_model.cache_clear()
-    found = indefinite(System(model))
-    return None if found is None else found.state
+    counterexample = indefinite(System(model))
+    return None if counterexample is None else counterexample.state
 
 
 @pytest.mark.parametrize("scale", [1, "9/10"])

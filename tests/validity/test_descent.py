@@ -43,9 +43,9 @@ def nowhere(x: list[Any]) -> Evaluated:
 def test_zeros_are_known_to_what_is_asked_for(functions: Functions, bits: int) -> None:
     with ctx.workprec(bits):
         vanished = 2.0 ** (-bits // 2)
-        found = zero_beside(functions, [arb("0.4"), arb("0.9")], vanished, 150, 1e-3)
-        assert found is not None
-        assert max(abs(float(value)) for value in functions(found)[0]) <= vanished
+        zero = zero_beside(functions, [arb("0.4"), arb("0.9")], vanished, 150, 1e-3)
+        assert zero is not None
+        assert max(abs(float(value)) for value in functions(zero)[0]) <= vanished
 
 
 def test_there_may_be_none() -> None:
@@ -67,6 +67,6 @@ def test_steps_stay_inside() -> None:
     with ctx.workprec(136):
         start = [arb("0.8"), arb("0.9")]
         assert zero_beside(circle, start, 1e-20, 60, 1e-3, [arb(1), arb(1)], inside) is None
-        found = zero_beside(circle, start, 1e-20, 60, 1e-3, [arb("0.1"), arb(10)])
-        assert found is not None
-        assert abs(float(found[0]) - 0.5**0.5) < 1e-12
+        zero = zero_beside(circle, start, 1e-20, 60, 1e-3, [arb("0.1"), arb(10)])
+        assert zero is not None
+        assert abs(float(zero[0]) - 0.5**0.5) < 1e-12

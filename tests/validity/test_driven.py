@@ -31,12 +31,12 @@ def measures(model: Model, by_minors: bool) -> list[list[float]]:
     )
     evaluate = Evaluator(derive(BY_NAME["singularity"], Derivation(mechanics, generic, space)).outputs)
     source = random.Random(model.name)
-    found = []
+    values = []
     for _ in range(3):
         point = dict(parameter_values(mechanics))
         point |= {c.name: source.uniform(float(c.range[0]), float(c.range[1])) for c in model.coordinates}
-        found.append(list(evaluate(point)))
-    return found
+        values.append(list(evaluate(point)))
+    return values
 
 
 def same(model: Model) -> None:

@@ -23,9 +23,9 @@ def test_values_and_slopes_are_those_in_40_digits() -> None:
         p * p,
     ]
     point = {"x": 0.7, "y": 0.4, "p": -1.3}
-    found = FloatGradients(outputs, ("x", "y"))(point)
-    assert found is not None
-    values, rows = found
+    values_and_rows = FloatGradients(outputs, ("x", "y"))(point)
+    assert values_and_rows is not None
+    values, rows = values_and_rows
     exact, slopes = PreciseEvaluator(outputs).gradients({k: precise(v) for k, v in point.items()}, ("x", "y"))
     assert values == pytest.approx([float(value) for value in exact], rel=1e-13)
     for row, wanted in zip(rows, slopes, strict=True):

@@ -35,8 +35,8 @@ def mutations(program: Program, count: int, seed: int) -> tuple[Mutant, ...]:
         for b, block in enumerate(kernel.blocks)
         for s in range(len(block.statements))
     ]
-    found: list[Mutant] = []
-    while len(found) < count:
+    mutants: list[Mutant] = []
+    while len(mutants) < count:
         kernel, b, s = generator.choice(places)
         statement = kernel.blocks[b].statements[s]
         earlier = [load.local for load in kernel.loads]
@@ -45,10 +45,10 @@ def mutations(program: Program, count: int, seed: int) -> tuple[Mutant, ...]:
         options = list(_changes(statement, earlier, generator))
         if options:
             change, changed = generator.choice(options)
-            found.append(
+            mutants.append(
                 Mutant(kernel, _with_statement(kernel, b, s, changed), f"{kernel.name}: {change}: {statement}")
             )
-    return tuple(found)
+    return tuple(mutants)
 
 
 def _changes(statement: Statement, earlier: Sequence[str], generator: random.Random) -> Iterator[tuple[str, Statement]]:

@@ -53,8 +53,8 @@ def errors(name: str, scalar: Scalar, folder: Path) -> tuple[Errors, list[float]
 @pytest.mark.parametrize("scalar", SCALARS)
 @pytest.mark.parametrize("name", STATES)
 def test_every_state_is_within_the_tolerance(name: str, scalar: Scalar, tmp_path: Path) -> None:
-    found, units = errors(name, scalar, tmp_path)
+    relative_errors, units = errors(name, scalar, tmp_path)
     assert max(units, default=0.0) <= FACTOR
     if name == "rapkm_2rrr_rr":
-        assert found.median <= found.percentile_99 <= LIMITS[scalar]
-        assert found.median > 0
+        assert relative_errors.median <= relative_errors.percentile_99 <= LIMITS[scalar]
+        assert relative_errors.median > 0

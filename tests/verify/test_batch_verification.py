@@ -88,5 +88,5 @@ def test_wrong_batch_kernels_are_found(
     tool: Callable[[str], str], tmp_path: Path, old: str, new: str, complaint: str
 ) -> None:
     tool("cc")
-    found = complaints(tmp_path, lambda text: text.replace(old, new))
-    assert any(complaint in text for text in found), found
+    messages = complaints(tmp_path, lambda text: text.replace(old, new))
+    assert any(complaint in text for text in messages), messages

@@ -171,9 +171,9 @@ def test_pairs_of_float32_are_bounded_by_what_plain_numbers_lose(expected: Expec
     )
     kernels = {scalar: widened(plain, scalar) for scalar in SCALARS}
     programs = {scalar: Program(scalar, None, (kernels[scalar],)) for scalar in SCALARS}
-    found = FarParameters(expected).bounds(kernels, programs, plain)
-    assert found["float64"] == ()
-    bound = {one.parameter: one for one in found["float32"]}[MASS]
+    bounds = FarParameters(expected).bounds(kernels, programs, plain)
+    assert bounds["float64"] == ()
+    bound = {one.parameter: one for one in bounds["float32"]}[MASS]
     assert bound.low is None
     assert bound.high is not None
     assert 1e2 < bound.high < 1e5
@@ -223,27 +223,27 @@ def test_what_is_0_at_every_state_has_no_bound(tmp_path: Path) -> None:
         Statement(("d_x",), "add", (Local("d_k"), large)),
         Statement(("y",), "sub", (Local("d_x"), large)),
     )
-    found = bounds_by_name(with_an_offset(tmp_path / "crane.yaml", "value: 0"), kernel)
-    assert "d" in found
-    assert "k" not in found
+    bounds = bounds_by_name(with_an_offset(tmp_path / "crane.yaml", "value: 0"), kernel)
+    assert "d" in bounds
+    assert "k" not in bounds
 
 
 def test_status_0_means_a_result_within_the_tolerance_however_large_the_mass(made: Result, expected: Expected) -> None:
     program = made.programs["float64"]
     kernel = next(one for one in program.kernels if one.name == MULTIPLIERS)
     place = next(k for k, p in enumerate(made.model.parameters) if p.name == MASS)
-    found = {Status.OK: 0, Status.PARAMETER_RANGE: 0}
+    counts = {Status.OK: 0, Status.PARAMETER_RANGE: 0}
     dice = random.Random("masses")
     for sample in expected.drawn:
         parameters = list(map(float, sample.state.parameters))
         parameters[place] *= 10 ** dice.uniform(-9, 9)
         state = replace(sample.state, parameters=tuple(parameters))
         (outcome,) = outcomes(kernel, program.sincos, "float64", [state])
-        found[Status(outcome.status)] += 1
+        counts[Status(outcome.status)] += 1
         if not outcome.status:
             truth = expectations(expected.reference, state, [MULTIPLIERS], "float64", "far")[MULTIPLIERS]
             assert truth.in_units(truth.distance(outcome.entries)) <= FACTOR
-    assert min(found.values()) > 2
+    assert min(counts.values()) > 2
 
 
 # A roller whose arms, as long on both sides, are far longer than what it rolls on: rates follow from these lengths.
@@ -295,10 +295,10 @@ def test_a_bound_is_a_power_of_ten_before_a_loss_that_no_reference_has_judged(
     monkeypatch.setattr(FarErrors, "units", units)
     monkeypatch.setattr(FarParameters, "is_lost", lambda *_: True)
     kernel = straight(Statement(("y",), "mul", (Local("c"), Local("m"))))
-    found = bounds_by_name(expected, kernel)[MASS]
+    bound_of_mass = bounds_by_name(expected, kernel)[MASS]
     most = max(float(sample.state.parameters[4]) for sample in expected.drawn)
-    assert found.high is not None
-    assert float(found.high) == pytest.approx(most * 10**bound, rel=0.06)
+    assert bound_of_mass.high is not None
+    assert float(bound_of_mass.high) == pytest.approx(most * 10**bound, rel=0.06)
 
 
 def test_a_bound_is_recorded_told_and_taken_up_again(made: Result, tmp_path: Path) -> None:
@@ -325,8 +325,8 @@ def test_a_bound_close_by_is_told(crane: Path) -> None:
     model = load_model(crane)
     draft = draft_of(model, (MULTIPLIERS,), Options())
     bounds = (Bound(MASS, Fraction(1, 1000), Fraction(3)), Bound("l_1", Fraction(1, 5), Fraction(400)))
-    told = notices(replace(draft, bounds={"float32": {MULTIPLIERS: bounds}}), Options(), None)
-    assert [one.message for one in told if MULTIPLIERS in one.message] == [
+    reported = notices(replace(draft, bounds={"float32": {MULTIPLIERS: bounds}}), Options(), None)
+    assert [one.message for one in reported if MULTIPLIERS in one.message] == [
         "multipliers refuses l_1 below 0.2, m_3 above 3: it would lose digits; a `range` has it verified further"
     ]
 
@@ -338,8 +338,8 @@ def test_a_declared_range_lies_within_the_bounds(tmp_path: Path) -> None:
     result = generate(path, Options(parts=("c",)), lambda _: None)
     assert not result.failures
     bounds = json.loads(result.files["derivation.json"])["kernels"][MULTIPLIERS].get("bounds", {})
-    for found in bounds.values():
-        assert found.get(MASS, (None, None))[1] is None or found[MASS][1] >= 500
+    for by_parameter in bounds.values():
+        assert by_parameter.get(MASS, (None, None))[1] is None or by_parameter[MASS][1] >= 500
 
 
 @pytest.mark.campaign

@@ -57,9 +57,9 @@ def test_every_operation_has_the_same_bits(scalar: Scalar) -> None:
             assert _same(entries, numbers), (name, state)
 
 
-def _same(found: list[float], wanted: list[float]) -> bool:
+def _same(values: list[float], wanted: list[float]) -> bool:
     """All bits but the sign of NaN, which nothing reads."""
-    pairs = zip(found, wanted, strict=True)
+    pairs = zip(values, wanted, strict=True)
     return all((a == b and math.copysign(1, a) == math.copysign(1, b)) or (a != a and b != b) for a, b in pairs)
 
 

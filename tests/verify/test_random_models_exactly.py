@@ -68,5 +68,5 @@ def test_kernels_are_the_functions_that_are_meant(seed: int) -> None:
     kernels = schedule(derivations.mechanics, derivations.quantities, ("float64",))["float64"].kernels
     assert len(kernels) > 20
     expected = Expected(model, tuple(kernel.name for kernel in kernels), 8, lambda _: None)
-    wrong = {kernel.name: told for kernel in kernels if (told := ExactStates(expected).difference(kernel))}
+    wrong = {kernel.name: difference for kernel in kernels if (difference := ExactStates(expected).difference(kernel))}
     assert wrong == {}

@@ -171,6 +171,6 @@ def test_a_model_without_inputs_parameters_and_constraints_passes(tool: Callable
     files = emit_python(model, programs["float64"])
     for program in programs.values():
         files |= emit_c(model, program)
-    found = verify(model, programs["float64"].kernels, *generated_sources(model, files), STATES)
-    assert found.failures == ()
-    assert {"forward_dynamics", "energy"} <= {record.quantity for record in found.errors}
+    verification = verify(model, programs["float64"].kernels, *generated_sources(model, files), STATES)
+    assert verification.failures == ()
+    assert {"forward_dynamics", "energy"} <= {record.quantity for record in verification.errors}

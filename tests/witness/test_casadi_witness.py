@@ -49,8 +49,8 @@ class Case:
         along = casadi.DM(np.concatenate([motion[argument] for argument in moving]))
         flat = casadi.jtimes(casadi.vec(value), casadi.vertcat(*(symbols[argument] for argument in moving)), along)
         values = {"q": self.q, "qd": self.qd, "qdd": self.qdd, "u": self.u, "p": self.parameters} | changed
-        found = casadi.Function("rate", [*symbols.values()], [casadi.reshape(flat, *value.shape)])
-        return found(*(values[argument] for argument in symbols)).full()
+        derivative = casadi.Function("rate", [*symbols.values()], [casadi.reshape(flat, *value.shape)])
+        return derivative(*(values[argument] for argument in symbols)).full()
 
 
 @functools.cache

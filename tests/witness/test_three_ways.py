@@ -57,22 +57,22 @@ def states(model: Model, singularity: Any) -> list[State]:
     """Regular configurations with arbitrary rates, at the default parameters and at others within their ranges."""
     generator = np.random.default_rng(11)
     lagrange, default = differentiate(model), default_parameters(model).full().ravel()
-    found: list[State] = []
+    regular_states: list[State] = []
     for k in range(STATES):
         p = default.copy()
         for i, parameter in enumerate(model.parameters):
             if k and parameter.range is not None:
                 low, high = (float(bound) for bound in parameter.range)
                 p[i] += 0.2 * generator.uniform(low - p[i], high - p[i])
-        found_here = configurations(model, lagrange, p, seed=k, trials=40)
-        q = next(q for q in found_here if np.min(singularity(q, p).full()) > REGULAR)
+        candidates = configurations(model, lagrange, p, seed=k, trials=40)
+        q = next(q for q in candidates if np.min(singularity(q, p).full()) > REGULAR)
         rates = {name: generator.normal(size=model.n) for name in ("qd", "qdd")}
         state = {"q": q, **rates, "u": generator.normal(size=model.m), "p": p}
         places = list(model.measured_places)
         moved = q[places] + generator.uniform(-1e-3, 1e-3, len(places))
         measured = {"q_m": moved, "qd_m": state["qd"][places], "qdd_m": state["qdd"][places]}
-        found.append(state | measured | _task(model, state) | {"w_u": state["u"], "w_qdd": state["qdd"]})
-    return found
+        regular_states.append(state | measured | _task(model, state) | {"w_u": state["u"], "w_qdd": state["qdd"]})
+    return regular_states
 
 
 class SympyWitness:

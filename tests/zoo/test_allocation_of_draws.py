@@ -41,8 +41,8 @@ def test_limits_move_the_internal_force_as_little_as_they_must() -> None:
             f"limit_{k}_{end}": x for k, pair in limits.items() for end, x in zip(("lower", "upper"), pair, strict=True)
         }
         block = {"preload": "p", "limits": dict.fromkeys(limits, ("", ""))}
-        found = directed(PAIR, [3.0, 3.0], names, block, {"preload": preload, **ends}, 1.0)
-        return [round(float(x), 12) for x in found]
+        inputs = directed(PAIR, [3.0, 3.0], names, block, {"preload": preload, **ends}, 1.0)
+        return [round(float(x), 12) for x in inputs]
 
     root = 2**0.5
     assert shared({}, 2 * root) == [5, 1]

@@ -44,11 +44,11 @@ def test_chunks_are_summed_up(tmp_path: Path) -> None:
     for name, record in (("a", WRONG), ("b", RIGHT), ("b", DrawRecord(1, 1, "bennett", VERIFIED, "", "", 4.0, 95))):
         write_record(tmp_path / name, record)
     assert "1 failed" in summary(read_records([tmp_path / "a"]))
-    told = summary(read_records([tmp_path / "a", tmp_path / "b"]))
+    text = summary(read_records([tmp_path / "a", tmp_path / "b"]))
     # a draw that was run again counts as it ended last
-    assert "2 draws" in told
-    assert "failed" not in told
-    assert "most CPU time: 4.0 s (1:1 bennett)" in told
+    assert "2 draws" in text
+    assert "failed" not in text
+    assert "most CPU time: 4.0 s (1:1 bennett)" in text
 
 
 def test_the_sum_of_failures_is_a_failure(tmp_path: Path, monkeypatch, capsys) -> None:
@@ -97,9 +97,9 @@ def test_what_breaks_the_witness_is_a_failure_of_the_draw(ends, tmp_path: Path) 
 
 def test_a_failing_draw_leaves_its_file_and_a_small_case(ends, tmp_path: Path) -> None:
     ends(CommandRun(2, "", "symgen: internal error: odd\n", 1, 1))
-    record, told = one_draw(Campaign(1, tmp_path, "car_with_trailers", shrinking=150), 0)
+    record, message = one_draw(Campaign(1, tmp_path, "car_with_trailers", shrinking=150), 0)
     assert record.failed
-    assert "internal error" in told
+    assert "internal error" in message
     large, small = Path(record.file).read_text(), Path(record.file).with_name("case.yaml").read_text()
     assert "# expected: verified" in small
     assert len(small) < len(large) / 2
@@ -177,13 +177,13 @@ def test_what_was_compared_is_recorded_and_summed_up(tmp_path: Path) -> None:
         write_record(tmp_path / "a", DrawRecord(1, index, "disc", VERIFIED, "", "", 2.0, 100, compared=each))
     records = read_records([tmp_path / "a"])
     assert [record.compared for record in records] == compared
-    told = summary(records)
-    assert f"4 draws compared: 2 at 20 states, 1 at fewer (1 x {LOST_STEPS}), 1 at none (1 x {STUCK})" in told
-    assert "u compared in 2 draws, there but not compared in 1" in told
-    assert "λ compared in 1 draws, there but not compared in 2" in told
-    assert "306 results compared, 4 without truth" in told
-    assert "2 statuses of float64 and 18 of float32 in 1 draws (states determine them to 3.1e-03 at best)" in told
-    assert "40 results of 1 draws beside Pinocchio's" in told
+    text = summary(records)
+    assert f"4 draws compared: 2 at 20 states, 1 at fewer (1 x {LOST_STEPS}), 1 at none (1 x {STUCK})" in text
+    assert "u compared in 2 draws, there but not compared in 1" in text
+    assert "λ compared in 1 draws, there but not compared in 2" in text
+    assert "306 results compared, 4 without truth" in text
+    assert "2 statuses of float64 and 18 of float32 in 1 draws (states determine them to 3.1e-03 at best)" in text
+    assert "40 results of 1 draws beside Pinocchio's" in text
 
 
 def test_a_record_of_an_earlier_version_is_read(tmp_path: Path) -> None:

@@ -26,7 +26,7 @@ DRAWS = range(3)
 def numbers(description: Description) -> tuple[SystemReader, list[float], np.ndarray, np.ndarray]:
     """Residuals, B and G at the start, read back from the text."""
     system = SystemReader(expanded(yaml.load(description.text, Loader=yaml.BaseLoader), description.files))
-    found = equations(system)
+    derived = equations(system)
     values = {**description.start, **{name: 0.1 * k for k, name in enumerate(system.rate_names, 1)}}
     for name, node in system.parameters.items():
         values[name] = system.tape.evaluate([node], values, Floats())[0]
@@ -34,9 +34,9 @@ def numbers(description: Description) -> tuple[SystemReader, list[float], np.nda
     def evaluated(nodes: tuple) -> list[float]:
         return system.tape.evaluate(nodes, values, Floats())
 
-    rows = np.array([evaluated(row) for row in found.rows]).reshape(-1, len(system.coordinates))
-    mass = np.array([evaluated(row) for row in found.mass])
-    return system, evaluated(found.residual), rows, mass
+    rows = np.array([evaluated(row) for row in derived.rows]).reshape(-1, len(system.coordinates))
+    mass = np.array([evaluated(row) for row in derived.mass])
+    return system, evaluated(derived.residual), rows, mass
 
 
 @pytest.mark.parametrize("family", FAMILIES)

@@ -31,8 +31,8 @@ def apart(blocks: Mapping[str, Any], files: Mapping[str, str], seed: object) -> 
     values: dict[str, float] = {}
     for name, node in system.parameters.items():
         values[name] = system.tape.evaluate([node], values, Floats())[0]
-    found = tree_of(blocks, values, files)
-    return None if found is None else disagreement(*found, values, Dice("test", seed))
+    tree = tree_of(blocks, values, files)
+    return None if tree is None else disagreement(*tree, values, Dice("test", seed))
 
 
 def compared(index: int, family: str = "tree_bodies") -> float | None:
@@ -50,9 +50,9 @@ def compared(index: int, family: str = "tree_bodies") -> float | None:
 )
 def test_trees_agree(family: str) -> None:
     """Of joints of every kind, with quaternions and without, of files and of robot descriptions."""
-    found = [each for each in (compared(index, family) for index in range(12)) if each is not None]
-    assert len(found) > 4
-    assert max(found) < SAME
+    differences = [each for each in (compared(index, family) for index in range(12)) if each is not None]
+    assert len(differences) > 4
+    assert max(differences) < SAME
 
 
 def test_forces_that_are_nothing_but_rounding_agree() -> None:
@@ -67,17 +67,17 @@ bodies:
   turn: {mass: 2.1, inertia: {xx: 0.3, yy: 0.08, zz: 0.3}}
   other: {mass: 4.2, inertia: {xx: 0.2, yy: 0.2, zz: 0.2}}
 """
-    told = apart(yaml.load(text, Loader=yaml.BaseLoader), {}, 0)
-    assert told is not None
-    assert told < SAME
+    difference = apart(yaml.load(text, Loader=yaml.BaseLoader), {}, 0)
+    assert difference is not None
+    assert difference < SAME
 
 
 def test_another_mechanism_is_told(monkeypatch) -> None:
     axis = pinocchio_trees._Joints._axis
     monkeypatch.setattr(pinocchio_trees._Joints, "_axis", lambda self, given: -axis(self, given))
     # a joint or two may look the same either way
-    told = [each for each in map(compared, range(12)) if each is not None]
-    assert max(told) > 1e-3
+    differences = [each for each in map(compared, range(12)) if each is not None]
+    assert max(differences) > 1e-3
 
 
 # a crane on a ball joint: what it lifts with hangs on a bracket, its counterweight stands on another
@@ -118,9 +118,9 @@ def results(text: str, away: float = 0.0) -> Iterator[tuple[str, float | None]]:
     defaults = witness.defaults()
     states, ranks = witness.walker().states(defaults, 4)
     assert len(states) == 4
-    found = tree_of(yaml.load(text, Loader=yaml.BaseLoader), defaults, {})
-    assert found is not None
-    answers = PinocchioAnswers(found[0], witness._system.blocks, ranks)
+    tree = tree_of(yaml.load(text, Loader=yaml.BaseLoader), defaults, {})
+    assert tree is not None
+    answers = PinocchioAnswers(tree[0], witness._system.blocks, ranks)
     names = (*witness._system.coordinates, *witness._system.rate_names)
     for state in states:
         values = {**defaults, **dict(zip(names, (*state.q, *state.qd), strict=True))}
@@ -133,9 +133,9 @@ def results(text: str, away: float = 0.0) -> Iterator[tuple[str, float | None]]:
 
 
 def test_bodies_and_joints_on_fixed_frames_are_compared() -> None:
-    told = apart(yaml.load(CRANE, Loader=yaml.BaseLoader), {}, 0)
-    assert told is not None
-    assert told < SAME
+    difference = apart(yaml.load(CRANE, Loader=yaml.BaseLoader), {}, 0)
+    assert difference is not None
+    assert difference < SAME
 
 
 def test_what_moves_by_an_expression_is_no_tree() -> None:
@@ -145,8 +145,8 @@ def test_what_moves_by_an_expression_is_no_tree() -> None:
 
 def test_results_of_a_tree_are_those_of_pinocchio() -> None:
     """With rotors, springs and friction, and inputs that share the work."""
-    assert all(found is not None and found < SAME for _, found in results(CRANE))
-    assert all(found is not None and found > 100 * SAME for _, found in results(CRANE, 1e-6))
+    assert all(difference is not None and difference < SAME for _, difference in results(CRANE))
+    assert all(difference is not None and difference > 100 * SAME for _, difference in results(CRANE, 1e-6))
 
 
 def test_u_of_shared_inputs_is_that_of_pinocchio() -> None:
@@ -162,9 +162,9 @@ configuration: {a: -0.3, s: 0.4}
 """
     shared = boom + "allocation: {weights: {rope: 3}, preload: 5, limits: {motor: [-30, 20]}}\n"
     for text in (boom, shared):
-        for quantity, found in results(text):
-            assert found is not None
-            assert found < SAME, quantity
+        for quantity, difference in results(text):
+            assert difference is not None
+            assert difference < SAME, quantity
 
 
 def test_a_tree_that_a_loop_closes_is_compared_by_its_u() -> None:
@@ -186,9 +186,9 @@ loops: {pinned: {type: point, between: [end, pin]}}
 inputs: {drive: {joint: a}}
 configuration: {a: 0.7, b: -0.9, s: 1.1}
 """
-    told = list(results(press))
-    assert all(found is None for quantity, found in told if quantity == "forward_dynamics")
-    assert all(found is not None and found < SAME for quantity, found in told if quantity == "inverse_dynamics")
+    gaps = list(results(press))
+    assert all(gap is None for quantity, gap in gaps if quantity == "forward_dynamics")
+    assert all(gap is not None and gap < SAME for quantity, gap in gaps if quantity == "inverse_dynamics")
 
 
 def test_rounded_quarter_turns_of_a_robot_file_are_whole_ones() -> None:

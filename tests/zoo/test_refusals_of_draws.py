@@ -50,7 +50,7 @@ SINGULAR = "only singular configurations were found, such as x = #"
 
 
 @pytest.mark.parametrize(
-    ("blocks", "start", "told", "is_true"),
+    ("blocks", "start", "signature", "is_true"),
     [
         (MASSLESS, {"x": 0.3, "y": 0.2}, UNDETERMINED, True),
         (FREE, HELD, UNDETERMINED, False),
@@ -64,11 +64,11 @@ SINGULAR = "only singular configurations were found, such as x = #"
         (FREE, HELD, "`.` is reserved: a keyword of C", False),
     ],
 )
-def test_a_refusal_is_looked_at(blocks: dict, start: dict, told: str, is_true: bool) -> None:
-    verdict = judged(Description("", blocks, start), DrawVerdict(REFUSED, signature=told))
+def test_a_refusal_is_looked_at(blocks: dict, start: dict, signature: str, is_true: bool) -> None:
+    verdict = judged(Description("", blocks, start), DrawVerdict(REFUSED, signature=signature))
     assert (verdict.ending == REFUSED) == is_true
     assert verdict.kind == ("" if is_true else "refused without reason")
-    assert verdict.signature == told
+    assert verdict.signature == signature
 
 
 @pytest.mark.parametrize("ending", [VERIFIED, NOTICED])

@@ -126,8 +126,8 @@ def kernel(scalar: str, change: Callable[[FloatState, float], Answer]) -> Target
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     """What a run tells of the slide."""
-    told = {"sizes": {"alpha": 1, "r": 0}, "blocks": []}
-    (tmp_path / "derivation.json").write_text(json.dumps(told), encoding="utf-8")
+    derivation = {"sizes": {"alpha": 1, "r": 0}, "blocks": []}
+    (tmp_path / "derivation.json").write_text(json.dumps(derivation), encoding="utf-8")
     return tmp_path
 
 
@@ -141,34 +141,34 @@ def swept(
 
 
 def test_an_honest_kernel_violates_nothing(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    found = swept(folder, monkeypatch, lambda _, u: Answer(0, (u,)))
-    assert found.violations == ()
+    tally = swept(folder, monkeypatch, lambda _, u: Answer(0, (u,)))
+    assert tally.violations == ()
     # m is scaled, k is neither a mass nor a length
-    assert found.counts["parameters", "float32", ANSWERED] == len(sweeps.EXPONENTS)
-    assert found.counts["inputs", "float64", ANSWERED] > 0
+    assert tally.counts["parameters", "float32", ANSWERED] == len(sweeps.EXPONENTS)
+    assert tally.counts["inputs", "float64", ANSWERED] > 0
 
 
 def test_an_error_with_status_0_is_found(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def wrong(state: FloatState, u: float) -> Answer:
         return Answer(0, (u * (1 + (1e-4 if state.parameters[0] > 1e6 else 0)),))
 
-    found = swept(folder, monkeypatch, wrong)
-    assert {(one.kind, one.where, one.target) for one in found.violations} == {
+    tally = swept(folder, monkeypatch, wrong)
+    assert {(one.kind, one.where, one.target) for one in tally.violations} == {
         ("parameters", f"m times 1e{exponent}", f"C {scalar}")
         for exponent in (6, 9)
         for scalar in ("float64", "float32")
     }
-    assert found.of(BEYOND) == 4
-    assert "units, relative error 1.0e-04" in found.violations[0].text
-    write_violations(folder / "violations.json", found)
+    assert tally.of(BEYOND) == 4
+    assert "units, relative error 1.0e-04" in tally.violations[0].text
+    write_violations(folder / "violations.json", tally)
     (first, *_) = json.loads((folder / "violations.json").read_text())
     assert first["state"]["parameters"][0] == 3e6
 
 
 def test_a_status_at_a_clear_state_is_counted(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    found = swept(folder, monkeypatch, lambda at, u: Answer(5 * (at.parameters[0] < 1e-5), (u,)))
-    assert found.of(UNEXPLAINED) == found.of("mass rank") == 4
-    assert "mass rank although clear" in found.violations[0].text
+    tally = swept(folder, monkeypatch, lambda at, u: Answer(5 * (at.parameters[0] < 1e-5), (u,)))
+    assert tally.of(UNEXPLAINED) == tally.of("mass rank") == 4
+    assert "mass rank although clear" in tally.violations[0].text
 
 
 def test_a_status_beside_a_singular_set_is_not(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -177,9 +177,9 @@ def test_a_status_beside_a_singular_set_is_not(folder: Path, monkeypatch: pytest
     monkeypatch.setattr(sweeps, "targets", lambda *_: [kernel("float64", lambda *_: Answer(2, ()))])
     state = FloatState((0.4,), (0.1,), (0.2,), (1.0,), (3.0, 2.0))
     for distance, unexplained in ((1.0, 1), (1e-6, 0)):
-        found = compared(witness, folder, "slide", [LedState("lengths", "beside", state, GenericRanks(0, 1), distance)])
-        assert found.of("constraint rank") == 1
-        assert found.of(UNEXPLAINED) == unexplained
+        tally = compared(witness, folder, "slide", [LedState("lengths", "beside", state, GenericRanks(0, 1), distance)])
+        assert tally.of("constraint rank") == 1
+        assert tally.of(UNEXPLAINED) == unexplained
 
 
 @pytest.mark.parametrize(("units", "outcome"), [(2.0, [ANSWERED, BEYOND]), (0.5, [ANSWERED])])
@@ -188,13 +188,13 @@ def test_the_tolerance_is_that_of_regular_states_wherever_it_is_met(units: float
 
 
 def test_records_are_told_and_summed_up(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    found = swept(folder, monkeypatch, lambda _, u: Answer(0, (u * 1.1,)))
-    record = record_of(7, 3, "slides", "verified", found)
+    tally = swept(folder, monkeypatch, lambda _, u: Answer(0, (u * 1.1,)))
+    record = record_of(7, 3, "slides", "verified", tally)
     assert record.line.startswith("7:3 slides: ")
-    assert f"{found.of(BEYOND)} beyond the tolerance, 0 statuses unexplained" in record.line
-    told = table([record, record_of(7, 4, "slides", "refused", sweeps.SweepCounts({}))])
-    assert told.startswith("1 of 2 draws swept")
-    (row,) = (line.split() for line in told.splitlines() if line.startswith("parameters float64"))
+    assert f"{tally.of(BEYOND)} beyond the tolerance, 0 statuses unexplained" in record.line
+    text = table([record, record_of(7, 4, "slides", "refused", sweeps.SweepCounts({}))])
+    assert text.startswith("1 of 2 draws swept")
+    (row,) = (line.split() for line in text.splitlines() if line.startswith("parameters float64"))
     assert row[2:] == ["6", *["0"] * len(sweeps.STATUSES), "0", "6", "0"]
 
 
@@ -241,9 +241,9 @@ def test_inputs_of_dependent_rows_hold_the_rule_towards_a_dead_point() -> None:
     for decade, q in reached.items():
         nearest = walker.refined(q, defaults)
         assert nearest is not None
-        found = walker.state(nearest, defaults)
+        exact_state = walker.state(nearest, defaults)
         for scalar, program in programs.items():
-            parts = (found.q, found.qd, found.qdd, found.u, found.parameters)
+            parts = (exact_state.q, exact_state.qd, exact_state.qdd, exact_state.u, exact_state.parameters)
             state = State(*(rounded(part, scalar) for part in parts))
             (made,) = outcomes(program.kernels[0], program.sincos, scalar, [state])
             if made.valid:

@@ -201,9 +201,9 @@ def test_a_wheel_that_could_lift_is_held() -> None:
     """Rows in the order of the documentation: the height first, then along; nothing is said across the plane."""
     system = SystemReader(yaml.load(WHEEL, Loader=yaml.BaseLoader))
     assert [row.name for row in system.rows] == ["ground_height", "ground_along"]
-    found = equations(system)
+    derived = equations(system)
     values = dict.fromkeys((*system.coordinates, *system.rate_names), 0.2)
-    rows = [system.tape.evaluate(row, values, Floats()) for row in found.rows]
+    rows = [system.tape.evaluate(row, values, Floats()) for row in derived.rows]
     assert rows[0] == pytest.approx([0, 1, 0, 0])
     assert rows[1] == pytest.approx([1, 0, -0.25, 0])
 
@@ -372,8 +372,8 @@ configuration: {a_0: 0, a_1: 0, a_2: 0, b: 0}
     for start, expected in (({}, 0), ({"a_0": 0.7, "a_1": 0.7, "a_2": 0.7, "b": -0.7}, 3)):
         witness = Witness(text, start)
         walker = witness.walker()
-        found, ranks = walker.states(witness.defaults(), 5)
-        assert (len(found), ranks.constraints) == (5 if expected else 0, expected)
+        visited, ranks = walker.states(witness.defaults(), 5)
+        assert (len(visited), ranks.constraints) == (5 if expected else 0, expected)
         assert walker.lack == ("" if expected else states.STUCK)
 
 
@@ -401,12 +401,12 @@ gravity: [0, -9.81, 0]
 outputs: [forward_dynamics]
 """
     witness = Witness(text, {"a": 0.7})
-    found, ranks = witness.walker().states(witness.defaults(), 4)
+    visited, ranks = witness.walker().states(witness.defaults(), 4)
 
     def answering(value: float) -> Target:
         return Target("made up", "float64", ("forward_dynamics",), (), lambda *_: Answer(0, (value,)))
 
-    for state in found:
+    for state in visited:
         judged = [witness.compare(answering(value), "forward_dynamics", state, ranks) for value in (0.0, 1e-30)]
         right, wrong = (one.units for one in judged if one is not None)
         assert right == 0
@@ -423,9 +423,9 @@ outputs: [forward_dynamics]
 configuration: {a: 0.4, b: 0.3, x: 0.644217687237691}
 """
     witness = Witness(text)
-    found, ranks = witness.walker().states(witness.defaults(), 20)
+    visited, ranks = witness.walker().states(witness.defaults(), 20)
     eps = 2.0**-53
-    for state in found:
+    for state in visited:
         off = state.qd[0] + state.qd[1]
         rest = 13 * eps * abs(state.qd[0])
         due = -math.sin(state.q[0] + state.q[1]) * (abs(off) + rest) ** 2
@@ -452,9 +452,9 @@ outputs: [forward_dynamics]
     turned = {"e_0": 0.8944271909999159, "e_1": 0.4472135954999579, "e_2": 0.0, "e_3": 0.0}
     start = {"x": 0.3, "y": 0.2, "z": 0.5, **turned}
     witness = Witness(text, start)
-    found, _ = witness.walker().states(witness.defaults(), 6)
-    assert len(found) == 6
-    assert all(x == 0 or abs(x) > 1e-30 for state in found for x in state.q)
+    visited, _ = witness.walker().states(witness.defaults(), 6)
+    assert len(visited) == 6
+    assert all(x == 0 or abs(x) > 1e-30 for state in visited for x in state.q)
     off = np.array([*{**start, "e_2": 1e-9, "e_3": -2e-9}.values()])
     assert witness.walker().refined(off, witness.defaults())[5:].tolist() == [0.0, 0.0]
 
@@ -492,12 +492,12 @@ ranges: {x: [-0.1, 0.1], y: [-0.3, 0.3]}
 """
     witness = Witness(text)
     walker = witness.walker()
-    found, _ = walker.states({}, 20)
-    assert (len(found), walker.lack) == (20, "")
+    visited, _ = walker.states({}, 20)
+    assert (len(visited), walker.lack) == (20, "")
     monkeypatch.setattr(states, "WALKS", 1)
     walker = witness.walker()
-    found, _ = walker.states({}, 20)
-    assert 0 < len(found) < 20
+    visited, _ = walker.states({}, 20)
+    assert 0 < len(visited) < 20
     assert walker.lack == states.LOST_STEPS
 
 
@@ -577,8 +577,8 @@ constraints: {geometric: {one: x + y - 1, two: x + y + 1e-4*sin(a) - 1}}
 inputs: {f: {acts_on: {x: 1}}}
 """
     walker = Witness(text, {"x": 1.0, "y": 0.0, "a": 0.0}).walker()
-    found, ranks = walker.states({}, 20)
-    assert (len(found), ranks.constraints, ranks.actuation) == (20, 2, 1)
+    visited, ranks = walker.states({}, 20)
+    assert (len(visited), ranks.constraints, ranks.actuation) == (20, 2, 1)
     turned = Witness(text.replace("sin(a)", "a**2"), {"x": 1.0, "y": 0.0, "a": 0.0}).walker()
     points = [np.array([1.0, 0.0, a]) for a in (1.0, 0.5, 0.09)]
     _, regular = turned._regular(points, {})

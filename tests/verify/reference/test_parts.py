@@ -61,7 +61,7 @@ def test_every_quantity_is_that_of_the_whole(dependent: bool, reached: bool) -> 
     assert reference.ranks.of_parts == ((1, 1), (1, 1), (0, 1), (1, int(reached)))
     names = [name for name in reference.quantities() if not name.startswith("minimal_")]
     states = [sample.state for sample in sample_states(reference, ["singularity"], 8)]
-    found = [reference.precise(state, names) for state in states]
+    evaluations = [reference.precise(state, names) for state in states]
     measures = []
     with precision(256):
         for state in states:
@@ -69,7 +69,7 @@ def test_every_quantity_is_that_of_the_whole(dependent: bool, reached: bool) -> 
     everything = Part(*(tuple(range(count)) for count in (system.n, system.r, system.m, 0)))
     system.parts = (everything,)
     system.heavy = (replace(everything, bodies=()),)
-    for state, apart, measured in zip(states, found, measures, strict=True):
+    for state, apart, measured in zip(states, evaluations, measures, strict=True):
         whole = reference.precise(state, names)
         with precision(256):
             for name in names:
@@ -78,5 +78,5 @@ def test_every_quantity_is_that_of_the_whole(dependent: bool, reached: bool) -> 
 
 
 def test_what_is_coupled_by_way_of_others_belongs_together() -> None:
-    found = parts(6, [[0, 3], [4]], [[3, 5], []], pairs=[(1, 1), (2, 4)])
-    assert found == (Part((0, 3, 5), (0,), (0, 1)), Part((1,)), Part((2, 4), (1,)))
+    groups = parts(6, [[0, 3], [4]], [[3, 5], []], pairs=[(1, 1), (2, 4)])
+    assert groups == (Part((0, 3, 5), (0,), (0, 1)), Part((1,)), Part((2, 4), (1,)))

@@ -29,8 +29,8 @@ def state_of(reference: Reference, seed: int = 0, admissible: bool = False) -> S
     with precision(BITS):
         parameters = exact(default_parameters(model))
         candidates = starts(reference.system, generator, 20)
-        found = (onto_manifold(reference.system, x, parameters, reference.literals()) for x in candidates)
-        q = tuple(next(x for x in found if x is not None))
+        projected = (onto_manifold(reference.system, x, parameters, reference.literals()) for x in candidates)
+        q = tuple(next(x for x in projected if x is not None))
 
         def draw(count: int) -> tuple[float, ...]:
             return tuple(generator.uniform(-1, 1) for _ in range(count))

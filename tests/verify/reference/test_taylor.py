@@ -53,8 +53,8 @@ def test_three_derivatives(build: str) -> None:
             (y[1] - 2 * y[0] + y[-1]) / h**2,
             (y[2] - 2 * y[1] + 2 * y[-1] - y[-2]) / (2 * h**3),
         ]
-        for found, wanted in zip(value_and_derivatives(build, POINT), expected, strict=True):
-            assert abs(float(found - wanted)) < 1e-30
+        for value, wanted in zip(value_and_derivatives(build, POINT), expected, strict=True):
+            assert abs(float(value - wanted)) < 1e-30
 
 
 def test_coefficients_of_products_count_each_monomial_once() -> None:

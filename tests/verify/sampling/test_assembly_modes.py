@@ -69,15 +69,15 @@ def elbows(q: tuple[float, ...]) -> tuple[bool, bool]:
 
 
 def test_both_arms_bend_to_either_side() -> None:
-    found = modes(Reference(built(PIN)))
-    assert {elbows(q) for q in found} == {(left, right) for left in (True, False) for right in (True, False)}
-    for a, b, c, e in found:
+    assembly_modes = modes(Reference(built(PIN)))
+    assert {elbows(q) for q in assembly_modes} == {(left, right) for left in (True, False) for right in (True, False)}
+    for a, b, c, e in assembly_modes:
         assert hypot(
             0.5 * cos(a) + 0.4 * cos(b) - 0.4 - 0.5 * cos(c) - 0.4 * cos(e),
             0.5 * sin(a) + 0.4 * sin(b) - 0.5 * sin(c) - 0.4 * sin(e),
         ) < 1e-9  # fmt: skip
         assert max(map(abs, (a, b, c, e))) <= pi
-    assert found == modes(Reference(built(PIN)))
+    assert assembly_modes == modes(Reference(built(PIN)))
 
 
 def test_few_states_of_a_verification_meet_all_modes_in_turn() -> None:
@@ -101,9 +101,9 @@ def test_ranges_that_are_told_hold_and_others_reach_further() -> None:
     assert max(z for _, z in free) > 2.5
     assert all(1.19 < abs(z) < 3.21 for _, z in free)
     assert {a > 0 for a, _ in free} == {True, False}
-    told = modes(Reference(built(RAIL + "ranges: {a: [0.1, 0.6], z: [1, 2]}\n")))
-    assert told
-    assert all(0.095 <= a <= 0.605 and 0.99 <= z <= 2.01 for a, z in told)
+    limited = modes(Reference(built(RAIL + "ranges: {a: [0.1, 0.6], z: [1, 2]}\n")))
+    assert limited
+    assert all(0.095 <= a <= 0.605 and 0.99 <= z <= 2.01 for a, z in limited)
 
 
 def test_trees_have_none() -> None:

@@ -131,7 +131,7 @@ def test_loads_by_the_power_of_bodies_are_those_by_their_jacobians(monkeypatch: 
     dice = random.Random("loads")
     q, qd, qdd, u = (tuple(dice.uniform(-1, 1) for _ in range(count)) for count in (24, 24, 24, 12))
     state = State(q, qd, qdd, u, ())
-    found = []
+    evaluations = []
     for at_hand in (None, True):
         if at_hand:
             monkeypatch.setattr(ReferenceSystem, "has_jacobians_at_hand", at_hand)
@@ -139,8 +139,8 @@ def test_loads_by_the_power_of_bodies_are_those_by_their_jacobians(monkeypatch: 
         assert reference.system.has_jacobians_at_hand is bool(at_hand)
         with precision(256):
             at = reference.evaluation(state)
-            found.append((at.load, at.motion(at.rate)[0], at.mass_dot(at.rate)))
-    for backwards, expected in zip(*found, strict=True):
+            evaluations.append((at.load, at.motion(at.rate)[0], at.mass_dot(at.rate)))
+    for backwards, expected in zip(*evaluations, strict=True):
         assert norm(backwards - expected) <= 1e-60 * norm(expected)
 
 
@@ -155,9 +155,9 @@ def test_many_drives_under_few_rows_are_regular_where_a_decomposition_says_so(
     rows[::3, :, 44:] *= 0.0
     rows[1::3, :, 44:] *= 1e-4
     part = RankedPart(range(60), range(2), range(drives), 2, drives)
-    found = is_regular(part, rows, control)
+    regular = is_regular(part, rows, control)
     monkeypatch.setattr(ranks_in_lanes, "MANY_INPUTS", 1000)
-    assert (found == is_regular(part, rows, control)).all()
-    assert found[2::3].all()
-    assert not found[::3].any()
-    assert not found[1::3].any()
+    assert (regular == is_regular(part, rows, control)).all()
+    assert regular[2::3].all()
+    assert not regular[::3].any()
+    assert not regular[1::3].any()

@@ -59,8 +59,8 @@ def test_states_are_found_from_those_that_are_known(monkeypatch: pytest.MonkeyPa
 
     monkeypatch.setattr(ReferenceSystem, "loop_geometry", counted)
     with precision(SAMPLING_BITS):
-        found = list(RegularStateSearch(reference, 64, 0).candidates())
-    inside = [regular.state.q for regular, in_range in found if in_range]
+        candidates = list(RegularStateSearch(reference, 64, 0).candidates())
+    inside = [regular.state.q for regular, in_range in candidates if in_range]
     assert len(inside) >= FEWEST_STATES
     assert all(1.19 < q[3] < 2.39 for q in inside)
     assert len(set(inside)) == len(inside)

@@ -26,8 +26,8 @@ inputs:
 def test_states_of_a_door_on_two_points_are_found() -> None:
     reference = Reference(load_text(DOOR, "door.yaml"))
     assert (reference.ranks.constraints, reference.model.r) == (3, 4)
-    found = sample_states(reference, ("inverse_dynamics",), 8)
-    assert len(found) == 8
-    for sample in found:
+    samples = sample_states(reference, ("inverse_dynamics",), 8)
+    assert len(samples) == 8
+    for sample in samples:
         assert abs(sample.state.q[1]) < 1e-15
         assert abs(sample.state.q[2]) < 1e-15

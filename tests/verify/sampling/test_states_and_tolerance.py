@@ -156,9 +156,9 @@ def test_error_unit_follows_condition_inputs_parameters_and_literals() -> None:
     reference = Reference(model)
     state = State((0.3,), (0.1,), (0.2,), (), (0.7,))
     for scalar, eps in (("float64", 2.0**-53), ("float32", 2.0**-24)):
-        found = expectations(reference, state, ["potential_force"], scalar, "seed")["potential_force"]
-        assert found.size == pytest.approx(0.189, rel=1e-12)
-        assert 2 * eps * found.size < found.unit < 6.01 * eps * found.size
+        expectation = expectations(reference, state, ["potential_force"], scalar, "seed")["potential_force"]
+        assert expectation.size == pytest.approx(0.189, rel=1e-12)
+        assert 2 * eps * expectation.size < expectation.unit < 6.01 * eps * expectation.size
 
 
 @pytest.mark.parametrize("units", [0.0, 0.5, 3.0, 15.9, 16.1, 40.0])
@@ -167,8 +167,8 @@ def test_what_is_beyond_needs_no_more_changes_than_it_takes(units: float, monkey
     model = build("spring", "x", "x_dot**2/2", "3*k*x**3/3", parameters={"k": "0.7"})
     reference = Reference(model)
     state = State((0.3,), (0.1,), (0.2,), (), (0.7,))
-    found = expectations(reference, state, ["potential_force"], "float32", "seed")["potential_force"]
-    entries = [float(found.value[0, 0]) + units * found.unit]
+    expectation = expectations(reference, state, ["potential_force"], "float32", "seed")["potential_force"]
+    entries = [float(expectation.value[0, 0]) + units * expectation.unit]
     evaluated = 0
     matrices: Any = Reference.matrices
 
@@ -244,8 +244,8 @@ def test_equal_numbers_do_not_always_move_together() -> None:
     reference = Reference(build("twins", "x y", "x_dot**2/2 + y_dot**2/2", "(x - y)**2/2"))
     state = State((0.7, 0.7), (0.0, 0.0), (0.0, 0.0), (), ())
     for seed in range(1000):
-        found = expectations(reference, state, ["potential_force"], "float64", f"{seed}")["potential_force"]
-        assert found.unit > 2.0**-53 * 0.7
+        expectation = expectations(reference, state, ["potential_force"], "float64", f"{seed}")["potential_force"]
+        assert expectation.unit > 2.0**-53 * 0.7
 
 
 def test_distance_is_exact_where_floats_cancel() -> None:
@@ -263,9 +263,9 @@ def test_states_are_found_where_most_branches_hold_the_drive() -> None:
     """Of twelve four-bars in a row each may lie on a branch that stops those before it."""
     model = load_text(row_of_four_bars(12), "row.yaml")
     reference = Reference(model)
-    found = sample_states(reference, ("inverse_dynamics",), 12)
-    assert len(found) == 12
-    assert all(sample.measures[1] > 0 for sample in found)
+    samples = sample_states(reference, ("inverse_dynamics",), 12)
+    assert len(samples) == 12
+    assert all(sample.measures[1] > 0 for sample in samples)
 
 
 def test_angles_far_outside_of_their_ranges_are_not_taken() -> None:

@@ -210,19 +210,19 @@ def test_lengths_without_a_range_are_looked_at_further_out() -> None:
         expected = Expected(model, ["inverse_dynamics"], 16, lambda _: None)
         made = WorstStateSearch(expected)._estimated(FAR_DETOUR, RoundingErrors(FAR_DETOUR))
         worst[bounds] = made.states.parts["q"][:, 0], made.units.max()
-    near, found = worst[", range: [-1, 1]"]
+    near, largest = worst[", range: [-1, 1]"]
     assert np.abs(near).max() < 1.02
-    assert found < FACTOR
-    far, found = worst[""]
+    assert largest < FACTOR
+    far, largest = worst[""]
     assert far.min() < -3 < 3 < far.max() < 3.3
-    assert found > FACTOR
+    assert largest > FACTOR
 
 
 def test_lengths_that_loops_hold_stay_where_these_lead(reference: Reference) -> None:
     """A start far out is brought back to V: the feet of a ladder are no further than it is long."""
-    found = Surroundings(reference, sample_states(reference, ["inverse_dynamics"], 16)).further_out(128)
-    q, p = found.parts["q"], found.parts["p"]
-    assert len(found) > 16
+    nearby = Surroundings(reference, sample_states(reference, ["inverse_dynamics"], 16)).further_out(128)
+    q, p = nearby.parts["q"], nearby.parts["p"]
+    assert len(nearby) > 16
     assert np.abs(q[:, 0] - p[:, 0] * np.cos(q[:, 2])).max() < 1e-9
     assert np.abs(q[:, 1] - p[:, 0] * np.sin(q[:, 2])).max() < 1e-9
 
@@ -232,9 +232,9 @@ def test_inputs_are_small_too_where_weights_move_the_machine(tmp_path: Path, wei
     """Else they would be small beside what rates do alone, as where everything is small."""
     path = tmp_path / "inputs.yaml"
     path.write_text(LADDER.replace("9.81*m*y/2", weight), encoding="utf-8")
-    found = Reference(load_model(path))
-    samples = sample_states(found, ["forward_dynamics"], 16)
-    surroundings = Surroundings(found, samples)
+    ladder = Reference(load_model(path))
+    samples = sample_states(ladder, ["forward_dynamics"], 16)
+    surroundings = Surroundings(ladder, samples)
     drawn = surroundings.drawn(256)
     largest = np.array([max(map(abs, map(float, sample.state.u)), default=0.0) for sample in samples])
     shares = np.abs(drawn.parts["u"]).max(axis=1) / np.maximum(largest, 1.0)[drawn.origins]
@@ -254,9 +254,9 @@ def test_measures_in_lanes_are_those_of_the_reference(name: str) -> None:
     reference = Reference(model)
     samples = sample_states(reference, ["singularity"], 8)
     around = Surroundings(reference, samples)
-    for sample, found in zip(samples, around.measures(around.samples), strict=True):
+    for sample, measured in zip(samples, around.measures(around.samples), strict=True):
         exact = values_at(reference, sample.state, ["singularity"])["singularity"]
-        assert found == pytest.approx(exact, rel=1e-9)
+        assert measured == pytest.approx(exact, rel=1e-9)
 
 
 @pytest.mark.parametrize("name", ["three_rrr", "skate"])
