@@ -8,7 +8,7 @@ do, but for the digits that pairs gain.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import dist, inf
 
@@ -45,6 +45,14 @@ class Far:
     def rounded(self) -> list[dict[str, list[float]]]:
         """Of each state, what is given in single precision."""
         return in_single_precision(self.given)
+
+
+def joined(parts: Sequence[Far]) -> Far:
+    """All of several, of which there is one at least."""
+    given = {name: np.concatenate([part.given[name] for part in parts]) for name in parts[0].given}
+    rest = ([getattr(part, name) for part in parts] for name in ("parameters", "powers", "regular"))
+    parameters, powers, regular = map(np.concatenate, rest)
+    return Far(parameters, powers, given, regular)
 
 
 class FarErrors:

@@ -21,7 +21,7 @@ from symgen.ir.bounded import Bound
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.runtime.activity import working
 from symgen.verify.expected import Expected
-from symgen.verify.far_errors import Far, FarErrors
+from symgen.verify.far_errors import Far, FarErrors, joined
 from symgen.verify.interpreted import outcomes
 from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.reference.reference import ReferenceValueError, State
@@ -50,6 +50,8 @@ FAR_STATES = 8
 FAR_STARTS = 32
 # Numbers that are held at a time, and that are worked out for the powers of one kernel.
 NUMBERS_HELD, MOST = 4_000_000, 30_000_000
+# Coordinates that are kept of configurations with a parameter far away.
+MOST_KEPT = 8_000_000
 # Rows and inputs this far from a drop of rank are no reason for a status: parameters are.
 CLEAR = 1e-4
 # Units of an estimate that count as lost: other states than these lose twice as much, and more.
@@ -94,18 +96,28 @@ class FarParameters:
 
     def led(self, steps: Sequence[tuple[int, float]], states: int) -> Far:
         """States with one parameter far away, for each step (which, and by what power of ten) as far as loops close."""
-        configurations, shut = self._closed
-        table = [
-            (*at, which, place, power)
-            for which, power in steps
-            for at in [(int(power > 0), round(abs(power) / QUARTER) - 1)]
-            for place in np.flatnonzero(shut[(*at, which)])[:states].tolist()
+        rows = [
+            (which, place, power) for which, power in steps for place in self._places(which, power)[:states].tolist()
         ]
-        side, step, which, place = np.array([row[:-1] for row in table], dtype=int).reshape(-1, 4).T
-        far = np.array([row[-1] for row in table])
-        given = {name: rows[place] for name, rows in self._starts.items()}
+        system = self._reference.system
+        held = max(1, NUMBERS_HELD // (system.n * (system.n + system.m + system.r)))
+        return joined([self._at(rows[start : start + held]) for start in range(0, max(1, len(rows)), held)])
+
+    def _places(self, which: int, power: float) -> Lanes:
+        """The states with which the loops close with a parameter away by a power of ten."""
+        if which in self._moving:
+            return np.flatnonzero(self._closed[1][(*_step(power), self._moving[which])])
+        return np.arange(len(self._starts["q"]))
+
+    def _at(self, rows: Sequence[tuple[int, int, float]]) -> Far:
+        """The states with a parameter, a start and a power of ten each."""
+        which, place = np.array([row[:2] for row in rows], dtype=int).reshape(-1, 2).T
+        far = np.array([row[2] for row in rows])
+        given = {name: values[place] for name, values in self._starts.items()}
         given["p"][np.arange(len(which)), which] *= 10.0**far
-        given["q"] = configurations[side, step, which, place]
+        for row, (parameter, start, power) in enumerate(rows):
+            if parameter in self._moving:
+                given["q"][row] = self._closed[0][(*_step(power), self._moving[parameter], start)]
         given["qd"], given["qdd"], finite = self._rates.admissible(given)
         with np.errstate(all="ignore"):
             given["task"] = self._task.ahead(given)
@@ -160,21 +172,28 @@ class FarParameters:
         return frozenset(np.flatnonzero(~np.logical_and(*still)).tolist())
 
     @cached_property
+    def _moving(self) -> dict[int, int]:
+        """The places of the parameters that move configurations among themselves."""
+        return {parameter: k for k, parameter in enumerate(sorted(self._leading))}
+
+    @cached_property
     def _closed(self) -> tuple[Lanes, Lanes]:
         """Where the loops close with a parameter further and further away, and whether they do.
 
-        By side, quarter of a power of ten, parameter and state: each step starts where the one before it ended.
-        Where that leads nowhere each power of ten is looked for from the state itself.
+        By side, quarter of a power of ten, parameter that moves them and state: each step starts where the one before
+        it ended.  Where that leads nowhere each power of ten is looked for from the state itself.
         """
-        starts, leading = self._starts, sorted(self._leading)
-        count, parameters = starts["p"].shape
+        leading, steps = [*self._moving], round(FURTHEST / QUARTER)
+        n = self._starts["q"].shape[1]
+        most = max(FAR_STATES, MOST_KEPT // (len(SIDES) * steps * len(leading) * n))
+        starts = {name: values[:most] for name, values in self._starts.items()}
+        count = len(starts["q"])
         which, place = np.array(leading, dtype=int).repeat(count), np.tile(np.arange(count), len(leading))
-        shape = 2, round(FURTHEST / QUARTER), parameters, count
-        configurations = np.broadcast_to(starts["q"], (*shape, starts["q"].shape[1])).copy()
-        shut = np.ones(shape, dtype=bool)
-        for side, sign in enumerate(SIDES if leading else ()):
+        shape = len(SIDES), steps, len(leading), count
+        configurations, shut = np.empty((*shape, n)), np.empty(shape, dtype=bool)
+        for side, sign in enumerate(SIDES):
             q = starts["q"][place]
-            for step in range(shape[1]):
+            for step in range(steps):
                 power = QUARTER * (step + 1)
                 p = starts["p"][place]
                 p[np.arange(len(which)), which] *= 10.0 ** (sign * power)
@@ -185,7 +204,7 @@ class FarParameters:
                         led = look(starts["q"][place[still]], p[still])
                     q[still], closed[still] = self._newton(led, p[still])
                 q = np.where(closed[:, None], q, starts["q"][place])
-                configurations[side, step, which, place], shut[side, step, which, place] = q, closed
+                configurations[side, step], shut[side, step] = q.reshape(*shape[2:], n), closed.reshape(shape[2:])
         return configurations, shut
 
     def _newton(self, q: Lanes, p: Lanes) -> tuple[Lanes, Lanes]:
@@ -298,6 +317,11 @@ class _Bounds:
         """As many states at a time as may be held."""
         held = max(1, NUMBERS_HELD // self._size)
         return (far.only(slice(start, start + held)) for start in range(0, len(far), held))
+
+
+def _step(power: float) -> tuple[int, int]:
+    """The side of a power of ten, and which of its quarters it is."""
+    return int(power > 0), round(abs(power) / QUARTER) - 1
 
 
 def _nearest(far: Far) -> dict[tuple[int, int], float]:

@@ -78,3 +78,12 @@ def test_rows_that_depend_on_each_other_have_one_factor() -> None:
     assert all(Fraction(2) ** unit < Fraction(1, 1000) for unit in model.row_units)
     multipliers = _values(load_text(text, "crane.yaml"), "multipliers")
     assert multipliers[1] == pytest.approx(multipliers[0] / 2, rel=1e-12)
+
+
+def test_a_row_in_small_units_that_follows_from_ordinary_ones_leaves_these_as_they_are() -> None:
+    """One factor for all three would make the ordinary ones large beside the rest, whose multipliers drown them."""
+    text = CRANE.format(first="1", second_row="again: 1e-6*(l*cos(a) + 0.9*cos(b) - 1.2*cos(c))", third="1")
+    model = load_text(text, "crane.yaml")
+    assert in_ordinary_units(model) is model
+    multipliers = _values(model, "multipliers")
+    assert multipliers[1] == pytest.approx(multipliers[0] * 1e-6, rel=1e-12)

@@ -111,7 +111,10 @@ class _Search:
         return tuple(i for i in range(r) if any(abs(vector[i]) > SHARE for vector in lacking))
 
     def _units_of(self, assembly: Assembly) -> tuple[int, ...]:
-        """The units of rows; one for those that depend on each other, whose smallest multipliers are meant."""
+        """The units of rows; one for those that depend on each other, whose smallest multipliers are meant.
+
+        None for these where one of them is of ordinary size: it would be large beside all others.
+        """
         r = len(self._mechanics.constraints)
         evaluated = self._rows(assembly.places[0].q)
         if assembly.ranks.constraints == r or evaluated is None or not any(self._units):
@@ -119,8 +122,8 @@ class _Search:
         rows = self._scales.scaled(evaluated)[:r]
         least = assembly.ranks.constraints
         spare = [i for i in range(r) if clear_rank(rows[:i] + rows[i + 1 :], NEGLIGIBLE) != least - 1]
-        own = [self._units[i] for i in spare if self._units[i]]
-        shared = max(own, key=abs) if len({unit > 0 for unit in own}) == 1 else 0
+        own = [self._units[i] for i in spare]
+        shared = max(own, key=abs) if all(own) and len({unit > 0 for unit in own}) == 1 else 0
         return tuple(shared if i in spare else unit for i, unit in enumerate(self._units))
 
     def _sampled(self) -> Iterator[tuple[list[float], list[Row]]]:

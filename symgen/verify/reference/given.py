@@ -22,6 +22,11 @@ MOMENT = 2.0**-10
 USUAL_STEPS, MOST_NEWTON_STEPS = 8, 200
 # Times by which steps grow shorter at first.
 QUICK = 8.0
+# Of the first step, a third one that is rounding alone.
+NOTHING_LEFT = 2.0**-40
+# Times as fast as what is given that other coordinates move at most: gears do by their ratio, and beyond that something
+# moves where what is given stands still, as on a branch of its own.
+FASTEST = 1e5
 # Of the binary digits, what rounding may keep from standing still.
 RESTLESS = 24
 
@@ -111,6 +116,20 @@ def _places(e: Evaluation, given: GivenValues) -> Iterator[tuple[Any, float]]:
         yield q, norm(step)
 
 
+def measured_determine(e: Evaluation) -> bool:
+    """Whether measured rates determine all others, beyond doubt: kernels have a status elsewhere."""
+    return _determine(e, _measured(e))
+
+
+def task_determines(e: Evaluation) -> bool:
+    """The same of the rates of the task."""
+    return _determine(e, _task(e))
+
+
+def _determine(e: Evaluation, given: GivenValues) -> bool:
+    return all(abs(entry) < FASTEST for entry in _inverse(e, given).entries())
+
+
 def is_near_measured(e: Evaluation) -> bool:
     """Whether Newton's method is quick from q on: the configuration is well within where it leads back."""
     return _is_near(e, _measured(e))
@@ -122,8 +141,9 @@ def is_near_task(e: Evaluation) -> bool:
 
 
 def _is_near(e: Evaluation, given: GivenValues) -> bool:
-    (_, first), (_, second) = islice(_places(e, given), 2)
-    return second <= first / QUICK
+    first, second, third = (length for _, length in islice(_places(e, given), 3))
+    # a long first step may end where the second one happens to be short
+    return second <= first / QUICK and third <= max(second / QUICK, first * NOTHING_LEFT)
 
 
 QUANTITIES_OF_GIVEN: dict[str, Callable[[Evaluation], Any]] = {

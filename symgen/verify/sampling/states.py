@@ -10,11 +10,17 @@ from math import comb, isfinite
 from typing import Any
 
 from symgen.ir.kernel import Scalar
-from symgen.model.quantities import MEASURED_PLACES, PARTITION, ROWS, TASK_PLACES
+from symgen.model.quantities import MEASURED, MEASURED_PLACES, PARTITION, ROWS, TASK_PLACES, TASK_RATES
 from symgen.runtime.activity import working
 from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.evaluation import Evaluation
-from symgen.verify.reference.given import USUAL_STEPS, is_near_measured, is_near_task
+from symgen.verify.reference.given import (
+    USUAL_STEPS,
+    is_near_measured,
+    is_near_task,
+    measured_determine,
+    task_determines,
+)
 from symgen.verify.reference.quantities import DIFFERENCED, ITERATED, RATES
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.sampling.inertias import Inertias
@@ -144,8 +150,8 @@ def _sample(
         return None
     if any(ROWS[name].needs == PARTITION for name in quantities) and not _is_free(reference, state):
         return None
-    for needs, is_near in _FOLLOWED.items():
-        if any(ROWS[name].needs == needs for name in quantities) and not _is_followed(reference, state, is_near):
+    for needs, required in _REQUIRED.items():
+        if any(ROWS[name].needs in needs for name in quantities) and not _holds(reference, state, required):
             return None
     if not inertias.is_regular(inertias.share(everything)):
         return None
@@ -162,12 +168,18 @@ def _is_free(reference: Reference, state: State) -> bool:
     return max(map(abs, complement)) * REGULAR_SHARE < 1
 
 
-_FOLLOWED = {MEASURED_PLACES: is_near_measured, TASK_PLACES: is_near_task}
+# By what quantities need: what a state has to be for them, near enough to the configuration a moment later among it.
+_REQUIRED: dict[tuple[str, ...], Callable[[Evaluation], bool]] = {
+    (MEASURED, MEASURED_PLACES): measured_determine,
+    (TASK_RATES, TASK_PLACES): task_determines,
+    (MEASURED_PLACES,): is_near_measured,
+    (TASK_PLACES,): is_near_task,
+}
 
 
-def _is_followed(reference: Reference, state: State, is_near: Callable[[Evaluation], bool]) -> bool:
-    """Whether a configuration that is given a moment later is near enough: kernels have a status elsewhere."""
+def _holds(reference: Reference, state: State, required: Callable[[Evaluation], bool]) -> bool:
+    """Whether a state is what quantities require: kernels have a status elsewhere."""
     try:
-        return reference.regular(lambda: is_near(reference.evaluation(state)), SAMPLING_BITS)
+        return reference.regular(lambda: required(reference.evaluation(state)), SAMPLING_BITS)
     except ReferenceValueError:
         return False

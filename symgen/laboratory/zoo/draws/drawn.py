@@ -55,7 +55,7 @@ class DrawnEquations:
         """The equations at a configuration, at rest."""
         values = {**self.parameters, **dict(zip(self.system.coordinates, map(float, q), strict=True))}
         values |= dict.fromkeys(self.system.rate_names, 0.0)
-        return self._evaluate(values, Floats())
+        return self._evaluate.settled(values)
 
     @cached_property
     def rank(self) -> int:

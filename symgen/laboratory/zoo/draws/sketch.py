@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import deepcopy
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from symgen.laboratory.zoo.dice import Dice, decimal, exact
 from symgen.laboratory.zoo.draws.names import Namer
-from symgen.laboratory.zoo.witness.fields import Floats
+from symgen.laboratory.zoo.witness.fields import Floats, settled
 from symgen.laboratory.zoo.witness.mechanics import constraint_jacobian
 from symgen.laboratory.zoo.witness.reader import SystemReader
 from symgen.laboratory.zoo.witness.tape import Node
@@ -105,7 +106,8 @@ class Sketch:
         values |= dict.fromkeys(system.rate_names, 0.0)
         for name, node in system.parameters.items():
             values[name] = system.tape.evaluate([node], values, Floats())[0]
-        jacobian = np.array([system.tape.evaluate(row, values, Floats()) for row in rows])
+        # rounding leaves something of a row that says nothing, and of one times a million more than of others
+        jacobian = np.array([settled(partial(system.tape.evaluate, row), values) for row in rows])
         jacobian = jacobian.reshape(-1, len(system.coordinates))
         lengths = np.linalg.norm(jacobian, axis=1)
         return jacobian[lengths > FLAT] / lengths[lengths > FLAT, None]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from fractions import Fraction
 from typing import Any, ClassVar
@@ -78,3 +78,12 @@ def precision(bits: int = BITS) -> Iterator[None]:
         yield
     finally:
         ctx.prec = before
+
+
+def settled(evaluate: Callable[[Mapping[str, Any], Any], list[Any]], values: Mapping[str, float]) -> list[Any]:
+    """What is evaluated in balls at exactly these values, as floats: 0 where nothing but rounding is left."""
+    from flint import arb
+
+    with precision():
+        balls = evaluate({name: arb(value) for name, value in values.items()}, Balls())
+        return [0.0 if ball.is_finite() and ball.contains(0) else float(ball.mid()) for ball in balls]

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from symgen.laboratory.zoo.witness.fields import settled
 from symgen.laboratory.zoo.witness.linear import (
     Matrix,
     Vector,
@@ -65,8 +66,15 @@ class EquationEvaluator:
         self, values: Mapping[str, Any], field: Any, literals: Mapping[FileNumber, Any] | None = None
     ) -> EquationValues:
         """At these values of coordinates, rates and parameters."""
+        return self._parts(self.program.run(values, field, literals))
+
+    def settled(self, values: Mapping[str, float]) -> EquationValues:
+        """The same in floats, worked out in so many digits that what cancels is 0."""
+        return self._parts(settled(self.program.run, values))
+
+    def _parts(self, values: list[Any]) -> EquationValues:
         n, r, m = self._n, self._r, self._m
-        flat = iter(self.program.run(values, field, literals))
+        flat = iter(values)
 
         def matrix(rows: int, columns: int) -> Matrix:
             return [[next(flat) for _ in range(columns)] for _ in range(rows)]
