@@ -34,6 +34,8 @@ from symgen.registered import USUAL
 from symgen.runtime.processes import ToolError
 from symgen.terminal import SPELLED, Progress, notice_line, summary_table, terminal_width, written_table
 
+# Read by OpenBLAS and MKL where NumPy loads them, which is later.
+BLAS_THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 # Exit codes, as a shell reports these signals.
 INTERRUPTED, READER_GONE = 130, 141
 _SCALARS: dict[str, tuple[Scalar, ...]] = {
@@ -68,6 +70,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command line and returns the exit code."""
     given = list(sys.argv[1:] if arguments is None else arguments)
     if arguments is None:
+        # small systems in thousands are shared among threads of a BLAS at several times the cost of one thread
+        for threads in BLAS_THREADS:
+            os.environ.setdefault(threads, "1")
         # large graphs live until the end of a command: looking for cycles in them costs a twentieth of its time
         gc.disable()
     _prepare_streams()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Container, Iterator
+from math import inf
 from typing import TYPE_CHECKING
 
 from symgen.backends.defaults import default_values
@@ -98,12 +99,18 @@ def _near_bounds(draft: Draft) -> Iterator[Notice]:
     """That parameters may not be far from their values, where they may hardly be further than usual."""
     values = {name: abs(float(value)) for name, value in default_values(draft.model).items()}
     for quantity in (kernel.name for kernel in draft.program.kernels):
-        bounds = [(b, values[b.parameter]) for every in draft.bounds.values() for b in every.get(quantity, ())]
-        below = [f"{b.parameter} below {float(b.low):g}" for b, size in bounds if b.low and b.low * CLOSE_BY > size]
-        above = [f"{b.parameter} above {float(b.high):g}" for b, size in bounds if b.high and b.high < size * CLOSE_BY]
-        if below or above:
-            # a bound of both types is told once
-            beyond = ", ".join(dict.fromkeys((*below, *above)))
+        below: dict[str, float] = {}
+        above: dict[str, float] = {}
+        # of both types the nearer bound is told
+        for bound in (bound for every in draft.bounds.values() for bound in every.get(quantity, ())):
+            name, size = bound.parameter, values[bound.parameter]
+            if bound.low and bound.low * CLOSE_BY > size:
+                below[name] = max(float(bound.low), below.get(name, 0.0))
+            if bound.high and bound.high < size * CLOSE_BY:
+                above[name] = min(float(bound.high), above.get(name, inf))
+        sides = [("below", below), ("above", above)]
+        beyond = ", ".join(f"{name} {side} {value:g}" for side, bounds in sides for name, value in bounds.items())
+        if beyond:
             yield Notice(f"{quantity} refuses {beyond}: it would lose digits; a `range` has it verified further")
 
 

@@ -53,7 +53,6 @@ def run_command(model: Path, folder: Path, cpu: float = CPU_SECONDS, megabytes: 
             stderr=err,
             stdin=subprocess.DEVNULL,
             start_new_session=True,
-            env={**os.environ, "OMP_NUM_THREADS": "1"},
             preexec_fn=_limited(cpu, megabytes),
         )
         watch = _Watch(process, cpu, megabytes)

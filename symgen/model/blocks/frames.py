@@ -19,6 +19,8 @@ from symgen.model.mechanism import AXES, NO_VECTOR, WORLD, ZERO, Frame, Point, Q
 ONE = Number(ZERO.value + 1)
 # Of the largest component of a vector: smaller ones are what computing it left of 0, as 6e-17 of a cosine.
 REST_OF_ZERO = Fraction(1, 10**14)
+# What other tools call the world.
+GROUND = ("base", "earth", "fixed", "ground", "inertial", "origin", "base_link")
 NEED_FRAME = "name the frame it belongs to, or put a frame there under `frames`"
 
 
@@ -67,7 +69,7 @@ def read_vector(scope: Scope, node: Node | None, what: str, allowed: frozenset[K
     if not isinstance(node, SequenceNode) or len(node.items) != 3:
         return None
     written = [scope.expression(item, what, allowed) or ZERO for item in node.items]
-    sizes = [abs(exact_value(entry) or 0) for entry in written]
+    sizes = [abs(exact_value(entry) or Fraction(0)) for entry in written]
     for i, item in enumerate(node.items):
         if 0 < sizes[i] < REST_OF_ZERO * max(sizes):
             written[i] = ZERO
@@ -104,7 +106,8 @@ def frame_name(scope: Scope, node: Node | None, what: str) -> str | None:
         scope.wrong_about(name, f"`{name}` is {a_kind(kind)}, but {what} names a frame", remedy, node.span)
         return None
     frames = [other for other, kind in scope.kinds.items() if kind == "frame"]
-    remedy = did_you_mean(name, [WORLD, *frames], "declare it under `frames`")
+    otherwise = f"did you mean `{WORLD}`?" if name.lower() in GROUND else "declare it under `frames`"
+    remedy = did_you_mean(name, [WORLD, *frames], otherwise)
     scope.wrong_about(name, f"unknown frame `{name}` in {what}", remedy, node.span)
     return None
 

@@ -78,7 +78,7 @@ class WorstStateSearch:
 
     def look(self, kernel: Kernel) -> None:
         """Adds the worst states of a kernel of plain numbers."""
-        with working(f"where {kernel.name} is worst"):
+        with working("estimates beside samples"):
             errors = RoundingErrors(kernel)
             self._add(kernel, errors, self._estimated(kernel, errors))
 

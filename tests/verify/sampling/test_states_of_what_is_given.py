@@ -1,4 +1,4 @@
-"""States at which what is measured determines the rest: beside its singularities kernels have a status, and no fault."""
+"""States at which what is measured determines the rest: beside its singularities kernels have a status."""
 
 from __future__ import annotations
 
