@@ -21,6 +21,7 @@ from symgen.generation.passing import Kernels, Passing, Searched, digest, faults
 from symgen.generation.results import AUTO, Options
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.methods.quantity import scalars
+from symgen.model.quantities import MAIN
 from symgen.quantities.alternatives import TIERS, Alternative, Alternatives, grouped
 from symgen.quantities.everything import (
     OPERATIONS_TRIED,
@@ -43,8 +44,9 @@ from symgen.verify.tolerance import FACTOR
 TOO_LONG = "not tried: it takes too long to derive"
 # Of the error that is allowed; which method a quantity takes is decided at a few dozen states.
 MARGIN = FACTOR / 2
-# Beyond this twice the digits are taken where nothing else keeps a margin: at a state in thousands more is lost.
-NARROW = FACTOR * 3 / 4
+# Beyond this u, q_ddot and lambda take twice the digits where nothing else keeps a margin: of a state in thousands more
+# is lost.  Others, which drive nothing, do where next to nothing is left of what is allowed.
+NARROW, NARROWEST = FACTOR * 3 / 4, FACTOR * 7 / 8
 # Share of operations more that keeping a margin may cost.
 MARGIN_WORTH = Fraction(1, 2)
 # Methods that are tried once more with twice the digits.
@@ -99,7 +101,7 @@ class Fallback:
                 largest = max(record.largest, searched.largest if searched is not None else 0.0)
                 if largest > MARGIN and quantity not in self._weighed and not self._is_given_up(draft, quantity):
                     before, made = made, self._with_margin(made, quantity, largest, expected)
-                    if made is before and largest > NARROW:
+                    if made is before and largest > (NARROW if quantity in MAIN else NARROWEST):
                         made = self._with_digits(made, quantity, largest, expected)
                     let_go()
         if made is draft:

@@ -323,6 +323,17 @@ def test_what_needs_nearly_all_takes_twice_the_digits(yoke: Path, monkeypatch: p
     assert max(e["largest"] for e in result.certificate["errors"] if e["quantity"] == "multipliers") <= 8
 
 
+@pytest.mark.parametrize(("narrowest", "wide"), [(0.6, ["float64", "float32"]), (15.9, None)])
+def test_so_does_any_quantity_of_which_next_to_nothing_is_left(
+    yoke: Path, monkeypatch: pytest.MonkeyPatch, narrowest: float, wide: list[str] | None
+) -> None:
+    monkeypatch.setattr(fallback, "MARGIN", 0.6)
+    monkeypatch.setattr(fallback, "NARROWEST", narrowest)
+    yoke.write_text(re.sub("outputs: .*", "outputs: [admissible_acceleration]", YOKE), encoding="utf-8")
+    kernel = derived(made(yoke))["kernels"]["admissible_acceleration"]
+    assert kernel.get("twice_the_digits") == wide
+
+
 def test_states_that_lead_nowhere_do_not_end_the_search(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     spoil_choice(monkeypatch, edgy)
     settled = Settling.sample

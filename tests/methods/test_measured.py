@@ -34,7 +34,7 @@ measured: MEASURED
 configuration: {{a: 0.5, b: 0.6, c: 1.6}}
 outputs: [configuration_from_measured, velocity_from_measured, acceleration_from_measured]
 """
-# A slide on an arm, a link on the slide, a rod that all but crosses the arm; a screw that nothing moves is measured too.
+# A slide on an arm, a link on it, and a rod that all but crosses the arm; a screw that nothing moves is measured too.
 CROSSED = """
 model: crossed
 coordinates: {a: {}, s: {}, c: {}, w: {}}
