@@ -50,7 +50,7 @@
  * admissible_velocity                 109    162      9      4      6      0
  * admissible_acceleration             192    271     13      4      6      0
  * projected_configuration             276    322     29     11     12      0
- * configuration_from_measured        1299   1567     88     23     36      0
+ * configuration_from_measured        1257   1528     84     23     36      0
  * velocity_from_measured               84    148      1      0      6      0
  * acceleration_from_measured          204    311     14      4      6      0
  * task_position                         5      4      0      0      2      0

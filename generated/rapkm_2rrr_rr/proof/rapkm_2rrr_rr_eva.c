@@ -1019,7 +1019,7 @@ void eva_projected_configuration(void) {
 
 void eva_configuration_from_measured(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t79, t83, t109, t155, t151, t199, t258, t255, t47, t304, t113, t205, t306, t580, t673, t748, t753, t779, t832, t863, t787, t840, t865, t1143, t1236, t1311, t1316, t1342, t1395, t1426, t1350, t1403, t1428, t1706, t1799, t1874, t1879, t1905, t1958, t1989, t1913, t1966, t1991, t2269, t2362, t2419, t2422, t2490, t2494, t2549, t2555, t2613, t2609, t2774, t2853. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t79, t83, t109, t155, t151, t199, t258, t255, t47, t304, t113, t205, t306, t554, t569, t663, t668, t694, t747, t778, t702, t755, t780, t1058, t1151, t1226, t1231, t1257, t1310, t1341, t1265, t1318, t1343, t1621, t1714, t1789, t1794, t1820, t1873, t1904, t1828, t1881, t1906, t2184, t2277, t2334, t2337, t2405, t2409, t2464, t2470, t2528, t2524, t2689, t2768. */
 void eva_configuration_from_measured(void) {
     double q_m[3];
     double q[6];
