@@ -1,4 +1,4 @@
-"""Straight-line programs over real scalars: the noun between the mathematics and every back end.
+"""Straight-line programs over real scalars: the noun between the mathematics and every backend.
 
 One operation per statement, each target assigned once, so that C, Python and the interpreter perform the same IEEE
 operations in the same order.  Nothing here knows mechanics.  A program is made for one scalar type: literals, status

@@ -1,6 +1,6 @@
 """One state of the reference: every intermediate that the quantities are made of, once.
 
-Equation numbers are those of the paper as corrected in the README.  Notation: N = I - B+B projects onto ker B,
+Equation numbers are those of the paper as corrected in docs/paper.md.  Notation: N = I - B+B projects onto ker B,
 P = I - N, v = N qd, Z = N (N G N + P)^-1 N = F (F'GF)^-1 F' for every basis F of ker B.
 """
 

@@ -1,6 +1,6 @@
 """The quantities of docs/quantities.md at one state, each from its definition.
 
-Equation numbers are those of the paper as corrected in the README; notation as in `evaluation`.
+Equation numbers are those of the paper as corrected in docs/paper.md; notation as in `evaluation`.
 """
 
 from __future__ import annotations
