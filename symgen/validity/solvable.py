@@ -44,7 +44,8 @@ def solvable(
         return apart
     if isinstance(forms, ActuationForms) and mechanics.factoring.fixed(denominator):
         return (*apart, Guard(status, denominator, 1 if forms.single else 2, space.guards))
-    if isinstance(forms, ActuationForms) and forms.single:
+    # behind reflections the terms on the way are bounded by many times what they are
+    if isinstance(forms, ActuationForms) and forms.single and isinstance(space, MinorSpace):
         factors = nested_factors(denominator, mechanics.factoring.fixed)
         if len(factors) > 1:
             return (*apart, *(Guard(status, factor, 1, space.guards) for factor in factors))

@@ -16,6 +16,20 @@ from symgen.verify.reference.reference import Reference
 from symgen.verify.sampling.states import rounded, sample_states
 from symgen.verify.tolerance import FACTOR, expectations
 
+# Three arms and three rods, given by energies: after six reflections the bounds of terms are 1e12 times a determinant.
+DELTA = """
+model: delta
+coordinates: {t1: {unit: rad}, t2: {unit: rad}, t3: {unit: rad}, x: {unit: m}, y: {unit: m}, z: {unit: m}}
+parameters: {L: {value: 0.25, unit: m}, l: {value: 0.55, unit: m}, R: {value: 0.1, unit: m}, m: {value: 0.4, unit: kg}}
+kinetic_energy: 0.01*(t1_dot**2 + t2_dot**2 + t3_dot**2) + m/2*(x_dot**2 + y_dot**2 + z_dot**2)
+potential_energy: m*9.81*z
+constraints:
+  geometric:
+    l1: (x - (R + L*cos(t1)))**2 + y**2 + (z + L*sin(t1))**2 - l**2
+    l2: (x + (R + L*cos(t2))/2)**2 + (y - sqrt(3)/2*(R + L*cos(t2)))**2 + (z + L*sin(t2))**2 - l**2
+    l3: (x + (R + L*cos(t3))/2)**2 + (y + sqrt(3)/2*(R + L*cos(t3)))**2 + (z + L*sin(t3))**2 - l**2
+inputs: {u1: {acts_on: {t1: 1}}, u2: {acts_on: {t2: 1}}, u3: {acts_on: {t3: 1}}}
+"""
 STATES = 8
 # They form B B^T, M~^T M~ or B S^-1 B^T, whose condition is the square of B's (theory 3.3).
 SQUARING = {"printed", "printed_fixed", "weighted", "kkt"}
@@ -69,3 +83,9 @@ def test_methods_of_random_systems_agree_with_the_reference(seed: int) -> None:
     worst = worst_errors(given, programs_of(given), "float64")
     assert len(worst) >= 5
     assert_within(worst)
+
+
+@pytest.mark.parametrize("scalar", ["float64", "float32"])
+def test_reflections_are_compared_with_lengths_and_not_with_the_terms_on_the_way(scalar: Scalar) -> None:
+    given = load_text(DELTA, "delta.yaml")
+    worst_errors(given, {"householder": programs_of(given)["householder"]}, scalar)
