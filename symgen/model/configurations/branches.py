@@ -113,7 +113,8 @@ class _Search:
     def _units_of(self, assembly: Assembly) -> tuple[int, ...]:
         """The units of rows; one for those that depend on each other, whose smallest multipliers are meant.
 
-        None for these where one of them is of ordinary size: it would be large beside all others.
+        The largest of them carry the load: where one is of ordinary size all stay as they are, as its multiplier would
+        drown, times what makes a small row ordinary, in what is left of others.
         """
         r = len(self._mechanics.constraints)
         evaluated = self._rows(assembly.places[0].q)
@@ -122,8 +123,8 @@ class _Search:
         rows = self._scales.scaled(evaluated)[:r]
         least = assembly.ranks.constraints
         spare = [i for i in range(r) if clear_rank(rows[:i] + rows[i + 1 :], NEGLIGIBLE) != least - 1]
-        own = [self._units[i] for i in spare]
-        shared = max(own, key=abs) if all(own) and len({unit > 0 for unit in own}) == 1 else 0
+        own = [self._units[i] for i in spare] or [0]
+        shared = max(own, key=abs) if min(own) > 0 else min(own) if max(own) <= 0 else 0
         return tuple(shared if i in spare else unit for i, unit in enumerate(self._units))
 
     def _sampled(self) -> Iterator[tuple[list[float], list[Row]]]:
