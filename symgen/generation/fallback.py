@@ -49,6 +49,9 @@ MARGIN = FACTOR / 2
 NARROW, NARROWEST = FACTOR * 3 / 4, FACTOR * 7 / 8
 # Share of operations more that keeping a margin may cost.
 MARGIN_WORTH = Fraction(1, 2)
+# Counted cost of the longest kernels for which another method is looked for where theirs passes with half of what is
+# allowed: each takes seconds, and seldom has half of the error.
+LONGEST_WEIGHED = 6_000
 # Methods that are tried once more with twice the digits.
 WIDENED = 3
 # Counted cost of the longest of them.
@@ -99,9 +102,13 @@ class Fallback:
             for quantity, record in worst.items():
                 searched = self._searched.get(quantity)
                 largest = max(record.largest, searched.largest if searched is not None else 0.0)
-                if largest > MARGIN and quantity not in self._weighed and not self._is_given_up(draft, quantity):
+                if quantity in self._weighed or self._is_given_up(draft, quantity):
+                    continue
+                counted = cost(scalars(draft.taken(quantity).derived)).weight
+                narrow = largest > (NARROW if quantity in MAIN else NARROWEST)
+                if narrow or (largest > MARGIN and counted <= LONGEST_WEIGHED):
                     before, made = made, self._with_margin(made, quantity, largest, expected)
-                    if made is before and largest > (NARROW if quantity in MAIN else NARROWEST):
+                    if made is before and narrow:
                         made = self._with_digits(made, quantity, largest, expected)
                     let_go()
         if made is draft:
