@@ -17,7 +17,7 @@ from math import inf
 
 from symgen.diagnostics import SymgenBug
 from symgen.generation.draft import REJECTED, Draft
-from symgen.generation.passing import Kernels, Passing, Searched, digest, faults_at_worst, plain_kernel
+from symgen.generation.passing import Kernels, Passing, Searched, digest, faults_at_worst, plain_kernel, remedy
 from symgen.generation.results import AUTO, Options
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.methods.quantity import scalars
@@ -189,7 +189,8 @@ class Fallback:
             return draft
         given_up = () if self._alternatives is None else self._alternatives.too_long.get(quantity, ())
         every = (*tried, *((name, TOO_LONG) for name in given_up))
-        left_out = LeftOut(quantity, without, every, self._remedy(quantity, without))
+        what_to_do = remedy(self._options.methods.get(quantity, AUTO), quantity, without)
+        left_out = LeftOut(quantity, without, every, what_to_do)
         return replace(draft.without(quantity, without, REJECTED), left_out=(*others, left_out))
 
     def _is_given_up(self, draft: Draft, quantity: str) -> bool:
@@ -396,11 +397,3 @@ class Fallback:
         assert self._exactly is not None
         if wrong := self._exactly.difference(kernel, worst):
             raise SymgenBug(f"{kernel.name} by {method}: {wrong}, in exact arithmetic")
-
-    def _remedy(self, quantity: str, without: Sequence[Scalar]) -> str:
-        asked = self._options.methods.get(quantity, AUTO)
-        if asked != AUTO:
-            return f"leave `--form {quantity}={asked}` away: another method may pass"
-        if "float64" not in without:
-            return f"float64 has {quantity}; `--scalar float64` asks for that type alone"
-        return "give narrower `ranges` if states near a singularity are never met; `--no-verify` writes it as it is"

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TypeAlias
 
+from symgen.generation.results import AUTO
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.quantities.alternatives import Alternative
 from symgen.records import dataclass
@@ -47,3 +48,12 @@ def faults_at_worst(quantity: str, errors: Mapping[Scalar, float]) -> tuple[Faul
 def plain_kernel(one: Alternative, kernels: Kernels) -> Kernel | None:
     """The kernel of plain numbers among those of an alternative: where it is worst is looked for."""
     return None if "float64" in one.choice.wide else kernels["float64"]
+
+
+def remedy(asked: str, quantity: str, without: Sequence[Scalar]) -> str:
+    """What a user may do who is left without a quantity in some types; `asked` is the method that was asked for."""
+    if asked != AUTO:
+        return f"leave `--form {quantity}={asked}` away: another method may pass"
+    if "float64" not in without:
+        return f"float64 has {quantity}; `--scalar float64` asks for that type alone"
+    return "give narrower `ranges` if states near a singularity are never met; `--no-verify` writes it as it is"
