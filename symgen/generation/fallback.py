@@ -17,8 +17,9 @@ from math import inf
 
 from symgen.diagnostics import SymgenBug
 from symgen.generation.draft import REJECTED, Draft
-from symgen.generation.passing import Kernels, Passing, Searched, digest, faults_at_worst, plain_kernel, remedy
+from symgen.generation.passing import Passing, digest, remedy
 from symgen.generation.results import AUTO, Options
+from symgen.generation.worst_errors import Kernels, WorstErrors, faults_at_worst, plain_kernel
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.methods.quantity import scalars
 from symgen.model.quantities import MAIN
@@ -37,8 +38,6 @@ from symgen.verify.certificate import Certificate, Fault, LeftOut
 from symgen.verify.comparison import INACCURATE, VIOLATES
 from symgen.verify.exactness import ExactStates
 from symgen.verify.expected import Expected
-from symgen.verify.interpreted import Measurements
-from symgen.verify.sampling.searched import WorstStateSearch
 from symgen.verify.tolerance import FACTOR
 
 TOO_LONG = "not tried: it takes too long to derive"
@@ -68,10 +67,8 @@ class Fallback:
         self._options = options
         self._progress = progress
         self._alternatives: Alternatives | None = None
-        self._search: WorstStateSearch | None = None
         self._exactly: ExactStates | None = None
-        self.measurements = Measurements()
-        self._searched: dict[str, Searched] = {}
+        self.errors = WorstErrors(progress)
         self._left: dict[tuple[str, int], deque[Alternative]] = {}
         self._passing: defaultdict[str, list[Passing]] = defaultdict(list)
         self._tried: defaultdict[str, list[tuple[str, str]]] = defaultdict(list)
@@ -94,26 +91,26 @@ class Fallback:
             let_go_and_keep()
             derivations = draft.derivations
             self._alternatives = Alternatives(draft.model, derivations.generic, derivations.methods)
-            self._search = WorstStateSearch(expected)
+            self.errors.begin(expected)
             self._exactly = ExactStates(expected)
-        made = self._all_replaced(draft, certificate.rejected | self._worst(draft, certificate, expected), expected)
+        rejected = certificate.rejected | self.errors.faults(draft, certificate, expected)
+        made = self._all_replaced(draft, rejected, expected)
         if not certificate.faults:
             worst = {one.quantity: one for one in sorted(certificate.errors, key=lambda record: record.largest)}
             for quantity, record in worst.items():
-                searched = self._searched.get(quantity)
-                largest = max(record.largest, searched.largest if searched is not None else 0.0)
+                largest = max(record.largest, self.errors.largest(quantity))
                 if quantity in self._weighed or self._is_given_up(draft, quantity):
                     continue
                 counted = cost(scalars(draft.taken(quantity).derived)).weight
-                narrow = largest > (NARROW if quantity in MAIN else NARROWEST)
-                if narrow or (largest > MARGIN and counted <= LONGEST_WEIGHED):
+                narrow = NARROW if quantity in MAIN else NARROWEST
+                if largest > narrow or (largest > MARGIN and counted <= LONGEST_WEIGHED):
                     before, made = made, self._with_margin(made, quantity, largest, expected)
-                    if made is before and narrow:
-                        made = self._with_digits(made, quantity, largest, expected)
+                    if made is before and largest > narrow:
+                        made = self._with_digits(made, quantity, largest, narrow, expected)
                     let_go()
         if made is draft:
             # methods that were looked at for a margin may have led to states at which what stays is worse
-            made = self._all_replaced(draft, self._worst(draft, certificate, expected), expected)
+            made = self._all_replaced(draft, self.errors.faults(draft, certificate, expected), expected)
         return None if made is draft else made
 
     def settle(self) -> None:
@@ -122,32 +119,6 @@ class Fallback:
             self._alternatives.settle()
             self._left.clear()
             let_go_of_all()
-
-    def _worst(self, draft: Draft, certificate: Certificate, expected: Expected) -> dict[str, tuple[Fault, ...]]:
-        """What is wrong with quantities that nothing speaks against, at states where they are worst."""
-        by_quantity = {}
-        for quantity in (kernel.name for kernel in draft.program.kernels):
-            kernels = draft.kernels(quantity)
-            searched = self._searched.get(quantity)
-            if quantity in certificate.rejected or (searched is not None and searched.kernels == kernels):
-                continue
-            self._progress(f"verifying: where {quantity} is worst")
-            judged = {scalar: kernel for scalar, kernel in kernels.items() if scalar in expected.scalars}
-            errors = self._at_worst(draft, judged, plain_kernel(draft.taken(quantity), kernels)) if judged else {}
-            self._searched[quantity] = Searched(kernels, max(errors.values(), default=0.0))
-            if faults := faults_at_worst(quantity, errors):
-                by_quantity[quantity] = faults
-        return by_quantity
-
-    def _at_worst(self, draft: Draft, kernels: Kernels, plain: Kernel | None) -> dict[Scalar, float]:
-        """The errors of kernels where they are worst, a `plain` one among them and others before."""
-        assert self._search is not None
-        if plain is not None:
-            self._search.look(plain)
-        programs = draft.programs
-        return {
-            scalar: self._search.largest(kernel, programs[scalar].sincos, scalar) for scalar, kernel in kernels.items()
-        }
 
     def _all_replaced(self, draft: Draft, rejected: Mapping[str, Sequence[Fault]], expected: Expected) -> Draft:
         """The draft without the methods that are rejected, those of short quantities first."""
@@ -248,12 +219,18 @@ class Fallback:
                 self._passing[quantity].append(one)
         return draft
 
-    def _with_digits(self, draft: Draft, quantity: str, largest: float, expected: Expected) -> Draft:
+    def _with_digits(self, draft: Draft, quantity: str, largest: float, narrow: float, expected: Expected) -> Draft:
         """The draft with twice the digits for a quantity that needs nearly all that is allowed, where these help."""
         taken, kernels = draft.taken(quantity), draft.kernels(quantity)
         if taken.choice.wide:
             return draft
         here = Passing(largest, tuple(kernels), taken, kernels)
+        # one type may keep what the other lacks
+        alone = tuple(one for one, error in self.errors.of_types(draft, quantity, expected).items() if error > narrow)
+        if 0 < len(alone) < len(kernels) and taken.cost <= LONGEST_WIDENED:
+            one = self._with_pairs(draft, taken, here.scalars, alone, expected)
+            if one.scalars == here.scalars and one.largest <= narrow:
+                return self._in_place_of(draft, here, one)
         self._inaccurate[quantity].append(taken)
         for one in self._with_more_digits(draft, quantity, expected):
             if one.scalars == here.scalars and one.largest <= MARGIN:
@@ -353,7 +330,7 @@ class Fallback:
             self._tried_unasked += one.cost
         for scalar, kernel in kernels.items():
             if scalar in expected.scalars:
-                record, fault = self.measurements.of(kernel, draft.programs[scalar].sincos, scalar, expected)
+                record, fault = self.errors.measurements.of(kernel, draft.programs[scalar].sincos, scalar, expected)
                 if scalar == "float64":
                     lost[one.choice.title] = record.largest
                 if fault is not None:
@@ -372,7 +349,7 @@ class Fallback:
         """What passes at the states that were searched for, too, those of its `plain` kernel among them."""
         passed, quantity, title = list(one.scalars), one.alternative.choice.quantity, one.alternative.choice.title
         judged = {scalar: one.kernels[scalar] for scalar in passed if scalar in expected.scalars}
-        errors = self._at_worst(draft, judged, plain) if judged else {}
+        errors = self.errors.at_worst(draft, judged, plain) if judged else {}
         if not one.alternative.choice.wide:
             lost = self._lost[quantity]
             lost[title] = max(lost.get(title, 0.0), errors.get("float64", 0.0))
@@ -382,7 +359,7 @@ class Fallback:
         scalars = tuple(passed) if "float64" in passed else ()
         worst = max((one.largest, *(error for scalar, error in errors.items() if scalar in scalars)))
         if scalars and one.alternative.grouped:
-            self._searched[quantity] = Searched(one.kernels, worst)
+            self.errors.keep(quantity, one.kernels, worst)
         return Passing(worst, scalars, one.alternative, one.kernels)
 
     def _note(self, one: Alternative, fault: Fault, inaccurate: bool) -> None:

@@ -56,7 +56,7 @@ class Trial:
             self._progress(f"verifying: trying kernels in {scalar}")
             program = draft.programs[scalar]
             for kernel in program.kernels:
-                record, fault = self.fallback.measurements.of(kernel, program.sincos, scalar, self.expected)
+                record, fault = self.fallback.errors.measurements.of(kernel, program.sincos, scalar, self.expected)
                 errors.append(record)
                 faults += [] if fault is None else [fault]
         return replace(self._blank, errors=tuple(errors), faults=tuple(faults), left_out=draft.left_out)
