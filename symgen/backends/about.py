@@ -25,16 +25,19 @@ STATUS_MEANING: dict[Status, str] = {
     Status.NOT_CLOSED: "Newton's method has not closed the loops from this start",
     Status.BRANCH: "the start is so far away that the result may belong to another assembly mode",
     Status.TASK_RANK: "the task does not determine the rest at this configuration",
+    Status.LIMITS: "no inputs within their limits produce this motion",
 }
-# Those of models that name what is measured, and of models that have a task.
+# Those of models that name what is measured, of models that have a task, and of limits that are kept or refused.
 _OF_MEASURED = frozenset({Status.MEASURED_RANK, Status.NOT_CLOSED, Status.BRANCH})
 _OF_TASK = frozenset({Status.TASK_RANK, Status.NOT_CLOSED, Status.BRANCH})
+_OF_LIMITS = frozenset({Status.LIMITS})
 
 
 def statuses_of(model: Model) -> tuple[Status, ...]:
     """The statuses that kernels of a model may have."""
-    special = _OF_MEASURED | _OF_TASK
+    special = _OF_MEASURED | _OF_TASK | _OF_LIMITS
     met = (_OF_MEASURED if model.measured else frozenset()) | (_OF_TASK if model.task else frozenset())
+    met |= _OF_LIMITS if model.keeps_limits else frozenset()
     return tuple(status for status in Status if status not in special or status in met)
 
 
@@ -55,16 +58,18 @@ def symbol_lines(model: Model) -> Iterator[str]:
         yield f"  {', '.join(x.name for x in model.task)}"
     if model.allocation is not None:
         yield "How inverse_dynamics shares the work among the inputs:"
-        yield from _allocation_lines(model.allocation)
+        yield from _allocation_lines(model.allocation, model.keeps_limits)
 
 
-def _allocation_lines(allocation: Allocation) -> Iterator[str]:
+def _allocation_lines(allocation: Allocation, keeps_limits: bool) -> Iterator[str]:
     yield f"  of all u that produce the motion {'the nearest to preload_*' if allocation.preferred else 'the least'}"
     if allocation.weights:
         yield "  in the norm with the factors weight_* (1 where there is none), which must be positive"
     if allocation.preload is not None:
         yield "  and preload times the internal force of norm 1"
-    if allocation.limits:
+    if keeps_limits:
+        yield "  within limit_*, or the status LIMITS where no inputs within them produce the motion"
+    elif allocation.limits:
         yield "  within limit_*, as far as the internal force alone can keep u there: compare u with its limits"
 
 

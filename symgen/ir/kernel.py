@@ -35,6 +35,7 @@ class Status(IntEnum):
     NOT_CLOSED = 8
     BRANCH = 9
     TASK_RANK = 10
+    LIMITS = 11
 
 
 OperationName: TypeAlias = Choice[

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from symgen.linear_algebra.null_spaces import HouseholderSpace
+from symgen.linear_algebra.null_spaces import HouseholderSpace, Restriction
 from symgen.linear_algebra.pivoted import reflected
-from symgen.symbolic.matrix import Vector, transpose
+from symgen.symbolic.matrix import Matrix, Vector, transpose
 from symgen.symbolic.scalar import Graph, Scalar
 
 
@@ -75,6 +75,12 @@ class ReflectedInputs:
         sign = self._space.reflections.determinant_sign * (-1 if self.degree & 1 else 1)
         return self._shared(tuple(sign * entry for entry in axis)), self.graph.one
 
+    def internal_forces(self) -> Matrix:
+        """Inputs that move nothing (m x (m - degree)), orthonormal in the weights."""
+        return tuple(
+            tuple(share * entry for entry in row) for share, row in zip(self._shares, self._space.basis, strict=True)
+        )
+
     def _shared(self, factors: Vector) -> Vector:
         return tuple(factor * share for factor, share in zip(factors, self._shares, strict=True))
 
@@ -95,3 +101,13 @@ class ReflectedInputs:
     def rank_measures(self) -> list[Scalar]:
         """All pivots, of a second factorisation too: none is 0 where A has the rank `degree`."""
         return self._space.rank_measures
+
+
+def reflected_inputs(
+    space: HouseholderSpace, inputs: Sequence[Vector], degree: int, weights: Sequence[Scalar]
+) -> tuple[ReflectedInputs, Restriction]:
+    """The input equations along a null space by reflections, however few their determinants are."""
+    restriction = space.restriction
+    columns = [restriction(column) for column in inputs]
+    made = ReflectedInputs(space.graph, columns, space.delta, degree, space.reflections.everywhere, weights)
+    return made, restriction

@@ -48,6 +48,7 @@ ORDER = (
     Status.TASK_RANK,
     Status.BRANCH,
     Status.NOT_CLOSED,
+    Status.LIMITS,
 )
 
 

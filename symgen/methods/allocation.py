@@ -4,25 +4,27 @@ Of all inputs that produce a motion, those with the least weighted norm u^T W u 
 input subsets, each multiplied by the weights of the inputs left out (columns scaled by 1/sqrt(w), theory 3.5, without
 a root), or by reflections of the scaled columns where the subsets are too many.  For m = delta + 1 the internal force
 has one direction, the minors Delta_k = (-1)^(k-1) det[M without column k, B^T]; sum_k w_k Delta_k^2 is the denominator
-of u already, so Delta over its root has the weighted norm 1, as the last direction of the reflections has.
+of u already, so Delta over its root has the weighted norm 1, as the last direction of the reflections has.  Along more
+directions limits are kept as `limits` says, in an orthonormal basis that the reflections leave: which basis it is makes
+no difference.
 """
 
 from __future__ import annotations
 
-from fractions import Fraction
+from collections.abc import Sequence
 
-from symgen.linear_algebra.null_spaces import NullSpace
+from symgen.ir.kernel import Status
+from symgen.linear_algebra.guards import Guard
+from symgen.linear_algebra.null_spaces import InputEquations, NullSpace
+from symgen.linear_algebra.pivoted import reflected
+from symgen.linear_algebra.reflected_inputs import reflected_inputs
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
 from symgen.methods.least_inputs import least_inputs
+from symgen.methods.limits import Slab, interval, larger, nearest_of, nearest_within
 from symgen.model.model import Allocation
-from symgen.symbolic.matrix import Vector, matvec, subtract_vectors
-from symgen.symbolic.scalar import Graph, Scalar
-
-# Below this an input takes no part in the internal force; quotients by it are finite in float32, too.
-NO_PART = Fraction(1, 10**30)
-# A share of the internal force that no limits reach; float32 takes it apart into two halves, too.
-NO_LIMIT = Fraction(10**30)
+from symgen.symbolic.matrix import Vector, dot, matvec, subtract_vectors
+from symgen.symbolic.scalar import Scalar
 
 
 class InputAllocation:
@@ -37,11 +39,18 @@ class InputAllocation:
         weights = [graph.one] * mechanics.m
         for name, parameter in allocation.weights:
             weights[self._place[name]] = graph.symbol(parameter)
-        equations, self._restriction = space.actuation(mechanics.inputs, generic.alpha)
-        self.forms = equations.weighted(weights)
+        if mechanics.model.keeps_limits:
+            turned = reflected(graph, space.rows, mechanics.n, generic.rank)
+            self._reflected, self._restriction = reflected_inputs(turned, mechanics.inputs, generic.alpha, weights)
+            self.forms: InputEquations = self._reflected
+        else:
+            equations, self._restriction = space.actuation(mechanics.inputs, generic.alpha)
+            self.forms = equations.weighted(weights)
 
     def solve(self, force: Vector) -> Vector:
         """u (m): the inputs for a generalized force (n)."""
+        if self._mechanics.model.keeps_limits:
+            return self._within_limits(force)
         least = self._nearest(force)
         if not self._allocation.directed:
             return least
@@ -70,46 +79,36 @@ class InputAllocation:
         return tuple(sign * entry for entry in direction), square
 
     def _share(self, least: Vector, direction: Vector, square: Scalar) -> Scalar:
-        """What multiplies the direction: the preload's share, brought into the interval that the limits leave.
-
-        The middle one of the preload and the interval's ends is the nearest point of the interval.  Where the limits
-        contradict each other the ends have changed places, and between them no limit gains without another's loss.
-        """
+        """What multiplies the direction: the preload's share, brought into the interval that the limits leave."""
         graph, allocation = self._graph, self._allocation
         share = graph.zero
         if allocation.preload is not None:
             share = graph.symbol(allocation.preload) / graph.function("sqrt", (square,))
-        lowest: list[Scalar] = []
-        highest: list[Scalar] = []
-        for limit in allocation.limits:
-            k = self._place[limit.input]
-            if not direction[k].is_zero:
-                low, high = self._interval(limit.lower, limit.upper, least[k], direction[k])
-                lowest.append(low)
-                highest.append(high)
-        if not lowest:
-            return share
-        bottom, top = lowest[0], highest[0]
-        for low, high in zip(lowest[1:], highest[1:], strict=True):
-            bottom, top = _larger(graph, bottom, low), _smaller(graph, top, high)
-        above, below = _larger(graph, bottom, top), _smaller(graph, bottom, top)
-        return _larger(graph, below, _smaller(graph, above, share))
+        slabs = self._slabs(least, [(z,) for z in direction])
+        taking_part = (slab for slab in slabs if not slab.slopes[0].is_zero)
+        intervals = (interval(graph, one.lower, one.upper, one.start, one.slopes[0]) for one in taking_part)
+        return nearest_of(graph, intervals, share)
 
-    def _interval(self, lower: str, upper: str, u: Scalar, z: Scalar) -> tuple[Scalar, Scalar]:
-        """The shares s with lower <= u + s z <= upper: all of them for an input that takes no part."""
-        graph = self._graph
-        size = graph.function("abs", (z,))
-        lacking = _larger(graph, graph.const(NO_PART) - size, graph.zero)
-        apart = graph.function("ratio_or_zero", (lacking, lacking))
-        reciprocal = (1 - apart) / graph.function("copysign", (_larger(graph, size, graph.const(NO_PART)), z))
-        ends = [(graph.symbol(limit) - u) * reciprocal for limit in (lower, upper)]
-        beyond = apart * NO_LIMIT
-        return _smaller(graph, *ends) - beyond, _larger(graph, *ends) + beyond
+    def _slabs(self, inputs: Vector, slopes: Sequence[Vector]) -> list[Slab]:
+        """The limits of inputs that change with shares of internal forces by these slopes."""
+        graph, limits = self._graph, self._allocation.limits
+        places = [(limit, self._place[limit.input]) for limit in limits]
+        return [Slab(graph.symbol(one.lower), graph.symbol(one.upper), inputs[k], slopes[k]) for one, k in places]
 
+    def _within_limits(self, force: Vector) -> Vector:
+        """Of all inputs for a force those nearest to the preferred ones that keep the limits, if any do."""
+        graph, least = self._graph, self._nearest(force)
+        forces = self._reflected.internal_forces()
+        shares = nearest_within(graph, self._slabs(least, forces), len(forces[0]))
+        return tuple(u + dot(graph, row, shares) for u, row in zip(least, forces, strict=True))
 
-def _smaller(graph: Graph, a: Scalar, b: Scalar) -> Scalar:
-    return graph.function("min", (a, b))
-
-
-def _larger(graph: Graph, a: Scalar, b: Scalar) -> Scalar:
-    return graph.function("max", (a, b))
+    def guards(self, inputs: Vector) -> tuple[Guard, ...]:
+        """That inputs for which limits are kept exactly do keep them: else none produce the motion within these."""
+        if not self._mechanics.model.keeps_limits:
+            return ()
+        graph, excess, sizes = self._graph, self._graph.zero, []
+        for slab in self._slabs(inputs, [()] * len(inputs)):
+            beyond = larger(graph, slab.start - slab.upper, slab.lower - slab.start)
+            excess = larger(graph, excess, beyond)
+            sizes += [graph.function("abs", (x,)) for x in (slab.lower, slab.upper, slab.start)]
+        return (Guard(Status.LIMITS, excess, 1, scale=graph.sum(sizes), positive=True, small=True),)

@@ -340,7 +340,8 @@ class Derivation:
         """The denominator of the input equations, with the weights of the inputs."""
         if self._allocation is None:
             return self.actuation_guards
-        return self._solvable(self._allocation.forms, self.mechanics.inputs, Status.ACTUATION_RANK)
+        solvable = self._solvable(self._allocation.forms, self.mechanics.inputs, Status.ACTUATION_RANK)
+        return (*solvable, *self._allocation.guards(self.inverse_dynamics))
 
     def inverse_dynamics_residual(self) -> Vector:
         """N_B (tau - M u); nothing is left where the system is fully actuated."""

@@ -318,6 +318,17 @@ class Model:
         return next(one.names for one in self.further_arguments if one.name == argument)
 
     @property
+    def keeps_limits(self) -> bool:
+        """Whether u is within the limits of its allocation, or has a status.
+
+        Along one direction of internal force with a sign of its own it comes as near to them as it can.
+        """
+        if self.allocation is None or not self.allocation.limits or self.assembly is None:
+            return False
+        ranks = self.assembly.ranks
+        return self.m - ranks.actuation > 1 or ranks.constraints < self.r
+
+    @property
     def n(self) -> int:
         """Number of coordinates."""
         return len(self.coordinates)

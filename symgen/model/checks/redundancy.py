@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import comb
 
 from symgen.diagnostics import Mistake, Notice
 from symgen.model.checks.feasibility import SAMPLES
@@ -11,6 +12,9 @@ from symgen.model.configurations.dense import Rows, rank
 from symgen.model.configurations.mechanics import NumericSystem
 from symgen.model.expressions.names import counted
 from symgen.model.model import Allocation, Input
+
+# Sets of limits that a kernel works out: each takes some thirty operations.
+MOST_PLANES = 1_000
 
 
 def check_redundancy(
@@ -21,8 +25,8 @@ def check_redundancy(
 ) -> Iterator[Mistake | Notice]:
     """What the block `allocation` asks for and these inputs cannot do.
 
-    Needed are more inputs than the rank of the projected control matrix, for a preload along one direction and for
-    limits exactly one more than δ, and independent constraints (else that direction has no sign of its own).
+    Needed are more inputs than the rank of the projected control matrix, for limits more than δ, and for a preload
+    along one direction exactly one more and independent constraints (else that direction has no sign of its own).
     """
     n, m = len(mechanics.coordinates), len(inputs)
     constraints, degree = assembly.ranks.constraints, assembly.ranks.actuation
@@ -36,7 +40,7 @@ def check_redundancy(
         )
         return
     if allocation.directed:
-        yield from _check_direction(mechanics, allocation, m, delta, degree, constraints)
+        yield from _check_direction(allocation, m, delta, degree, constraints < len(mechanics.constraints))
     samples = [_dense(mechanics, place, inputs) for place in assembly.places[:SAMPLES]] if allocation.limits else []
     for limit in allocation.limits:
         index = [item.name for item in inputs].index(limit.input)
@@ -47,25 +51,35 @@ def check_redundancy(
             )
 
 
-def _check_direction(
-    mechanics: NumericSystem, allocation: Allocation, m: int, delta: int, degree: int, constraints: int
-) -> Iterator[Mistake]:
-    """Limits and a single preload need one direction of internal force, with a sign of its own."""
-    if degree < delta:
-        why = f"the inputs reach {degree} of δ = {delta} directions of motion"
-    elif m - delta != 1:
-        why = f"here are m - δ = {m - delta} directions of internal force"
-    elif constraints < len(mechanics.constraints):
-        why = "constraints depend on each other, which leaves this direction without a sign"
-    else:
-        return
-    one = "one direction of internal force (m = δ + 1)"
+def _check_direction(allocation: Allocation, m: int, delta: int, degree: int, dependent: bool) -> Iterator[Mistake]:
+    """A single preload needs one direction of internal force, with a sign of its own; limits need some."""
+    reached = "" if degree == delta else f"the inputs reach {degree} of δ = {delta} directions of motion"
     if allocation.preload:
-        remedy = "name a value for each input instead: `preload: {input: value}`"
-        yield Mistake(f"a single `preload` needs {one}: {why}", remedy, allocation.span)
-    if allocation.limits:
-        remedy = "remove `limits`; keeping limits is a quadratic program otherwise, which a kernel does not solve"
-        yield Mistake(f"`limits` need {one}: {why}", remedy, allocation.span)
+        why = reached
+        if not why and m - delta != 1:
+            why = f"here are m - δ = {m - delta} directions of internal force"
+        elif not why and dependent:
+            why = "constraints depend on each other, which leaves this direction without a sign"
+        if why:
+            message = f"a single `preload` needs one direction of internal force (m = δ + 1): {why}"
+            remedy = "name a value for each input instead: `preload: {input: value}`"
+            yield Mistake(message, remedy, allocation.span)
+    if not allocation.limits:
+        return
+    if reached:
+        yield Mistake(f"`limits` need inputs for every direction: {reached}", "remove `limits`", allocation.span)
+    elif (count := planes(len(allocation.limits), m - delta)) > MOST_PLANES:
+        yield Mistake(
+            f"{len(allocation.limits)} limits along m - δ = {m - delta} directions of internal force leave {count} "
+            f"ways in which they may be reached; {MOST_PLANES} at most are worked out",
+            "give limits to fewer inputs, or join drives that do the same",
+            allocation.span,
+        )
+
+
+def planes(limits: int, directions: int) -> int:
+    """How many sets of no more limits than directions there are, each of which may be what inputs reach."""
+    return sum(comb(limits, k) for k in range(1, directions + 1))
 
 
 def _dense(mechanics: NumericSystem, place: RankedConfiguration, inputs: tuple[Input, ...]) -> tuple[Rows, Rows]:

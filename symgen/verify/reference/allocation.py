@@ -1,7 +1,8 @@
 """Redundant inputs by definition: weighted least norm, a share of the internal force, limits by their intervals.
 
 The direction of the internal force comes from m determinants of [M without a column, B'], the least norm from the
-Moore-Penrose inverse of M~ W^(-1/2), the limits from the end points of the intervals that each one leaves.
+Moore-Penrose inverse of M~ W^(-1/2), the limits from the end points of the intervals that each one leaves; along more
+directions see `limits`.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from flint import arb, arb_mat
 from symgen.model.model import Allocation
 from symgen.verify.reference.arithmetic.linear import column, columns_of, determinant, pseudoinverse, solve
 from symgen.verify.reference.evaluation import Evaluation
+from symgen.verify.reference.limits import nearest_within, unmoving_inputs
 
 
 def allocated(e: Evaluation, allocation: Allocation) -> Any:
@@ -23,9 +25,14 @@ def allocated(e: Evaluation, allocation: Allocation) -> Any:
     value = dict(zip((parameter.name for parameter in model.parameters), e.parameters, strict=True))
     weights = _by_input(names, allocation.weights, value, arb(1))
     preferred = column(_by_input(names, allocation.preferred, value, arb(0)))
-    least = preferred + _weighted_inverse(e, weights) * (e.projector * (e.load - e.at.control * preferred))
+    inverse = _weighted_inverse(e, weights)
+    least = preferred + inverse * (e.projector * (e.load - e.at.control * preferred))
     if not allocation.directed:
         return least
+    if model.keeps_limits:
+        limits = [(names.index(one.input), value[one.lower], value[one.upper]) for one in allocation.limits]
+        unmoving = unmoving_inputs(inverse, e.projected_control, weights)
+        return nearest_within(least, unmoving, limits, e.system.m - e.ranks.actuation)
     direction = internal_force(e, weights)
     share = arb(0) if allocation.preload is None else value[allocation.preload]
     starts, ends = [], []

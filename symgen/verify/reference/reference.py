@@ -21,6 +21,7 @@ from symgen.model.quantities import ROWS
 from symgen.verify.reference.arithmetic.linear import square
 from symgen.verify.reference.arithmetic.tape import ball, precision
 from symgen.verify.reference.evaluation import Evaluation
+from symgen.verify.reference.limits import NoneWithinError
 from symgen.verify.reference.manifold import ManifoldRanks, generic_ranks
 from symgen.verify.reference.measures import measures_of_parts
 from symgen.verify.reference.quantities import DIFFERENCED, QUANTITIES
@@ -42,6 +43,10 @@ Result = TypeVar("Result")
 
 class ReferenceValueError(Exception):
     """The reference has no value here: a rank drops, or a function is evaluated outside its domain."""
+
+
+class BeyondLimitsError(ReferenceValueError):
+    """No inputs within their limits produce the motion."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,7 +149,10 @@ class Reference:
             if more > 1 and more * bits > MOST_BITS:
                 break
             with precision(more * bits), suppress(ZeroDivisionError):
-                return work()
+                try:
+                    return work()
+                except NoneWithinError:
+                    raise BeyondLimitsError(f"{self.model.name}: no inputs within their limits do this") from None
         raise ReferenceValueError(f"{self.model.name}: a rank drops at this state; {NEAR_SINGULAR}")
 
     def evaluation(self, state: State, literals: Sequence[Any] | None = None) -> Evaluation:

@@ -21,7 +21,7 @@ from symgen.verify.reference.closing import admissible, closed
 from symgen.verify.reference.manifold import exceeds, starts
 from symgen.verify.reference.parameter_values import ParameterValues, default_parameters
 from symgen.verify.reference.parts import Part
-from symgen.verify.reference.reference import Reference, ReferenceValueError, State
+from symgen.verify.reference.reference import BeyondLimitsError, Reference, ReferenceValueError, State
 from symgen.verify.sampling.plain_values import SAMPLING_BITS, floats, in_floats, measured, settled
 
 # Regular states that a verification needs.
@@ -45,7 +45,7 @@ LOOP_RESTARTS = 12
 # Where of the first starts less than a share leads to regular states in the ranges, steps along V look for the others.
 PROBES, POOR = 40, 8
 CLOSED, BRANCH, TURNED = "do not close", "lie on other branches", "lie turns outside of the ranges"
-VALUE, SINGULAR = "have no value", "are singular"
+VALUE, SINGULAR, BEYOND = "have no value", "are singular", "need inputs beyond their limits"
 
 
 @dataclass(frozen=True, slots=True)
@@ -320,6 +320,9 @@ class RegularStateSearch:
             matrices, measures = self._reference.measured(
                 state, ("singularity", "constraint_jacobian", *needed), SAMPLING_BITS
             )
+        except BeyondLimitsError:
+            self._ends[BEYOND] += 1
+            return None
         except ReferenceValueError:
             self._ends[VALUE] += 1
             return None
