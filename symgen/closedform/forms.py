@@ -249,7 +249,9 @@ class _FormWriter:
     def _allocated(self, allocation: Allocation) -> ClosedForm:
         """u as the model's allocation says, in named parts."""
         quantity, reason = "inverse_dynamics", "not written out: the inputs do not reach every direction of motion"
-        if self.exact.full_actuation:
+        if self.model.keeps_limits:
+            reason = "not written out: of all sets of limits that inputs may reach one is taken at each state"
+        elif self.exact.full_actuation:
             try:
                 with self.exact.ring.work.limited("inverse dynamics"):
                     form = structured_allocation(self.exact, self.speller, self.taken, allocation)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import chain, combinations, product
 
 import casadi
 
@@ -22,6 +23,10 @@ def allocated(model: Model, allocation: Allocation, s: Lagrange, projector: casa
     least = preferred + inverse @ (s.balance - s.control @ preferred)
     if not allocation.directed:
         return least
+    if model.keeps_limits:
+        unmoving = (casadi.SX.eye(len(names)) - inverse @ projector @ s.control) @ shrink @ shrink
+        limits = [(names.index(one.input), value[one.lower], value[one.upper]) for one in allocation.limits]
+        return _nearest_within(least, unmoving, limits, len(names) - rank)
     z = _internal_force(s, weights)
     share = casadi.SX(0) if allocation.preload is None else value[allocation.preload]
     start, end = casadi.SX(-casadi.inf), casadi.SX(casadi.inf)
@@ -33,6 +38,26 @@ def allocated(model: Model, allocation: Allocation, s: Lagrange, projector: casa
         end = casadi.fmin(end, casadi.if_else(takes_part, casadi.fmax(*ends), casadi.inf))
     below, above = casadi.fmin(start, end), casadi.fmax(start, end)
     return least + casadi.fmax(below, casadi.fmin(above, share)) * z
+
+
+def _nearest_within(
+    least: casadi.SX, unmoving: casadi.SX, limits: Sequence[tuple[int, casadi.SX, casadi.SX]], directions: int
+) -> casadi.SX:
+    """Of the nearest inputs with some at their limits those that keep all of these: NaN where there are none."""
+    best, distance = casadi.SX.nan(least.shape[0]), casadi.SX(casadi.inf)
+    for held in chain.from_iterable(combinations(limits, count) for count in range(directions + 1)):
+        places = [k for k, *_ in held]
+        for sides in product((1, 2), repeat=len(held)):
+            missing = casadi.vertcat(*(limit[side] for limit, side in zip(held, sides, strict=True))) - least[places]
+            factors = casadi.solve(unmoving[places, places], missing) if held else missing
+            inputs = least + unmoving[:, places] @ factors
+            # what stands at its limit is not to miss it by a rounding
+            others = [limit for limit in limits if limit not in held]
+            kept = [casadi.logic_and(lower <= inputs[k], inputs[k] <= upper) for k, lower, upper in others]
+            square = casadi.dot(missing, factors) if held else casadi.SX(0)
+            nearer = casadi.logic_and(casadi.logic_all(casadi.vertcat(1, *kept)), square < distance)
+            best, distance = casadi.if_else(nearer, inputs, best), casadi.if_else(nearer, square, distance)
+    return best
 
 
 def _internal_force(s: Lagrange, weights: casadi.SX) -> casadi.SX:

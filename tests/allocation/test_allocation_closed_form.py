@@ -24,9 +24,17 @@ kinetic_energy: x_dot**2
 inputs: {left: {acts_on: {x: 1}}, right: {acts_on: {x: 1/(x - 3)}}}
 """
 WRITTEN = {
-    **{name: case for name, case in CASES.items() if name != "lame"},
+    **{name: case for name, case in CASES.items() if name not in ("lame", "within limits")},
     "flipped": (FLIPPED, "weights: {right: 3}, preload: 0.7"),
 }
+
+
+def test_what_is_taken_at_each_state_is_not_written_out() -> None:
+    text, block = CASES["within limits"]
+    made = System(f"{text}allocation: {{{block}}}\n", ("inverse_dynamics",))
+    form = derive_closed_forms(made.model).forms["inverse_dynamics"]
+    assert form.matrix is None
+    assert form.note.startswith("not written out: of all sets of limits that inputs may reach")
 
 
 @pytest.mark.parametrize("name", WRITTEN)

@@ -19,6 +19,7 @@ CASES = {
         models.parallel_robot(),
         "weights: {drive_2: 3}, preload: -0.2, limits: {drive_1: [-0.3, 0.3], drive_3: [-0.2, 0.2]}",
     ),
+    "within limits": (models.CRANKS, "weights: {A: 3}, limits: {A: [-1, 1], B: [-1, 0.2], C: [-0.3, 1]}"),
 }
 
 

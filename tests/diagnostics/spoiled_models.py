@@ -269,6 +269,9 @@ ALLOCATION = {
     + "inputs: {F: {acts_on: {x: 1}}, T: {acts_on: {a: 1}}}\nallocation: {limits: {F: [-1, 1]}}\n",
     "too_many_directions": DRIVEN.replace("inputs:\n", "inputs:\n  E: {acts_on: {x: 1}}\n")
     + "allocation: {preload: 1, limits: {F: [-1, 1]}}\n",
+    "too_many_ways": GOOD
+    + f"inputs: {{{', '.join(f'F_{k}: {{acts_on: {{x: 1, a: {k}}}}}' for k in range(12))}}}\n"
+    + f"allocation: {{limits: {{{', '.join(f'F_{k}: [-1, 1]' for k in range(12))}}}}}\n",
     "under_actuated": TWICE + "allocation: {preload: 1, limits: {F: [-1, 1]}}\n",
     "dependent_rows": TWICE
     + "constraints: {nonholonomic: {b: a_dot, c: 2*a_dot}}\nallocation: {preload: 1, limits: {F: [-1, 1]}}\n",

@@ -34,8 +34,13 @@ HALF_INVERSE = Scripts(D, None, Sum((("-", Row((ONE, Letter("/"), Letter("2"))))
 LOW, HIGH = Scripts(c, Letter("low", "upright")), Scripts(c, Letter("high", "upright"))
 
 
-def allocated_inputs(allocation: Allocation) -> list[Block]:
-    """From all inputs that produce the motion to the ones the model asks for."""
+def allocated_inputs(allocation: Allocation, keeps_limits: bool) -> list[Block]:
+    """From all inputs that produce the motion to the ones the model asks for.
+
+    With `keeps_limits` these are within limits that stand along any number of directions.
+    """
+    if keeps_limits:
+        return [*_nearest(allocation), *_nearest_within(allocation)]
     return [
         *_nearest(allocation),
         *(_direction(allocation) if allocation.directed else []),
@@ -118,5 +123,35 @@ def _limits(allocation: Allocation) -> list[Block]:
             c,
             u,
             equals(z_k, ZERO),
+        ),
+    ]
+
+
+def _nearest_within(allocation: Allocation) -> list[Block]:
+    """The quadratic program, and how it ends without a loop."""
+    lower, upper, start = (Scripts(Letter(x), k) for x in ("l", "h", "u"))
+    between = equals(u, plus(u_0, juxtaposed(bold("Z"), bold("c"))))
+    named = ", ".join(limit.input for limit in allocation.limits)
+    return [
+        paragraph(
+            "Limits {} and {} are given for {}. Inputs that move nothing are combinations of the columns of {}, which "
+            "are orthonormal in the norm above, the last ones of an orthogonal factorisation:",
+            lower,
+            upper,
+            named,
+            bold("Z"),
+        ),
+        displayed((between, equals(juxtaposed(Mt, bold("Z")), ZERO)), "u_c"),
+        paragraph(
+            "The norm grows by the square of {}, so that the shortest {} is taken that keeps all limits. They are taken "
+            "in one after the other: where the inputs so far leave the next {} outside, the nearest ones lie where it is "
+            "at its limit, which is the same problem along one direction less, with the limits before; along one "
+            "direction the limits leave an interval (incremental insertion after Seidel, 1991). All of this is worked "
+            "out at every state and one end is taken, without a loop and without a tolerance. Where no inputs within "
+            "the limits produce the motion the function returns {} and leaves its result as it was.",
+            bold("c"),
+            bold("c"),
+            start,
+            InlineCode("LIMITS"),
         ),
     ]
