@@ -104,7 +104,7 @@ class ReflectedInputs:
 
 
 def reflected_inputs(
-    space: HouseholderSpace, inputs: Sequence[Vector], degree: int, weights: Sequence[Scalar]
+    space: HouseholderSpace, inputs: Sequence[Vector], degree: int, weights: Sequence[Scalar] = ()
 ) -> tuple[ReflectedInputs, Restriction]:
     """The input equations along a null space by reflections, however few their determinants are."""
     restriction = space.restriction

@@ -16,14 +16,15 @@ from collections.abc import Sequence
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.guards import Guard
 from symgen.linear_algebra.null_spaces import InputEquations, NullSpace
-from symgen.linear_algebra.pivoted import reflected
 from symgen.linear_algebra.reflected_inputs import reflected_inputs
 from symgen.mechanics.genericity import Genericity
+from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.mechanics.system import System
 from symgen.methods.least_inputs import least_inputs
 from symgen.methods.limits import Slab, interval, larger, nearest_of, nearest_within
+from symgen.methods.method import divisors
 from symgen.model.model import Allocation
-from symgen.symbolic.matrix import Vector, dot, matvec, subtract_vectors
+from symgen.symbolic.matrix import Vector, dot, flatten, matvec, subtract_vectors
 from symgen.symbolic.scalar import Scalar
 
 
@@ -40,7 +41,7 @@ class InputAllocation:
         for name, parameter in allocation.weights:
             weights[self._place[name]] = graph.symbol(parameter)
         if mechanics.model.keeps_limits:
-            turned = reflected(graph, space.rows, mechanics.n, generic.rank)
+            turned = reflected_rows(mechanics, generic)
             self._reflected, self._restriction = reflected_inputs(turned, mechanics.inputs, generic.alpha, weights)
             self.forms: InputEquations = self._reflected
         else:
@@ -101,6 +102,13 @@ class InputAllocation:
         forces = self._reflected.internal_forces()
         shares = nearest_within(graph, self._slabs(least, forces), len(forces[0]))
         return tuple(u + dot(graph, row, shares) for u, row in zip(least, forces, strict=True))
+
+    def harmless_divisors(self, force: Vector) -> tuple[Scalar, ...]:
+        """What is divided by where one of the sets of limits is taken: 0 for one that inputs cannot reach alone."""
+        if not self._mechanics.model.keeps_limits:
+            return ()
+        before = {*divisors(self._nearest(force)), *divisors(flatten(self._reflected.internal_forces()))}
+        return tuple(one for one in divisors(self._within_limits(force)) if one not in before)
 
     def guards(self, inputs: Vector) -> tuple[Guard, ...]:
         """That inputs for which limits are kept exactly do keep them: else none produce the motion within these."""

@@ -31,6 +31,7 @@ from symgen.methods.given.configuration import GivenConfiguration
 from symgen.methods.given.functions import GivenBy
 from symgen.methods.given.motion import GivenMotion
 from symgen.methods.least_inputs import least_inputs
+from symgen.methods.utilisation import utilisation
 from symgen.symbolic.calculus import derivative_along, gradient, jacobian
 from symgen.symbolic.matrix import (
     Matrix,
@@ -331,7 +332,7 @@ class Derivation:
     @cached_property
     def _allocation(self) -> InputAllocation | None:
         allocation = self.mechanics.model.allocation
-        if allocation is None:
+        if allocation is None or self.m == self.generic.alpha:
             return None
         return InputAllocation(self.mechanics, self.generic, allocation, self.space)
 
@@ -342,6 +343,17 @@ class Derivation:
             return self.actuation_guards
         solvable = self._solvable(self._allocation.forms, self.mechanics.inputs, Status.ACTUATION_RANK)
         return (*solvable, *self._allocation.guards(self.inverse_dynamics))
+
+    def utilisation(self) -> Vector:
+        """The largest share of their limits that the inputs need."""
+        allocation = self.mechanics.model.allocation
+        assert allocation is not None
+        return (utilisation(self.mechanics, self.generic, allocation.limits),)
+
+    @property
+    def harmless_divisors(self) -> tuple[Scalar, ...]:
+        """What u divides by beside these, which may be 0 at regular states."""
+        return () if self._allocation is None else self._allocation.harmless_divisors(self.mechanics.balance)
 
     def inverse_dynamics_residual(self) -> Vector:
         """N_B (tau - M u); nothing is left where the system is fully actuated."""

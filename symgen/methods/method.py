@@ -76,13 +76,19 @@ cleared_with_the_rest(_weight.cache_clear)
 
 
 def solved_for_u(
-    system: MethodInput, u: Sequence[Scalar], guards: Iterable[Guard], own: Iterable[Scalar] | None = None
+    system: MethodInput,
+    u: Sequence[Scalar],
+    guards: Iterable[Guard],
+    own: Iterable[Scalar] | None = None,
+    harmless: Iterable[Scalar] = (),
 ) -> Candidate:
     """u as a candidate; `own` are the model's expressions where they are not those of the `system`.
 
+    What is `harmless` may be 0 at regular states: what is divided by it is not taken there.
+
     Its denominators are read off the graph, so that none can be forgotten.
     """
-    given = set(divisors(system.given if own is None else own))
+    given = {*divisors(system.given if own is None else own), *harmless}
     derived = Quantity(INPUTS, (len(u),), tuple(u), tested(guards))
     return Candidate(system, derived, tuple(d for d in divisors(u) if d not in given))
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from symgen.model.model import Model
 from symgen.model.quantities import (
     ACTUATORS,
+    LIMITED,
     MEASURED_PLACES,
     OF_INPUTS,
     PARTITION,
@@ -49,6 +50,11 @@ def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actua
             return "rows that hold rates leave places open: all of these would have to be measured"
     if quantity.needs == ACTUATORS and delta is not None and not model.m == delta == actuation:
         return "it needs as many independent inputs as degrees of freedom"
+    if quantity.needs == LIMITED:
+        if model.allocation is None or len(model.allocation.limits) < model.m:
+            return "it needs `limits` of every input, under `allocation`"
+        if delta is not None and actuation is not None and actuation < delta:
+            return "the inputs do not reach every direction of motion"
     if quantity.needs == VARIATIONS and not model.constraints:
         return "the model has no constraints"
     if quantity.is_derivative and delta is not None and model.n - delta < model.r:

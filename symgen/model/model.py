@@ -326,7 +326,8 @@ class Model:
         if self.allocation is None or not self.allocation.limits or self.assembly is None:
             return False
         ranks = self.assembly.ranks
-        return self.m - ranks.actuation > 1 or ranks.constraints < self.r
+        directions = self.m - ranks.actuation
+        return directions > 1 or (directions == 1 and ranks.constraints < self.r)
 
     @property
     def n(self) -> int:

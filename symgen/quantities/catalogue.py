@@ -155,6 +155,7 @@ _DERIVED: dict[str, _Derived] = {
     ),
     "constraint_variations": (lambda d: flatten(constraint_variations(d)), _variations),
     "inverse_dynamics_residual": (lambda d: d.inverse_dynamics_residual(), _residual),
+    "utilisation": (lambda d: d.utilisation(), _actuator),
     "actuator_velocity": (lambda d: d.actuator_velocity(), _none),
     "actuator_mass_matrix": (lambda d: flatten(d.actuator_mass_matrix()), _actuation),
     "actuator_bias": (lambda d: d.actuator_bias(), _actuator),

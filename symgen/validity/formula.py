@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from symgen.symbolic.scalar import Scalar
+from symgen.symbolic.traverse import cost
 
 # Operations of a scalar up to which a message writes it out.
 LONGEST_FORMULA = 160
@@ -11,7 +12,7 @@ LONGEST_FORMULA = 160
 def formula(node: Scalar) -> str:
     """The scalar written out, or what it is where that would fill the screen."""
     if node.size > LONGEST_FORMULA:
-        return f"a pivot of {node.size} operations"
+        return f"a pivot of {cost([node]).weight} operations"
     return _text(node, 0)
 
 

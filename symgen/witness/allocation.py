@@ -21,7 +21,7 @@ def allocated(model: Model, allocation: Allocation, s: Lagrange, projector: casa
     shrink = casadi.diag(1 / casadi.sqrt(weights))
     inverse = shrink @ pseudoinverse(projector @ s.control @ shrink, rank)
     least = preferred + inverse @ (s.balance - s.control @ preferred)
-    if not allocation.directed:
+    if not allocation.directed or rank == len(names):
         return least
     if model.keeps_limits:
         unmoving = (casadi.SX.eye(len(names)) - inverse @ projector @ s.control) @ shrink @ shrink
@@ -38,6 +38,21 @@ def allocated(model: Model, allocation: Allocation, s: Lagrange, projector: casa
         end = casadi.fmin(end, casadi.if_else(takes_part, casadi.fmax(*ends), casadi.inf))
     below, above = casadi.fmin(start, end), casadi.fmax(start, end)
     return least + casadi.fmax(below, casadi.fmin(above, share)) * z
+
+
+def utilisation(model: Model, allocation: Allocation, s: Lagrange, rank: int) -> casadi.SX:
+    """The largest |det[M_J, τ − M c, Bᵀ]| / Σ_i |det[M_J, M_i, Bᵀ]| h_i of all J of δ − 1 inputs."""
+    value = {parameter.name: s.p[i] for i, parameter in enumerate(model.parameters)}
+    ends = {limit.input: (value[limit.lower], value[limit.upper]) for limit in allocation.limits}
+    middles = casadi.vertcat(*(sum(ends[item.name]) / 2 for item in model.inputs))
+    halves = [(upper - lower) / 2 for lower, upper in (ends[item.name] for item in model.inputs)]
+    load, largest = s.balance - s.control @ middles, casadi.SX(0)
+    for chosen in combinations(range(model.m), rank - 1):
+        beside = [s.control[:, list(chosen)], s.jacobian.T]
+        segments = [casadi.fabs(casadi.det(casadi.horzcat(s.control[:, i], *beside))) for i in range(model.m)]
+        reach = sum(size * half for size, half in zip(segments, halves, strict=True))
+        largest = casadi.fmax(largest, casadi.fabs(casadi.det(casadi.horzcat(load, *beside))) / reach)
+    return largest
 
 
 def _nearest_within(

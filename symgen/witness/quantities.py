@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import casadi
 
+from symgen.model.availability import lacking
 from symgen.model.configurations.assembly import ConfigurationRanks
 from symgen.model.model import Model
-from symgen.witness.allocation import allocated
+from symgen.model.quantities import ROWS
+from symgen.witness.allocation import allocated, utilisation
 from symgen.witness.given import quantities_of_given
 from symgen.witness.lagrange import Lagrange, along
 from symgen.witness.linear import compound, pseudoinverse, solve
@@ -62,6 +64,8 @@ def derive(model: Model, s: Lagrange, ranks: ConfigurationRanks) -> dict[str, ca
         "energy": casadi.vertcat(s.kinetic, s.potential),
         "singularity": _singularity(s, N, model.n, ranks),
     }
+    if model.allocation is not None and ranks.constraints == model.r and lacking(ROWS["utilisation"], model) is None:
+        quantities["utilisation"] = utilisation(model, model.allocation, s, ranks.actuation)
     if ranks.constraints == model.r and ranks.actuation == min(model.m, model.n - ranks.constraints):
         quantities["inverse_dynamics_jacobian"] = casadi.jacobian(u, casadi.vertcat(s.q, s.qd, s.qdd))
         by = casadi.vertcat(s.q, s.qd, s.qdd)

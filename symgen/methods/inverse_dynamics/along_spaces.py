@@ -17,6 +17,8 @@ from symgen.symbolic.scalar import Scalar
 
 
 def _minor(workspace: Workspace) -> Candidate | str:
+    if workspace.model.keeps_limits and workspace.model.r:
+        return "limits along several directions of internal force are kept in a basis of reflections"
     derivation = workspace.minor
     if isinstance(derivation, str):
         return derivation
@@ -30,7 +32,8 @@ def _householder(workspace: Workspace) -> Candidate | str:
 
 
 def _along(system: MethodInput, derivation: Derivation) -> Candidate:
-    return solved_for_u(system, derivation.inverse_dynamics, derivation.inverse_dynamics_guards)
+    guards, harmless = derivation.inverse_dynamics_guards, derivation.harmless_divisors
+    return solved_for_u(system, derivation.inverse_dynamics, guards, harmless=harmless)
 
 
 def _pivots(workspace: Workspace, candidate: Candidate) -> list[Scalar]:

@@ -81,7 +81,7 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
         _add(scope, check_motion(mechanics, assembly, *chosen, declared, _block_spans(tree)))
         if isinstance(assembly, Assembly) and len(scope.mistakes) == before:
             if model.allocation is not None:
-                _add(scope, check_redundancy(mechanics, assembly, model.inputs, model.allocation))
+                _add(scope, check_redundancy(mechanics, assembly, model.inputs, model.allocation, model.outputs))
             assembly = replace(assembly, tied=tied_parameters(written, mechanics, assembly))
             _add(scope, _notices_of_tied(model, assembly.tied))
             places = not model.measured or measures_places(mechanics, assembly, model.measured)

@@ -15,6 +15,7 @@ from symgen.model.model import Allocation, Input
 
 # Sets of limits that a kernel works out: each takes some thirty operations.
 MOST_PLANES = 1_000
+UTILISATION = "utilisation"
 
 
 def check_redundancy(
@@ -22,6 +23,7 @@ def check_redundancy(
     assembly: Assembly,
     inputs: tuple[Input, ...],
     allocation: Allocation,
+    outputs: tuple[str, ...],
 ) -> Iterator[Mistake | Notice]:
     """What the block `allocation` asks for and these inputs cannot do.
 
@@ -31,6 +33,13 @@ def check_redundancy(
     n, m = len(mechanics.coordinates), len(inputs)
     constraints, degree = assembly.ranks.constraints, assembly.ranks.actuation
     delta = n - constraints
+    if m == degree and m and not (allocation.weights or allocation.preload or allocation.preferred):
+        if UTILISATION not in outputs:
+            yield Notice(
+                f"the motion determines the inputs, whatever their `limits` are: name `{UTILISATION}` in `outputs`",
+                allocation.span,
+            )
+        return
     if m == degree:
         share = f"{counted(m, 'input')} for δ = {delta}, determined by the motion" if m else "the model has no inputs"
         yield Mistake(

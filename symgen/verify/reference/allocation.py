@@ -16,13 +16,15 @@ from symgen.model.model import Allocation
 from symgen.verify.reference.arithmetic.linear import column, columns_of, determinant, pseudoinverse, solve
 from symgen.verify.reference.evaluation import Evaluation
 from symgen.verify.reference.limits import nearest_within, unmoving_inputs
+from symgen.verify.reference.limits import utilisation as share_of_limits
 
 
 def allocated(e: Evaluation, allocation: Allocation) -> Any:
     """u (m x 1): of all inputs with N M u = N tau those that the allocation asks for."""
     model = e.system.model
-    names = [item.name for item in model.inputs]
-    value = dict(zip((parameter.name for parameter in model.parameters), e.parameters, strict=True))
+    names, value = _named(e)
+    if e.system.m == e.ranks.actuation:
+        return e.inputs
     weights = _by_input(names, allocation.weights, value, arb(1))
     preferred = column(_by_input(names, allocation.preferred, value, arb(0)))
     inverse = _weighted_inverse(e, weights)
@@ -30,9 +32,8 @@ def allocated(e: Evaluation, allocation: Allocation) -> Any:
     if not allocation.directed:
         return least
     if model.keeps_limits:
-        limits = [(names.index(one.input), value[one.lower], value[one.upper]) for one in allocation.limits]
         unmoving = unmoving_inputs(inverse, e.projected_control, weights)
-        return nearest_within(least, unmoving, limits, e.system.m - e.ranks.actuation)
+        return nearest_within(least, unmoving, _limits(e, allocation), e.system.m - e.ranks.actuation)
     direction = internal_force(e, weights)
     share = arb(0) if allocation.preload is None else value[allocation.preload]
     starts, ends = [], []
@@ -46,6 +47,26 @@ def allocated(e: Evaluation, allocation: Allocation) -> Any:
     if starts:
         share = _middle(_fold(starts, "max"), _fold(ends, "min"), share)
     return least + direction * share
+
+
+def utilisation(e: Evaluation, allocation: Allocation) -> Any:
+    """The share of their limits that the inputs need at least (1 x 1)."""
+    by_input = {k: (lower, upper) for k, lower, upper in _limits(e, allocation)}
+    limits = [(k, *by_input[k]) for k in range(e.system.m)]
+    unmoving = unmoving_inputs(e.control_inverse, e.projected_control, [arb(1)] * e.system.m)
+    return share_of_limits(e.inputs, unmoving, limits, e.system.m - e.ranks.actuation)
+
+
+def _named(e: Evaluation) -> tuple[list[str], dict[str, Any]]:
+    """The names of the inputs, and the values of the parameters."""
+    model = e.system.model
+    value = dict(zip((parameter.name for parameter in model.parameters), e.parameters, strict=True))
+    return [item.name for item in model.inputs], value
+
+
+def _limits(e: Evaluation, allocation: Allocation) -> list[tuple[int, Any, Any]]:
+    names, value = _named(e)
+    return [(names.index(one.input), value[one.lower], value[one.upper]) for one in allocation.limits]
 
 
 def internal_force(e: Evaluation, weights: Sequence[Any]) -> Any:

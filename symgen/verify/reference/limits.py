@@ -10,11 +10,18 @@ violate, and so on: of all faces that are reached so the nearest point that viol
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import combinations, product
 from typing import Any, TypeAlias
 
 from flint import arb, arb_mat
 
-from symgen.verify.reference.arithmetic.linear import column, columns_of, rows_of, solve
+from symgen.verify.reference.arithmetic.linear import (
+    column,
+    columns_of,
+    independent_columns,
+    rows_of,
+    solve,
+)
 
 Limits: TypeAlias = Sequence[tuple[int, Any, Any]]
 """The number of an input, its lower and its upper limit."""
@@ -54,6 +61,36 @@ def nearest_within(least: Any, unmoving: Any, limits: Limits, directions: int) -
     if best is None:
         raise NoneWithinError
     return best[1]
+
+
+def utilisation(least: Any, unmoving: Any, limits: Limits, directions: int) -> Any:
+    """The least largest |u_i - c_i| / h_i of all inputs that produce a motion, of which `least` are some (1 x 1).
+
+    A linear program whose solution has one input more than directions at that share: of all such choices the one of
+    which the largest share is least.
+    """
+    middles, halves = [(b + a) / 2 for _, a, b in limits], [(b - a) / 2 for _, a, b in limits]
+    free: Any = columns_of(unmoving, independent_columns(unmoving, directions) if directions else [])
+    best: Any = None
+    for chosen in combinations(range(len(limits)), directions + 1):
+        for signs in product((1, -1), repeat=directions):
+            ends = [sign * halves[i] for i, sign in zip(chosen, (1, *signs), strict=True)]
+            rows = [[*(free[i, j] for j in range(directions)), -end] for i, end in zip(chosen, ends, strict=True)]
+            missing = column([middles[i] - least[i, 0] for i in chosen])
+            try:
+                shares = solve(arb_mat(directions + 1, directions + 1, [x for row in rows for x in row]), missing)
+            except ZeroDivisionError:
+                continue
+            inputs = [
+                least[i, 0] + sum((free[i, j] * shares[j, 0] for j in range(directions)), arb(0))
+                for i in range(len(limits))
+            ]
+            shares_taken = [abs(u - c) / h for u, c, h in zip(inputs, middles, halves, strict=True)]
+            largest = shares_taken[0]
+            for share in shares_taken[1:]:
+                largest = largest.max(share)
+            best = largest if best is None else best.min(largest)
+    return column([best])
 
 
 def unmoving_inputs(inverse: Any, projected_control: Any, weights: Sequence[Any]) -> Any:

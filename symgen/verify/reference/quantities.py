@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 from symgen.model.quantities import ROWS
-from symgen.verify.reference.allocation import allocated
+from symgen.verify.reference.allocation import allocated, utilisation
 from symgen.verify.reference.arithmetic.linear import column, identity, right_pseudoinverse
 from symgen.verify.reference.evaluation import Evaluation
 from symgen.verify.reference.given import QUANTITIES_OF_GIVEN
@@ -24,6 +24,12 @@ def _inverse_dynamics(e: Evaluation) -> Any:
     if allocation is not None:
         return allocated(e, allocation)
     return e.inputs
+
+
+def _utilisation(e: Evaluation) -> Any:
+    allocation = e.system.model.allocation
+    assert allocation is not None
+    return utilisation(e, allocation)
 
 
 def _inverse_dynamics_jacobian(e: Evaluation) -> Any:
@@ -180,6 +186,7 @@ QUANTITIES: dict[str, Definition] = {
     "multipliers_jacobian": _multipliers_jacobian,
     "constraint_variations": _constraint_variations,
     "inverse_dynamics_residual": _inverse_dynamics_residual,
+    "utilisation": _utilisation,
     "actuator_velocity": lambda e: e.at.control.transpose() * e.rate,
     "actuator_mass_matrix": lambda e: e.quasi.transpose() * e.at.mass * e.quasi,
     "actuator_bias": _actuator_bias,
