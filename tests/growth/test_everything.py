@@ -2,23 +2,34 @@
 
 from __future__ import annotations
 
+import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from linkages import row_of_four_bars
 
 from symgen.generation.results import Options
+from symgen.methods.derivation import Derivation
 from symgen.model.load import load_text
 from symgen.model.quantities import MAIN
 from symgen.pipeline import generate
 from symgen.quantities import everything
+from symgen.quantities.catalogue import BY_NAME
 from symgen.quantities.everything import OF_ALL, most_with_twice_the_digits
 from symgen.quantities.select import derive_quantities
 from symgen.runtime.effort import SCALAR, done
+from symgen.symbolic.matrix import Vector
 
 TEXT = row_of_four_bars(1, ground="0.7", tail="configuration: {a0: 1, a1: 1, b1: 0}")
 MODEL = load_text(TEXT, "row.yaml")
+WHEELS = """
+model: two_wheels
+coordinates: {a: {unit: rad, range: [0.5, 1]}, b: {unit: rad, range: [0.5, 1]}}
+kinetic_energy: a_dot**2/2 + b_dot**2
+inputs: {u: {acts_on: {a: 1}}}
+"""
 
 
 def test_the_longest_are_left_out_where_all_together_are_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -85,3 +96,39 @@ def test_what_all_leaves_out_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyP
     messages = [notice.message for notice in result.notices if OF_ALL in notice.message]
     assert any(message.startswith("projected_coriolis_matrix: ") for message in messages)
     assert all("name it in `outputs`" in message for message in messages)
+
+
+@pytest.mark.parametrize(
+    ("operations", "outputs", "made"),
+    [(1_400, ("all",), True), (2_800, ("all",), False), (2_800, ("all", "mass_matrix"), True)],
+)
+def test_twice_the_digits_of_two_thousand_operations_are_for_those_who_ask(
+    operations: int, outputs: tuple[str, ...], made: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The mass matrix of two wheels, with a long sum times what rounding leaves of sqrt(3 a)^2 - 3 a."""
+    entry = BY_NAME["mass_matrix"]
+    assert entry.outputs is not None
+    usual = entry.outputs
+
+    def losing_digits(derivation: Derivation) -> Vector:
+        first, *rest = usual(derivation)
+        graph = first.graph
+        angle = graph.symbol("a")
+        root = graph.raw("sqrt", (3 * angle,))
+        long = graph.const(2**20)
+        for k in range(operations // 2):
+            long = graph.raw("add", (graph.raw("mul", (long, angle)), graph.const(2**20 + k)))
+        nothing = graph.raw("sub", (graph.raw("mul", (root, root)), 3 * angle))
+        return graph.raw("add", (first, graph.raw("mul", (long, nothing)))), *rest
+
+    monkeypatch.setitem(BY_NAME, "mass_matrix", replace(entry, outputs=losing_digits))
+    path = tmp_path / "two_wheels.yaml"
+    path.write_text(WHEELS, encoding="utf-8")
+    result = generate(path, Options(outputs=outputs, scalars=("float64",), parts=("python",), states=8), lambda _: None)
+    assert not result.left_out
+    kernels = json.loads(result.files["derivation.json"])["kernels"]
+    assert ("mass_matrix" in kernels) is made
+    assert not made or kernels["mass_matrix"]["twice_the_digits"] == ["float64"]
+    said = [notice.message for notice in result.notices if "all` leaves it out, as it loses digits" in notice.message]
+    assert bool(said) is not made
+    assert all(message.startswith("mass_matrix: ") for message in said)

@@ -197,6 +197,28 @@ def test_losses_of_steps_multiply_where_they_are_no_ordinary_ones(squares: list[
     assert passes(guard, lengths | values) is regular
 
 
+@pytest.mark.parametrize(("square", "count", "together", "regular"), [(1 / 6, 50, 2, True), (1 / 200, 9, 9, False)])
+def test_rows_that_lean_are_regular_in_pairs_and_lost_in_a_chain(
+    square: float, count: int, together: int, regular: bool
+) -> None:
+    """Pairs of rows at 24 degrees are as regular as one of them; nine that lean on each other are one row fewer."""
+    rows = np.zeros((count, count))
+    for i in range(count):
+        rows[i, i] = math.sqrt(square) if i % together else 1
+        if i % together:
+            rows[i, i - 1] = math.sqrt(1 - square)
+    smallest = np.linalg.svd(rows)[1][-1]
+    assert smallest > 0.2 if regular else smallest < count * float(SINGLE)
+    # what Gram and Schmidt's process leaves of each
+    left = np.linalg.qr(rows.T)[1].diagonal() ** 2
+    graph = Graph()
+    symbols = [graph.symbol(f"s_{k}") for k in range(count)]
+    (guard,) = multiplied(Status.MASS_RANK, symbols, [graph.symbol(f"l_{k}") for k in range(count)])
+    lengths = {f"l_{k}": 1.0 for k in range(count)}
+    values = {f"s_{k}": float(x) for k, x in enumerate(left)}
+    assert passes(guard, lengths | values, size=count) is regular
+
+
 def test_inertias_are_measured_by_themselves() -> None:
     mechanics = System(load_text(ARM, "arm.yaml"))
     entries = [row[i] for i, row in enumerate(mechanics.mass_matrix)]

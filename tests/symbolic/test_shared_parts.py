@@ -94,3 +94,13 @@ def test_the_bound_of_a_square_core_is_that_of_its_determinant() -> None:
     values = {str(name): 0.2 + 0.3 * k for k, name in enumerate(sorted(map(str, names)))}
     bound, given = Evaluator([guard.scale, whole])(values)
     assert bound == pytest.approx(given, rel=1e-13)
+
+
+@pytest.mark.parametrize(("terms", "operations"), [(8, 8), (20, 20), (40, 78)])
+def test_sums_of_up_to_some_twenty_terms_share_what_they_have_in_common(terms: int, operations: int) -> None:
+    """Two that differ in one term alone; of long ones the pairs of terms, which grow as squares, are left alone."""
+    graph = Graph()
+    common = [graph.symbol(f"c_{k}") for k in range(terms - 1)]
+    sums = [sum_of(graph, [(1, x) for x in (graph.symbol(name), *common)]) for name in "pq"]
+    assert cost(sums).weight == 2 * (terms - 1)
+    assert cost(with_shared_sums(graph, sums)).weight == operations

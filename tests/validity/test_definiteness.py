@@ -54,3 +54,30 @@ def test_nor_do_they_for_shipped_models(monkeypatch: pytest.MonkeyPatch) -> None
     for name in ("sin", "cos"):
         monkeypatch.setitem(evaluate.FUNCTIONS, name, noisy(getattr(math, name), random.Random(7)))
     assert [name for name in shipped.NAMES if place(shipped.model(name)) is not None] == []
+
+
+CORNERS = [(-0.6, -0.6), (-0.6, 0.6), (0.6, -0.6), (0.6, 0.6)]
+
+
+def coupling(x: float, y: float, corner: tuple[float, float], most: float) -> float:
+    """Of two slides: `most` in one corner of their ranges, less in the one across, next to nothing elsewhere."""
+    near, across = ((x - s * corner[0]) ** 2 + (y - s * corner[1]) ** 2 for s in (1, -1))
+    return most * math.exp(-near / 0.04) + 0.8 * math.exp(-across / 0.04)
+
+
+@pytest.mark.parametrize("corner", CORNERS)
+@pytest.mark.parametrize("most", [0.95, 1.05])
+def test_a_corner_where_masses_are_indefinite_is_reached(corner: tuple[float, float], most: float) -> None:
+    """A six hundredth of the ranges, which ways from most configurations pass by: they end in the corner across."""
+    near, across = (f"(x - ({s * corner[0]}))**2 + (y - ({s * corner[1]}))**2" for s in (1, -1))
+    text = f"""
+model: slides
+coordinates: {{x: {{range: [-1, 1]}}, y: {{range: [-1, 1]}}}}
+kinetic_energy: (x_dot**2 + y_dot**2)/2 + x_dot*y_dot*({most}*exp(-({near})/0.04) + 0.8*exp(-({across})/0.04))
+inputs: {{u: {{acts_on: {{x: 1}}}}}}
+"""
+    reached = place(load_text(text, "slides.yaml"))
+    assert (reached is not None) is (most > 1)
+    if reached is not None:
+        state = dict(reached)
+        assert coupling(state["x"], state["y"], corner, most) > 0.999
