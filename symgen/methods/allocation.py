@@ -23,6 +23,7 @@ from symgen.mechanics.system import System
 from symgen.methods.least_inputs import least_inputs
 from symgen.methods.limits import Slab, interval, larger, nearest_of, nearest_within
 from symgen.methods.method import divisors
+from symgen.methods.utilisation import scaled
 from symgen.model.model import Allocation
 from symgen.symbolic.matrix import Vector, dot, flatten, matvec, subtract_vectors
 from symgen.symbolic.scalar import Scalar
@@ -49,11 +50,16 @@ class InputAllocation:
             self.forms = equations.weighted(weights)
 
     def solve(self, force: Vector) -> Vector:
-        """u (m): the inputs for a generalized force (n)."""
+        """u (m): the inputs for a generalized force (n), or for the share of it that limits allow."""
+        if self._allocation.scale:
+            force = scaled(self._mechanics, self._generic, self._allocation.limits, force)
+        return self._for(force)
+
+    def _for(self, force: Vector) -> Vector:
         if self._mechanics.model.keeps_limits:
             return self._within_limits(force)
         least = self._nearest(force)
-        if not self._allocation.directed:
+        if not self._allocation.directed or self._generic.m == self._generic.alpha:
             return least
         direction, square = self.internal_force()
         share = self._share(least, direction, square)
@@ -104,15 +110,16 @@ class InputAllocation:
         return tuple(u + dot(graph, row, shares) for u, row in zip(least, forces, strict=True))
 
     def harmless_divisors(self, force: Vector) -> tuple[Scalar, ...]:
-        """What is divided by where one of the sets of limits is taken: 0 for one that inputs cannot reach alone."""
-        if not self._mechanics.model.keeps_limits:
-            return ()
-        before = {*divisors(self._nearest(force)), *divisors(flatten(self._reflected.internal_forces()))}
-        return tuple(one for one in divisors(self._within_limits(force)) if one not in before)
+        """What is divided by where one set of limits is taken of several: 0 for one that inputs cannot reach alone."""
+        if self._mechanics.model.keeps_limits:
+            judged = {*divisors(self._nearest(force)), *divisors(flatten(self._reflected.internal_forces()))}
+        else:
+            judged = {*divisors(self._for(force))}
+        return tuple(one for one in divisors(self.solve(force)) if one not in judged)
 
     def guards(self, inputs: Vector) -> tuple[Guard, ...]:
         """That inputs for which limits are kept exactly do keep them: else none produce the motion within these."""
-        if not self._mechanics.model.keeps_limits:
+        if not self._mechanics.model.keeps_limits or self._allocation.scale:
             return ()
         graph, excess, sizes = self._graph, self._graph.zero, []
         for slab in self._slabs(inputs, [()] * len(inputs)):

@@ -332,7 +332,7 @@ class Derivation:
     @cached_property
     def _allocation(self) -> InputAllocation | None:
         allocation = self.mechanics.model.allocation
-        if allocation is None or self.m == self.generic.alpha:
+        if allocation is None or (self.m == self.generic.alpha and not allocation.scale):
             return None
         return InputAllocation(self.mechanics, self.generic, allocation, self.space)
 
@@ -346,9 +346,9 @@ class Derivation:
 
     def utilisation(self) -> Vector:
         """The largest share of their limits that the inputs need."""
-        allocation = self.mechanics.model.allocation
+        mechanics, allocation = self.mechanics, self.mechanics.model.allocation
         assert allocation is not None
-        return (utilisation(self.mechanics, self.generic, allocation.limits),)
+        return (utilisation(mechanics, self.generic, allocation.limits, mechanics.balance),)
 
     @property
     def harmless_divisors(self) -> tuple[Scalar, ...]:

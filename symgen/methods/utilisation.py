@@ -31,14 +31,11 @@ from symgen.symbolic.scalar import Graph, Scalar
 MOST_BY_DETERMINANTS = 3
 
 
-def utilisation(mechanics: System, generic: Genericity, limits: Sequence[Limit]) -> Scalar:
-    """The least largest |u_i - c_i| / h_i of all inputs u that produce the motion; `limits` has one for each input."""
+def utilisation(mechanics: System, generic: Genericity, limits: Sequence[Limit], force: Vector) -> Scalar:
+    """The least largest |u_i - c_i| / h_i of all inputs u that supply a force; `limits` has one for each input."""
     graph = mechanics.graph
-    by_input = {limit.input: (graph.symbol(limit.lower), graph.symbol(limit.upper)) for limit in limits}
-    ends = [by_input[item.name] for item in mechanics.model.inputs]
-    middles = tuple((lower + upper) / 2 for lower, upper in ends)
-    halves = tuple((upper - lower) / 2 for lower, upper in ends)
-    load = subtract_vectors(mechanics.balance, matvec(graph, mechanics.control_matrix, middles))
+    middles, halves = _middles(mechanics, limits), _halves(mechanics, limits)
+    load = subtract_vectors(force, matvec(graph, mechanics.control_matrix, middles))
     space = reflected_rows(mechanics, generic)
     if generic.delta <= MOST_BY_DETERMINANTS:
         columns = [space.restriction(column) for column in mechanics.inputs]
@@ -53,6 +50,28 @@ def utilisation(mechanics: System, generic: Genericity, limits: Sequence[Limit])
         share = graph.function("ratio_or_zero", (graph.function("abs", (needed,)), reach))
         largest = graph.function("max", (largest, share))
     return largest
+
+
+def scaled(mechanics: System, generic: Genericity, limits: Sequence[Limit], force: Vector) -> Vector:
+    """M c + s (f - M c) for the largest share s <= 1 with which inputs within limits supply it."""
+    graph = mechanics.graph
+    share = graph.function("max", (utilisation(mechanics, generic, limits, force), graph.one))
+    supplied = matvec(graph, mechanics.control_matrix, _middles(mechanics, limits))
+    return tuple(known + (f - known) / share for f, known in zip(force, supplied, strict=True))
+
+
+def _middles(mechanics: System, limits: Sequence[Limit]) -> Vector:
+    return tuple((lower + upper) / 2 for lower, upper in _ends(mechanics, limits))
+
+
+def _halves(mechanics: System, limits: Sequence[Limit]) -> Vector:
+    return tuple((upper - lower) / 2 for lower, upper in _ends(mechanics, limits))
+
+
+def _ends(mechanics: System, limits: Sequence[Limit]) -> list[tuple[Scalar, Scalar]]:
+    graph = mechanics.graph
+    by_input = {limit.input: (graph.symbol(limit.lower), graph.symbol(limit.upper)) for limit in limits}
+    return [by_input[item.name] for item in mechanics.model.inputs]
 
 
 def _along_normals(

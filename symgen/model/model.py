@@ -108,13 +108,15 @@ class Allocation:
     """How redundant inputs share the work; its numbers are the last of the model's parameters, named here.
 
     `weights` and `preferred` are pairs (input, parameter).  `preload` is the parameter that multiplies the one
-    internal-force direction; `preferred` values are approached by all inputs together.
+    internal-force direction; `preferred` values are approached by all inputs together.  With `scale` the inputs are
+    those of the largest share of a motion that limits of all inputs allow.
     """
 
     weights: tuple[tuple[str, str], ...]
     preload: str | None
     preferred: tuple[tuple[str, str], ...]
     limits: tuple[Limit, ...]
+    scale: bool = False
     span: Span | None = None
 
     @property

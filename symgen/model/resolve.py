@@ -163,8 +163,8 @@ def _outputs(node: Node | None, has_inputs: bool) -> tuple[str, ...]:
         name = text_of(item)
         if name in known and name not in outputs:
             outputs.append(name)
-    if "all" in outputs:
-        return ("all",)
+    if "all" in outputs:  # what is named beside it is made however long it is
+        outputs.sort(key=lambda name: name != "all")
     return tuple(outputs) or (("inverse_dynamics",) if has_inputs else ("forward_dynamics",))
 
 

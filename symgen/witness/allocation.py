@@ -20,7 +20,8 @@ def allocated(model: Model, allocation: Allocation, s: Lagrange, projector: casa
     preferred = _by_input(names, allocation.preferred, value, 0)
     shrink = casadi.diag(1 / casadi.sqrt(weights))
     inverse = shrink @ pseudoinverse(projector @ s.control @ shrink, rank)
-    least = preferred + inverse @ (s.balance - s.control @ preferred)
+    balance = _scaled(model, allocation, s, projector, rank) if allocation.scale else s.balance
+    least = preferred + inverse @ (balance - s.control @ preferred)
     if not allocation.directed or rank == len(names):
         return least
     if model.keeps_limits:
@@ -40,19 +41,43 @@ def allocated(model: Model, allocation: Allocation, s: Lagrange, projector: casa
     return least + casadi.fmax(below, casadi.fmin(above, share)) * z
 
 
-def utilisation(model: Model, allocation: Allocation, s: Lagrange, rank: int) -> casadi.SX:
-    """The largest |det[M_J, τ − M c, Bᵀ]| / Σ_i |det[M_J, M_i, Bᵀ]| h_i of all J of δ − 1 inputs."""
+def utilisation(model: Model, allocation: Allocation, s: Lagrange, projector: casadi.SX, rank: int) -> casadi.SX:
+    """The largest |M_J, τ − M c| / Σ_i |M_J, M_i| h_i of all J of δ − 1 inputs, |X| the volume √det XᵀN X beside B."""
+    middles, halves = _middles(model, allocation, s), _halves(model, allocation, s)
+    load, largest = s.balance - s.control @ middles, casadi.SX(0)
+
+    def volume(columns: casadi.SX) -> casadi.SX:
+        return casadi.sqrt(casadi.fmax(casadi.det(columns.T @ projector @ columns), 0))
+
+    for chosen in combinations(range(model.m), rank - 1):
+        beside = s.control[:, list(chosen)]
+        reach = casadi.SX(0)
+        for i in range(model.m):
+            if i not in chosen:
+                reach += volume(casadi.horzcat(s.control[:, i], beside)) * halves[i]
+        largest = casadi.fmax(largest, volume(casadi.horzcat(load, beside)) / reach)
+    return largest
+
+
+def _scaled(model: Model, allocation: Allocation, s: Lagrange, projector: casadi.SX, rank: int) -> casadi.SX:
+    """M c + (τ − M c) / ρ where more than 1 is needed."""
+    supplied = s.control @ _middles(model, allocation, s)
+    share = casadi.fmax(utilisation(model, allocation, s, projector, rank), 1)
+    return supplied + (s.balance - supplied) / share
+
+
+def _middles(model: Model, allocation: Allocation, s: Lagrange) -> casadi.SX:
+    return casadi.vertcat(*((lower + upper) / 2 for lower, upper in _ends(model, allocation, s)))
+
+
+def _halves(model: Model, allocation: Allocation, s: Lagrange) -> casadi.SX:
+    return casadi.vertcat(*((upper - lower) / 2 for lower, upper in _ends(model, allocation, s)))
+
+
+def _ends(model: Model, allocation: Allocation, s: Lagrange) -> list[tuple[casadi.SX, casadi.SX]]:
     value = {parameter.name: s.p[i] for i, parameter in enumerate(model.parameters)}
     ends = {limit.input: (value[limit.lower], value[limit.upper]) for limit in allocation.limits}
-    middles = casadi.vertcat(*(sum(ends[item.name]) / 2 for item in model.inputs))
-    halves = [(upper - lower) / 2 for lower, upper in (ends[item.name] for item in model.inputs)]
-    load, largest = s.balance - s.control @ middles, casadi.SX(0)
-    for chosen in combinations(range(model.m), rank - 1):
-        beside = [s.control[:, list(chosen)], s.jacobian.T]
-        segments = [casadi.fabs(casadi.det(casadi.horzcat(s.control[:, i], *beside))) for i in range(model.m)]
-        reach = sum(size * half for size, half in zip(segments, halves, strict=True))
-        largest = casadi.fmax(largest, casadi.fabs(casadi.det(casadi.horzcat(load, *beside))) / reach)
-    return largest
+    return [ends[item.name] for item in model.inputs]
 
 
 def _nearest_within(

@@ -64,8 +64,8 @@ def derive(model: Model, s: Lagrange, ranks: ConfigurationRanks) -> dict[str, ca
         "energy": casadi.vertcat(s.kinetic, s.potential),
         "singularity": _singularity(s, N, model.n, ranks),
     }
-    if model.allocation is not None and ranks.constraints == model.r and lacking(ROWS["utilisation"], model) is None:
-        quantities["utilisation"] = utilisation(model, model.allocation, s, ranks.actuation)
+    if model.allocation is not None and lacking(ROWS["utilisation"], model) is None:
+        quantities["utilisation"] = utilisation(model, model.allocation, s, N, ranks.actuation)
     if ranks.constraints == model.r and ranks.actuation == min(model.m, model.n - ranks.constraints):
         quantities["inverse_dynamics_jacobian"] = casadi.jacobian(u, casadi.vertcat(s.q, s.qd, s.qdd))
         by = casadi.vertcat(s.q, s.qd, s.qdd)

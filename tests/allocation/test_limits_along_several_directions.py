@@ -103,7 +103,8 @@ class Problem:
             for held in combinations(self.limits, count):
                 for sides in product((1, 2), repeat=count):
                     places = [limit[0] for limit in held]
-                    missing = np.array([limit[side] for limit, side in zip(held, sides, strict=True)]) - least[:, places]
+                    reached = np.array([limit[side] for limit, side in zip(held, sides, strict=True)])
+                    missing = reached - least[:, places]
                     gram = unmoving[:, places][:, :, places]
                     with np.errstate(all="ignore"):
                         factors = np.linalg.solve(gram + 1e-300, missing[..., None])[..., 0] if count else missing

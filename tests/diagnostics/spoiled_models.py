@@ -266,12 +266,14 @@ ALLOCATION = {
     "units_of_preferred_values": DRIVEN + "allocation: {preload: {F: l}}\n",
     "no_inputs": GOOD + "allocation: {preload: 1}\n",
     "nothing_to_allocate": GOOD
-    + "inputs: {F: {acts_on: {x: 1}}, T: {acts_on: {a: 1}}}\nallocation: {limits: {F: [-1, 1]}}\n",
+    + "inputs: {F: {acts_on: {x: 1}}, T: {acts_on: {a: 1}}}\nallocation: {weights: {F: 2}}\n",
     "too_many_directions": DRIVEN.replace("inputs:\n", "inputs:\n  E: {acts_on: {x: 1}}\n")
     + "allocation: {preload: 1, limits: {F: [-1, 1]}}\n",
     "too_many_ways": GOOD
     + f"inputs: {{{', '.join(f'F_{k}: {{acts_on: {{x: 1, a: {k}}}}}' for k in range(12))}}}\n"
     + f"allocation: {{limits: {{{', '.join(f'F_{k}: [-1, 1]' for k in range(12))}}}}}\n",
+    "scale_without_limits": DRIVEN + "allocation: {scale: true, limits: {F: [-1, 1]}}\n",
+    "tension_of_no_cable": DRIVEN.replace("F: {unit: N,", "F: {tension: {minimum: 1, maximum: 2}, unit: N,"),
     "under_actuated": TWICE + "allocation: {preload: 1, limits: {F: [-1, 1]}}\n",
     "dependent_rows": TWICE
     + "constraints: {nonholonomic: {b: a_dot, c: 2*a_dot}}\nallocation: {preload: 1, limits: {F: [-1, 1]}}\n",
@@ -454,6 +456,13 @@ ELEMENTS = {
         more="forces: {wind: {point: tip, direction: [1, 0, 0], magnitude: m*a_ddot}}\n"
     ),
     "cable_of_one_point": arm(more="inputs: {u: {cable: [tip]}}\n"),
+    "tension_told_twice": arm(
+        more="inputs: {u: {cable: [tip, world], tension: {minimum: 1, maximum: 2}}, v: {joint: a}, w: {joint: a}}\n"
+        "allocation: {limits: {u: [0, 1]}}\n"
+    ),
+    "tension_turned_over": arm(
+        more="inputs: {u: {cable: [tip, world], tension: {minimum: 2, maximum: 1}}, v: {joint: a}, w: {joint: a}}\n"
+    ),
 }
 
 GROUPS = {

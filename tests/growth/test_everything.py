@@ -123,8 +123,8 @@ def test_twice_the_digits_of_two_thousand_operations_are_for_those_who_ask(
 
     monkeypatch.setitem(BY_NAME, "mass_matrix", replace(entry, outputs=losing_digits))
     path = tmp_path / "two_wheels.yaml"
-    path.write_text(WHEELS, encoding="utf-8")
-    result = generate(path, Options(outputs=outputs, scalars=("float64",), parts=("python",), states=8), lambda _: None)
+    path.write_text(f"{WHEELS}outputs: [{', '.join(outputs)}]\n", encoding="utf-8")
+    result = generate(path, Options(scalars=("float64",), parts=("python",), states=8), lambda _: None)
     assert not result.left_out
     kernels = json.loads(result.files["derivation.json"])["kernels"]
     assert ("mass_matrix" in kernels) is made

@@ -13,13 +13,13 @@ from symgen.model.expressions.expression import Expression
 from symgen.model.expressions.names import did_you_mean
 from symgen.model.expressions.walk import evaluate
 from symgen.model.file.declarations import DeclaredRanges
-from symgen.model.file.reading import entries, items, member
+from symgen.model.file.reading import entries, items, key_span, member, text_of
 from symgen.model.file.scope import PARAMETERS, Scope, a_kind
 from symgen.model.file.source import MappingNode, Node, ScalarNode
 from symgen.model.model import Allocation, Input, Limit, Model, Parameter, Range
 from symgen.records import dataclass
 
-PRELOAD = "preload"
+PRELOAD, LIMITS, TENSION = "preload", "limits", "tension"
 ONE_NAME_EACH = "rename that one; settings are called as the generated struct's members"
 
 _DESCRIBED = {"weight": " in the norm of the inputs", "preload": "", "limit": "", "direction": ", internal force"}
@@ -35,6 +35,17 @@ class _Setting:
     node: Node
     place: Span
     role: str
+
+
+@dataclass(frozen=True, slots=True)
+class _Limits:
+    """Both limits of an input, where they and their name stand, and what to do if they are in the wrong order."""
+
+    of: str
+    ends: tuple[Node, ...]
+    place: Span
+    value: Span
+    order: str
 
 
 def declare_settings(scope: Scope, tree: MappingNode) -> None:
@@ -62,8 +73,9 @@ def read_allocation(
     """
     block = tree.get("allocation")
     units = {item.name: item.unit for item in inputs}
-    for part in ("weights", PRELOAD, "limits"):
+    for part in ("weights", PRELOAD, LIMITS):
         _check_inputs(scope, member(block, part), part, units)
+    _check_tensions(scope, tree, block)
     known = default_values(parameters)
     values: dict[str, float] = {}
     made: list[Parameter] = []
@@ -85,21 +97,26 @@ def read_allocation(
         made.append(Parameter(setting.name, unit, description, expression, chosen, setting.node.span))
     complete = {parameter.name for parameter in made}
     limits: list[Limit] = []
-    for key, node in entries(member(block, "limits")):
-        lower, upper = limit_names(key.value)
+    for given in _limits(tree):
+        lower, upper = limit_names(given.of)
         if lower in complete and upper in complete:
-            limits.append(Limit(key.value, lower, upper))
+            limits.append(Limit(given.of, lower, upper))
             if values[lower] > values[upper]:
-                message = f"the lower limit of `{key.value}` is {values[lower]:.6g}, above its upper one"
-                scope.wrong(message, "write [lower, upper]", node.span)
+                message = f"the lower limit of `{given.of}` is {values[lower]:.6g}, above its upper one"
+                scope.wrong(message, given.order, given.value)
     preload = member(block, PRELOAD)
     allocation = Allocation(
         weights=_named(block, "weights", weight_name, complete),
         preload=PRELOAD if isinstance(preload, ScalarNode) and PRELOAD in complete else None,
         preferred=_named(block, PRELOAD, preferred_name, complete),
         limits=tuple(limits),
-        span=next((key.span for key, _ in tree.entries if key.value == "allocation"), None),
+        scale=text_of(member(block, "scale")) == "true",
+        span=key_span(tree, "allocation") or next((given.place for given in _limits(tree)), None),
     )
+    if allocation.scale and len(limits) < len(inputs):
+        missing = next(item.name for item in inputs if item.name not in {limit.input for limit in limits})
+        message = f"`scale` needs limits of every input, and `{missing}` has none"
+        scope.wrong(message, "name its limits, or remove `scale`", _span_of(block, "scale"))
     if not (allocation.weights or allocation.preload or allocation.preferred or allocation.limits):
         return None, ()
     return allocation, tuple(_with_range(parameter, values, limits) for parameter in made)
@@ -131,9 +148,41 @@ def _settings(tree: MappingNode) -> Iterator[_Setting]:
     for key, node in entries(preload):
         about = f"preload of `{key.value}`"
         yield _Setting(preferred_name(key.value), key.value, about, node, key.span, "preload")
-    for key, node in entries(member(block, "limits")):
-        for name, end, item in zip(limit_names(key.value), ("lower", "upper"), items(node)[:2], strict=False):
-            yield _Setting(name, key.value, f"{end} limit of `{key.value}`", item, key.span, "limit")
+    for given in _limits(tree):
+        for name, end, item in zip(limit_names(given.of), ("lower", "upper"), given.ends, strict=False):
+            yield _Setting(name, given.of, f"{end} limit of `{given.of}`", item, given.place, "limit")
+
+
+def _limits(tree: MappingNode) -> Iterator[_Limits]:
+    """Those of the block, and of inputs those of a tension."""
+    for key, node in entries(member(tree.get("allocation"), LIMITS)):
+        yield _Limits(key.value, items(node)[:2], key.span, node.span, "write [lower, upper]")
+    for key, node in entries(tree.get("inputs")):
+        tension = member(node, TENSION)
+        ends = [member(tension, end) for end in ("minimum", "maximum")]
+        if tension is not None and not isinstance(tension, ScalarNode):
+            known = tuple(end for end in ends if end is not None)
+            place = _span_of(node, TENSION) or tension.span
+            if len(known) == len(ends):
+                yield _Limits(key.value, known, place, tension.span, "exchange `minimum` and `maximum`")
+
+
+def _check_tensions(scope: Scope, tree: MappingNode, block: Node | None) -> None:
+    """A tension is that of a cable, and is told in one place."""
+    limited = {key.value for key, _ in entries(member(block, LIMITS))}
+    for key, node in entries(tree.get("inputs")):
+        place = _span_of(node, TENSION)
+        if place is None:
+            continue
+        if member(node, "cable") is None:
+            remedy = f"write its limits under `allocation`: `limits: {{{key.value}: [lower, upper]}}`"
+            scope.wrong(f"`{key.value}` is no cable: it has no `tension`", remedy, place)
+        elif key.value in limited:
+            scope.wrong(f"`{key.value}` has `limits` under `allocation`, too", "remove one of them", place)
+
+
+def _span_of(node: Node | None, key: str) -> Span | None:
+    return key_span(node, key) if isinstance(node, MappingNode) else None
 
 
 def _check_inputs(scope: Scope, node: Node | None, part: str, inputs: Mapping[str, str | None]) -> None:

@@ -64,6 +64,13 @@ _ACTION = (
     Key("reaction", Word(), "the point or frame on which the opposite force or torque acts"),
     Key("cable", Listing(Word(), 2), "points that a cable runs through; the force is its tension"),
 )
+_TENSION = RecordShape(
+    "`tension`",
+    (
+        Key("minimum", ExpressionShape(), "what keeps the cable taut", required=True),
+        Key("maximum", ExpressionShape(), "what it, or its drive, bears", required=True),
+    ),
+)
 _INPUT = RecordShape(
     "an input",
     (
@@ -72,6 +79,7 @@ _INPUT = RecordShape(
         Key("acts_on", TableShape(ExpressionShape(), 1), "coordinate: coefficient of the input in its equation"),
         Key("joint", Word(), "a coordinate: short for acts_on: {it: 1}"),
         *_ACTION,
+        Key("tension", _TENSION, "between what the tension of a `cable` stays: its `limits` under `allocation`"),
     ),
 )
 _TURNS = Listing(Listing(Either((ExpressionShape(), _VECTOR)), 2, 2))
@@ -265,7 +273,8 @@ _ALLOCATION = RecordShape(
             Either((ExpressionShape(), TableShape(ExpressionShape(), 1))),
             "internal force along the one direction of m - δ = 1, or input: preferred value",
         ),
-        Key("limits", TableShape(Listing(ExpressionShape(), 2, 2), 1), "input: [lower, upper]; needs m - δ = 1"),
+        Key("limits", TableShape(Listing(ExpressionShape(), 2, 2), 1), "input: [lower, upper]"),
+        Key("scale", Word(("true", "false")), "where limits do not allow a motion, the largest share of it they do"),
     ),
 )
 

@@ -144,7 +144,7 @@ def _nearest_within(allocation: Allocation) -> list[Block]:
         displayed((between, equals(juxtaposed(Mt, bold("Z")), ZERO)), "u_c"),
         paragraph(
             "The norm grows by the square of {}, so that the shortest {} is taken that keeps all limits. They are "
-            "taken in one after the other: where the inputs so far leave the next {} outside, the nearest ones lie where it "
+            "taken in one after the other: where the inputs so far leave the next {} outside, the nearest lie where it "
             "is at its limit, which is the same problem along one direction less, with the limits before; along one "
             "direction the limits leave an interval (incremental insertion after Seidel, 1991). All of this is worked "
             "out at every state and one end is taken, without a loop and without a tolerance. Where no inputs within "

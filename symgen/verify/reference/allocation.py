@@ -23,12 +23,13 @@ def allocated(e: Evaluation, allocation: Allocation) -> Any:
     """u (m x 1): of all inputs with N M u = N tau those that the allocation asks for."""
     model = e.system.model
     names, value = _named(e)
+    load = _scaled(e, allocation) if allocation.scale else e.load
     if e.system.m == e.ranks.actuation:
-        return e.inputs
+        return e.control_inverse * load
     weights = _by_input(names, allocation.weights, value, arb(1))
     preferred = column(_by_input(names, allocation.preferred, value, arb(0)))
     inverse = _weighted_inverse(e, weights)
-    least = preferred + inverse * (e.projector * (e.load - e.at.control * preferred))
+    least = preferred + inverse * (e.projector * (load - e.at.control * preferred))
     if not allocation.directed:
         return least
     if model.keeps_limits:
@@ -55,6 +56,14 @@ def utilisation(e: Evaluation, allocation: Allocation) -> Any:
     limits = [(k, *by_input[k]) for k in range(e.system.m)]
     unmoving = unmoving_inputs(e.control_inverse, e.projected_control, [arb(1)] * e.system.m)
     return share_of_limits(e.inputs, unmoving, limits, e.system.m - e.ranks.actuation)
+
+
+def _scaled(e: Evaluation, allocation: Allocation) -> Any:
+    """The largest share of the load, beside what middles of limits supply, that inputs within these supply."""
+    by_input = {k: (lower + upper) / 2 for k, lower, upper in _limits(e, allocation)}
+    supplied = e.at.control * column([by_input[k] for k in range(e.system.m)])
+    share = utilisation(e, allocation)[0, 0].max(arb(1))
+    return supplied + (e.load - supplied) * (1 / share)
 
 
 def _named(e: Evaluation) -> tuple[list[str], dict[str, Any]]:
