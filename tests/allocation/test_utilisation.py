@@ -195,10 +195,10 @@ points: {a: {at: [-2, 0, 0]}, b: {at: [0, 0, 0]}, c: {at: [2, 0, 0]}}
 inputs:
 """
     pulled = "tension: {minimum: f, maximum: 20*f}"
-    told = cables + "".join(f"  f_{k}: {{unit: N, cable: [{k}, load], {pulled}}}\n" for k in "abc")
+    marked = cables + "".join(f"  f_{k}: {{unit: N, cable: [{k}, load], {pulled}}}\n" for k in "abc")
     written = cables + "".join(f"  f_{k}: {{unit: N, cable: [{k}, load]}}\n" for k in "abc")
     written += f"allocation: {{limits: {{{', '.join(f'f_{k}: [f, 20*f]' for k in 'abc')}}}}}\n"
-    one, other = (load_text(text, "cables.yaml") for text in (told, written))
+    one, other = (load_text(text, "cables.yaml") for text in (marked, written))
     assert one.allocation is not None
     assert other.allocation is not None
     assert one.allocation.limits == other.allocation.limits

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symgen.model.model import Allocation
+from symgen.model.model import Allocation, Model
 from symgen.report.document import Block, InlineCode, displayed
 from symgen.report.mathematics.layout import Application, Fenced, Fraction, Layout, Letter, Root, Row, Scripts, Sum
 from symgen.report.prose import (
@@ -34,17 +34,18 @@ HALF_INVERSE = Scripts(D, None, Sum((("-", Row((ONE, Letter("/"), Letter("2"))))
 LOW, HIGH = Scripts(c, Letter("low", "upright")), Scripts(c, Letter("high", "upright"))
 
 
-def allocated_inputs(allocation: Allocation, keeps_limits: bool) -> list[Block]:
-    """From all inputs that produce the motion to the ones the model asks for.
-
-    With `keeps_limits` these are within limits that stand along any number of directions.
-    """
-    if keeps_limits:
-        return [*_nearest(allocation), *_nearest_within(allocation)]
+def allocated_inputs(model: Model, allocation: Allocation, determined: bool) -> list[Block]:
+    """From all inputs that produce the motion to the ones the model asks for, if they are not determined by it."""
+    share = _utilisation(allocation) if len(allocation.limits) == model.m else []
+    if determined:
+        return share
+    if model.keeps_limits:
+        return [*_nearest(allocation), *_nearest_within(allocation), *share]
     return [
         *_nearest(allocation),
         *(_direction(allocation) if allocation.directed else []),
         *(_limits(allocation) if allocation.limits else []),
+        *share,
     ]
 
 
@@ -155,3 +156,33 @@ def _nearest_within(allocation: Allocation) -> list[Block]:
             InlineCode("LIMITS"),
         ),
     ]
+
+
+def _utilisation(allocation: Allocation) -> list[Block]:
+    """The share of their limits that inputs need, and what is made of it."""
+    J, i, rho = Letter("J"), Letter("i"), Letter("ρ")
+    middle, half = Scripts(Letter("c"), i), Scripts(Letter("h"), i)
+
+    def volume(*columns: Layout) -> Layout:
+        return Fenced(Application(Letter("det", "upright"), Fenced(listed((*columns, transposed(B))), "[")), "|")
+
+    M_J, M_i = Scripts(M, J), Scripts(M, i)
+    load = minus_sum((tau,), (juxtaposed(M, bold("c")),))
+    reach = juxtaposed(Scripts(Letter("Σ"), i), volume(M_J, M_i), half)
+    largest = Application(Scripts(Letter("max", "upright"), J), Fraction(volume(M_J, load), reach))
+    blocks: list[Block] = [
+        paragraph(
+            "With {} the middles of the limits and {} half their widths, the inputs need at least the share {} of what "
+            "the limits leave, whatever they do beside the motion. It is possible exactly if {} is 1 at most:",
+            middle,
+            half,
+            rho,
+            rho,
+        ),
+        displayed((equals(rho, largest),), "rho"),
+        paragraph("Here {} runs over all choices of one column of {} less than directions of motion.", J, M),
+    ]
+    if allocation.scale:
+        supplied, text = juxtaposed(M, bold("c")), "Where it is more, {} produces {} times the load {} beside {}."
+        blocks.append(paragraph(text, u, Fraction(ONE, rho), load, supplied))
+    return blocks

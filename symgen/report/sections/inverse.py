@@ -56,7 +56,7 @@ def inverse_dynamics(context: Context) -> Section:
             )
         )
     if allocation is not None:
-        blocks += allocated_inputs(allocation, context.model.keeps_limits)
+        blocks += allocated_inputs(context.model, allocation, structure.degree_of_actuation == m)
     blocks += _inputs_written_out(context)
     if full and m == structure.differential_freedom:
         wt = transposed(W)
