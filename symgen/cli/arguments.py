@@ -157,6 +157,22 @@ def positive(text: str) -> float:
     return value
 
 
+def not_negative(text: str) -> float:
+    """A number that is 0 or more."""
+    value = _number(text)
+    if not value >= 0:
+        raise argparse.ArgumentTypeError(f"{text!r} is below 0")
+    return value
+
+
+def two_weights(text: str) -> tuple[float, float]:
+    """`1,0.1` as two positive numbers."""
+    numbers = [positive(part.strip()) for part in text.split(",")]
+    if len(numbers) != 2:
+        raise argparse.ArgumentTypeError(f"{text!r} are no two positive numbers, such as 1,0.1")
+    return numbers[0], numbers[1]
+
+
 def values(text: str) -> dict[str, float]:
     """`a=1,b=2` as a mapping."""
     by_name: dict[str, float] = {}

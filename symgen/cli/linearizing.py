@@ -7,7 +7,7 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
-from symgen.cli.arguments import positive, values
+from symgen.cli.arguments import two_weights, values
 from symgen.cli.outcome import DONE, MODEL_WRONG
 from symgen.generation.results import LINEARIZATION
 
@@ -20,7 +20,7 @@ def add_linearization(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--lqr",
         metavar="Q,R",
-        type=_weights,
+        type=two_weights,
         help=f"{LINEARIZATION}: gains too, for weights of states and of inputs",
     )
 
@@ -44,11 +44,3 @@ def explain_linear_system(path: Path, start: Mapping[str, float], weights: tuple
         return MODEL_WRONG
     print(linear_system_text(system, held))
     return DONE
-
-
-def _weights(text: str) -> tuple[float, float]:
-    """`1,0.1` as two positive numbers."""
-    numbers = [positive(part.strip()) for part in text.split(",")]
-    if len(numbers) != 2:
-        raise argparse.ArgumentTypeError(f"{text!r} are no two positive numbers, such as 1,0.1")
-    return numbers[0], numbers[1]

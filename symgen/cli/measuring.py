@@ -5,9 +5,20 @@ Each takes what stands behind its name on the command line and returns the exit 
 
 from __future__ import annotations
 
+import argparse
 from pathlib import Path
 
-from symgen.cli.arguments import add_models, add_out, add_quiet, make_parser, number_of_states, positive, values
+from symgen.cli.arguments import (
+    add_models,
+    add_out,
+    add_quiet,
+    make_parser,
+    not_negative,
+    number_of_states,
+    positive,
+    two_weights,
+    values,
+)
 from symgen.cli.outcome import each_file
 from symgen.terminal import Progress
 
@@ -89,20 +100,53 @@ def simulate(arguments: list[str]) -> int:
     parser = make_parser("symgen simulate", "Integrates a model from a consistent start: CSV, chart and animation.")
     add_models(parser)
     parser.add_argument("--duration", metavar="S", type=positive, default=5.0, help="seconds (default: 5)")
-    parser.add_argument("--frames", metavar="N", type=int, default=50, help="frames a second (default: 50)")
+    parser.add_argument("--frames", metavar="N", type=int, help="frames a second (default: 50, with --track 200)")
     parser.add_argument(
         "--start", metavar="x=1,x_dot=2", type=values, default={}, help="coordinates and rates at the start"
     )
     parser.add_argument("--inputs", metavar="u=1", type=values, default={}, help="constant inputs (default: 0)")
+    _add_tracking(parser)
     add_out(parser)
     add_quiet(parser)
     given = parser.parse_args(arguments)
+    if given.track is not None:
+        return _track(given)
 
     def one(path: Path, progress: Progress) -> int:
         from symgen.simulate.command import run_simulate
         from symgen.simulate.simulation import Request
 
-        request = Request(given.duration, max(1, given.frames), given.start, given.inputs)
+        request = Request(given.duration, max(1, given.frames or 50), given.start, given.inputs)
         return run_simulate(path, given.out, request, given.quiet, progress)
+
+    return each_file(given.models, given.out, given.quiet, one)
+
+
+def _add_tracking(parser: argparse.ArgumentParser) -> None:
+    from symgen.simulate.controllers import CONTROLLERS
+
+    group = parser.add_argument_group("under control")
+    add = group.add_argument
+    add("--track", metavar="PATH", help="follows a path of the model, from where it begins or from --start")
+    add("--controller", choices=CONTROLLERS, default=CONTROLLERS[0], help=f"(default: {CONTROLLERS[0]})")
+    add("--bandwidth", metavar="W", type=positive, default=30.0, help="rad/s with which errors decay (default: 30)")
+    add("--lqr", metavar="Q,R", type=two_weights, default=(1.0, 0.1), help="weights of states, inputs (default: 1,0.1)")
+    add("--sample", metavar="S", type=positive, default=1e-3, help="seconds between samples (default: 0.001)")
+    add("--delay", metavar="S", type=not_negative, default=0.0, help="seconds until inputs act (default: 0)")
+    add("--resolution", metavar="R", type=not_negative, default=0.0, help="step of the encoders (default: none)")
+    add("--noise", metavar="N", type=not_negative, default=0.0, help="standard deviation of measured coordinates")
+    add("--machine", metavar="m=1.2", type=values, default={}, help="parameters that the controller does not know")
+
+
+def _track(given: argparse.Namespace) -> int:
+    def one(path: Path, progress: Progress) -> int:
+        from symgen.simulate.command import run_tracking
+        from symgen.simulate.tracking import ControlLoop
+
+        loop = ControlLoop(
+            given.track, given.controller, given.bandwidth, given.lqr, given.sample, given.delay, given.resolution,
+            given.noise, given.machine,
+        )  # fmt: skip
+        return run_tracking(path, given.out, loop, max(1, given.frames or 200), given.start, given.quiet, progress)
 
     return each_file(given.models, given.out, given.quiet, one)

@@ -69,12 +69,17 @@ class Runner:
 
     def run(self, name: str, state: State, scalar: Scalar) -> Outcome:
         """One kernel at one state, whose numbers are of the scalar type already."""
+        return self.run_given(name, arrays(state, [self._kernels[scalar, name]]), state.parameters, scalar)
+
+    def run_given(
+        self, name: str, parts: Mapping[str, Sequence[Any]], parameters: Sequence[Any], scalar: Scalar
+    ) -> Outcome:
+        """The same for array arguments by name."""
         kernel = self._kernels[scalar, name]
-        parts = arrays(state, [kernel])
         if self._functions:
             given: dict[str, Any] = {part: c_array(scalar, values) for part, values in parts.items()}
-            return self._functions[scalar, name](given, c_array(scalar, state.parameters))
-        status, outputs = self._interpreters[scalar].run(kernel, parts, tuple(map(float, state.parameters)))
+            return self._functions[scalar, name](given, c_array(scalar, parameters))
+        status, outputs = self._interpreters[scalar].run(kernel, parts, tuple(map(float, parameters)))
         return Outcome(int(status), tuple(outputs) or (math.nan,) * max(1, math.prod(kernel.shape)))
 
 

@@ -78,7 +78,7 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
     whole = not scope.mistakes
     tolerances = tree.get("tolerances")
     published = read_published(scope, tree, names)
-    paths = read_paths(scope, tree, names)
+    paths = read_paths(scope, tree, names, sum(row.kind == "geometric" for row in constraints))
     model = Model(
         name=_model_name(scope, tree),
         description=one_line(tree.get("description")),

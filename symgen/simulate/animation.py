@@ -31,8 +31,11 @@ class AnimationView:
     data: str
 
 
-def animation(title: str, times: tuple[float, ...], shown: Scene) -> str:
-    """The page; a scene that stays in one plane z = constant is drawn in that plane."""
+def animation(title: str, times: tuple[float, ...], shown: Scene, planned: Scene | None = None) -> str:
+    """The page; a scene that stays in one plane z = constant is drawn in that plane.
+
+    Of a motion that follows a `planned` one the planned ways of what has a name and moves are drawn as lines.
+    """
     room = max((hoop.radius for hoop in shown.hoops), default=0.0)
     boxes = [_box(moment, room) for moment in shown.places]
     whole = _box([corner for box in boxes for corner in box], 0)
@@ -44,10 +47,11 @@ def animation(title: str, times: tuple[float, ...], shown: Scene) -> str:
         "planar": whole[1][2] - whole[0][2] < SMALLEST_RADIUS,
         "centres": [[round(x, 5) for x in centre] for centre in centres],
         "radius": radius,
+        "trails": [] if planned is None else _trails(planned),
     }
     view = AnimationView(
         title=escape(title),
-        caption=_caption(shown),
+        caption=_caption(shown, planned is not None),
         last=len(times) - 1,
         data=json.dumps(data, separators=(",", ":")).replace("<", "\\u003c"),
     )
@@ -82,7 +86,15 @@ def _middle(box: Box) -> Place:
     return (a + d) / 2, (b + e) / 2, (c + f) / 2
 
 
-def _caption(shown: Scene) -> str:
+def _trails(planned: Scene) -> list[list[list[float]]]:
+    """The ways of the last points of chains: of places that nothing else hangs on."""
+    carrying = {start for start, _ in (*planned.lines, *planned.arms)}
+    ends = [k for k in range(len(planned.names)) if k not in carrying]
+    ways = [[[round(x, 5) for x in moment[k]] for moment in planned.places] for k in ends]
+    return [way for way in ways if any(place != way[0] for place in way)]
+
+
+def _caption(shown: Scene, planned: bool) -> str:
     """What the lines and colours are."""
     parts = ["Frames and points joined to the frame they hang on", "axes x red, y green, z blue"]
     if shown.balls:
@@ -91,4 +103,6 @@ def _caption(shown: Scene) -> str:
         parts.append("rods, springs and cables dashed")
     if shown.hoops:
         parts.append("wheels on the plane z = 0")
+    if planned:
+        parts.append("planned ways green")
     return "; ".join(parts) + ". Drag turns, the wheel of the mouse zooms."

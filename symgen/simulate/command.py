@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from symgen.generation.results import Result
 from symgen.model.model import Model
 from symgen.output.write import write_files
+from symgen.simulate.following import followed
 from symgen.simulate.integrate import SimulatedMotion
 from symgen.simulate.simulation import NotSimulatedError, Request, simulated
 from symgen.simulate.tables import motion_csv
+from symgen.simulate.tracking import ControlLoop
+from symgen.simulate.tracking_tables import tracking_csv, tracking_summary
 from symgen.verify.tolerance import FACTOR
 
 Progress = Callable[[str], None]
@@ -39,6 +42,35 @@ def run_simulate(path: Path, out: Path, request: Request, quiet: bool, progress:
     written = write_files(out / model.name, files)
     if not quiet:
         lines = [*_summary(model, motion), _checked(made.verified), "written:"]
+        print(*lines, *(f"  {file}" for file in written), "", sep="\n")
+    if motion.stopped is not None:
+        print(f"{path}: stopped {motion.stopped}", file=sys.stderr)
+        return 1
+    return 0
+
+
+def run_tracking(
+    path: Path, out: Path, loop: ControlLoop, frames: int, start: Mapping[str, float], quiet: bool, progress: Progress
+) -> int:
+    """Writes tracking.csv, .svg and, for a model with frames, .html into OUT/<model>/; 0, or 1 where it stopped.
+
+    Raises ModelError for mistakes in the file and WrongUseError for names that the model does not have.
+    """
+    try:
+        made = followed(path, loop, frames, start, progress)
+    except NotSimulatedError as reason:
+        progress("")
+        print(f"{path}: {reason}", file=sys.stderr)
+        return 1
+    progress("drawing")
+    motion = made.tracked.motion
+    files = {"tracking.csv": tracking_csv(made.model, made.tracked), "tracking.svg": made.chart()}
+    if (page := made.animation()) is not None:
+        files["tracking.html"] = page
+    progress("")
+    written = write_files(out / made.model.name, files)
+    if not quiet:
+        lines = [*tracking_summary(made.model, made.tracked), _checked(made.verified), "written:"]
         print(*lines, *(f"  {file}" for file in written), "", sep="\n")
     if motion.stopped is not None:
         print(f"{path}: stopped {motion.stopped}", file=sys.stderr)

@@ -21,6 +21,10 @@ MEANING = {
     Status.ANGLE_RANGE: "an angle has left the range of the sine and cosine",
     Status.MASS_RANK: "the accelerations are not determined",
     Status.PARAMETER_RANGE: "a parameter is too far from its value in the model file",
+    Status.MEASURED_RANK: "what is measured does not determine the rest",
+    Status.NOT_CLOSED: "no configuration with what is measured closes the loops",
+    Status.BRANCH: "what is measured is too far from where the machine was",
+    Status.LIMITS: "no inputs within their limits produce the motion",
 }
 
 
@@ -40,7 +44,7 @@ class Plant:
 
     def __init__(self, model: Model, parameters: Sequence[float], kernels: Runs) -> None:
         self._kernels = kernels
-        self._parameters = tuple(parameters)
+        self.parameters = tuple(parameters)
         self.model = model
         self._units = _units(model)
 
@@ -75,7 +79,7 @@ class Plant:
         self, name: str, q: Sequence[float], qd: Sequence[float] = (), u: Sequence[float] = ()
     ) -> tuple[float, ...]:
         zeros = (0.0,) * self.model.n
-        state = State(tuple(q), tuple(qd) or zeros, zeros, tuple(u) or (0.0,) * self.model.m, self._parameters)
+        state = State(tuple(q), tuple(qd) or zeros, zeros, tuple(u) or (0.0,) * self.model.m, self.parameters)
         outcome = self._kernels.run(name, state, "float64")
         if outcome.status:
             raise PlantError(f"{name}: {MEANING[Status(outcome.status)]}")

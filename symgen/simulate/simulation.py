@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -81,25 +81,25 @@ def simulated(path: Path, request: Request, progress: Progress) -> Simulation:
     times = [request.duration * k / count for k in range(count + 1)]
     mechanics = System(model)
     parameters = parameter_values(mechanics)
-    verified = _verified(path, progress)
+    verified = verified_kernels(path, QUANTITIES, progress)
     with tempfile.TemporaryDirectory(prefix="symgen-simulate-") as folder:
         runner = Runner(model, {"float64": verified.programs["float64"]}, Path(folder))
         plant = Plant(model, tuple(parameters[p.name] for p in model.parameters), runner)
         try:
-            start = _start(plant, mechanics, q, qd, chosen=bool(request.start or model.configuration))
+            start = start_on_constraints(plant, mechanics, q, qd, chosen=bool(request.start or model.configuration))
         except PlantError as fault:
             raise NotSimulatedError(f"no consistent start: {fault}") from fault
         motion = integrate(plant, start, u, times, lambda t: progress(f"integrating, {t:.2f} of {times[-1]:g} s"))
     return Simulation(model, parameters, motion, verified)
 
 
-def _verified(path: Path, progress: Progress) -> Result:
-    """The kernels that are integrated, as `symgen` makes and verifies them; NotSimulatedError where one is rejected.
+def verified_kernels(path: Path, quantities: Sequence[str], progress: Progress) -> Result:
+    """The kernels that are run, as `symgen` makes and verifies them; NotSimulatedError where one is rejected.
 
     Without a C compiler the Python is verified, whose bits are those of the interpreter that runs then.
     """
     part = "c" if find_compiler() is not None else "python"
-    result = generate(path, Options(outputs=QUANTITIES, scalars=("float64",), parts=(part,)), progress)
+    result = generate(path, Options(outputs=tuple(quantities), scalars=("float64",), parts=(part,)), progress)
     kernels = {kernel.name for kernel in result.programs["float64"].kernels}
     reasons: list[str] = []
     if result.failures or result.left_out:
@@ -116,7 +116,7 @@ def _verified(path: Path, progress: Progress) -> Result:
     return result
 
 
-def _start(
+def start_on_constraints(
     plant: Plant, mechanics: System, q: list[float], qd: list[float], chosen: bool
 ) -> tuple[list[float], list[float]]:
     """The start on the constraints; where nobody chose one, any configuration that satisfies them serves."""

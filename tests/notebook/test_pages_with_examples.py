@@ -17,7 +17,7 @@ DOCS = Path(__file__).parents[2] / "docs"
 @pytest.mark.slow
 @pytest.mark.campaign
 @pytest.mark.toolchain
-@pytest.mark.parametrize("name", ["derivatives", "encoders", "limits"])
+@pytest.mark.parametrize("name", ["derivatives", "encoders", "limits", "tracking"])
 def test_every_block_runs_and_prints_what_the_page_says(
     name: str, tmp_path: Path, tool: Callable[[str], str]
 ) -> None:
@@ -25,6 +25,7 @@ def test_every_block_runs_and_prints_what_the_page_says(
     page = (DOCS / f"{name}.md").read_text(encoding="utf-8")
     commands = Path(sys.executable).parent
     environment = {**os.environ, "PATH": f"{commands}{os.pathsep}{os.environ['PATH']}"}
+    (tmp_path / "delta.yaml").write_bytes((DOCS.parent / "models/delta.yaml").read_bytes())
     printed = ""
     for language, block in re.findall(r"```(\w+)\n(.*?)```", page, re.DOTALL):
         if language == "yaml":

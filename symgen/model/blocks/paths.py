@@ -18,20 +18,21 @@ DEFAULT_SAMPLES = 201
 MAXIMUM_SAMPLES = 100_000
 
 
-def read_paths(scope: Scope, tree: MappingNode, coordinates: tuple[str, ...]) -> tuple[Path, ...]:
-    """The paths in the order of the file."""
+def read_paths(scope: Scope, tree: MappingNode, coordinates: tuple[str, ...], rows: int) -> tuple[Path, ...]:
+    """The paths in the order of the file; `rows` geometric ones are known, of loops and joints too."""
+    rows = max(rows, len(entries(member(tree.get("constraints"), "geometric"))))
     paths: list[Path] = []
     for key, node in entries(tree.get("paths")):
         mistake = name_mistake(key, "path")
         if mistake is not None:
             scope.mistakes.append(mistake)
-        path = _path(scope, tree, key, node, coordinates)
+        path = _path(scope, key, node, coordinates, rows)
         if path is not None:
             paths.append(path)
     return tuple(paths)
 
 
-def _path(scope: Scope, tree: MappingNode, key: ScalarNode, node: Node, coordinates: tuple[str, ...]) -> Path | None:
+def _path(scope: Scope, key: ScalarNode, node: Node, coordinates: tuple[str, ...], rows: int) -> Path | None:
     name = key.value
     duration = constant(scope, member(node, "duration"), f"the duration of path `{name}`")
     count = member(node, "samples")
@@ -63,11 +64,10 @@ def _path(scope: Scope, tree: MappingNode, key: ScalarNode, node: Node, coordina
         number = constant(scope, value, f"the start value of `{coordinate.value}`")
         if number is not None:
             start.append((coordinate.value, number))
-    geometric = len(entries(member(tree.get("constraints"), "geometric")))
     given = len(entries(member(node, "conditions")))
-    if 0 < given + geometric < len(coordinates):
+    if 0 < given + rows < len(coordinates):
         message = f"path `{name}` has {counted(given, 'condition')} and "
-        message += f"{counted(geometric, 'geometric constraint')} for {counted(len(coordinates), 'coordinate')}"
+        message += f"{counted(rows, 'geometric constraint')} for {counted(len(coordinates), 'coordinate')}"
         scope.wrong(message, "add conditions until they fix every coordinate", key.span)
     if duration is None or (samples is None and count is not None):
         return None
