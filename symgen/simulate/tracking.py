@@ -15,7 +15,8 @@ from symgen.simulate.integrate import SimulatedMotion
 from symgen.simulate.plant import Plant, PlantError
 
 # Seconds that a step of the machine takes at most.
-LONGEST_STEP = 1e-3
+MACHINE_STEP = 1e-3
+# Of what encoders say beside what is: the same at each run.
 NOISE_SEED = 1
 
 
@@ -64,7 +65,7 @@ class Encoders:
         model = kernels.model
         self._places = list(model.measured_places) if model.measured else list(range(model.n))
         self._noise = np.random.default_rng(NOISE_SEED)
-        self._found = bool(model.measured) and len(self._places) < model.n
+        self._reconstructs = bool(model.measured) and len(self._places) < model.n
         self._q = q
         self._before: Array | None = None
 
@@ -76,7 +77,7 @@ class Encoders:
             seen = loop.resolution * np.round(seen / loop.resolution)
         rates = qd[self._places] if self._before is None else (seen - self._before) / loop.sample
         self._before = seen
-        if self._found:
+        if self._reconstructs:
             self._q = self._kernels("configuration_from_measured", q_m=seen, q=self._q)
             return self._q, self._kernels("velocity_from_measured", q=self._q, qd_m=rates)
         known = np.empty_like(q)
@@ -151,7 +152,7 @@ def tracked(
 
 def _moved(plant: Plant, q: Array, qd: Array, u: Array, duration: float) -> tuple[Array, Array]:
     """The state after `duration` under constant inputs: Runge and Kutta's method of order 4, then onto V."""
-    steps = max(1, math.ceil(duration / LONGEST_STEP - 1e-9))
+    steps = max(1, math.ceil(duration / MACHINE_STEP - 1e-9))
     h, n, inputs = duration / steps, len(q), u.tolist()
 
     def slope(x: Array) -> Array:
