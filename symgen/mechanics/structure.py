@@ -182,6 +182,8 @@ def _input_decisions(mechanics: System, generic: Genericity) -> Iterator[Decisio
         yield Decision("minimum-norm step", f"as many independent inputs as needed: m = {generic.m}")
     elif generic.full_actuation:
         why = f"m = {generic.m} inputs for δ = {generic.delta}: all {comb(generic.m, generic.alpha)} choices are summed"
+        if mechanics.model.keeps_limits:
+            why = f"m = {generic.m} inputs for δ = {generic.delta}: reflections take all of them together"
         yield Decision("switching between choices of inputs", why)
 
 

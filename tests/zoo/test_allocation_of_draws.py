@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+import pytest
+
 from symgen.laboratory.zoo.witness.allocation import directed, members, preloads
 from symgen.laboratory.zoo.witness.fields import Balls, precision
 from symgen.laboratory.zoo.witness.kkt import EquationValues, inverse_dynamics, split
+from symgen.laboratory.zoo.witness.limits import NoInputsError, nearest_within
 from symgen.laboratory.zoo.witness.linear import determinant, transposed
 
 # one mass, driven by three forces along it
@@ -65,3 +68,19 @@ def test_determinants_of_columns_that_depend_are_nothing_in_balls() -> None:
         assert abs(regular - cyclic) < 1e-60 < abs(regular)
         swapped = determinant(transposed([second, first, third], 3))
         assert abs(regular + swapped) < 1e-60
+
+
+def test_limits_of_several_are_kept_by_the_nearest_inputs_or_by_none() -> None:
+    """u_1 + 2 u_2 - u_3 is given: the nearest to 0 with u_2 at most 2 share the rest evenly."""
+    with precision():
+        least, _ = inverse_dynamics(AT, split(AT, 0, 1.0), [3.0], 1)
+        row = [[1.0, 2.0, -1.0]]
+        one = Balls().number(Fraction(1))
+        u = nearest_within(row, least, [one] * 3, [(1, -one, 2 * one)], 2)
+        assert [round(float(x), 12) for x in u] == [1.25, 2, -1.25]
+        # with a weight of 4 the first one takes a fifth of what the third one takes with it
+        u = nearest_within(row, least, [4 * one, one, one], [(1, -one, 2 * one)], 2)
+        assert round(float(u[1]), 12) == 2
+        assert round(float(u[0] - u[2]), 12) == 2.5
+        with pytest.raises(NoInputsError):
+            nearest_within(row, least, [one] * 3, [(k, -one, one) for k in range(3)], 2)

@@ -36,6 +36,8 @@ OF_INDEPENDENT = ("orthogonal_complement", "minimal_mass_matrix", "minimal_corio
 
 # Shares of systems that measure, and that have a task.
 MEASURED_SHARE, TASK_SHARE = 0.15, 0.12
+# Of allocations without limits those that get some, and of how many inputs at most.
+LIMITED_SHARE, MOST_LIMITED = 0.6, 4
 
 
 def finish(sketch: Sketch) -> Description:
@@ -79,6 +81,8 @@ def finish(sketch: Sketch) -> Description:
     # drawn last, so that systems without one are what they were
     if dice.chance(TASK_SHARE):
         _task(sketch)
+    if "limits" not in blocks.get("allocation", {"limits": {}}) and dice.chance(LIMITED_SHARE):
+        _limit(sketch)
     return Description(sketch.family, blocks, dict(start), tuple(sketch.marks), sketch.files)
 
 
@@ -139,6 +143,19 @@ def allocate(sketch: Sketch) -> None:
         allocation["preload"] = {name: dice.choice(("5", "-3")) for name in chosen}
     if allocation:
         blocks["allocation"] = allocation
+
+
+def _limit(sketch: Sketch) -> None:
+    """Limits of no more inputs than directions of internal force, which these keep whatever the motion is."""
+    dice, blocks, names = sketch.dice, sketch.blocks, list(sketch.blocks["inputs"])
+    drawn = DrawnEquations(expanded(blocks, sketch.files), sketch.start)
+    left = len(names) - drawn.reach
+    if drawn.reach < drawn.freedom or isinstance(blocks["allocation"].get("preload"), str):
+        return
+    if left > 1 or (left == 1 and not drawn.independent):
+        ends = (["0.5", "60"], ["-8", "8"], ["-30", "2"], ["20", "30"])
+        chosen = dice.sample(names, dice.whole(1, min(left, MOST_LIMITED)))
+        blocks["allocation"]["limits"] = {name: dice.choice(ends) for name in chosen}
 
 
 def _task(sketch: Sketch) -> None:

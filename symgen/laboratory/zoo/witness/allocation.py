@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from symgen.laboratory.zoo.witness.kkt import EquationValues, internal_force
+from symgen.laboratory.zoo.witness.kkt import EquationValues, GenericRanks, internal_force
 from symgen.laboratory.zoo.witness.linear import Vector
 
 # Of an internal force of norm 1, what rounding in balls leaves of an input that takes no part in it.
@@ -30,6 +30,19 @@ def preloads(inputs: Sequence[str], block: Mapping[str, Any], values: Mapping[st
     if not isinstance(block.get("preload"), Mapping):
         return None
     return [values.get(f"preload_{name}", zero) for name in inputs]
+
+
+def limits_of(
+    inputs: Sequence[str], block: Mapping[str, Any], values: Mapping[str, Any]
+) -> list[tuple[int, Any, Any]]:
+    """The numbers of the inputs that have limits, and these."""
+    names = block.get("limits") or {}
+    return [(inputs.index(name), values[f"limit_{name}_lower"], values[f"limit_{name}_upper"]) for name in names]
+
+
+def is_directed(at: EquationValues, ranks: GenericRanks) -> bool:
+    """Whether an internal force has one direction with a sign of its own, which limits do not take away."""
+    return len(at.control[0]) - ranks.actuation == 1 and ranks.constraints == len(at.rows)
 
 
 def directed(

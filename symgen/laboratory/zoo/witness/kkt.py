@@ -107,7 +107,7 @@ def split(at: EquationValues, rank: int, one: Any) -> DirectionSplit:
     return DirectionSplit(held, complement(held, at.n, one), pivots)
 
 
-def _along(at: EquationValues, parts: DirectionSplit) -> tuple[Matrix, list[float]]:
+def along(at: EquationValues, parts: DirectionSplit) -> tuple[Matrix, list[float]]:
     """The inputs along the free directions, and their lengths in all: less is left of them where they lose rank."""
     columns = transposed(at.control, len(at.control[0]))
     return [times(columns, direction) for direction in parts.free], [size(column) for column in columns]
@@ -118,7 +118,7 @@ def distances(at: EquationValues, ranks: GenericRanks, one: Any) -> dict[str, fl
     parts = split(at, ranks.constraints, one)
     by_kind = {"rows": _smallest(parts.pivots, ranks.constraints)} if ranks.constraints else {}
     if ranks.actuation:
-        projected, whole = _along(at, parts)
+        projected, whole = along(at, parts)
         columns = transposed(projected, len(whole))
         by_kind["inputs"] = _smallest(basis(columns, ranks.actuation, whole)[1], ranks.actuation)
     if parts.free:
@@ -143,7 +143,7 @@ def inverse_dynamics(
     if near is not None:
         load = [x - y for x, y in zip(load, times(at.control, near), strict=True)]
     m = len(at.control[0])
-    projected, whole = _along(at, parts)
+    projected, whole = along(at, parts)
     if weights is not None:
         projected = [[x / weight**0.5 for x, weight in zip(row, weights, strict=True)] for row in projected]
         whole = [length / float(weight) ** 0.5 for length, weight in zip(whole, weights, strict=True)]

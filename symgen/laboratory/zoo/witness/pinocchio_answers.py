@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from symgen.laboratory.zoo.witness.allocation import directed, preloads
+from symgen.laboratory.zoo.witness.allocation import directed, is_directed, preloads
 from symgen.laboratory.zoo.witness.fields import Floats
 from symgen.laboratory.zoo.witness.kkt import EquationEvaluator, EquationValues, GenericRanks
 from symgen.laboratory.zoo.witness.mechanics import equations
@@ -51,6 +51,9 @@ class PinocchioAnswers:
         # of what cancels, rounding leaves a share of the parts
         parts = np.abs(bias) + np.abs(at.bias) + TURNED * self._tree.weight
         free = null_space(at, self._ranks.constraints)
+        limited = (self._system.blocks.get("allocation") or {}).get("limits")
+        if quantity == "inverse_dynamics" and limited and not is_directed(at, self._ranks):
+            return None
         if quantity == "inverse_dynamics":
             load = self._tree.load(q, qd, qdd) + rotors @ qdd + np.array(at.bias)
             expected, share = self._inputs(at, control, free, load, values)

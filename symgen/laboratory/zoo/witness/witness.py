@@ -14,7 +14,7 @@ import yaml
 
 from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.draws.describe import Description
-from symgen.laboratory.zoo.witness.allocation import directed, members, preloads
+from symgen.laboratory.zoo.witness.allocation import directed, is_directed, limits_of, members, preloads
 from symgen.laboratory.zoo.witness.coverage import Tally
 from symgen.laboratory.zoo.witness.fields import Balls, Floats, precision
 from symgen.laboratory.zoo.witness.generated import ARGUMENTS, Answer, Target, targets
@@ -22,10 +22,12 @@ from symgen.laboratory.zoo.witness.kkt import (
     DirectionSplit,
     EquationEvaluator,
     GenericRanks,
+    along,
     inverse_dynamics,
     motion,
     split,
 )
+from symgen.laboratory.zoo.witness.limits import NoInputsError, nearest_within
 from symgen.laboratory.zoo.witness.linear import NOTHING
 from symgen.laboratory.zoo.witness.mechanics import equations
 from symgen.laboratory.zoo.witness.pinocchio_answers import COMPARED, PinocchioAnswers
@@ -218,7 +220,13 @@ class Witness:
         parts = (state.q, state.qd, state.qdd, state.u, state.parameters)
         given = FloatState(*(rounded(part, scalar) for part in parts))
         with precision():
-            truth = self._truth(quantity, given, ranks)
+            try:
+                truth = self._truth(quantity, given, ranks)
+            except NoInputsError:
+                answer = target.call(quantity, self._at_runtime(given), len(self._system.inputs))
+                # seven digits may not tell what is all but within limits from what is not
+                wrong = answer.status == 0 and scalar == "float64"
+                return JudgedResult(answer.status, math.inf if wrong else 0.0, math.inf if wrong else 0.0, 0.0, False)
             if truth is None:
                 return None
             answer = target.call(quantity, self._at_runtime(given), len(truth.value))
@@ -249,11 +257,11 @@ class Witness:
         given = FloatState(*(rounded(part, scalar) for part in parts))
         dice, moved = Dice("perturbations", self._seed), 0.0
         with precision():
-            truth = self._truth(quantity, given, ranks)
+            truth = self._known(quantity, given, ranks)
             if truth is None:
                 return math.inf
             for _ in range(PERTURBATIONS):
-                other = self._truth(quantity, given, ranks, (dice, EPS[scalar]))
+                other = self._known(quantity, given, ranks, (dice, EPS[scalar]))
                 moved = max(moved, math.inf if other is None else _distance(other.value, truth.value))
             size = _norm([float(x.mid()) for x in truth.value])
         return moved / size if size else 0.0 if not moved else math.inf
@@ -273,7 +281,7 @@ class Witness:
             for _ in range(PERTURBATIONS):
                 if error <= due:
                     break
-                other = self._truth(quantity, state, ranks, (dice, eps))
+                other = self._known(quantity, state, ranks, (dice, eps))
                 if other is not None:
                     largest = max(largest, _distance(other.value, truth.value))
                 due = allowed * (largest + eps * size)
@@ -285,6 +293,15 @@ class Witness:
             # accelerations of idle motions
             allowed = max(allowed, moved(ALLOWED * eps, 1.0))
         return error / allowed if allowed else (math.inf if error else 0.0)
+
+    def _known(
+        self, quantity: str, state: FloatState, ranks: GenericRanks, moved: tuple[Dice, float] | None = None
+    ) -> Truth | None:
+        """The same, None where no inputs within their limits produce the motion."""
+        try:
+            return self._truth(quantity, state, ranks, moved)
+        except NoInputsError:
+            return None
 
     def _truth(
         self, quantity: str, state: FloatState, ranks: GenericRanks, moved: tuple[Dice, float] | None = None
@@ -334,7 +351,12 @@ class Witness:
         u, pivots = inverse_dynamics(at, parts, accelerations, ranks.actuation, weights, near)
         if len(pivots) < ranks.actuation:
             return None
-        u = directed(at, u, inputs, block, values, one)
+        if block.get("limits") and not is_directed(at, ranks):
+            by_input = weights or [one] * len(inputs)
+            limits = limits_of(inputs, block, values)
+            u = nearest_within(along(at, parts)[0], u, by_input, limits, len(inputs) - ranks.actuation)
+        else:
+            u = directed(at, u, inputs, block, values, one)
         # where the inputs reach nothing, u is a plain 0
         u = [x + 0 * one for x in u]
         return Truth(u, min((*parts.pivots, *pivots), default=1.0))
