@@ -108,8 +108,14 @@ def _bounds(bounds: Mapping[str, Sequence[float | None]]) -> Iterator[Bound]:
 def _with_record(draft: Draft, record: _VerificationRecord, asked: Container[str]) -> Draft:
     """The draft with the methods of the record in place of rejected ones, but where one was `asked` for."""
     present = {choice.quantity for choice in draft.derivations.choices}
+    # a model whose allocation is set aside lacks the parameters of that
+    known = {parameter.name for parameter in draft.model.parameters}
     bounds = {
-        scalar: {name: own for name, own in every.items() if name in present and name not in asked}
+        scalar: {
+            name: tuple(one for one in own if one.parameter in known)
+            for name, own in every.items()
+            if name in present and name not in asked
+        }
         for scalar, every in record.bounds.items()
     }
     draft = replace(draft, bounds=bounds)
