@@ -39,6 +39,7 @@ FIGURES = "build/campaigns/every_float32.xml"
 NOTED = (f"--junitxml={FIGURES}", "-o", "junit_family=xunit1")
 # What in tests/ has tests of the mark `campaign`, and the tools they need; a part of each class stays in `make test`.
 TESTED = {
+    "allocation": ("gcc",),
     "backends": ("gcc",),
     "cli": ("gcc",),
     "generation": ("gcc",),

@@ -74,7 +74,7 @@ def test_parameters() -> None:
         ("", ("forward_dynamics",)),
         ("inputs: {u: {acts_on: {b: 1}}}\n", ("inverse_dynamics",)),
         ("outputs: all\n", ("all",)),
-        ("outputs: [energy, all]\n", ("all",)),
+        ("outputs: [energy, all]\n", ("all", "energy")),
         ("outputs: energy\n", ("energy",)),
         ("outputs: [energy, mass_matrix, energy]\n", ("energy", "mass_matrix")),
     ],

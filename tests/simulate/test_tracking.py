@@ -89,6 +89,7 @@ def test_computed_torque_follows_and_another_mass_lags_by_what_theory_says(
     assert (tmp_path / "slide/tracking.svg").stat().st_size > 1000
 
 
+@pytest.mark.campaign
 def test_a_delay_and_coarse_encoders_make_it_worse(run: Callable[..., int], tmp_path: Path) -> None:
     assert run(SLIDE, "swing", "--quiet") == 0
     fine = error(tmp_path, "slide", "x")
@@ -111,6 +112,7 @@ def test_drives_do_no_more_than_their_limits(
     assert error(tmp_path, "slide", "x") == pytest.approx((3 - 5 / 2) / 2, rel=0.01)
 
 
+@pytest.mark.campaign
 def test_what_encoders_do_not_say_is_found(run: Callable[..., int], tmp_path: Path) -> None:
     assert run(LADDER, "slide", "--quiet", "--resolution", "1e-5") == 0
     assert max(error(tmp_path, "ladder", name) for name in "axy") < 1e-3
