@@ -157,6 +157,15 @@ class ReferenceSystem:
         return arb_mat(self.r, self.n, values[:size]), arb_mat(self.n, self.m, values[size:])
 
     @cached_property
+    def masses_replay(self) -> Replay:
+        """The energy that is written out (n x n), masses and inertias of bodies, their Jacobians part by part."""
+        shapes = [rows * columns for rows, columns in self._shapes]
+        weights = self._at_configuration[sum(shapes[:-1]) :]
+        return replay_of(
+            self._tape, [*self._at_configuration[: shapes[0]], *weights, *self._bodies.needed(self.heavy)]
+        )
+
+    @cached_property
     def rates(self) -> MatrixRates:
         """The rates of G, B and M, for the quantities that contain one."""
         return MatrixRates(self.model, self.literals, self.heavy)

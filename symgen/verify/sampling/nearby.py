@@ -19,6 +19,7 @@ from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.reference.parameter_values import default_parameters
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.sampling.loops_in_lanes import DEPENDENT, LoopsInLanes, lengths_of
+from symgen.verify.sampling.masses_in_lanes import MassesInLanes
 from symgen.verify.sampling.plain_values import values_at
 from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, measures, ranked_parts
 from symgen.verify.sampling.rates_in_lanes import RatesInLanes
@@ -94,7 +95,7 @@ class Surroundings:
         self, reference: Reference, samples: Sequence[Sample], modes: Sequence[Sequence[float]] = ()
     ) -> None:
         self._system, self._parts = reference.system, ranked_parts(reference.system, reference.ranks)
-        literals = [float(x) for x in reference.literals()]
+        literals = self._literals = [float(x) for x in reference.literals()]
         self._loops, self._task = LoopsInLanes(reference.system, literals), TaskInLanes(reference.system, literals)
         self._rates_in_lanes = RatesInLanes(reference.system, self._parts, self._loops)
         self.samples = of_samples(samples)
@@ -180,15 +181,32 @@ class Surroundings:
 
     def towards(self, count: int, least: Sequence[float]) -> Nearby:
         """So many nearer and nearer to where rows, or inputs, lose rank, as far as measures stay above the least."""
-        start, dice = self.drawn(count), random.Random("towards")
+        return self._drawn_towards(count, least, random.Random("towards"), None)
+
+    def towards_no_mass(self, count: int, least: Sequence[float], share: float) -> Nearby:
+        """So many to where a direction loses its mass, as far as its share of the largest stays above one.
+
+        The others stay as far from a drop of rank as measures say.
+        """
+        system = self._system
+        masses = MassesInLanes(system, sum(part.constraints for part in self._parts), self._loops, self._literals)
+        low = share * float(masses.shares(self.samples.parts["q"], self.samples.parts["p"]).max())
+        return self._drawn_towards(count, [*least, low], random.Random("towards no mass"), masses)
+
+    def _drawn_towards(
+        self, count: int, least: Sequence[float], dice: random.Random, masses: MassesInLanes | None
+    ) -> Nearby:
+        start = self.drawn(count)
         lanes = np.arange(len(start))
-        which, rounds = lanes % 2, lanes // 2 % LED_STEPS
+        which, rounds = (lanes % 2, lanes // 2 % LED_STEPS) if masses is None else (0 * lanes + 2, lanes % LED_STEPS)
         q, p, low = start.parts["q"], start.parts["p"], np.array(least)
 
         def far(q: Lanes) -> tuple[Lanes, Lanes]:
             """Where that leads, and how far it is from a drop of rank: the root of a measure falls along a line."""
             q, shut = self._loops.newton(q, p)
             made = measures(self._parts, self._matrices(q, p))
+            if masses is not None:
+                made = np.concatenate((made, masses.shares(q, p)[:, None]), axis=1)
             inside = ((q >= self._low) & (q <= self._high)).all(axis=1)
             good = shut.all(axis=1) & inside & (made >= low).all(axis=1)
             return q, np.where(good, np.sqrt(made[lanes, which]), np.nan)

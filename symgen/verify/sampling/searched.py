@@ -26,6 +26,7 @@ from symgen.verify.interpreted import outcomes
 from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.reference.reference import ReferenceValueError
 from symgen.verify.running.compile import Outcome
+from symgen.verify.sampling.inertias import DIVIDED_BY_MASSES, REGULAR_INERTIA
 from symgen.verify.sampling.lanes import RoundingErrors
 from symgen.verify.sampling.nearby import Nearby, Surroundings, joined, of_samples
 from symgen.verify.sampling.settling import Settling
@@ -142,6 +143,8 @@ class WorstStateSearch:
         """What is estimated at states near those of the verification."""
         count = NUMBERS // (len(kernel.statements) + 1)
         states = self._beside_singular if kernel.name in MAIN else self._drawn
+        if kernel.name in DIVIDED_BY_MASSES.intersection(MAIN):
+            states = joined(states, self._all_but_massless)
         if len(states) > count:
             samples = len(self._surroundings.samples)
             others = np.linspace(samples, len(states), max(0, count - samples), endpoint=False).astype(int)
@@ -187,6 +190,13 @@ class WorstStateSearch:
         """These and others that are led towards a drop of rank."""
         _, nearest = self._settlings
         return joined(self._drawn, self._surroundings.towards(self._affordable(TOWARDS), nearest.measures))
+
+    @cached_property
+    def _all_but_massless(self) -> Nearby:
+        """Others that are led to where a direction loses its mass."""
+        _, nearest = self._settlings
+        count = self._affordable(TOWARDS)
+        return self._surroundings.towards_no_mass(count, nearest.measures, NEARER * REGULAR_INERTIA)
 
     def _affordable(self, count: int) -> int:
         """So many states, or as many as large parts leave time for."""
