@@ -120,6 +120,7 @@ def test_what_encoders_do_not_say_is_found(run: Callable[..., int], tmp_path: Pa
         assert row["x"] ** 2 + row["y"] ** 2 == pytest.approx(1, abs=1e-11)
 
 
+@pytest.mark.campaign
 def test_pd_and_a_regulator(run: Callable[..., int], tmp_path: Path) -> None:
     assert run(SLIDE, "even", "--quiet", "--controller", "pd", "--bandwidth", "40") == 0
     last = rows(tmp_path, "slide")[-1]
