@@ -17,8 +17,8 @@ from symgen.symbolic.scalar import Graph, Scalar
 class ReflectedInputs:
     """A u = f for the columns of A, with as much rank as `degree` says; in the interface of `ActuationForms`.
 
-    With `weights` w the columns are A_j / sqrt(w_j), and u_j their factors by sqrt(w_j).  `by_columns`: each pivot is
-    what is left of one of the columns, otherwise of a component of all of them.
+    With `weights` w the columns are A_j / sqrt(w_j), and u_j their factors by the `shares` 1 / sqrt(w_j).
+    `by_columns`: each pivot is what is left of one of the columns, otherwise of a component of all of them.
     """
 
     single = False
@@ -35,9 +35,9 @@ class ReflectedInputs:
     ) -> None:
         self.graph, self.degree = graph, degree
         self._given = (tuple(columns), size, degree, everywhere)
-        self._shares = [1 / graph.function("sqrt", (weight,)) for weight in weights] or [graph.one] * len(columns)
+        self.shares = [1 / graph.function("sqrt", (weight,)) for weight in weights] or [graph.one] * len(columns)
         self._columns = tuple(
-            tuple(entry * share for entry in column) for column, share in zip(columns, self._shares, strict=True)
+            tuple(entry * share for entry in column) for column, share in zip(columns, self.shares, strict=True)
         )
         self.by_columns = degree == len(self._columns) < size
         rows = self._columns if self.by_columns else transpose(self._columns, size)
@@ -54,7 +54,7 @@ class ReflectedInputs:
 
     def lengths(self, squares: Sequence[Scalar]) -> list[Scalar]:
         """The squared lengths of the columns from those without weights."""
-        return [square * share * share for square, share in zip(squares, self._shares, strict=True)]
+        return [square * share * share for square, share in zip(squares, self.shares, strict=True)]
 
     def combinations(self, lengths: Sequence[Scalar]) -> list[Scalar]:
         """By columns: of each pivot the squared lengths of the columns that it is made of."""
@@ -78,11 +78,11 @@ class ReflectedInputs:
     def internal_forces(self) -> Matrix:
         """Inputs that move nothing (m x (m - degree)), orthonormal in the weights."""
         return tuple(
-            tuple(share * entry for entry in row) for share, row in zip(self._shares, self._space.basis, strict=True)
+            tuple(share * entry for entry in row) for share, row in zip(self.shares, self._space.basis, strict=True)
         )
 
     def _shared(self, factors: Vector) -> Vector:
-        return tuple(factor * share for factor, share in zip(factors, self._shares, strict=True))
+        return tuple(factor * share for factor, share in zip(factors, self.shares, strict=True))
 
     def square(self) -> Scalar:
         """The sum of the squared minors of A."""

@@ -21,7 +21,7 @@ from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.mechanics.system import System
 from symgen.methods.least_inputs import least_inputs
-from symgen.methods.limits import Slab, interval, larger, nearest_of, nearest_within
+from symgen.methods.limits import NO_PART, TAKES_PART, Slab, interval, larger, nearest_of, nearest_within
 from symgen.methods.method import divisors
 from symgen.methods.utilisation import scaled
 from symgen.model.model import Allocation
@@ -91,22 +91,21 @@ class InputAllocation:
         share = graph.zero
         if allocation.preload is not None:
             share = graph.symbol(allocation.preload) / graph.function("sqrt", (square,))
-        slabs = self._slabs(least, [(z,) for z in direction])
-        taking_part = (slab for slab in slabs if not slab.slopes[0].is_zero)
-        intervals = (interval(graph, one.lower, one.upper, one.start, one.slopes[0]) for one in taking_part)
-        return nearest_of(graph, intervals, share)
+        slabs = self._slabs(least, [(z,) for z in direction], [graph.const(NO_PART)] * len(least))
+        return nearest_of(graph, (interval(graph, slab) for slab in slabs if not slab.slopes[0].is_zero), share)
 
-    def _slabs(self, inputs: Vector, slopes: Sequence[Vector]) -> list[Slab]:
-        """The limits of inputs that change with shares of internal forces by these slopes."""
-        graph, limits = self._graph, self._allocation.limits
+    def _slabs(self, inputs: Vector, slopes: Sequence[Vector], least: Sequence[Scalar]) -> list[Slab]:
+        """The limits of inputs that change with shares of internal forces by these slopes, or not at all."""
+        symbol, limits = self._graph.symbol, self._allocation.limits
         places = [(limit, self._place[limit.input]) for limit in limits]
-        return [Slab(graph.symbol(one.lower), graph.symbol(one.upper), inputs[k], slopes[k]) for one, k in places]
+        return [Slab(symbol(one.lower), symbol(one.upper), inputs[k], slopes[k], least[k]) for one, k in places]
 
     def _within_limits(self, force: Vector) -> Vector:
         """Of all inputs for a force those nearest to the preferred ones that keep the limits, if any do."""
         graph, least = self._graph, self._nearest(force)
         forces = self._reflected.internal_forces()
-        shares = nearest_within(graph, self._slabs(least, forces), len(forces[0]))
+        slopes = [share * TAKES_PART for share in self._reflected.shares]
+        shares = nearest_within(graph, self._slabs(least, forces, slopes), len(forces[0]))
         return tuple(u + dot(graph, row, shares) for u, row in zip(least, forces, strict=True))
 
     def harmless_divisors(self, force: Vector) -> tuple[Scalar, ...]:
@@ -122,7 +121,7 @@ class InputAllocation:
         if not self._mechanics.model.keeps_limits or self._allocation.scale:
             return ()
         graph, excess, sizes = self._graph, self._graph.zero, []
-        for slab in self._slabs(inputs, [()] * len(inputs)):
+        for slab in self._slabs(inputs, [()] * len(inputs), [graph.zero] * len(inputs)):
             beyond = larger(graph, slab.start - slab.upper, slab.lower - slab.start)
             excess = larger(graph, excess, beyond)
             sizes += [graph.function("abs", (x,)) for x in (slab.lower, slab.upper, slab.start)]

@@ -11,6 +11,7 @@ end that does not depend on any tolerance.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 from symgen.linear_algebra.reflections import Reflections
@@ -20,37 +21,40 @@ from symgen.symbolic.scalar import Graph, Scalar
 
 # Below this an input takes no part in the internal force; quotients by it are finite in float32, too.
 NO_PART = Fraction(1, 10**30)
+# Of what it changes by at most along internal forces of norm 1: an input that these change by less takes no part in
+# them.  Rounding leaves 1e-7 of none in float32; to reach a limit so would take ten thousand times what is missing.
+TAKES_PART = Fraction(1, 10_000)
 # A share of the internal force that no limits reach; float32 takes it apart into two halves, too.
 NO_LIMIT = Fraction(10**30)
 
 
 @dataclass(frozen=True, slots=True)
 class Slab:
-    """lower <= start + slopes . c <= upper for a point c."""
+    """lower <= start + slopes . c <= upper for a point c; slopes shorter than `least` are 0 but for rounding."""
 
     lower: Scalar
     upper: Scalar
     start: Scalar
     slopes: Vector
+    least: Scalar
 
 
 def nearest_within(graph: Graph, slabs: Sequence[Slab], directions: int) -> Vector:
     """The point (directions) nearest to 0 within all slabs; where there is none, one that violates some of them."""
     slabs = [slab for slab in slabs if any(not slope.is_zero for slope in slab.slopes)]
     if directions == 1:
-        ends = [interval(graph, slab.lower, slab.upper, slab.start, slab.slopes[0]) for slab in slabs]
+        ends = [interval(graph, slab) for slab in slabs]
         return (nearest_of(graph, ends, graph.zero),)
     nearest: Vector = (graph.zero,) * directions
     for k, slab in enumerate(slabs):
         value = slab.start + dot(graph, slab.slopes, nearest)
         reached = larger(graph, slab.lower, smaller(graph, slab.upper, value))
         on_it = _on_plane(graph, slab, reached, slabs[:k], directions)
-        if k == 0:
-            # 0 itself where it is inside
-            nearest = on_it
-            continue
-        violated = _exceeds(graph, graph.function("abs", (reached - value,)), graph.const(NO_PART))
-        nearest = tuple(violated * a + (1 - violated) * b for a, b in zip(on_it, nearest, strict=True))
+        length = dot(graph, slab.slopes, slab.slopes)
+        taken = _exceeds(graph, length, slab.least * slab.least)
+        if k > 0:  # before there is a limit the point is 0, and stays there where it is inside
+            taken = taken * _exceeds(graph, graph.function("abs", (reached - value,)), graph.const(NO_PART))
+        nearest = tuple(taken * a + (1 - taken) * b for a, b in zip(on_it, nearest, strict=True))
     return nearest
 
 
@@ -61,18 +65,18 @@ def _on_plane(graph: Graph, slab: Slab, value: Scalar, before: Sequence[Slab], d
     """
     turned = Reflections(graph, (slab.slopes,), directions, everywhere=True)
     (slope,) = (column[0] for column in turned.triangle)
-    first = (value - slab.start) * _reciprocal(graph, slope)[0]
+    first = (value - slab.start) * _reciprocal(graph, slope, slab.least)[0]
     left: list[Slab] = []
     for other in before:
         along, *across = turned.apply_transposed(other.slopes)
-        left.append(Slab(other.lower, other.upper, other.start + along * first, tuple(across)))
+        left.append(replace(other, start=other.start + along * first, slopes=tuple(across)))
     return turned.apply((first, *nearest_within(graph, left, directions - 1)))
 
 
-def interval(graph: Graph, lower: Scalar, upper: Scalar, start: Scalar, slope: Scalar) -> tuple[Scalar, Scalar]:
-    """The shares s with lower <= start + s slope <= upper: all of them for a slope that is 0."""
-    reciprocal, apart = _reciprocal(graph, slope)
-    ends = [(limit - start) * reciprocal for limit in (lower, upper)]
+def interval(graph: Graph, slab: Slab) -> tuple[Scalar, Scalar]:
+    """The points c of a line within a slab: all of them for a slope that is 0."""
+    reciprocal, apart = _reciprocal(graph, slab.slopes[0], slab.least)
+    ends = [(limit - slab.start) * reciprocal for limit in (slab.lower, slab.upper)]
     beyond = apart * NO_LIMIT
     return smaller(graph, *ends) - beyond, larger(graph, *ends) + beyond
 
@@ -93,10 +97,9 @@ def nearest_of(graph: Graph, intervals: Iterable[tuple[Scalar, Scalar]], share: 
     return larger(graph, below, smaller(graph, above, share))
 
 
-def _reciprocal(graph: Graph, slope: Scalar) -> tuple[Scalar, Scalar]:
-    """1 / slope, or 0 for one that is 0, and 1 for those that are."""
+def _reciprocal(graph: Graph, slope: Scalar, least: Scalar) -> tuple[Scalar, Scalar]:
+    """1 / slope, or 0 for one that is below the least, and 1 for those that are."""
     size = graph.function("abs", (slope,))
-    least = graph.const(NO_PART)
     apart = _exceeds(graph, least, size)
     return (1 - apart) / graph.function("copysign", (larger(graph, size, least), slope)), apart
 

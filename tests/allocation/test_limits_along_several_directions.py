@@ -19,7 +19,7 @@ from laws_harness import System
 
 from symgen.backends.c.plain import emit_c
 from symgen.backends.python.module import emit_python
-from symgen.ir.kernel import Status
+from symgen.ir.kernel import Scalar, Status
 from symgen.model.load import load_text
 from symgen.verify.reference.reference import BeyondLimitsError
 
@@ -188,6 +188,45 @@ def test_the_reference_takes_the_same(directions: int, tmp_path: Path) -> None:
             assert np.isnan(wanted).any()
             continue
         assert [float(x) for x in u.entries()] == pytest.approx(wanted, abs=1e-9)
+
+
+# Of five drives one does what another does, turned around, and one alone does what all others do not.
+ALIKE = """\
+model: alike
+coordinates: {a: {unit: rad}, x: {unit: m}, y: {unit: m}}
+parameters: {mass: {value: 2, unit: kg}}
+kinetic_energy: mass/2*(x_dot**2 + y_dot**2) + a_dot**2/5
+inputs:
+  one: {acts_on: {a: cos(a), x: cos(a + 1), y: sin(a + 1)}}
+  other: {acts_on: {a: -3*cos(a), x: -3*cos(a + 1), y: -3*sin(a + 1)}}
+  third: {acts_on: {a: 1, x: sin(a)*cos(a + 1), y: sin(a)*sin(a + 1)}}
+  fourth: {acts_on: {a: -1, x: cos(a + 1)/2, y: sin(a + 1)/2}}
+  alone: {acts_on: {a: 0.3, x: 1}}
+"""
+
+
+@pytest.mark.parametrize("scalar", ["float64", "float32"])
+@pytest.mark.parametrize("others", ["other: [-1, 2], one: [-1, 2]", "third: [-1, 2]"])
+def test_what_takes_no_part_is_not_brought_to_its_limit_by_roundings(others: str, scalar: Scalar) -> None:
+    """An input that the motion determines, and one that does what another does, at the limit of which that one is."""
+    made = System(f"{ALIKE}allocation: {{limits: {{{others}, alone: [-1, 1]}}}}\n", QUANTITIES)
+    seen = {Status.OK: 0, Status.LIMITS: 0}
+    for k in range(60):
+        a, across = 0.02 * k - 0.6, 0.05 * k - 1.2
+        # along what the others do, and beside it
+        away = [np.cos(a + 1) + across, np.sin(a + 1)]
+        state = made.state([a, 0.3, 0.1], [0.0, 0.0, 0.0], [0.3, *map(float, away)], scalar=scalar)
+        status, u = made.run("inverse_dynamics", state, scalar)
+        seen[status] += 1
+        needed = 2 * across
+        if abs(abs(needed) - 1) > 1e-3:
+            assert (status is Status.OK) == (abs(needed) < 1), (a, across)
+        if status is Status.OK:
+            assert u[4] == pytest.approx(needed, abs=1e-5)
+            limited = u[:2] if "one" in others else u[2:3]
+            assert -1.00001 <= min(limited) <= max(limited) <= 2.00001
+            assert max(map(abs, u)) < 50
+    assert min(seen.values()) > 10
 
 
 def test_kernels_pass_verification_and_say_what_they_refuse(tmp_path: Path) -> None:

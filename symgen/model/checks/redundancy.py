@@ -13,7 +13,7 @@ from symgen.model.configurations.mechanics import NumericSystem
 from symgen.model.expressions.names import counted
 from symgen.model.model import Allocation, Input
 
-# Sets of limits that a kernel works out: each takes some forty operations.
+# Sets of limits that a kernel works out: each takes some thirty-five operations.
 MOST_PLANES = 1_000
 UTILISATION = "utilisation"
 

@@ -34,7 +34,7 @@ def allocated(e: Evaluation, allocation: Allocation) -> Any:
         return least
     if model.keeps_limits:
         unmoving = unmoving_inputs(inverse, e.projected_control, weights)
-        return nearest_within(least, unmoving, _limits(e, allocation), e.system.m - e.ranks.actuation)
+        return nearest_within(least, unmoving, _limits(e, allocation), e.system.m - e.ranks.actuation, weights)
     direction = internal_force(e, weights)
     share = arb(0) if allocation.preload is None else value[allocation.preload]
     starts, ends = [], []

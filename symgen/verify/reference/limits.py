@@ -33,9 +33,14 @@ class NoneWithinError(Exception):
     """No inputs within their limits produce the motion."""
 
 
-def nearest_within(least: Any, unmoving: Any, limits: Limits, directions: int) -> Any:
-    """The inputs (m x 1) nearest to `least` within limits; `unmoving` is K.  Raises NoneWithinError."""
+def nearest_within(least: Any, unmoving: Any, limits: Limits, directions: int, weights: Sequence[Any]) -> Any:
+    """The inputs (m x 1) nearest to `least` within limits; `unmoving` is K.  Raises NoneWithinError.
+
+    An input takes no part in internal forces that change it, the inputs held after it in the order of the limits apart,
+    by less than a ten-thousandth of what they may: the root of K_kk, what is left of it, beside that of 1 / w_k.
+    """
     by_input = {k: (lower, upper) for k, lower, upper in limits}
+    part = {k: 1e-8 / weights[k] for k, *_ in limits}
     best: tuple[float, Any] | None = None
     looked_at: set[_Face] = set()
     faces: list[_Face] = [frozenset()]
@@ -44,7 +49,7 @@ def nearest_within(least: Any, unmoving: Any, limits: Limits, directions: int) -
         if face in looked_at:
             continue
         looked_at.add(face)
-        nearest = _on_face(least, unmoving, by_input, face)
+        nearest = _on_face(least, unmoving, by_input, face) if _exists(unmoving, part, face) else None
         if nearest is None:
             continue
         distance, inputs = nearest
@@ -61,6 +66,19 @@ def nearest_within(least: Any, unmoving: Any, limits: Limits, directions: int) -
     if best is None:
         raise NoneWithinError
     return best[1]
+
+
+def _exists(unmoving: Any, part: dict[int, Any], face: _Face) -> bool:
+    """Whether each input on a face takes part in what moves those before it in the order of limits alone."""
+    places = [k for k in reversed(part) if k in {k for k, _ in face}]
+    gram = rows_of(columns_of(unmoving, places), places).tolist()
+    for i, k in enumerate(places):
+        if not gram[i][i] > part[k]:
+            return False
+        for j in range(i + 1, len(places)):
+            factor = gram[j][i] / gram[i][i]
+            gram[j] = [x - factor * y for x, y in zip(gram[j], gram[i], strict=True)]
+    return True
 
 
 def utilisation(least: Any, unmoving: Any, limits: Limits, directions: int) -> Any:

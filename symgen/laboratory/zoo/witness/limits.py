@@ -11,6 +11,8 @@ from typing import Any, TypeAlias
 
 from symgen.laboratory.zoo.witness.linear import Matrix, Vector, solve
 
+# Times what is missing of limits, in the weights: inputs for which others are moved by more take no part.
+MOST_MOVED = 1e4
 Limits: TypeAlias = Sequence[tuple[int, Any, Any]]
 """The number of an input, its lower and its upper limit."""
 
@@ -63,8 +65,15 @@ def _reaching(
         for i, row in enumerate(rows):
             system[j][m + i] = system[m + i][j] = row[j]
     right = [*[0.0] * (m + len(projected)), *(value - u[k] for k, value in reached)]
+    if not reached:
+        return u
     try:
         solved = solve(system, right)
     except ZeroDivisionError:  # an input that no internal force changes alone
         return None
-    return [x + change for x, change in zip(u, solved[:m], strict=True)]
+    changes = solved[:m]
+    moved = sum(w * x * x for w, x in zip(weights, changes, strict=True))
+    missing = sum(weights[k] * (value - u[k]) * (value - u[k]) for k, value in reached)
+    if float(moved) > MOST_MOVED**2 * float(missing):
+        return None
+    return [x + change for x, change in zip(u, changes, strict=True)]
