@@ -78,3 +78,14 @@ def cranks_on_one_coupler(count: int, tail: str = "") -> str:
             tail,
         ]
     )
+
+
+# A pendulum on a cart, in energy form.
+CART = """
+model: cart
+coordinates: {x: {unit: m}, a: {unit: rad, description: from upright}}
+parameters: {M: {value: 2}, m: {value: 0.5}, l: {value: 0.7}, g: {value: 9.81}}
+kinetic_energy: (M + m)*x_dot**2/2 + m*l*cos(a)*x_dot*a_dot + m*l**2*a_dot**2/2
+potential_energy: m*g*l*cos(a)
+inputs: {push: {unit: N, acts_on: {x: 1}}}
+"""

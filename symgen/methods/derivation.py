@@ -31,7 +31,6 @@ from symgen.methods.given.configuration import GivenConfiguration
 from symgen.methods.given.functions import GivenBy
 from symgen.methods.given.motion import GivenMotion
 from symgen.methods.least_inputs import least_inputs
-from symgen.methods.utilisation import utilisation
 from symgen.symbolic.calculus import derivative_along, gradient, jacobian
 from symgen.symbolic.matrix import (
     Matrix,
@@ -125,7 +124,7 @@ class Derivation:
     @property
     def input_measures(self) -> list[Scalar]:
         """What the input equations divide by otherwise, which is 0 only where inputs lose a direction."""
-        forms = [self._actuation[0], *(() if self._allocation is None else (self._allocation.forms,))]
+        forms = [self._actuation[0], *(() if self.allocation is None else (self.allocation.forms,))]
         return [measure for one in forms for measure in one.rank_measures]
 
     def _solvable(self, forms: InputEquations, columns: Sequence[Vector], status: Status) -> tuple[Guard, ...]:
@@ -325,12 +324,13 @@ class Derivation:
     @cached_property
     def inverse_dynamics(self) -> Vector:
         """u = (W^T M)^+ W^T tau, the minimum-norm least-squares inputs, or as the model's `allocation` says."""
-        if self._allocation is not None:
-            return self._allocation.solve(self.mechanics.balance)
+        if self.allocation is not None:
+            return self.allocation.solve(self.mechanics.balance)
         return self._solve_inputs(self.mechanics.balance)
 
     @cached_property
-    def _allocation(self) -> InputAllocation | None:
+    def allocation(self) -> InputAllocation | None:
+        """What the model's block says, where the motion leaves anything to allocate."""
         allocation = self.mechanics.model.allocation
         if allocation is None or (self.m == self.generic.alpha and not allocation.scale):
             return None
@@ -339,21 +339,10 @@ class Derivation:
     @property
     def inverse_dynamics_guards(self) -> tuple[Guard, ...]:
         """The denominator of the input equations, with the weights of the inputs."""
-        if self._allocation is None:
+        if self.allocation is None:
             return self.actuation_guards
-        solvable = self._solvable(self._allocation.forms, self.mechanics.inputs, Status.ACTUATION_RANK)
-        return (*solvable, *self._allocation.guards(self.inverse_dynamics))
-
-    def utilisation(self) -> Vector:
-        """The largest share of their limits that the inputs need."""
-        mechanics, allocation = self.mechanics, self.mechanics.model.allocation
-        assert allocation is not None
-        return (utilisation(mechanics, self.generic, allocation.limits, mechanics.balance),)
-
-    @property
-    def harmless_divisors(self) -> tuple[Scalar, ...]:
-        """What u divides by beside these, which may be 0 at regular states."""
-        return () if self._allocation is None else self._allocation.harmless_divisors(self.mechanics.balance)
+        solvable = self._solvable(self.allocation.forms, self.mechanics.inputs, Status.ACTUATION_RANK)
+        return (*solvable, *self.allocation.guards(self.inverse_dynamics))
 
     def inverse_dynamics_residual(self) -> Vector:
         """N_B (tau - M u); nothing is left where the system is fully actuated."""

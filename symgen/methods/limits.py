@@ -4,8 +4,7 @@ Limits are taken in one after the other (incremental insertion; Seidel, Small-di
 hulls made easy, 1991, which holds for the nearest point of a convex set as it does for a linear program).  Where the
 nearest point so far violates the next limit, the one that keeps this one too lies where it is reached: a plane, on
 which the limits before make the same problem with one direction less.  Along one direction they leave an interval.  All
-planes are worked out at every state and one is taken, so that the code has no branch, the same cost everywhere, and an
-end that does not depend on any tolerance.
+planes are worked out at every state and one is taken, so that the code has no branch and the same cost everywhere.
 """
 
 from __future__ import annotations

@@ -11,6 +11,7 @@ from symgen.mechanics.genericity import Genericity
 from symgen.methods.derivation import Derivation
 from symgen.methods.given.functions import GivenBy, measured, task
 from symgen.methods.quantity import Quantity, is_fixed
+from symgen.methods.utilisation import utilisation
 from symgen.methods.variations import constraint_variations
 from symgen.model.availability import lacking
 from symgen.model.model import Model
@@ -93,6 +94,12 @@ def _given(given_by: GivenBy) -> Callable[[Derivation], tuple[Guard, ...]]:
     return lambda d: d.given_motion(given_by).guards
 
 
+def _utilisation(d: Derivation) -> Vector:
+    allocation = d.mechanics.model.allocation
+    assert allocation is not None
+    return (utilisation(d.mechanics, d.generic, allocation.limits, d.mechanics.balance),)
+
+
 _Derived: TypeAlias = tuple[Callable[[Derivation], Vector] | None, Callable[[Derivation], tuple[Guard, ...]]]
 
 
@@ -155,7 +162,7 @@ _DERIVED: dict[str, _Derived] = {
     ),
     "constraint_variations": (lambda d: flatten(constraint_variations(d)), _variations),
     "inverse_dynamics_residual": (lambda d: d.inverse_dynamics_residual(), _residual),
-    "utilisation": (lambda d: d.utilisation(), _actuator),
+    "utilisation": (_utilisation, _actuator),
     "actuator_velocity": (lambda d: d.actuator_velocity(), _none),
     "actuator_mass_matrix": (lambda d: flatten(d.actuator_mass_matrix()), _actuation),
     "actuator_bias": (lambda d: d.actuator_bias(), _actuator),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from symgen.generation.results import Result
@@ -38,15 +38,8 @@ def run_simulate(path: Path, out: Path, request: Request, quiet: bool, progress:
     files = {"simulation.csv": motion_csv(model, motion), "simulation.svg": made.chart()}
     if (page := made.animation()) is not None:
         files["simulation.html"] = page
-    progress("")
-    written = write_files(out / model.name, files)
-    if not quiet:
-        lines = [*_summary(model, motion), _checked(made.verified), "written:"]
-        print(*lines, *(f"  {file}" for file in written), "", sep="\n")
-    if motion.stopped is not None:
-        print(f"{path}: stopped {motion.stopped}", file=sys.stderr)
-        return 1
-    return 0
+    _written(out / model.name, files, [*_summary(model, motion), _checked(made.verified)], quiet, progress)
+    return _stopped(path, motion)
 
 
 def run_tracking(
@@ -67,15 +60,25 @@ def run_tracking(
     files = {"tracking.csv": tracking_csv(made.model, made.tracked), "tracking.svg": made.chart()}
     if (page := made.animation()) is not None:
         files["tracking.html"] = page
+    lines = [*tracking_summary(made.model, made.tracked), _checked(made.verified)]
+    _written(out / made.model.name, files, lines, quiet, progress)
+    return _stopped(path, motion)
+
+
+def _written(folder: Path, files: Mapping[str, str], summary: Sequence[str], quiet: bool, progress: Progress) -> None:
+    """Writes the files, and prints a summary and their names."""
     progress("")
-    written = write_files(out / made.model.name, files)
+    written = write_files(folder, files)
     if not quiet:
-        lines = [*tracking_summary(made.model, made.tracked), _checked(made.verified), "written:"]
-        print(*lines, *(f"  {file}" for file in written), "", sep="\n")
-    if motion.stopped is not None:
-        print(f"{path}: stopped {motion.stopped}", file=sys.stderr)
-        return 1
-    return 0
+        print(*summary, "written:", *(f"  {file}" for file in written), "", sep="\n")
+
+
+def _stopped(path: Path, motion: SimulatedMotion) -> int:
+    """The exit code, with why a motion ended early."""
+    if motion.stopped is None:
+        return 0
+    print(f"{path}: stopped {motion.stopped}", file=sys.stderr)
+    return 1
 
 
 def _checked(result: Result) -> str:

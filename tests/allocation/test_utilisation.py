@@ -32,20 +32,14 @@ inputs:
   e: {acts_on: {w: -1, x: -1, y: 1/2}}
   f: {acts_on: {x: 1, y: -1, z: -1/3}}
 """
-# Two drives that do the same, and one alone with its coordinate.
-ALIKE = """\
-model: alike
-coordinates: {v: {}, w: {}, x: {}, y: {}, z: {}}
-kinetic_energy: v_dot**2 + w_dot**2 + x_dot**2/2 + y_dot**2 + z_dot**2/3
-inputs:
-  a: {acts_on: {w: 1, x: cos(y)}}
-  b: {acts_on: {x: 1, y: sin(w)}}
-  c: {acts_on: {y: 1, z: -1}}
-  d: {acts_on: {z: 1, w: cos(x)}}
-  e: {acts_on: {w: -1, x: -1, y: 1/2}}
-  twin: {acts_on: {w: -2, x: -2, y: 1}}
-  alone: {acts_on: {v: 3}}
-"""
+# The same where two drives do the same, and one is alone with its coordinate.
+TWIN_AND_ALONE = "twin: {acts_on: {w: -2, x: -2, y: 1}}\n  alone: {acts_on: {v: 3}}"
+ALIKE = (
+    STAGE.replace("model: stage", "model: alike")
+    .replace("{w: {}", "{v: {}, w: {}")
+    .replace("kinetic_energy: ", "kinetic_energy: v_dot**2 + ")
+    .replace("f: {acts_on: {x: 1, y: -1, z: -1/3}}", TWIN_AND_ALONE)
+)
 # By name: a system, limits of its inputs.
 CASES = {
     "one axis": (models.AXIS, "left: [-1, 1], right: [-0.5, 0.7]"),

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shipped
+from linkages import CART
 from scipy.integrate import solve_ivp
 
 from symgen.cli.main import main
@@ -21,14 +22,6 @@ from symgen.model.model import Model
 from symgen.quantities.select import derive_quantities
 from symgen.symbolic.evaluate import Evaluator
 
-CART = """
-model: cart
-coordinates: {x: {unit: m}, a: {unit: rad, description: from upright}}
-parameters: {M: {value: 2}, m: {value: 0.5}, l: {value: 0.7}, g: {value: 9.81}}
-kinetic_energy: (M + m)*x_dot**2/2 + m*l*cos(a)*x_dot*a_dot + m*l**2*a_dot**2/2
-potential_energy: m*g*l*cos(a)
-inputs: {push: {unit: N, acts_on: {x: 1}}}
-"""
 # The same pendulum by the place of its bob, hanging.
 BOB = """
 model: bob

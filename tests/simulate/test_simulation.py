@@ -254,3 +254,15 @@ outputs: [forward_dynamics]
     assert run(str(out / "stiff.yaml"), "--start", "x=1", "--duration", "0.1", "--out", str(out)) == 1
     assert "50000 steps lead no further than t = " in capsys.readouterr().err
     assert len((out / "stiff/simulation.csv").read_text().splitlines()) == 2
+
+
+def test_planned_ways_of_the_ends_of_chains_are_drawn() -> None:
+    """Of a tool on an arm that moves; not of the arm that it hangs on, nor of a post that stands."""
+    places = (((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (5.0, 0.0, 0.0)), ((0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (5.0, 0.0, 0.0)))
+    arm = Scene(("arm", "tool", "post"), (), ((0, 1),), (), (), (), (), places, ((), ()))
+    data = re.search('id="motion">(.*?)</script>', animation("arm", (0.0, 1.0), arm, arm))
+    assert data is not None
+    assert json.loads(data[1])["trails"] == [[[1, 0, 0], [0, 1, 0]]]
+    data = re.search('id="motion">(.*?)</script>', animation("arm", (0.0, 1.0), arm))
+    assert data is not None
+    assert json.loads(data[1])["trails"] == []

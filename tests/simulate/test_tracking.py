@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 
 import pytest
+from linkages import CART
 
 from symgen.cli.main import main
 from symgen.generation.results import Options
@@ -28,16 +29,7 @@ paths:
 """
 LATE = 3 * 1e-3
 # A pendulum on a cart that is to stay where it is, above.
-CART = """
-model: cart
-coordinates: {x: {unit: m}, a: {unit: rad, description: from upright}}
-parameters: {M: {value: 2}, m: {value: 0.5}, l: {value: 0.7}, g: {value: 9.81}}
-kinetic_energy: (M + m)*x_dot**2/2 + m*l*cos(a)*x_dot*a_dot + m*l**2*a_dot**2/2
-potential_energy: m*g*l*cos(a)
-inputs: {push: {unit: N, acts_on: {x: 1}}}
-paths:
-  upright: {duration: 4, conditions: {still: x, above: a}}
-"""
+UPRIGHT = f"{CART}paths: {{upright: {{duration: 4, conditions: {{still: x, above: a}}}}}}\n"
 # A rod whose ends slide along two walls, driven at one of them, measured there; a path that it can follow.
 LADDER = """
 model: ladder
@@ -126,11 +118,11 @@ def test_pd_and_a_regulator(run: Callable[..., int], tmp_path: Path) -> None:
     last = rows(tmp_path, "slide")[-1]
     # it knows nothing of the acceleration
     assert last["x_planned"] - last["x"] == pytest.approx(3 / 40**2 - LATE / 40, rel=0.01)
-    assert run(CART, "upright", "--quiet", "--controller", "lqr", "--start", "a=0.2") == 0
+    assert run(UPRIGHT, "upright", "--quiet", "--controller", "lqr", "--start", "a=0.2") == 0
     motion = rows(tmp_path, "cart")
     assert motion[0]["a"] == 0.2
     assert abs(motion[-1]["a"]) < 0.02
-    assert run(CART, "upright", "--quiet", "--controller", "pd", "--start", "a=0.2") == 0
+    assert run(UPRIGHT, "upright", "--quiet", "--controller", "pd", "--start", "a=0.2") == 0
     assert abs(rows(tmp_path, "cart")[-1]["a"]) > 1
 
 

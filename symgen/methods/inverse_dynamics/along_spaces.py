@@ -32,8 +32,9 @@ def _householder(workspace: Workspace) -> Candidate | str:
 
 
 def _along(system: MethodInput, derivation: Derivation) -> Candidate:
-    guards, harmless = derivation.inverse_dynamics_guards, derivation.harmless_divisors
-    return solved_for_u(system, derivation.inverse_dynamics, guards, harmless=harmless)
+    u, guards, allocation = derivation.inverse_dynamics, derivation.inverse_dynamics_guards, derivation.allocation
+    harmless = () if allocation is None else allocation.harmless_divisors(derivation.mechanics.balance)
+    return solved_for_u(system, u, guards, harmless=harmless)
 
 
 def _pivots(workspace: Workspace, candidate: Candidate) -> list[Scalar]:

@@ -148,8 +148,9 @@ def _nearest_within(allocation: Allocation) -> list[Block]:
             "taken in one after the other: where the inputs so far leave the next {} outside, the nearest lie where it "
             "is at its limit, which is the same problem along one direction less, with the limits before; along one "
             "direction the limits leave an interval (incremental insertion after Seidel, 1991). All of this is worked "
-            "out at every state and one end is taken, without a loop and without a tolerance. Where no inputs within "
-            "the limits produce the motion the function returns {} and leaves its result as it was.",
+            "out at every state and one end is taken, without a loop. An input that these forces change by less than "
+            "a ten-thousandth of what they may takes no part. Where no inputs within the limits produce the motion the "
+            "function returns {} and leaves its result as it was.",
             bold("c"),
             bold("c"),
             start,
@@ -161,13 +162,13 @@ def _nearest_within(allocation: Allocation) -> list[Block]:
 def _utilisation(allocation: Allocation) -> list[Block]:
     """The share of their limits that inputs need, and what is made of it."""
     J, i, rho = Letter("J"), Letter("i"), Letter("ρ")
-    middle, half = Scripts(Letter("c"), i), Scripts(Letter("h"), i)
+    middle, half = Scripts(Letter("a"), i), Scripts(Letter("h"), i)
 
     def volume(*columns: Layout) -> Layout:
         return Fenced(Application(Letter("det", "upright"), Fenced(listed((*columns, transposed(B))), "[")), "|")
 
     M_J, M_i = Scripts(M, J), Scripts(M, i)
-    load = minus_sum((tau,), (juxtaposed(M, bold("c")),))
+    load = minus_sum((tau,), (juxtaposed(M, bold("a")),))
     reach = juxtaposed(Scripts(Letter("Σ"), i), volume(M_J, M_i), half)
     largest = Application(Scripts(Letter("max", "upright"), J), Fraction(volume(M_J, load), reach))
     blocks: list[Block] = [
@@ -180,9 +181,9 @@ def _utilisation(allocation: Allocation) -> list[Block]:
             rho,
         ),
         displayed((equals(rho, largest),), "rho"),
-        paragraph("Here {} runs over all choices of one column of {} less than directions of motion.", J, M),
+        paragraph("Here {} runs over all choices of {} columns of {}.", J, minus_sum((delta_diff,), (ONE,)), M),
     ]
     if allocation.scale:
-        supplied, text = juxtaposed(M, bold("c")), "Where it is more, {} produces {} times the load {} beside {}."
+        supplied, text = juxtaposed(M, bold("a")), "Where it is more, {} produces {} times the load {} beside {}."
         blocks.append(paragraph(text, u, Fraction(ONE, rho), load, supplied))
     return blocks
