@@ -5,12 +5,13 @@ A fixed turn of a frame such as sin(0.5) would else be computed at every call, w
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from math import isqrt
 
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Local, Operand, Statement, Status
+from symgen.ir.split import pruned
 from symgen.symbolic.scalar import PI
 
 # Numbers are kept to this many bits; PI is given to 235.
@@ -23,6 +24,23 @@ def with_constants_evaluated(kernel: Kernel) -> Kernel:
     known: dict[str, Literal] = {}
     blocks = tuple(_block(block, known) for block in kernel.blocks)
     return replace(kernel, blocks=blocks, outputs=_read(kernel.outputs, known))
+
+
+def with_numbers(kernel: Kernel, known: Mapping[str, Literal]) -> Kernel:
+    """The kernel with numbers in place of locals, and without what assigns these."""
+    if not known:
+        return kernel
+
+    def checked(check: Check) -> Check:
+        value, limit = _read((check.value, check.limit), known)
+        return replace(check, value=value, limit=limit, first=None if check.first is None else rewritten(check.first))
+
+    def rewritten(block: Block) -> Block:
+        statements = (replace(one, operands=_read(one.operands, known)) for one in block.statements)
+        return Block(tuple(statements), tuple(map(checked, block.checks)))
+
+    blocks = tuple(map(rewritten, kernel.blocks))
+    return pruned(replace(kernel, blocks=blocks, outputs=_read(kernel.outputs, known)))
 
 
 def _block(block: Block, known: dict[str, Literal]) -> Block:
@@ -48,7 +66,7 @@ def _check(check: Check, known: dict[str, Literal]) -> Check | None:
     return replace(check, value=value, limit=limit, first=first)
 
 
-def _read(operands: Sequence[Operand], known: dict[str, Literal]) -> tuple[Operand, ...]:
+def _read(operands: Sequence[Operand], known: Mapping[str, Literal]) -> tuple[Operand, ...]:
     return tuple(known.get(o.name, o) if isinstance(o, Local) else o for o in operands)
 
 

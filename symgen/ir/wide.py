@@ -3,8 +3,8 @@
 Beside the result v of a statement stands a rest, so that results are off by a few eps^2 of what is added up on the way.
 What is left is what rounding of the inputs does.  Sines and cosines are brought back to the unit circle: 1 - s^2 - c^2
 follows from s and c alone.  What is left of their errors turns the angle by less than eps of itself, as rounding of its
-argument does; those of a sum of angles are made of those of its parts (`ir/wide_angles.py`).  What functions of the
-library round themselves stays.
+argument does; those of a sum of angles are made of those of its parts (`ir/wide_angles.py`), numbers among them with
+all their digits.  What functions of the library round themselves stays.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TypeAlias
 
+from symgen.ir.constants import sine_and_cosine, with_numbers
 from symgen.ir.interpret import round_literal
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Local, Operand, OperationName, Scalar, Statement, Status
 from symgen.ir.lifted import Lifted, same_kernel
@@ -33,19 +34,24 @@ _Pair: TypeAlias = tuple[Operand, Operand]
 
 def widened(kernel: Kernel, scalar: Scalar) -> Kernel:
     """The kernel with pairs of numbers in place of numbers; its checks are those of the values."""
-    made = paired(kernel, scalar)
+    made, numbers = _paired(kernel, scalar)
     same_kernel(f"twice the digits in {kernel.name}", Lifted(kernel), Lifted(made), squares_roots=True)
-    return made
+    return with_numbers(made, numbers)
 
 
 def paired(kernel: Kernel, scalar: Scalar) -> Kernel:
     """The same, unproved: to measure with, not to generate."""
+    return with_numbers(*_paired(kernel, scalar))
+
+
+def _paired(kernel: Kernel, scalar: Scalar) -> tuple[Kernel, dict[str, Literal]]:
+    """With pairs, and what sines and cosines of numbers are in it."""
     writer = _PairWriter(kernel, scalar)
     blocks = [replace(block, statements=writer.block(block.statements)) for block in kernel.blocks]
     last, outputs = writer.rounded(kernel.outputs)
     blocks[-1] = replace(blocks[-1], statements=(*blocks[-1].statements, *last))
     blocks = with_ranges(blocks, writer.further_angles, writer.taken)
-    return pruned(replace(kernel, blocks=tuple(blocks), outputs=outputs))
+    return pruned(replace(kernel, blocks=tuple(blocks), outputs=outputs)), writer.numbers
 
 
 def with_sharp_thresholds(single: Kernel, double: Kernel) -> Kernel:
@@ -121,6 +127,7 @@ class _PairWriter:
         self._turned: dict[AngleSum, tuple[_Pair, _Pair]] = {}
         self._written: set[str] = set()
         self.further_angles: list[str] = []
+        self.numbers: dict[str, Literal] = {}
         self._lines = Lines(self._name)
 
     def block(self, statements: Sequence[Statement]) -> tuple[Statement, ...]:
@@ -236,6 +243,8 @@ class _PairWriter:
                 self.further_angles.append(angle.name)
         if own.targets[0] not in self._written:
             self._on_circle(own)
+            if isinstance(angle, Literal):
+                self._known(own.targets, sine_and_cosine(angle.value))
         sine, cosine = map(Local, own.targets)
         return (sine, self.rest(sine)), (cosine, self.rest(cosine))
 
@@ -254,6 +263,15 @@ class _PairWriter:
             if along != ZERO:
                 lacking = self.emit("add" if turn == "add" else "sub", lacking, along)
             self._rests[own.name] = lacking
+
+    def _known(self, targets: Sequence[str], values: Sequence[Fraction]) -> None:
+        """Values and rests of what is a number: as many digits as `ir/constants.py` gives others of the same angle."""
+        for target, value in zip(targets, values, strict=True):
+            rounded = Literal(Fraction(round_literal(value, self._scalar)))
+            self.numbers[target] = rounded
+            rest = self._rests[target]
+            assert isinstance(rest, Local)
+            self.numbers[rest.name] = Literal(value - rounded.value)
 
     def times(self, x: Operand, rest: Operand) -> Operand:
         """x e."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import dist, inf
+from math import inf
 
 import numpy as np
 
@@ -18,18 +18,19 @@ from symgen.ir.kernel import UNIT_ROUNDOFF, Kernel, Program, Scalar, Status
 from symgen.ir.wide import GAINED
 from symgen.ir.wide_functions import works_with_pairs
 from symgen.verify.lane_arithmetic import Lanes
-from symgen.verify.many_states import run_many
+from symgen.verify.many_states import run_lanes
 from symgen.verify.sampling.lanes import RoundingErrors
-from symgen.verify.single_precision import in_single_precision
+from symgen.verify.single_precision import distances, in_single_precision
 
 
 @dataclass(frozen=True)
 class Far:
-    """A row for each state with one parameter far away: which, by how many powers of ten, all that is given, and
-    whether rows and inputs are as far from a drop of rank there as in regular states."""
+    """A row for each state with one parameter far away: which, by how many powers of ten, from which start, all that
+    is given, and whether rows and inputs are as far from a drop of rank there as in regular states."""
 
     parameters: Lanes
     powers: Lanes
+    starts: Lanes
     given: Mapping[str, Lanes]
     regular: Lanes
 
@@ -39,20 +40,20 @@ class Far:
     def only(self, which: Lanes) -> Far:
         """Those that a mask or places name."""
         given = {name: rows[which] for name, rows in self.given.items()}
-        return Far(self.parameters[which], self.powers[which], given, self.regular[which])
+        return Far(self.parameters[which], self.powers[which], self.starts[which], given, self.regular[which])
 
     @property
-    def rounded(self) -> list[dict[str, list[float]]]:
-        """Of each state, what is given in single precision."""
+    def rounded(self) -> dict[str, Lanes]:
+        """What is given, in single precision."""
         return in_single_precision(self.given)
 
 
 def joined(parts: Sequence[Far]) -> Far:
     """All of several, of which there is one at least."""
     given = {name: np.concatenate([part.given[name] for part in parts]) for name in parts[0].given}
-    rest = ([getattr(part, name) for part in parts] for name in ("parameters", "powers", "regular"))
-    parameters, powers, regular = map(np.concatenate, rest)
-    return Far(parameters, powers, given, regular)
+    rest = ([getattr(part, name) for part in parts] for name in ("parameters", "powers", "starts", "regular"))
+    parameters, powers, starts, regular = map(np.concatenate, rest)
+    return Far(parameters, powers, starts, given, regular)
 
 
 class FarErrors:
@@ -100,24 +101,19 @@ class FarErrors:
 
     def _refusals(self, scalar: Scalar, far: Far) -> Lanes:
         """Infinite where a kernel refuses without a reason, 0 elsewhere."""
-        made = run_many(self._kernels[scalar], self._programs[scalar].sincos, scalar, far.rounded)
-        pairs = zip(made, far.regular, strict=True)
-        return np.array([inf if _is_unfounded(status, regular) else 0.0 for (status, _), regular in pairs])
+        status, _ = run_lanes(self._kernels[scalar], self._programs[scalar].sincos, scalar, far.rounded)
+        return np.where(_is_unfounded(status, far.regular), inf, 0.0)
 
     def _measured(self, kernel: Kernel, far: Far) -> Lanes:
         """How far float32 is off; infinitely where it refuses without a reason, or what float64 does not."""
         given, programs = far.rounded, self._programs
-        exact = run_many(kernel, programs["float64"].sincos, "float64", given, numbers="float32")
-        made = run_many(kernel, programs["float32"].sincos, "float32", given)
-        off = [
-            0.0 if refused and not _is_unfounded(status, regular) else inf if status else dist(y, z)
-            for (refused, y), (status, z), regular in zip(exact, made, far.regular, strict=True)
-        ]
-        return np.array(off)
+        unknown, exact = run_lanes(kernel, programs["float64"].sincos, "float64", given, numbers="float32")
+        status, made = run_lanes(kernel, programs["float32"].sincos, "float32", given)
+        off = np.where(status != 0, inf, distances(exact, made))
+        return np.where((unknown != 0) & ~_is_unfounded(status, far.regular), 0.0, off)
 
 
-def _is_unfounded(status: Status, regular: bool) -> bool:
+def _is_unfounded(status: Lanes, regular: Lanes) -> Lanes:
     """Whether a kernel refuses what is due to masses or lengths far apart: a drop of rank, or numbers too large."""
-    if status in (Status.CONSTRAINT_RANK, Status.ACTUATION_RANK):
-        return regular
-    return status in (Status.MASS_RANK, Status.NOT_FINITE)
+    due = np.isin(status, (Status.MASS_RANK, Status.NOT_FINITE))
+    return due | (np.isin(status, (Status.CONSTRAINT_RANK, Status.ACTUATION_RANK)) & regular)

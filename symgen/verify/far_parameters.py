@@ -14,6 +14,7 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import chain, islice
 from math import floor, log10
+from types import MappingProxyType
 
 import numpy as np
 
@@ -27,9 +28,12 @@ from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.reference.reference import ReferenceValueError, State
 from symgen.verify.running.compile import Outcome
 from symgen.verify.sampling.loops_in_lanes import CLOSED_IN_LANES, LoopsInLanes
+from symgen.verify.sampling.nearby import Surroundings, of_samples
+from symgen.verify.sampling.nearby import joined as joined_states
 from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, ranked_parts
 from symgen.verify.sampling.rates_in_lanes import RatesInLanes
 from symgen.verify.sampling.task_ahead import TaskInLanes
+from symgen.verify.single_precision import units_in_float32
 from symgen.verify.tolerance import FACTOR, is_beyond
 
 # Powers of ten by which a parameter is away at most: they are looked at one by one.
@@ -46,8 +50,12 @@ TOGETHER_AWAY = 3
 SIDES = (-1, 1)
 # States at which that is looked at, fewer for long kernels.
 FAR_STATES = 8
-# States from which places are looked for where the loops close.
+# Half of them are the worst of so many at these powers of ten.
+CHOSEN_AMONG, CHOSEN_AT = 16, (4, 9)
+# States of the verification from which all of them come, and from which places are looked for where the loops close.
 FAR_STARTS = 32
+# States near to these.  Half of those that are chosen among are where float32 loses most furthest away.
+NEAR_STARTS = 512
 # Numbers that are held at a time, and that are worked out for the powers of one kernel.
 NUMBERS_HELD, MOST = 4_000_000, 30_000_000
 # Coordinates that are kept of configurations with a parameter far away.
@@ -58,6 +66,9 @@ CLEAR = 1e-4
 UNITS_LOST = FACTOR / 2
 # Times the steps of Newton's method from a state to where its loops close with a parameter far away.
 RENEWED = 5
+# Starts, where none are chosen.
+NO_PLACES: Lanes = np.array([], dtype=int)
+NONE_CHOSEN: Mapping[tuple[int, int], Lanes] = MappingProxyType({})
 # Up to this power the reference judges so many of the worst.
 JUDGED_UP_TO, JUDGED_FAR = 1.0, 2
 
@@ -77,6 +88,7 @@ class FarParameters:
         self._reference, self._drawn = expected.reference, expected.drawn
         system, literals = expected.reference.system, [float(x) for x in expected.reference.literals()]
         self._loops, self._task = LoopsInLanes(system, literals), TaskInLanes(system, literals)
+        self._near = Surroundings(self._reference, self._drawn)
         self._parts = ranked_parts(expected.reference.system, expected.reference.ranks)
         self._rates = RatesInLanes(expected.reference.system, self._parts, self._loops)
 
@@ -94,20 +106,36 @@ class FarParameters:
         with working(f"how far parameters of {double.name} may be"):
             return _Bounds(self, kernels, programs, plain).of(sorted(read))
 
-    def led(self, steps: Sequence[tuple[int, float]], states: int) -> Far:
-        """States with one parameter far away, for each step (which, and by what power of ten) as far as loops close."""
-        rows = [
-            (which, place, power) for which, power in steps for place in self._places(which, power)[:states].tolist()
-        ]
+    def led(
+        self, steps: Sequence[tuple[int, float]], states: int, chosen: Mapping[tuple[int, int], Lanes] = NONE_CHOSEN
+    ) -> Far:
+        """States with one parameter far away, for each step (which, and by what power of ten) as far as loops close.
+
+        On a side of a parameter, `chosen` starts come before others.
+        """
+        rows = []
+        for which, power in steps:
+            places = self._places(which, power)
+            first = chosen.get((which, 1 if power > 0 else -1), NO_PLACES)
+            places = np.concatenate((first[np.isin(first, places)], places[~np.isin(places, first)]))
+            rows += [(which, place, power) for place in places[:states].tolist()]
         system = self._reference.system
         held = max(1, NUMBERS_HELD // (system.n * (system.n + system.m + system.r)))
         return joined([self._at(rows[start : start + held]) for start in range(0, max(1, len(rows)), held)])
 
     def _places(self, which: int, power: float) -> Lanes:
-        """The states with which the loops close with a parameter away by a power of ten."""
+        """The states with which the loops close with a parameter away by a power of ten; of few where it moves them."""
         if which in self._moving:
             return np.flatnonzero(self._closed[1][(*_step(power), self._moving[which])])
         return np.arange(len(self._starts["q"]))
+
+    def shifted(self, rows: Sequence[tuple[int, float]], states: int) -> dict[str, Lanes]:
+        """The first of all states for each parameter, by a factor each, as if nothing else depended on it."""
+        given = {name: np.tile(values[:states], (len(rows), 1)) for name, values in self._starts.items()}
+        states = len(given["p"]) // len(rows)
+        which, factors = (np.repeat(column, states) for column in zip(*rows, strict=True))
+        given["p"][np.arange(len(which)), which] *= factors
+        return given
 
     def _at(self, rows: Sequence[tuple[int, int, float]]) -> Far:
         """The states with a parameter, a start and a power of ten each."""
@@ -121,7 +149,7 @@ class FarParameters:
         given["qd"], given["qdd"], finite = self._rates.admissible(given)
         with np.errstate(all="ignore"):
             given["task"] = self._task.ahead(given)
-        return Far(which, far, given, self._regular(given)).only(finite)
+        return Far(which, far, place, given, self._regular(given)).only(finite)
 
     def _regular(self, given: Mapping[str, Lanes]) -> Lanes:
         """Whether neither rows nor inputs are near a drop of rank."""
@@ -149,7 +177,8 @@ class FarParameters:
     def tried(self, kernel: Kernel, program: Program, far: Far) -> list[_Tried]:
         """What a kernel gives at states in seven digits."""
         order = ("q", "qd", "qdd", "u", "p", "task")
-        states = [State(*(tuple(given[name]) for name in order)) for given in far.rounded]
+        columns = [far.rounded[name].tolist() for name in order]
+        states = [State(*map(tuple, parts)) for parts in zip(*columns, strict=True)]
         return list(map(_Tried, states, outcomes(kernel, program.sincos, program.scalar, states)))
 
     def is_lost(self, quantity: str, scalar: Scalar, tried: _Tried) -> bool:
@@ -185,7 +214,7 @@ class FarParameters:
         """
         leading, steps = [*self._moving], round(FURTHEST / QUARTER)
         n = self._starts["q"].shape[1]
-        most = max(FAR_STATES, MOST_KEPT // (len(SIDES) * steps * len(leading) * n))
+        most = max(FAR_STATES, min(FAR_STARTS, MOST_KEPT // (len(SIDES) * steps * len(leading) * n)))
         starts = {name: values[:most] for name, values in self._starts.items()}
         count = len(starts["q"])
         which, place = np.array(leading, dtype=int).repeat(count), np.tile(np.arange(count), len(leading))
@@ -221,10 +250,8 @@ class FarParameters:
 
     @cached_property
     def _starts(self) -> dict[str, Lanes]:
-        states = [sample.state for sample in self._drawn[:FAR_STARTS]]
-        parts = {"q": "q", "qd": "qd", "qdd": "qdd", "u": "u", "p": "parameters"}
-        rows = {name: [list(map(float, getattr(state, part))) for state in states] for name, part in parts.items()}
-        return {name: np.array(values).reshape(len(states), -1) for name, values in rows.items()}
+        drawn, near = of_samples(self._drawn[:FAR_STARTS]), self._near.drawn(NEAR_STARTS)
+        return dict(joined_states(drawn, near).parts)
 
 
 class _Bounds:
@@ -239,11 +266,13 @@ class _Bounds:
     ) -> None:
         self._far, self._kernels, self._programs = far, kernels, programs
         self._errors = FarErrors(kernels, programs, plain)
+        self._plain = plain or kernels["float64"]
         self._size = len(kernels["float64"].statements) + 1
 
     def of(self, read: Sequence[int]) -> dict[Scalar, tuple[Bound, ...]]:
         """By scalar type, those of the parameters that are `read`, given by their places."""
-        states = max(1, min(FAR_STATES, MOST // (self._size * len(read) * 2 * FURTHEST)))
+        states = self._as_many(FAR_STATES, len(read) * FURTHEST)
+        chosen = self._chosen(read, states)
         first: dict[Scalar, dict[tuple[int, int], float]] = {scalar: {} for scalar in self._kernels}
         for nearest in range(1, FURTHEST + 1, TOGETHER_AWAY):
             # nothing is looked for beyond the first loss
@@ -251,7 +280,8 @@ class _Bounds:
             if not left:
                 break
             powers = range(nearest, min(nearest + TOGETHER_AWAY, FURTHEST + 1))
-            lost = self._lost(self._far.led([(k, sign * power) for k, sign in left for power in powers], states))
+            steps = [(k, sign * power) for k, sign in left for power in powers]
+            lost = self._lost(self._far.led(steps, states, chosen))
             for scalar, far in lost.items():
                 first[scalar] = _nearest(far) | first[scalar]
         closer = {
@@ -262,8 +292,46 @@ class _Bounds:
         }
         if not closer:
             return dict.fromkeys(first, ())
-        lost = self._lost(self._far.led(sorted(closer), states))
+        lost = self._lost(self._far.led(sorted(closer), states, chosen))
         return {scalar: tuple(self._of(scalar, read, first[scalar], far)) for scalar, far in lost.items()}
+
+    def _as_many(self, states: int, steps: int) -> int:
+        """States on both sides of so many steps, fewer for long kernels."""
+        return max(1, min(states, MOST // (self._size * steps * len(SIDES))))
+
+    def _chosen(self, read: Sequence[int], states: int) -> dict[tuple[int, int], Lanes]:
+        """On each side of a parameter the starts at which most is lost far away, half of the states that are looked at.
+
+        What is lost differs from one state to another by more than a power of ten, and the worst of many is far worse
+        than the worst of a few.
+        """
+        starts = self._as_many(CHOSEN_AMONG, len(read) * len(CHOSEN_AT))
+        if starts <= states:
+            return {}
+        steps = [(k, sign * power) for k in read for sign in SIDES for power in CHOSEN_AT]
+        far = self._far.led(steps, starts, self._off_in_float32(read, (starts + 1) // 2))
+        units = np.max([*self._units(far).values()], axis=0)
+        order = np.argsort(-units, kind="stable")
+        worst: dict[tuple[int, int], dict[int, None]] = {}
+        for k, power, start in zip(*(x[order].tolist() for x in (far.parameters, far.powers, far.starts)), strict=True):
+            worst.setdefault((k, 1 if power > 0 else -1), {})[start] = None
+        return {side: np.array([*of_side][: (states + 1) // 2]) for side, of_side in worst.items()}
+
+    def _off_in_float32(self, read: Sequence[int], states: int) -> dict[tuple[int, int], Lanes]:
+        """On each side of a parameter so many starts: float32 loses most there, with that one furthest away.
+
+        A pivot that it leaves no digit of is met at one state in a hundred, and no estimate of the first order sees it.
+        """
+        starts = self._as_many(FAR_STARTS + NEAR_STARTS, len(read))
+        sides = [(k, sign) for k in read for sign in SIDES]
+        held = max(1, NUMBERS_HELD // (self._size * starts))
+        worst: dict[tuple[int, int], Lanes] = {}
+        for at in range(0, len(sides), held):
+            part = sides[at : at + held]
+            given = self._far.shifted([(k, 10.0 ** (sign * FURTHEST)) for k, sign in part], starts)
+            off = units_in_float32(self._plain, self._programs, given).reshape(len(part), -1)
+            worst |= zip(part, np.argsort(-off, axis=1, kind="stable")[:, :states], strict=True)
+        return worst
 
     def _of(
         self, scalar: Scalar, read: Sequence[int], first: Mapping[tuple[int, int], float], lost: Far
@@ -293,25 +361,29 @@ class _Bounds:
         self, scalar: Scalar, index: int, sign: int, steps: Mapping[tuple[int, float], Sequence[_Tried]], last: float
     ) -> float:
         """The power of ten up to which nothing is lost on one side, where something is at the `last`."""
-        quantity, limit = self._kernels[scalar].name, last
+        quantity = self._kernels[scalar].name
+        # where the reference finds nothing lost, estimates do not count
+        limit = last if last > JUDGED_UP_TO else last + QUARTER
         powers = sorted((sign * power for which, power in steps if which == index and sign * power > 0), reverse=True)
         # from outside: where nothing is lost nothing is further in
         for power in powers:
             worst = steps[index, sign * power]
             if power <= JUDGED_UP_TO and not any(self._far.is_lost(quantity, scalar, tried) for tried in worst):
                 break
-            limit = min(power, last)
+            limit = power
         return sign * _inside(limit)
 
     def _lost(self, far: Far) -> dict[Scalar, Far]:
         """By scalar type, what of it seems to lose more than is allowed, the worst first."""
-        parts = [self._errors.units(part) for part in self._parts(far)]
         by_scalar = {}
-        for scalar in self._kernels:
-            units = np.concatenate([np.zeros(0), *(part[scalar] for part in parts)])
+        for scalar, units in self._units(far).items():
             order = np.argsort(-units, kind="stable")
             by_scalar[scalar] = far.only(order[units[order] > UNITS_LOST])
         return by_scalar
+
+    def _units(self, far: Far) -> dict[Scalar, Lanes]:
+        parts = [self._errors.units(part) for part in self._parts(far)]
+        return {scalar: np.concatenate([np.zeros(0), *(part[scalar] for part in parts)]) for scalar in self._kernels}
 
     def _parts(self, far: Far) -> Iterator[Far]:
         """As many states at a time as may be held."""

@@ -26,58 +26,63 @@ from symgen.ir.kernel import (
     Status,
 )
 from symgen.ir.last_kernels import LastKernels
-from symgen.verify.given import entry
+from symgen.verify.given import loaded
 from symgen.verify.lane_arithmetic import TYPES, LaneArithmetic, Lanes, number
 
 _Places: TypeAlias = Any
 
 
 def run_many(
+    kernel: Kernel, sincos: Function | None, scalar: Scalar, arguments: Sequence[Mapping[str, Sequence[float]]]
+) -> list[tuple[Status, list[float]]]:
+    """The status of each state and, where it is OK, the outputs; `arguments` hold the parameters `p`, too."""
+    if not arguments:
+        return []
+    given = {name: np.array([one[name] for one in arguments], float) for name in arguments[0]}
+    status, outputs = run_lanes(kernel, sincos, scalar, given)
+    by_state = zip(status.tolist(), outputs.tolist(), strict=True)
+    return [(Status(code), entries if code == 0 else []) for code, entries in by_state]
+
+
+def run_lanes(
     kernel: Kernel,
     sincos: Function | None,
     scalar: Scalar,
-    arguments: Sequence[Mapping[str, Sequence[float]]],
+    given: Mapping[str, Lanes],
     numbers: Scalar | None = None,
-) -> list[tuple[Status, list[float]]]:
-    """The status of each state and, where it is OK, the outputs; `arguments` hold the parameters `p`, too.
+) -> tuple[Lanes, Lanes]:
+    """The status of each state and a row of outputs, which stand for nothing where it is not OK.
 
-    With `numbers` the literals are those of this scalar type, so that they make no difference between the types.
+    `given` has a row for each state.  With `numbers` the literals are those of this scalar type, so that they make no
+    difference between the types.
     """
-    if not arguments:
-        return []
     with np.errstate(all="ignore"):
-        return _KernelRun(kernel, sincos, scalar, arguments, numbers or scalar).outcomes()
+        return _KernelRun(kernel, sincos, scalar, given, numbers or scalar).outcomes()
 
 
 class _KernelRun:
     """Values stand in a row for each local and each number."""
 
     def __init__(
-        self,
-        kernel: Kernel,
-        sincos: Function | None,
-        scalar: Scalar,
-        given: Sequence[Mapping[str, Sequence[float]]],
-        numbers: Scalar,
+        self, kernel: Kernel, sincos: Function | None, scalar: Scalar, given: Mapping[str, Lanes], numbers: Scalar
     ) -> None:
-        self._arithmetic, self._count = LaneArithmetic(scalar, sincos), len(given)
+        self._count = len(next(iter(given.values())))
+        self._arithmetic = LaneArithmetic(scalar, sincos)
         self._plan = plan = _PLANS.of(kernel, lambda: _Plan(kernel))
-        self._values = np.empty((plan.rows, len(given)), TYPES[scalar])
-        parts: dict[str, Lanes] = {name: np.array([one[name] for one in given], float).T for name in given[0]}
+        self._values = np.empty((plan.rows, self._count), TYPES[scalar])
         for load in kernel.loads:
-            self._values[plan.loaded[load.local]] = entry(parts, load)
+            self._values[plan.loaded[load.local]] = loaded(given, load)
         rounded = plan.numbers(numbers)
         self._values[plan.rows - len(rounded) :] = rounded[:, None]
 
-    def outcomes(self) -> list[tuple[Status, list[float]]]:
+    def outcomes(self) -> tuple[Lanes, Lanes]:
         """Of all states."""
         status = np.zeros(self._count, dtype=int)
         for block in self._plan.blocks:
             status = np.where(status == 0, self._block(block), status)
         outputs = self._values[self._plan.outputs]
         status = np.where((status == 0) & ~np.isfinite(outputs).all(axis=0), Status.NOT_FINITE, status)
-        by_state = zip(status.tolist(), outputs.T.tolist(), strict=True)
-        return [(Status(code), entries if code == 0 else []) for code, entries in by_state]
+        return status, outputs.T.astype(float)
 
     def _block(self, block: _BlockPlan) -> Lanes:
         """The first status of each state."""

@@ -12,6 +12,7 @@ import pytest
 from flint import arb
 
 from symgen.diagnostics import SymgenBug
+from symgen.ir.constants import sine_and_cosine
 from symgen.ir.interpret import Interpreter, round_literal
 from symgen.ir.kernel import (
     UNIT_ROUNDOFF,
@@ -227,8 +228,20 @@ def offset(lines: Lines) -> str:
     return lines("sub", left, lines("mul", f"t{both}b", f"t{one}a"))
 
 
+def fixed(lines: Lines) -> str:
+    """The same with sin(a + 1/3) and cos(a + 1/3) made of those of a and of numbers, as of a guide that is turned."""
+    sine, cosine = sine_and_cosine(Fraction(1, 3))
+    lines("sincos", lines("sub", lines("add", "a", Fraction(1, 3)), "k"), targets=2)
+    both = len(lines.statements) - 1
+    lines("sincos", "a", targets=2)
+    one = len(lines.statements) - 1
+    placed = lines("add", lines("mul", f"t{one}a", cosine), lines("mul", f"t{one}b", sine))
+    across = lines("sub", lines("mul", f"t{one}b", cosine), lines("mul", f"t{one}a", sine))
+    return lines("sub", lines("mul", f"t{both}a", across), lines("mul", f"t{both}b", placed))
+
+
 @pytest.mark.parametrize("scalar", SCALARS)
-@pytest.mark.parametrize("build", [stretched, folded, offset], ids=lambda build: build.__name__)
+@pytest.mark.parametrize("build", [stretched, folded, offset, fixed], ids=lambda build: build.__name__)
 def test_angles_that_are_a_little_apart(build: Callable[[Lines], str], scalar: Scalar) -> None:
     """Sines of a sum and of a part of it keep what is between them, as on a leg that is all but stretched."""
     assert_digits_come_back(build, scalar, [{**one, "p": (one["p"][0] * 2.0**-9,)} for one in given(scalar)])

@@ -23,7 +23,7 @@ from symgen.model.load import load_model
 from symgen.pipeline import generate
 from symgen.verify.expected import Expected
 from symgen.verify.far_errors import Far, FarErrors
-from symgen.verify.far_parameters import FarParameters
+from symgen.verify.far_parameters import FAR_STATES, FarParameters
 from symgen.verify.interpreted import outcomes
 from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.reference.reference import State
@@ -121,6 +121,29 @@ def test_what_is_divided_by_is_bounded_below(expected: Expected) -> None:
     assert bound.high is None
     assert bound.low is not None
     assert 1e-6 < bound.low < 1e-1
+
+
+def test_what_few_states_lose_is_bounded(expected: Expected) -> None:
+    """(c d + h) - h with h = m 1e-12 / ((a - a_13)^2 + 1e-12), which hides c d at the thirteenth state alone."""
+    place = 12
+    assert place >= FAR_STATES
+    names = [parameter.name for parameter in expected.reference.model.parameters]
+    led = FarParameters(expected).led([(names.index(MASS), 3.0)], place + 1)
+    there = Fraction(float(led.given["qd"][led.starts == place][0, 0]))
+    tiny = Literal(Fraction(1, 10**12))
+    kernel = straight(
+        Statement(("e",), "sub", (Local("a"), Literal(there))),
+        Statement(("ee",), "mul", (Local("e"), Local("e"))),
+        Statement(("f",), "add", (Local("ee"), tiny)),
+        Statement(("s",), "mul", (Local("m"), tiny)),
+        Statement(("h",), "div", (Local("s"), Local("f"))),
+        Statement(("cd",), "mul", (Local("c"), Local("d"))),
+        Statement(("sum",), "add", (Local("cd"), Local("h"))),
+        Statement(("y",), "sub", (Local("sum"), Local("h"))),
+    )
+    bound = bounds_by_name(expected, kernel)[MASS]
+    assert bound.low is None
+    assert bound.high is not None
 
 
 @pytest.mark.campaign
