@@ -1,4 +1,4 @@
-"""The methods of one model, and the one that a quantity takes: of those that are valid the one that counts least.
+"""The methods of one model, and the selection that all quantities share: of valid candidates the one that counts least.
 
 Each is counted on a graph of its own; the chosen one is brought to the graph of the other quantities.  One that is not
 cheaper than one already known to be valid is not examined.
@@ -6,7 +6,7 @@ cheaper than one already known to be valid is not examined.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
@@ -18,7 +18,7 @@ from symgen.methods.admission import FAILS, Validity
 from symgen.methods.driven_blocks import where_inputs_act
 from symgen.methods.forward_dynamics.minor_motion import CANCELLATION_WORTH
 from symgen.methods.graphs import derived_on
-from symgen.methods.method import INPUTS, Candidate, solved_for_u
+from symgen.methods.method import INPUTS, MOTIONS, Candidate, solved_for_u
 from symgen.methods.quantity import Quantity
 from symgen.methods.system import MethodInput
 from symgen.methods.table import METHODS, Use, method, methods
@@ -113,7 +113,7 @@ class Methods:
 
     def _is_admitted(self, candidate: Candidate) -> bool:
         """Whether it was found valid already."""
-        key = candidate.derived.name, candidate.method
+        key = candidate.derived.name, candidate.title
         return key in self._validities and self._validities[key].admitted
 
     def compared(self, quantity: str, taken: str) -> MethodChoice | None:
@@ -134,20 +134,12 @@ class Methods:
         made = self._built(quantity)
         if not made:
             return "this system has none of the methods that are chosen by themselves"
-        weights = {name: one.weight for name, one in made.items()}
-        best, validities = cheapest(made.values(), self._first_validity, lambda one: weights[one.method])
+        taken = select(made.values(), self._first_validity, lambda one: one.weight, self._factored)
+        weights, best = taken.costs, taken.candidate
         remarks = dict.fromkeys(made, "not examined, because it is not cheaper")
-        remarks |= {name: validity.explanation for name, validity in validities.items()}
-        shorter = self._factored(best) if "minor" in made else None
-        if shorter is not None:
-            weights[FACTORED] = weight = shorter.weight
-            validity = validities[FACTORED] = self.validity(shorter, first_only=True)
-            remarks[FACTORED] = validity.explanation
-            worth = CANCELLATION_WORTH if best.method == "minor" else 0
-            if validity.admitted and weight < weights[best.title] * (1 + worth):
-                best = shorter
+        remarks |= {name: validity.explanation for name, validity in taken.validities.items()}
         others = tuple((name, weights[name], remarks[name]) for name in sorted(weights, key=lambda n: (weights[n], n)))
-        return best, MethodChoice(best.title, validities[best.title], others)
+        return best, MethodChoice(best.title, taken.validities[best.title], others)
 
     def _built(self, quantity: str) -> dict[str, Candidate]:
         """The methods that may be the cheapest: those that cannot fall below a valid first one are not derived.
@@ -174,7 +166,7 @@ class Methods:
 
     def _first_validity(self, candidate: Candidate) -> Validity:
         """That of a method by name, decided once."""
-        key = candidate.derived.name, candidate.method
+        key = candidate.derived.name, candidate.title
         if key not in self._validities:
             self._validities[key] = self.validity(candidate, first_only=True)
         return self._validities[key]
@@ -188,7 +180,9 @@ class Methods:
         model = self.workspace.model
         if model.keeps_limits or (model.allocation is not None and model.allocation.scale):
             return None
-        generic, minor = self._of_inputs.generic, self.candidate(INPUTS, "minor")
+        generic, minor = self._of_inputs.generic, self._candidates.get((INPUTS, "minor"), "")
+        if best.derived.name != INPUTS:
+            return None
         if generic.rank < generic.r or isinstance(minor, str) or not 0 < minor.weight <= _factoring_limit(best):
             return None
         along = self._of_inputs.minor
@@ -201,6 +195,42 @@ class Methods:
         """The system whose expressions bounds of costs are counted on: one that is at hand."""
         at_hand = (one.system for one in self._candidates.values() if isinstance(one, Candidate))
         return next(at_hand, None) or MethodInput.fresh(self.workspace.model, self.workspace.generic)
+
+
+@dataclass(frozen=True, slots=True)
+class Selected:
+    """The candidate that is taken; by title, the counted cost of each and the validity of those that were examined."""
+
+    candidate: Candidate
+    costs: Mapping[str, int]
+    validities: Mapping[str, Validity]
+
+
+def select(
+    candidates: Iterable[Candidate],
+    validity: Callable[[Candidate], Validity],
+    counted: Callable[[Candidate], int],
+    factored: Callable[[Candidate], Candidate | None],
+    weight: Callable[[Candidate], Weight] | None = None,
+) -> Selected:
+    """The valid candidate of least counted cost, or of least `weight` where that is something else.
+
+    `factored` is what competes with the best one: the same by minors, multiplied out and factored.
+    """
+    made = tuple(candidates)
+    best, validities = cheapest(made, validity, weight or counted)
+    costs = {one.title: counted(one) for one in made}
+    shorter = factored(best)
+    if shorter is not None:
+        costs[shorter.title] = counted(shorter)
+        validities[shorter.title] = validity(shorter)
+        # multiplied out, terms that vanish have cancelled exactly: worth a few operations more, but than other methods,
+        # and than q_ddot and lambda, whose masses do not cancel
+        cancels = best.method in ("", "minor") and best.derived.name not in MOTIONS
+        most = costs[best.title] * (1 + CANCELLATION_WORTH * cancels)
+        if validities[shorter.title].admitted and costs[shorter.title] < most:
+            best = shorter
+    return Selected(best, costs, validities)
 
 
 def cheapest(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import replace
 from fractions import Fraction
@@ -20,7 +20,7 @@ from symgen.methods.forward_dynamics.motions import BY_FRAMES, cost_factor, moti
 from symgen.methods.graphs import derived_on, moved
 from symgen.methods.method import INPUTS, MOTIONS, Candidate
 from symgen.methods.quantity import scalars
-from symgen.methods.selection import FACTORING_LIMIT, Methods, cheapest
+from symgen.methods.selection import FACTORING_LIMIT, Methods, cheapest, select
 from symgen.methods.spaces import derivations
 from symgen.methods.system import MethodInput
 from symgen.methods.table import Use
@@ -69,26 +69,23 @@ class Candidates:
         self._absolute = _in_absolute_angles(model, generic) if need else None
         self._motions: dict[str, dict[str, Motion]] = {}
 
-    def cheapest(self, entry: CatalogueEntry) -> tuple[Candidate, dict[str, int]] | None:
+    def cheapest(self, entry: CatalogueEntry) -> tuple[Candidate, Mapping[str, int]] | None:
         """The one that is taken, and the counted cost of all by title; None where each takes too long."""
         made = self._of(entry) if entry.outputs is not None or entry.name in MOTIONS else {}
         if entry.name in SLOPES:
             made |= self._differentiated(entry, SLOPES[entry.name])
         if not made:
             return None
-        costs = {title: cost(scalars(one.derived)).weight for title, one in made.items()}
-        best, _ = cheapest(made.values(), self._validity, lambda one: self._weight(one))
-        # F is unbounded near its singularities: there it is the one determinant of the minors that keeps its digits
-        if entry.needs == PARTITION and "minors" in costs and costs["minors"] <= costs[best.title] * MOST_WORTH:
-            best = made["minors"]
-        # minors of rows that depend on each other become small together: multiplied out, their squares would cancel
-        if self._generic.rank == self._generic.r and 0 < costs.get("minors", 0) <= FACTORING_LIMIT:
-            shorter = self._factored(made["minors"])
-            costs[shorter.title] = cost(scalars(shorter.derived)).weight
-            # multiplied out, terms that vanish have cancelled exactly: worth a few operations more, but than methods
-            if costs[shorter.title] <= costs[best.title] * (1 if best.method else MOST_WORTH):
-                best = shorter
-        return best, costs
+        minors = made.get("minors")
+        taken = select(
+            made.values(),
+            self._validity,
+            _counted,
+            lambda _: None if minors is None else self._factored(minors),
+            # F is unbounded near its singularities: there it is the one determinant of the minors that keeps its digits
+            lambda one: self._weight(one) / (MOST_WORTH if entry.needs == PARTITION and one is minors else 1),
+        )
+        return taken.candidate, taken.costs
 
     def _of(self, entry: CatalogueEntry) -> dict[str, Candidate]:
         alone = self._alone.get(entry.name) or self._by_methods(entry.name)
@@ -105,7 +102,7 @@ class Candidates:
             if space != "blocks" or by_blocks(entry)
         }
         # a tree has articulated inertias; what goes without them may take as long as they are worth, and no longer
-        least = min((cost(scalars(one.derived)).weight for one in alone.values()), default=None)
+        least = min(map(_counted, alone.values()), default=None)
         return {**self._everything.derived(entry.name, along, least), **self._brought(alone)}
 
     def _along(self, entry: CatalogueEntry, space: str, derivation: Derivation) -> Candidate:
@@ -176,8 +173,13 @@ class Candidates:
         graph = self._mechanics.graph
         return {title: replace(one, derived=moved(graph, one.derived)) for title, one in made.items()}
 
-    def _factored(self, minors: Candidate) -> Candidate:
-        """What was derived along minors multiplied out and factored."""
+    def _factored(self, minors: Candidate) -> Candidate | None:
+        """What was derived along minors multiplied out and factored, where that is short.
+
+        Minors of rows that depend on each other become small together: multiplied out, their squares would cancel.
+        """
+        if self._generic.rank < self._generic.r or not 0 < _counted(minors) <= FACTORING_LIMIT:
+            return None
         kept = self._derivations["minors"].whole
         outputs = self._mechanics.factoring.shorten(minors.derived.outputs, kept)
         return replace(minors, derived=replace(minors.derived, outputs=outputs), along="factored")
@@ -187,7 +189,12 @@ class Candidates:
         return self._methods.validity(one, first_only=True) if one.method else VALID
 
     def _weight(self, one: Candidate) -> Fraction:
-        return cost(scalars(one.derived)).weight * cost_factor(one.method, self._mechanics)
+        return _counted(one) * cost_factor(one.method, self._mechanics)
+
+
+def _counted(one: Candidate) -> int:
+    """The counted cost of outputs and tested denominators, as they stand on a graph that others share."""
+    return cost(scalars(one.derived)).weight
 
 
 def _in_absolute_angles(model: Model, generic: Genericity) -> Derivation | None:
