@@ -210,30 +210,37 @@ class FarParameters:
         """Where the loops close with a parameter further and further away, and whether they do.
 
         By side, quarter of a power of ten, parameter that moves them and state: each step starts where the one before
-        it ended.  Where that leads nowhere each power of ten is looked for from the state itself.
+        it ended.  Where that leads nowhere each power of ten is looked for from the state itself; where none of the
+        states closes at one, a parameter is not led further.
         """
         leading, steps = [*self._moving], round(FURTHEST / QUARTER)
         n = self._starts["q"].shape[1]
         most = max(FAR_STATES, min(FAR_STARTS, MOST_KEPT // (len(SIDES) * steps * len(leading) * n)))
         starts = {name: values[:most] for name, values in self._starts.items()}
         count = len(starts["q"])
-        which, place = np.array(leading, dtype=int).repeat(count), np.tile(np.arange(count), len(leading))
         shape = len(SIDES), steps, len(leading), count
-        configurations, shut = np.empty((*shape, n)), np.empty(shape, dtype=bool)
+        configurations, shut = np.empty((*shape, n)), np.zeros(shape, dtype=bool)
         for side, sign in enumerate(SIDES):
-            q = starts["q"][place]
+            led = np.arange(len(leading))
+            q = np.tile(starts["q"], (len(leading), 1))
             for step in range(steps):
-                power = QUARTER * (step + 1)
+                power, place = QUARTER * (step + 1), np.tile(np.arange(count), len(led))
                 p = starts["p"][place]
-                p[np.arange(len(which)), which] *= 10.0 ** (sign * power)
+                p[np.arange(len(place)), np.array(leading)[led].repeat(count)] *= 10.0 ** (sign * power)
                 q, closed = self._newton(q, p)
                 for look in (self._loops.damped, self._further) if power.is_integer() else ():
                     still = np.flatnonzero(~closed)
                     with np.errstate(all="ignore"):
-                        led = look(starts["q"][place[still]], p[still])
-                    q[still], closed[still] = self._newton(led, p[still])
+                        reached = look(starts["q"][place[still]], p[still])
+                    q[still], closed[still] = self._newton(reached, p[still])
                 q = np.where(closed[:, None], q, starts["q"][place])
-                configurations[side, step], shut[side, step] = q.reshape(*shape[2:], n), closed.reshape(shape[2:])
+                configurations[side, step, led] = q.reshape(len(led), count, n)
+                shut[side, step, led] = by_parameter = closed.reshape(len(led), count)
+                if power.is_integer():
+                    closes = by_parameter.any(axis=1)
+                    led, q = led[closes], q[closes.repeat(count)]
+                if not len(led):
+                    break
         return configurations, shut
 
     def _newton(self, q: Lanes, p: Lanes) -> tuple[Lanes, Lanes]:

@@ -125,9 +125,8 @@ def test_witness_and_reference_agree(name: str) -> None:
     assert float(share) == pytest.approx(float(wanted), rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    "name", [name if name == "one axis" else pytest.param(name, marks=pytest.mark.campaign) for name in CASES]
-)
+@pytest.mark.campaign
+@pytest.mark.parametrize("name", CASES)
 def test_kernels_pass_verification(name: str, tmp_path: Path) -> None:
     text, limits = CASES[name]
     path = tmp_path / "limited.yaml"

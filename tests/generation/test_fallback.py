@@ -211,7 +211,7 @@ def spoil_named(monkeypatch: pytest.MonkeyPatch, spoilt: Callable[[Motion], Moti
     [
         (cancelling, "error .* is allowed"),
         (refusing, "status 5 at 8 of 8"),
-        (refusing_float32, r"status 5 at 8 of 8 .*\(float32\)"),
+        pytest.param(refusing_float32, r"status 5 at 8 of 8 .*\(float32\)", marks=pytest.mark.campaign),
     ],
 )
 def test_what_is_rejected_takes_the_next_method(
@@ -249,6 +249,7 @@ def test_wrong_algebra_is_an_internal_error_that_names_the_method(yoke: Path, mo
         made(yoke)
 
 
+@pytest.mark.campaign
 def test_what_passes_narrowly_takes_one_with_half_of_its_error(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     yoke.write_text(YOKE + "ranges: {a: [0.7, 1]}\n", encoding="utf-8")
     spoil_choice(monkeypatch, narrow)
@@ -309,7 +310,10 @@ def test_a_long_alternative_has_its_numbers_grouped_once_its_worst_states_speak_
     assert regrouped == []
 
 
-@pytest.mark.parametrize(("factor", "wide"), [(28, ["float64"]), (34, ["float64", "float32"])])
+@pytest.mark.parametrize(
+    ("factor", "wide"),
+    [(28, ["float64"]), pytest.param(34, ["float64", "float32"], marks=pytest.mark.campaign)],
+)
 def test_types_that_need_nearly_all_take_twice_the_digits(
     yoke: Path, monkeypatch: pytest.MonkeyPatch, factor: int, wide: list[str]
 ) -> None:
@@ -658,8 +662,9 @@ outputs: [inverse_dynamics, forward_dynamics, multipliers]
 """
 
 
+@pytest.mark.campaign
 @pytest.mark.slow
-@pytest.mark.parametrize("text", [LIGHT, pytest.param(LIFT, marks=pytest.mark.campaign)], ids=["light_yoke", "lift"])
+@pytest.mark.parametrize("text", [LIGHT, LIFT], ids=["light_yoke", "lift"])
 def test_real_machines_get_every_quantity(text: str, tmp_path: Path) -> None:
     path = tmp_path / "machine.yaml"
     path.write_text(text, encoding="utf-8")

@@ -173,8 +173,9 @@ def arm(count: int) -> str:
     )
 
 
+@pytest.mark.campaign
 @pytest.mark.slow
-@pytest.mark.parametrize("count", [5, pytest.param(7, marks=pytest.mark.campaign)])
+@pytest.mark.parametrize("count", [5, 7])
 def test_an_arm_given_by_energies_has_its_accelerations_in_float32(count: int, tmp_path: Path) -> None:
     verified(arm(count), tmp_path, ("forward_dynamics",))
 

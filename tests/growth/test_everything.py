@@ -100,7 +100,11 @@ def test_what_all_leaves_out_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 @pytest.mark.parametrize(
     ("operations", "outputs", "made"),
-    [(1_400, ("all",), True), (2_800, ("all",), False), (2_800, ("all", "mass_matrix"), True)],
+    [
+        pytest.param(1_400, ("all",), True, marks=pytest.mark.campaign),
+        (2_800, ("all",), False),
+        pytest.param(2_800, ("all", "mass_matrix"), True, marks=pytest.mark.campaign),
+    ],
 )
 def test_twice_the_digits_of_two_thousand_operations_are_for_those_who_ask(
     operations: int, outputs: tuple[str, ...], made: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

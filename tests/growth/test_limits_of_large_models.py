@@ -107,6 +107,7 @@ def test_rows_that_are_multiples_of_one_row_are_verified(tmp_path: Path) -> None
     assert not result.failures
 
 
+@pytest.mark.campaign
 def test_a_gear_in_a_long_chain_leaves_its_accelerations_to_the_links() -> None:
     """What would factor the whole mass matrix is given up once that takes longer than it may be worth."""
     text = chain(60).replace("[inverse_dynamics]", "[forward_dynamics]")

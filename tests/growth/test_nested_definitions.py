@@ -87,9 +87,8 @@ def test_twice_the_lines_are_twice_the_work(form: type, kind: str) -> None:
     assert many <= 3 * few
 
 
-@pytest.mark.parametrize(
-    "form", [energies, pytest.param(bodies, marks=pytest.mark.campaign)], ids=["energies", "bodies"]
-)
+@pytest.mark.campaign
+@pytest.mark.parametrize("form", [energies, bodies], ids=["energies", "bodies"])
 def test_a_verified_run_ends_with_a_report_or_says_why_not(form: type, tmp_path: Path) -> None:
     path = tmp_path / "nested.yaml"
     path.write_text(form(40, LINES["sums"]))

@@ -48,7 +48,8 @@ def test_every_function_links(tool: Callable[[str], str], tmp_path: Path, core: 
     assert addresses(Workshop(folder, core), image, functions).keys() == {*functions}
 
 
-@pytest.mark.parametrize("name", ["cortex-m0+", pytest.param("cortex-m4f", marks=pytest.mark.campaign)])
+@pytest.mark.campaign
+@pytest.mark.parametrize("name", ["cortex-m0+", "cortex-m4f"])
 def test_it_would_be_noticed_without_the_library_of_math(
     tool: Callable[[str], str], tmp_path: Path, name: str
 ) -> None:

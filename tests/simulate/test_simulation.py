@@ -63,6 +63,7 @@ def test_a_free_motion_keeps_its_energy(out: Path) -> None:
     assert abs(motion[-1]["q_1"] - 1) > 0.05
 
 
+@pytest.mark.campaign
 def test_constraints_hold_and_rates_are_projected(out: Path) -> None:
     options = ("--duration", "0.5", "--start", "a_1_dot=1", "--out", str(out))
     assert run(str(MODELS / "rapkm_2rrr_rr.yaml"), *options) == 0

@@ -212,7 +212,8 @@ def neighbours(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("compiler", ["gcc", pytest.param("g++", marks=pytest.mark.campaign)])
+@pytest.mark.campaign
+@pytest.mark.parametrize("compiler", ["gcc", "g++"])
 def test_models_live_in_one_program(tool: Callable[[str], str], neighbours: Path, compiler: str) -> None:
     """All headers of all kinds in one file, then all single headers with their definitions; no file name is shared."""
     headers = sorted(neighbours.glob("*/c/*.h"))
