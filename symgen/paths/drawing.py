@@ -6,6 +6,8 @@ from io import StringIO
 from typing import Any
 
 STYLES = ("-", "--", "-.", ":")
+# Okabe and Ito's palette: told apart with every common colour blindness, and by dashes in black and white.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 STYLE = {
     "font.family": "DejaVu Sans",
     "font.size": 9.0,

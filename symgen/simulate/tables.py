@@ -8,8 +8,7 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 
 from symgen.model.model import Model
-from symgen.paths.drawing import FIGURE_WIDTH, STYLE, STYLES
-from symgen.paths.line_chart import COLOURS
+from symgen.paths.drawing import COLOURS, FIGURE_WIDTH, STYLE, STYLES
 from symgen.simulate.integrate import SimulatedMotion
 
 # Inches that the chart of one panel is high.

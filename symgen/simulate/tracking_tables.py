@@ -9,8 +9,7 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 
 from symgen.model.model import Model
-from symgen.paths.drawing import FIGURE_WIDTH, STYLE, STYLES
-from symgen.paths.line_chart import COLOURS
+from symgen.paths.drawing import COLOURS, FIGURE_WIDTH, STYLE, STYLES
 from symgen.simulate.tables import CURVES_HEIGHT, MOST_CURVES
 from symgen.simulate.tracking import TrackedMotion
 

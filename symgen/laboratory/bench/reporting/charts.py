@@ -8,8 +8,7 @@ from math import isfinite, log10
 from typing import Any
 
 from symgen.laboratory.bench.run import SCALARS, Comparison, MeasuredCandidate
-from symgen.paths.drawing import svg
-from symgen.paths.line_chart import COLOURS
+from symgen.paths.drawing import COLOURS, svg
 
 LOOKS = {
     "symgen": (COLOURS[0], "o"),

@@ -14,8 +14,7 @@ from symgen.laboratory.stress.reporting.method_charts import method_chart
 from symgen.laboratory.stress.run import Stress
 from symgen.laboratory.stress.series import FIXED, PARTITION, SWITCHING, SYMGEN, Series, by_method
 from symgen.model.quantities import ROWS
-from symgen.paths.drawing import svg
-from symgen.paths.line_chart import COLOURS
+from symgen.paths.drawing import COLOURS, svg
 from symgen.verify.tolerance import FACTOR
 
 SYMBOLS = {name: ROWS[name].symbol for name in STRESSED}

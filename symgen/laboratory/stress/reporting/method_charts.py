@@ -11,8 +11,7 @@ from symgen.laboratory.stress.reporting.axes import logarithmic
 from symgen.laboratory.stress.run import Stress
 from symgen.laboratory.stress.series import SYMGEN, Series, by_method
 from symgen.model.quantities import MAIN, ROWS
-from symgen.paths.drawing import svg
-from symgen.paths.line_chart import COLOURS
+from symgen.paths.drawing import COLOURS, svg
 from symgen.verify.tolerance import FACTOR
 
 KINDS: tuple[Kind, ...] = ("parameter", "input", "constraint", "mass ratios")
