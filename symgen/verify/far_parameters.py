@@ -11,10 +11,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 from itertools import chain, islice
 from math import floor, log10
-from types import MappingProxyType
 
 import numpy as np
 
@@ -22,53 +20,29 @@ from symgen.ir.bounded import Bound
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.runtime.activity import working
 from symgen.verify.expected import Expected
-from symgen.verify.far_errors import Far, FarErrors, joined
+from symgen.verify.far_errors import Far, FarErrors
+from symgen.verify.far_states import FAR_STARTS, FURTHEST, NEAR_STARTS, NUMBERS_HELD, QUARTER, SIDES, FarStates
 from symgen.verify.interpreted import outcomes
 from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.reference.reference import ReferenceValueError, State
 from symgen.verify.running.compile import Outcome
-from symgen.verify.sampling.loops_in_lanes import CLOSED_IN_LANES, LoopsInLanes
-from symgen.verify.sampling.nearby import Surroundings, of_samples
-from symgen.verify.sampling.nearby import joined as joined_states
-from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, ranked_parts
-from symgen.verify.sampling.rates_in_lanes import RatesInLanes
-from symgen.verify.sampling.task_ahead import TaskInLanes
 from symgen.verify.single_precision import units_in_float32
 from symgen.verify.tolerance import FACTOR, is_beyond
 
-# Powers of ten by which a parameter is away at most: they are looked at one by one.
-FURTHEST = 9
-# Of a power of ten: steps in which the first one that is too far is looked at again.
-QUARTER = 0.25
 # Powers of ten from a loss to the bound.
 BEFORE_A_LOSS = 1.0
 # Digits in which a bound is given.
 BOUND_DIGITS = 2
-# Of these as many are looked at together.
+# Powers of ten that are looked at together.
 TOGETHER_AWAY = 3
-# Below and above, as signs of powers.
-SIDES = (-1, 1)
 # States at which that is looked at, fewer for long kernels.
 FAR_STATES = 8
-# Half of them are the worst of so many at these powers of ten.
+# Half of them are the worst of so many at these powers of ten, half of which are where float32 loses most far away.
 CHOSEN_AMONG, CHOSEN_AT = 16, (4, 9)
-# States of the verification from which all of them come, and from which places are looked for where the loops close.
-FAR_STARTS = 32
-# States near to these.  Half of those that are chosen among are where float32 loses most furthest away.
-NEAR_STARTS = 512
-# Numbers that are held at a time, and that are worked out for the powers of one kernel.
-NUMBERS_HELD, MOST = 4_000_000, 30_000_000
-# Coordinates that are kept of configurations with a parameter far away.
-MOST_KEPT = 8_000_000
-# Rows and inputs this far from a drop of rank are no reason for a status: parameters are.
-CLEAR = 1e-4
+# Numbers that are worked out for the powers of one kernel.
+MOST = 30_000_000
 # Units of an estimate that count as lost: other states than these lose twice as much, and more.
 UNITS_LOST = FACTOR / 2
-# Times the steps of Newton's method from a state to where its loops close with a parameter far away.
-RENEWED = 5
-# Starts, where none are chosen.
-NO_PLACES: Lanes = np.array([], dtype=int)
-NONE_CHOSEN: Mapping[tuple[int, int], Lanes] = MappingProxyType({})
 # Up to this power the reference judges so many of the worst.
 JUDGED_UP_TO, JUDGED_FAR = 1.0, 2
 
@@ -82,15 +56,11 @@ class _Tried:
 
 
 class FarParameters:
-    """The states of one verification with parameters far from where they are there."""
+    """The search for one verification."""
 
     def __init__(self, expected: Expected) -> None:
         self._reference, self._drawn = expected.reference, expected.drawn
-        system, literals = expected.reference.system, [float(x) for x in expected.reference.literals()]
-        self._loops, self._task = LoopsInLanes(system, literals), TaskInLanes(system, literals)
-        self._near = Surroundings(self._reference, self._drawn)
-        self._parts = ranked_parts(expected.reference.system, expected.reference.ranks)
-        self._rates = RatesInLanes(expected.reference.system, self._parts, self._loops)
+        self.states = FarStates(expected)
 
     def bounds(
         self, kernels: Mapping[Scalar, Kernel], programs: Mapping[Scalar, Program], plain: Kernel | None = None
@@ -100,65 +70,11 @@ class FarParameters:
         `plain` is the one in float64 without pairs of numbers where that works with them.
         """
         double = kernels["float64"]
-        read = {load.index for load in double.loads if load.argument == "p"} | self._leading
+        read = {load.index for load in double.loads if load.argument == "p"} | self.states.leading
         if not read:
             return {}
         with working(f"how far parameters of {double.name} may be"):
             return _Bounds(self, kernels, programs, plain).of(sorted(read))
-
-    def led(
-        self, steps: Sequence[tuple[int, float]], states: int, chosen: Mapping[tuple[int, int], Lanes] = NONE_CHOSEN
-    ) -> Far:
-        """States with one parameter far away, for each step (which, and by what power of ten) as far as loops close.
-
-        On a side of a parameter, `chosen` starts come before others.
-        """
-        rows = []
-        for which, power in steps:
-            places = self._places(which, power)
-            first = chosen.get((which, 1 if power > 0 else -1), NO_PLACES)
-            places = np.concatenate((first[np.isin(first, places)], places[~np.isin(places, first)]))
-            rows += [(which, place, power) for place in places[:states].tolist()]
-        system = self._reference.system
-        held = max(1, NUMBERS_HELD // (system.n * (system.n + system.m + system.r)))
-        return joined([self._at(rows[start : start + held]) for start in range(0, max(1, len(rows)), held)])
-
-    def _places(self, which: int, power: float) -> Lanes:
-        """The states with which the loops close with a parameter away by a power of ten; of few where it moves them."""
-        if which in self._moving:
-            return np.flatnonzero(self._closed[1][(*_step(power), self._moving[which])])
-        return np.arange(len(self._starts["q"]))
-
-    def shifted(self, rows: Sequence[tuple[int, float]], states: int) -> dict[str, Lanes]:
-        """The first of all states for each parameter, by a factor each, as if nothing else depended on it."""
-        given = {name: np.tile(values[:states], (len(rows), 1)) for name, values in self._starts.items()}
-        states = len(given["p"]) // len(rows)
-        which, factors = (np.repeat(column, states) for column in zip(*rows, strict=True))
-        given["p"][np.arange(len(which)), which] *= factors
-        return given
-
-    def _at(self, rows: Sequence[tuple[int, int, float]]) -> Far:
-        """The states with a parameter, a start and a power of ten each."""
-        which, place = np.array([row[:2] for row in rows], dtype=int).reshape(-1, 2).T
-        far = np.array([row[2] for row in rows])
-        given = {name: values[place] for name, values in self._starts.items()}
-        given["p"][np.arange(len(which)), which] *= 10.0**far
-        for row, (parameter, start, power) in enumerate(rows):
-            if parameter in self._moving:
-                given["q"][row] = self._closed[0][(*_step(power), self._moving[parameter], start)]
-        given["qd"], given["qdd"], finite = self._rates.admissible(given)
-        with np.errstate(all="ignore"):
-            given["task"] = self._task.ahead(given)
-        return Far(which, far, place, given, self._regular(given)).only(finite)
-
-    def _regular(self, given: Mapping[str, Lanes]) -> Lanes:
-        """Whether neither rows nor inputs are near a drop of rank."""
-        regular = np.ones(len(given["q"]), dtype=bool)
-        with np.errstate(all="ignore"):
-            blocks = matrices(self._reference.system, self._parts, self._loops, given["q"], given["p"])
-            for part, (rows, control) in zip(self._parts, blocks, strict=True):
-                regular &= is_regular(part, rows, control, share=CLEAR)
-        return regular
 
     def bound(self, parameter: int, low: float | None, high: float | None) -> Bound | None:
         """A parameter may be by these powers of ten below and above the values that it has in the verification.
@@ -190,77 +106,6 @@ class FarParameters:
         except ReferenceValueError:
             return False
 
-    @cached_property
-    def _leading(self) -> frozenset[int]:
-        """The parameters that move configurations: beside other values the loops are open."""
-        q, p = self._starts["q"][:1], self._starts["p"][:1]
-        count = p.shape[1]
-        moved = [p * np.where(np.eye(count, dtype=bool), 10.0 ** (sign * QUARTER), 1.0) for sign in SIDES]
-        with np.errstate(all="ignore"):
-            still = [self._loops.shut(q.repeat(count, axis=0), one, CLOSED_IN_LANES) for one in moved]
-        return frozenset(np.flatnonzero(~np.logical_and(*still)).tolist())
-
-    @cached_property
-    def _moving(self) -> dict[int, int]:
-        """The places of the parameters that move configurations among themselves."""
-        return {parameter: k for k, parameter in enumerate(sorted(self._leading))}
-
-    @cached_property
-    def _closed(self) -> tuple[Lanes, Lanes]:
-        """Where the loops close with a parameter further and further away, and whether they do.
-
-        By side, quarter of a power of ten, parameter that moves them and state: each step starts where the one before
-        it ended.  Where that leads nowhere each power of ten is looked for from the state itself; where none of the
-        states closes at one, a parameter is not led further.
-        """
-        leading, steps = [*self._moving], round(FURTHEST / QUARTER)
-        n = self._starts["q"].shape[1]
-        most = max(FAR_STATES, min(FAR_STARTS, MOST_KEPT // (len(SIDES) * steps * len(leading) * n)))
-        starts = {name: values[:most] for name, values in self._starts.items()}
-        count = len(starts["q"])
-        shape = len(SIDES), steps, len(leading), count
-        configurations, shut = np.empty((*shape, n)), np.zeros(shape, dtype=bool)
-        for side, sign in enumerate(SIDES):
-            led = np.arange(len(leading))
-            q = np.tile(starts["q"], (len(leading), 1))
-            for step in range(steps):
-                power, place = QUARTER * (step + 1), np.tile(np.arange(count), len(led))
-                p = starts["p"][place]
-                p[np.arange(len(place)), np.array(leading)[led].repeat(count)] *= 10.0 ** (sign * power)
-                q, closed = self._newton(q, p)
-                for look in (self._loops.damped, self._further) if power.is_integer() else ():
-                    still = np.flatnonzero(~closed)
-                    with np.errstate(all="ignore"):
-                        reached = look(starts["q"][place[still]], p[still])
-                    q[still], closed[still] = self._newton(reached, p[still])
-                q = np.where(closed[:, None], q, starts["q"][place])
-                configurations[side, step, led] = q.reshape(len(led), count, n)
-                shut[side, step, led] = by_parameter = closed.reshape(len(led), count)
-                if power.is_integer():
-                    closes = by_parameter.any(axis=1)
-                    led, q = led[closes], q[closes.repeat(count)]
-                if not len(led):
-                    break
-        return configurations, shut
-
-    def _newton(self, q: Lanes, p: Lanes) -> tuple[Lanes, Lanes]:
-        """Where Newton's method leads, and whether all loops are closed there."""
-        with np.errstate(all="ignore"):
-            q, shut = self._loops.newton(q, p)
-        return q, shut.all(axis=1)
-
-    def _further(self, q: Lanes, p: Lanes) -> Lanes:
-        """Where so many times the steps of Newton's method lead: it takes more of them to far larger lengths."""
-        for _ in range(RENEWED):
-            q, _ = self._newton(q, p)
-        return q
-
-    @cached_property
-    def _starts(self) -> dict[str, Lanes]:
-        drawn, near = of_samples(self._drawn[:FAR_STARTS]), self._near.drawn(NEAR_STARTS)
-        return dict(joined_states(drawn, near).parts)
-
-
 class _Bounds:
     """The search for one quantity."""
 
@@ -288,7 +133,7 @@ class _Bounds:
                 break
             powers = range(nearest, min(nearest + TOGETHER_AWAY, FURTHEST + 1))
             steps = [(k, sign * power) for k, sign in left for power in powers]
-            lost = self._lost(self._far.led(steps, states, chosen))
+            lost = self._lost(self._far.states.led(steps, states, chosen))
             for scalar, far in lost.items():
                 first[scalar] = _nearest(far) | first[scalar]
         closer = {
@@ -299,7 +144,7 @@ class _Bounds:
         }
         if not closer:
             return dict.fromkeys(first, ())
-        lost = self._lost(self._far.led(sorted(closer), states, chosen))
+        lost = self._lost(self._far.states.led(sorted(closer), states, chosen))
         return {scalar: tuple(self._of(scalar, read, first[scalar], far)) for scalar, far in lost.items()}
 
     def _as_many(self, states: int, steps: int) -> int:
@@ -316,7 +161,7 @@ class _Bounds:
         if starts <= states:
             return {}
         steps = [(k, sign * power) for k in read for sign in SIDES for power in CHOSEN_AT]
-        far = self._far.led(steps, starts, self._off_in_float32(read, (starts + 1) // 2))
+        far = self._far.states.led(steps, starts, self._off_in_float32(read, (starts + 1) // 2))
         units = np.max([*self._units(far).values()], axis=0)
         order = np.argsort(-units, kind="stable")
         worst: dict[tuple[int, int], dict[int, None]] = {}
@@ -335,7 +180,7 @@ class _Bounds:
         worst: dict[tuple[int, int], Lanes] = {}
         for at in range(0, len(sides), held):
             part = sides[at : at + held]
-            given = self._far.shifted([(k, 10.0 ** (sign * FURTHEST)) for k, sign in part], starts)
+            given = self._far.states.shifted([(k, 10.0 ** (sign * FURTHEST)) for k, sign in part], starts)
             off = units_in_float32(self._plain, self._programs, given).reshape(len(part), -1)
             worst |= zip(part, np.argsort(-off, axis=1, kind="stable")[:, :states], strict=True)
         return worst
@@ -396,11 +241,6 @@ class _Bounds:
         """As many states at a time as may be held."""
         held = max(1, NUMBERS_HELD // self._size)
         return (far.only(slice(start, start + held)) for start in range(0, len(far), held))
-
-
-def _step(power: float) -> tuple[int, int]:
-    """The side of a power of ten, and which of its quarters it is."""
-    return int(power > 0), round(abs(power) / QUARTER) - 1
 
 
 def _nearest(far: Far) -> dict[tuple[int, int], float]:

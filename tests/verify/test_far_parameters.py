@@ -24,6 +24,7 @@ from symgen.pipeline import generate
 from symgen.verify.expected import Expected
 from symgen.verify.far_errors import Far, FarErrors
 from symgen.verify.far_parameters import FAR_STATES, FarParameters
+from symgen.verify.far_states import FarStates
 from symgen.verify.interpreted import outcomes
 from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.reference.reference import State
@@ -128,7 +129,7 @@ def test_what_few_states_lose_is_bounded(expected: Expected) -> None:
     place = 12
     assert place >= FAR_STATES
     names = [parameter.name for parameter in expected.reference.model.parameters]
-    led = FarParameters(expected).led([(names.index(MASS), 3.0)], place + 1)
+    led = FarStates(expected).led([(names.index(MASS), 3.0)], place + 1)
     there = Fraction(float(led.given["qd"][led.starts == place][0, 0]))
     tiny = Literal(Fraction(1, 10**12))
     kernel = straight(
@@ -297,7 +298,7 @@ def test_states_far_away_satisfy_the_constraints_there(tmp_path: Path) -> None:
     path.write_text(CART, encoding="utf-8")
     expected = Expected(load_model(path), (MULTIPLIERS,), 16, lambda _: None)
     names = [p.name for p in expected.reference.model.parameters]
-    far = FarParameters(expected).led([(names.index("w"), 3.0)], 8)
+    far = FarStates(expected).led([(names.index("w"), 3.0)], 8)
     assert len(far) == 8
     for k in range(len(far)):
         parts = (tuple(far.given[part][k]) for part in ("q", "qd", "qdd", "u", "p"))
