@@ -3,7 +3,8 @@
 In float64 they are estimated.  In float32 estimates to the first order are not all there is: one digit of three may be
 lost by refinement that no longer converges, or by numbers too small for the type.  There they are measured as well,
 beside the same operations in float64.  Kernels with twice the digits lose what the same operations on plain numbers
-do, but for the digits that pairs gain.
+do in float32, but for the digits that pairs gain; in float64 there is nothing beside which they could be held, plain
+numbers may have lost all of theirs, and noise is measured (`rounding_noise.py`).
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from symgen.ir.wide import GAINED
 from symgen.ir.wide_functions import works_with_pairs
 from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.many_states import run_lanes
+from symgen.verify.rounding_noise import noise_in_units
 from symgen.verify.sampling.lanes import RoundingErrors
 from symgen.verify.single_precision import distances, in_single_precision
 
@@ -77,12 +79,11 @@ class FarErrors:
         return {scalar: np.where(masses, units, 0.0) for scalar, units in by_scalar.items()}
 
     def _of_pairs(self, far: Far) -> dict[Scalar, Lanes]:
-        """In float64 pairs have digits enough, and refuse where the same operations on plain numbers do."""
-        own, unit = self._estimates.with_units(far.given)
-        by_scalar: dict[Scalar, Lanes] = {"float64": np.zeros(len(far))}
-        refused = np.flatnonzero(~np.isfinite(unit))
-        by_scalar["float64"][refused] = self._refusals("float64", far.only(refused))
+        """In float64 their noise; in float32 what is lost on plain numbers, less the digits that pairs gain."""
+        double = noise_in_units(self._kernels["float64"], self._programs["float64"].sincos, far.given)
+        by_scalar: dict[Scalar, Lanes] = {"float64": np.maximum(double, self._refusals("float64", far))}
         if self._single is not None:
+            own, unit = self._estimates.with_units(far.given)
             by_scalar["float32"] = np.maximum(self._refusals("float32", far), own / unit * 2.0**-GAINED)
         return by_scalar
 

@@ -21,7 +21,16 @@ from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.runtime.activity import working
 from symgen.verify.expected import Expected
 from symgen.verify.far_errors import Far, FarErrors
-from symgen.verify.far_states import FAR_STARTS, FURTHEST, NEAR_STARTS, NUMBERS_HELD, QUARTER, SIDES, FarStates
+from symgen.verify.far_states import (
+    FAR_STARTS,
+    FURTHEST,
+    MODE_STARTS,
+    NEAR_STARTS,
+    NUMBERS_HELD,
+    QUARTER,
+    SIDES,
+    FarStates,
+)
 from symgen.verify.interpreted import outcomes
 from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.reference.reference import ReferenceValueError, State
@@ -162,8 +171,9 @@ class _Bounds:
             return {}
         steps = [(k, sign * power) for k in read for sign in SIDES for power in CHOSEN_AT]
         far = self._far.states.led(steps, starts, self._off_in_float32(read, (starts + 1) // 2))
-        units = np.max([*self._units(far).values()], axis=0)
-        order = np.argsort(-units, kind="stable")
+        by_scalar = self._units(far)
+        # of each type in turn: in float32 next to all of them may be refused
+        order = np.array([np.argsort(-units, kind="stable") for units in by_scalar.values()]).T.ravel()
         worst: dict[tuple[int, int], dict[int, None]] = {}
         for k, power, start in zip(*(x[order].tolist() for x in (far.parameters, far.powers, far.starts)), strict=True):
             worst.setdefault((k, 1 if power > 0 else -1), {})[start] = None
@@ -173,15 +183,19 @@ class _Bounds:
         """On each side of a parameter so many starts: float32 loses most there, with that one furthest away.
 
         A pivot that it leaves no digit of is met at one state in a hundred, and no estimate of the first order sees it.
+        States at which as much is lost where parameters are say nothing of these.
         """
-        starts = self._as_many(FAR_STARTS + NEAR_STARTS, len(read))
+        starts = self._as_many(FAR_STARTS + NEAR_STARTS + MODE_STARTS, len(read))
         sides = [(k, sign) for k in read for sign in SIDES]
         held = max(1, NUMBERS_HELD // (self._size * starts))
         worst: dict[tuple[int, int], Lanes] = {}
+        as_given = self._far.states.shifted([(read[0], 1.0)], starts)
+        lossy = units_in_float32(self._plain, self._programs, as_given) > UNITS_LOST / 2
         for at in range(0, len(sides), held):
             part = sides[at : at + held]
             given = self._far.states.shifted([(k, 10.0 ** (sign * FURTHEST)) for k, sign in part], starts)
             off = units_in_float32(self._plain, self._programs, given).reshape(len(part), -1)
+            off[:, lossy] = 0.0
             worst |= zip(part, np.argsort(-off, axis=1, kind="stable")[:, :states], strict=True)
         return worst
 

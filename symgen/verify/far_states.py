@@ -25,8 +25,8 @@ QUARTER = 0.25
 # Below and above, as signs of powers.
 SIDES = (-1, 1)
 # States of the verification from which all of them come, and from which places are looked for where the loops close;
-# states near to these, where no loop has to close again.
-FAR_STARTS, NEAR_STARTS = 32, 512
+# where no loop has to close again, states near to these and assembly modes, that of the file the first.
+FAR_STARTS, NEAR_STARTS, MODE_STARTS = 32, 448, 64
 # Numbers that are held at a time.
 NUMBERS_HELD = 4_000_000
 # Coordinates that are kept of configurations with a parameter far away, and states of each that are kept in any case.
@@ -47,7 +47,7 @@ class FarStates:
         self._system, self._drawn = expected.reference.system, expected.drawn
         literals = [float(x) for x in expected.reference.literals()]
         self._loops, self._task = LoopsInLanes(self._system, literals), TaskInLanes(self._system, literals)
-        self._near = Surroundings(expected.reference, self._drawn)
+        self._near = Surroundings(expected.reference, self._drawn, expected.modes)
         self._parts = ranked_parts(self._system, expected.reference.ranks)
         self._rates = RatesInLanes(self._system, self._parts, self._loops)
 
@@ -172,8 +172,8 @@ class FarStates:
 
     @cached_property
     def _starts(self) -> dict[str, Lanes]:
-        drawn, near = of_samples(self._drawn[:FAR_STARTS]), self._near.drawn(NEAR_STARTS)
-        return dict(joined_states(drawn, near).parts)
+        modes_first = joined_states(self._near.at_modes(MODE_STARTS), self._near.drawn(NEAR_STARTS))
+        return dict(joined_states(of_samples(self._drawn[:FAR_STARTS]), modes_first).parts)
 
 
 def _step(power: float) -> tuple[int, int]:

@@ -31,8 +31,8 @@ def lost_in_float32(kernel: Kernel, given: Mapping[str, Lanes]) -> Lanes:
 def units_in_float32(kernel: Kernel, programs: Mapping[Scalar, Program], given: Mapping[str, Lanes]) -> Lanes:
     """The same in units of d + eps |y|, d of few changes of what is given: for a choice among many states, no verdict.
 
-    Infinite where float32 refuses what float64 does not.  Sines are those of the programs; without one in float32 all
-    are the library's.
+    Infinite where float64 refuses, and as large as numbers get where float32 alone does.  Sines are those of the
+    programs; without one in float32 all are the library's.
     """
     sincos, single_sincos = (programs[s].sincos if "float32" in programs else None for s in TYPES)
     single = in_single_precision(given)
@@ -47,7 +47,7 @@ def units_in_float32(kernel: Kernel, programs: Mapping[Scalar, Program], given: 
         changes = np.maximum(changes, np.where(beside == 0, distances(changed, exact), 0.0))
     with np.errstate(all="ignore"):
         units = np.where(refused, np.inf, distances(made, exact) / (unit + changes))
-    return np.nan_to_num(np.where(unknown, 0.0, units), posinf=np.inf)
+    return np.where(unknown, np.inf, np.nan_to_num(units))
 
 
 def in_single_precision(given: Mapping[str, Lanes]) -> dict[str, Lanes]:

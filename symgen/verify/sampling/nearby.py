@@ -132,6 +132,13 @@ class Surroundings:
         start = Nearby({**start.parts, "q": q, "p": p}, start.admissible, start.origins)
         return self._stepped(start, REACH, 1.0, random.Random("modes"), afresh=True)
 
+    def at_modes(self, count: int) -> Nearby:
+        """So many assembly modes as they are, that of the file first, for default parameters; rates are of samples."""
+        q = self._modes[:count]
+        start = self.samples.only(np.arange(len(q)) % len(self.samples))
+        p = np.tile(self._defaults, (len(q), 1))
+        return Nearby({**start.parts, "q": q, "p": p}, start.admissible, start.origins)
+
     def further_out(self, count: int) -> Nearby:
         """So many where lengths without a range are anywhere that they may reach; none where every length has one."""
         start = self.samples.only(np.arange(count) % len(self.samples))
