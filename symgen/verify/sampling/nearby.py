@@ -211,7 +211,7 @@ class Surroundings:
         def far(q: Lanes) -> tuple[Lanes, Lanes]:
             """Where that leads, and how far it is from a drop of rank: the root of a measure falls along a line."""
             q, shut = self._loops.newton(q, p)
-            made = measures(self._parts, self._matrices(q, p))
+            made = measures(self._parts, self._matrices(q, p), together=True)
             if masses is not None:
                 made = np.concatenate((made, masses.shares(q, p)[:, None]), axis=1)
             inside = ((q >= self._low) & (q <= self._high)).all(axis=1)
@@ -232,9 +232,9 @@ class Surroundings:
                 q, now = np.where(nearer[:, None], led, q), np.where(nearer, made, now)
         return self._with_rates(Nearby({**start.parts, "q": q}, start.admissible, start.origins))
 
-    def measures(self, states: Nearby) -> Lanes:
-        """What tells how far rows and inputs are from a drop of rank, a row for each state."""
-        return measures(self._parts, self._matrices(states.parts["q"], states.parts["p"]))
+    def measures(self, states: Nearby, together: bool) -> Lanes:
+        """What tells how far rows and inputs are from a drop of rank, a row for each state; `together` as there."""
+        return measures(self._parts, self._matrices(states.parts["q"], states.parts["p"]), together)
 
     def tangents(self, states: Nearby) -> Lanes:
         """What is left of changes of coordinates (n x n) along V, for each state."""

@@ -150,14 +150,14 @@ class WorstStateSearch:
             others = np.linspace(samples, len(states), max(0, count - samples), endpoint=False).astype(int)
             states = states.only(np.append(np.arange(samples), others))
         least = self._settling(kernel.name).measures
-        made = self._units(errors, states, least)
+        made = self._units(errors, states, least, kernel.name in MAIN)
         going = min(self._affordable(KEPT * DIRECTIONS), max(count, DIRECTIONS))
         for step in range(STEPS_FURTHER if made.units.max() > DOUBTFUL else 0):
             worst = made.states.only(_worst(made.units, KEPT))
             starts = worst.only(np.arange(len(worst)).repeat(DIRECTIONS)[:going])
             further = self._surroundings.moved(starts, f"{kernel.name} {step}")
             if len(further):
-                made += self._units(errors, further, least)
+                made += self._units(errors, further, least, kernel.name in MAIN)
         return made
 
     def _tangents(self, states: Nearby) -> Lanes | None:
@@ -165,9 +165,9 @@ class WorstStateSearch:
         reference = self._expected.reference
         return self._surroundings.tangents(states) if reference.ranks.constraints < reference.system.r else None
 
-    def _units(self, errors: RoundingErrors, states: Nearby, least: Sequence[float]) -> _Estimates:
+    def _units(self, errors: RoundingErrors, states: Nearby, least: Sequence[float], together: bool) -> _Estimates:
         own, unit = errors.with_units(states.parts, self._tangents(states))
-        regular = (self._surroundings.measures(states) >= least).all(axis=1)
+        regular = (self._surroundings.measures(states, together) >= least).all(axis=1)
         return _Estimates(states, np.where(regular, own / unit, 0.0), unit, regular)
 
     @cached_property

@@ -6,12 +6,16 @@ from collections.abc import Sequence
 from dataclasses import replace
 from math import hypot, isfinite, sqrt
 
+import numpy as np
+
 from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.closing import onto_manifold
 from symgen.verify.reference.manifold import exceeds
 from symgen.verify.reference.parameter_values import ParameterValues
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
+from symgen.verify.sampling.loops_in_lanes import LoopsInLanes
 from symgen.verify.sampling.plain_values import PROJECTED, SAMPLING_BITS, floats, settled, values_at
+from symgen.verify.sampling.ranks_in_lanes import lost_together, matrices, ranked_parts
 from symgen.verify.sampling.regular import REGULAR_SHARE
 from symgen.verify.sampling.states import Sample
 from symgen.verify.sampling.task_ahead import with_task
@@ -24,11 +28,13 @@ class Settling:
     """Takes what is as regular as the samples are: at least a thousandth of the usual, or as the least of them.
 
     `measures` are the least that rows and inputs are to have; a share of that of the samples, where states beside
-    singular ones count as well.
+    singular ones count as well: there of directions of rows that are lost together the least counts.
     """
 
     def __init__(self, reference: Reference, samples: Sequence[Sample], share: float = 1.0) -> None:
-        self._reference, model = reference, reference.model
+        self._reference, model, self._nearer = reference, reference.model, share < 1
+        self._parts = ranked_parts(reference.system, reference.ranks)
+        self._loops = LoopsInLanes(reference.system, [float(x) for x in reference.literals()])
         tied = () if model.assembly is None else model.assembly.tied
         self._varied = ParameterValues(model, [p.name for p in model.parameters if p.range and p.name not in tied])
         usual = REGULAR_SHARE ** max(1.0, (model.n - reference.ranks.constraints) / 2)
@@ -58,7 +64,7 @@ class Settling:
         state = replace(state, q=tuple(settled(q, [c.range for c in model.coordinates])))
         values = values_at(reference, state, ("singularity", *PROJECTED))
         first, second = values["singularity"]
-        sizes = (first, second, *self._lengths(state))
+        sizes = (first * self._lost_together(state), second, *self._lengths(state))
         if not all(low <= x and isfinite(x) for low, x in zip((*self.measures, *self._rows), sizes, strict=True)):
             return None
         if admissible:
@@ -68,6 +74,14 @@ class Settling:
         state = with_task(reference, state)
         value = floats(reference.matrices(state, [quantity], SAMPLING_BITS)[quantity])
         return Sample(state, admissible, (first, second)) if all(map(isfinite, value)) else None
+
+    def _lost_together(self, state: State) -> float:
+        """The factor by which the measure of rows is not how far the nearest drop of rank is."""
+        if not self._nearer:
+            return 1.0
+        q, p = (np.array([[float(x) for x in part]]) for part in (state.q, state.parameters))
+        blocks = matrices(self._reference.system, self._parts, self._loops, q, p)
+        return float(lost_together(self._parts, blocks)[0])
 
     def _lengths(self, state: State) -> list[float]:
         """Of the rows of B."""
