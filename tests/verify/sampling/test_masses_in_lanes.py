@@ -73,4 +73,4 @@ def test_states_are_led_to_where_a_direction_loses_its_mass() -> None:
         assert ((shares < 10.0**-decade) & (shares >= 10.0 ** (-decade - 2))).any(), decade
     flat = states.parts["q"][shares < 1e-8]
     assert np.abs(np.cos(flat[:, 4])).max() < 1e-3
-    assert around.measures(states).min() > 1e-3
+    assert around.measures(states, together=True).min() > 1e-3

@@ -21,7 +21,7 @@ from symgen.verify.sampling.lanes import RoundingErrors
 from symgen.verify.sampling.loops_in_lanes import LoopsInLanes
 from symgen.verify.sampling.nearby import Surroundings
 from symgen.verify.sampling.plain_values import values_at
-from symgen.verify.sampling.ranks_in_lanes import ranked_parts
+from symgen.verify.sampling.ranks_in_lanes import RankedPart, measures, ranked_parts
 from symgen.verify.sampling.rates_in_lanes import RatesInLanes
 from symgen.verify.sampling.searched import WorstStateSearch
 from symgen.verify.sampling.states import Sample, rounded, sample_states
@@ -254,9 +254,28 @@ def test_measures_in_lanes_are_those_of_the_reference(name: str) -> None:
     reference = Reference(model)
     samples = sample_states(reference, ["singularity"], 8)
     around = Surroundings(reference, samples)
-    for sample, measured in zip(samples, around.measures(around.samples), strict=True):
+    for sample, measured in zip(samples, around.measures(around.samples, together=False), strict=True):
         exact = values_at(reference, sample.state, ["singularity"])["singularity"]
         assert measured == pytest.approx(exact, rel=1e-9)
+
+
+def test_of_directions_that_are_lost_together_the_least_counts() -> None:
+    """Rows (1, 0, 0), (c, d, 0) and (c, 0, 2 d) lose two directions with d; with (0, 0, 1) for the last, one."""
+    part = RankedPart(range(3), range(3), [], 3, 0)
+
+    def measured(d: float, both: bool, together: bool) -> float:
+        rows = np.array([[1, 0, 0], [np.sqrt(1 - d * d), d, 0], [np.sqrt(1 - 4 * d * d), 0, 2 * d]])
+        rows[2] = rows[2] if both else (0, 0, 1)
+        blocks = [(rows[None], np.zeros((1, 3, 0)))]
+        return float(measures([part], blocks, together)[0, 0])
+
+    for d in (1e-3, 1e-4, 1e-5):
+        assert measured(d / 10, True, False) / measured(d, True, False) == pytest.approx(1e-4, rel=1e-3)
+        assert measured(d / 10, True, True) / measured(d, True, True) == pytest.approx(1e-2, rel=1e-3)
+        assert measured(d, False, True) == measured(d, False, False)
+    # nothing jumps where the second direction begins to be lost
+    ratios = [measured(d, True, True) / measured(d * 0.999, True, True) for d in np.geomspace(1e-3, 0.3, 2000)]
+    assert 1 < min(ratios) <= max(ratios) < 1.005
 
 
 @pytest.mark.parametrize("name", ["three_rrr", "skate"])
@@ -266,7 +285,7 @@ def test_states_are_led_towards_a_drop_of_rank_and_stay_above_the_least(name: st
     around = Surroundings(reference, sample_states(reference, ["inverse_dynamics"], 16))
     least = [1e-15, 1e-15]
     led = around.towards(256, least)
-    measures, usual = around.measures(led), around.measures(around.samples)
+    measures, usual = around.measures(led, together=False), around.measures(around.samples, together=False)
     assert len(led) > 128
     assert (measures >= 0.99e-15).all()
     # of squares: to a hundredth of what the nearest sample has
