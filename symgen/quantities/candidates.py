@@ -17,6 +17,8 @@ from symgen.methods.forward_dynamics.absolute import brought_back, in_absolute_a
 from symgen.methods.forward_dynamics.minor_motion import CANCELLATION_WORTH, LARGEST_DELTA
 from symgen.methods.forward_dynamics.motion import Motion
 from symgen.methods.forward_dynamics.motions import BY_FRAMES, cost_factor, motions_alone, motions_along
+from symgen.methods.given.functions import task
+from symgen.methods.given.least_motion import LeastMotion
 from symgen.methods.graphs import derived_on, moved
 from symgen.methods.method import INPUTS, MOTIONS, Candidate
 from symgen.methods.quantity import scalars
@@ -26,7 +28,7 @@ from symgen.methods.system import MethodInput
 from symgen.methods.table import Use
 from symgen.methods.table import methods as methods_of
 from symgen.model.model import Model
-from symgen.model.quantities import PARTITION, WEIGHT_ARGUMENTS
+from symgen.model.quantities import PARTITION, TASK_OPEN, TASK_RATES, WEIGHT_ARGUMENTS
 from symgen.quantities.catalogue import BY_NAME, CatalogueEntry, by_blocks, derive, derived_from, sizes
 from symgen.quantities.everything import WorkBudget
 from symgen.runtime.activity import working
@@ -178,7 +180,10 @@ class Candidates:
 
     def _factored(self, minors: Candidate) -> Candidate:
         """What was derived along minors multiplied out and factored."""
-        kept = self._derivations["minors"].whole
+        derivation = self._derivations["minors"]
+        of_task = BY_NAME[minors.derived.name].needs in (TASK_RATES, TASK_OPEN)
+        motion = derivation.given_motion(task) if of_task else None
+        kept = derivation.whole | (motion.whole if isinstance(motion, LeastMotion) else frozenset())
         outputs = self._mechanics.factoring.shorten(minors.derived.outputs, kept)
         return replace(minors, derived=replace(minors.derived, outputs=outputs), along="factored")
 

@@ -48,7 +48,8 @@ def _determined(
     k, rows = slopes.shape[0], s.residual.shape[0]
     quantities = {}
     B_plus = pseudoinverse(s.jacobian, ranks.constraints)
-    if k >= n - ranks.constraints:
+    open_ = of == "task" and model.task_leaves.rates and not model.task_leaves.idle
+    if k >= n - ranks.constraints or open_:
         inverse = pseudoinverse(slopes @ (casadi.SX.eye(n) - B_plus @ s.jacobian), n - ranks.constraints)
         velocity = inverse @ given.rates
         least = -B_plus @ (casadi.substitute(s.jacobian_dot, s.qd, velocity) @ velocity)
