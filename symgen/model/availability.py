@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from symgen.model.model import Model
+from symgen.model.open_task import directions, left_open
 from symgen.model.quantities import (
     ACTUATORS,
     LIMITED,
@@ -69,15 +70,11 @@ def _beside_task(quantity: QuantityRow, model: Model) -> str | None:
     leaves, rolling = model.task_leaves, any(row.kind == "nonholonomic" for row in model.constraints)
     if leaves.rates and leaves.idle:
         those = "one of its functions follows" if leaves.idle == 1 else f"{leaves.idle} of its functions follow"
-        return f"the task leaves {_directions(leaves.rates)} open, and {those} from the others: leave out what follows"
+        return f"{left_open(model)}, and {those} from the others: leave out what follows"
     # the least step to a place may be across wheels
     if quantity.needs == TASK_PLACES and leaves.places and rolling:
-        left = _directions(leaves.places)
+        left = directions(leaves.places)
         return f"the task leaves {left} open: further entries, such as coordinates, determine the rest"
     if quantity.needs == TASK_OPEN and not leaves.rates:
         return "the task leaves no direction open"
     return None
-
-
-def _directions(count: int) -> str:
-    return f"{count} direction{'s' if count > 1 else ''}"

@@ -76,7 +76,8 @@ def _lengths(mechanics: System, vectors: Sequence[Vector]) -> tuple[list[Scalar]
     graph = mechanics.graph
     lengths = [dot(graph, x, x) for x in vectors]
     bounds = magnitude(graph, lengths)
-    return [bound if _near(mechanics, x) else own for x, own, bound in zip(vectors, lengths, bounds, strict=True)], bounds
+    sizes = [bound if _near(mechanics, x) else own for x, own, bound in zip(vectors, lengths, bounds, strict=True)]
+    return sizes, bounds
 
 
 def _near(mechanics: System, vector: Vector) -> bool:

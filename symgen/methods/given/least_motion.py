@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from symgen.linear_algebra.guards import Guard
 from symgen.linear_algebra.null_spaces import MinorSpace, NullSpace, has_few_minors
@@ -20,6 +20,7 @@ from symgen.linear_algebra.pivoted import reflected
 from symgen.linear_algebra.sparser_rows import SparserRows
 from symgen.linear_algebra.turned_rows import TurnedRows
 from symgen.methods.given.functions import Given
+from symgen.methods.given.motion import GivenMotion
 from symgen.symbolic.calculus import derivative_along
 from symgen.symbolic.matrix import Matrix, Vector
 from symgen.symbolic.scalar import Scalar
@@ -81,3 +82,12 @@ class LeastMotion:
         """A^+ [0; values]."""
         right = ((self._derivation.graph.zero,) * self._derivation.r, values)
         return self._space.lift(tuple(self._combined.of(self._turned.of([x for part in right for x in part]))))
+
+
+MotionOfGiven: TypeAlias = GivenMotion | LeastMotion
+
+
+def motion_of(derivation: Derivation, given: Given) -> MotionOfGiven:
+    """What is given determines the motion, or leaves directions open."""
+    leaves_open = len(given.functions) < derivation.generic.delta
+    return LeastMotion(derivation, given) if leaves_open else GivenMotion(derivation, given)

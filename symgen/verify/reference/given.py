@@ -115,8 +115,21 @@ def _configuration(e: Evaluation, given: GivenValues) -> Any:
             return q
         if k and length > max(before, first) / 2:
             break
+        if _drifts(e, given, length, before, first):
+            return q
         first, before = first or length, length
     raise ZeroDivisionError("the configuration is not near enough to one with what is given")
+
+
+def _drifts(e: Evaluation, given: GivenValues, length: float, before: float, first: float) -> bool:
+    """Whether steps are what the roundings of rows that depend on each other drive along directions that stay open.
+
+    Moved by roundings such rows contradict each other: least steps then end in one of about the square of a rounding,
+    along what neither rows nor the task hold, which is taken each time.  Before that each is far shorter than the last.
+    """
+    rank = e.ranks.geometric
+    contradict = rank < e.system.r_geometric and given.values.nrows() < e.system.n - rank
+    return contradict and before < 2 * length and length <= first * NOTHING_LEFT
 
 
 def _places(e: Evaluation, given: GivenValues) -> Iterator[tuple[Any, float]]:
