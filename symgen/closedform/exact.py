@@ -179,7 +179,8 @@ class Exact:
         subsets = combinations(range(self.model.r), self.structure.constraint_rank)
         together = [(*(self.rows[i] for i in subset), *own) for subset in subsets]
         self._admit(sum(map(estimated_work, together)), "the minors of B and the task")
-        return [v for rows in together for v in kernel_minors(self.ring, rows, self.model.n).values.values()]
+        all_minors = [kernel_minors(self.ring, rows, self.model.n) for rows in together]
+        return [self.ring.product(v, one.content) for one in all_minors for v in one.values.values()]
 
     def _spanned(self, columns: Matrix, scale: PolyElement, what: str) -> tuple[Actuation, ...]:
         """Delta_J and v_L of columns (n x k) times their common denominator."""
