@@ -17,8 +17,6 @@ from symgen.methods.forward_dynamics.absolute import brought_back, in_absolute_a
 from symgen.methods.forward_dynamics.minor_motion import CANCELLATION_WORTH, LARGEST_DELTA
 from symgen.methods.forward_dynamics.motion import Motion
 from symgen.methods.forward_dynamics.motions import BY_FRAMES, cost_factor, motions_alone, motions_along
-from symgen.methods.given.functions import task
-from symgen.methods.given.least_motion import LeastMotion
 from symgen.methods.graphs import derived_on, moved
 from symgen.methods.method import INPUTS, MOTIONS, Candidate
 from symgen.methods.quantity import scalars
@@ -83,8 +81,10 @@ class Candidates:
         # F is unbounded near its singularities: there it is the one determinant of the minors that keeps its digits
         if entry.needs == PARTITION and "minors" in costs and costs["minors"] <= costs[best.title] * MOST_WORTH:
             best = made["minors"]
-        # minors of rows that depend on each other become small together: multiplied out, their squares would cancel
-        if self._generic.rank == self._generic.r and 0 < costs.get("minors", 0) <= FACTORING_LIMIT:
+        # minors of rows that depend on each other become small together: multiplied out, their squares would cancel;
+        # so do those of a task that leaves directions open, beside its singularities
+        least = entry.needs in (TASK_RATES, TASK_OPEN) and self._mechanics.model.task_leaves.rates > 0
+        if self._generic.rank == self._generic.r and not least and 0 < costs.get("minors", 0) <= FACTORING_LIMIT:
             shorter = self._factored(made["minors"])
             costs[shorter.title] = cost(scalars(shorter.derived)).weight
             # multiplied out, terms that vanish have cancelled exactly: worth a few operations more, but than methods
@@ -180,10 +180,7 @@ class Candidates:
 
     def _factored(self, minors: Candidate) -> Candidate:
         """What was derived along minors multiplied out and factored."""
-        derivation = self._derivations["minors"]
-        of_task = BY_NAME[minors.derived.name].needs in (TASK_RATES, TASK_OPEN)
-        motion = derivation.given_motion(task) if of_task else None
-        kept = derivation.whole | (motion.whole if isinstance(motion, LeastMotion) else frozenset())
+        kept = self._derivations["minors"].whole
         outputs = self._mechanics.factoring.shorten(minors.derived.outputs, kept)
         return replace(minors, derived=replace(minors.derived, outputs=outputs), along="factored")
 

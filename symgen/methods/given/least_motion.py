@@ -73,11 +73,6 @@ class LeastMotion:
         short = standing_out(self._derivation.mechanics, given.slopes, given.status, of_rows)
         return tuple(dict.fromkeys((*short, *of_both)))
 
-    @property
-    def whole(self) -> frozenset[Scalar]:
-        """What must stay whole where results are multiplied out: minors that are small together."""
-        return self._space.forms.minors if isinstance(self._space, MinorSpace) else frozenset()
-
     def _least(self, values: Sequence[Scalar]) -> Vector:
         """A^+ [0; values]."""
         right = ((self._derivation.graph.zero,) * self._derivation.r, values)
