@@ -31,6 +31,13 @@ STATUS_MEANING: dict[Status, str] = {
 _OF_MEASURED = frozenset({Status.MEASURED_RANK, Status.NOT_CLOSED, Status.BRANCH})
 _OF_TASK = frozenset({Status.TASK_RANK, Status.NOT_CLOSED, Status.BRANCH})
 _OF_LIMITS = frozenset({Status.LIMITS})
+_OPEN_TASK = "the task loses rank at this configuration: a direction in which it cannot be moved"
+
+
+def status_meaning(status: Status, model: Model) -> str:
+    """What a status says of a model: a task that leaves directions open determines the rest nowhere."""
+    open_ = status is Status.TASK_RANK and model.task_leaves.rates > 0
+    return _OPEN_TASK if open_ else STATUS_MEANING[status]
 
 
 def statuses_of(model: Model) -> tuple[Status, ...]:

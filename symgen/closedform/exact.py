@@ -161,11 +161,26 @@ class Exact:
         return self._spanned(self.mechanics.control, self.control_scale, "the determinants of the input equations")
 
     def determined_by(self, slopes: Matrix) -> list[PolyElement]:
-        """The determinants of delta functions at a time with B: where all vanish they do not determine the rates."""
+        """The determinants of delta functions at a time with B: where all vanish they do not determine the rates.
+
+        Of fewer functions the minors of B and them together: where all vanish the functions lose rank.
+        """
         columns = transpose(slopes)
         scale = common_denominator(self.ring, [entry for row in columns for entry in row])
+        if len(slopes) < self.delta:
+            return self._minors_with(slopes, scale)
         spanned = self._spanned(columns, scale, "the determinants of what is given")
         return [value for one in spanned for value in one.determinants.values()]
+
+    def _minors_with(self, slopes: Matrix, scale: PolyElement) -> list[PolyElement]:
+        """Those of as many rows of B as their rank at a time with the slopes times their common denominator."""
+        factor = polynomial(self.ring, scale)
+        own = tuple(tuple((entry * factor).numerator for entry in row) for row in slopes)
+        subsets = combinations(range(self.model.r), self.structure.constraint_rank)
+        together = [(*(self.rows[i] for i in subset), *own) for subset in subsets]
+        self._admit(sum(map(estimated_work, together)), "the minors of B and the task")
+        all_minors = [kernel_minors(self.ring, rows, self.model.n) for rows in together]
+        return [self.ring.product(v, one.content) for one in all_minors for v in one.values.values()]
 
     def _spanned(self, columns: Matrix, scale: PolyElement, what: str) -> tuple[Actuation, ...]:
         """Delta_J and v_L of columns (n x k) times their common denominator."""

@@ -1,6 +1,7 @@
 """Singular configurations: where constraints, actuation or chosen velocities lose rank, as factored determinants.
 
-What is measured, and a task, have singularities of their own: where they do not determine the rest.
+What is measured, and a task, have singularities of their own: where they do not determine the rest, and of a task that
+leaves directions open where it loses rank.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from symgen.closedform.spelling import Speller
 from symgen.model.model import Model
 from symgen.records import dataclass
 
-Kind: TypeAlias = Literal["constraint", "input", "parameter", "measured", "task"]
+Kind: TypeAlias = Literal["constraint", "input", "parameter", "measured", "task", "open_task"]
 
 MOST_PRINTED = 30
 """More expressions than this are not listed."""
@@ -88,17 +89,21 @@ def _collect(model: Model, exact: Exact, speller: Speller, sets: list[SingularSe
 
 
 def _collect_given(model: Model, exact: Exact, speller: Speller, sets: list[SingularSet]) -> None:
-    """Those of what is measured and of the task, where they determine the rest at all."""
+    """Those of what is measured and of the task: where they do not determine the rest, or lose rank if it is open."""
     given: list[tuple[Kind, str, Matrix]] = []
     if model.measured:
         units = identity(exact.ring, model.n)
         given.append(("measured", "what is measured", tuple(units[k] for k in model.measured_places)))
-    if model.task and not model.task_leaves.rates:
+    leaves = model.task_leaves
+    if model.task and not leaves.rates:
         given.append(("task", "the task", exact.mechanics.task_jacobian))
+    elif model.task and not leaves.idle:
+        given.append(("open_task", "the task", exact.mechanics.task_jacobian))
     for kind, what, slopes in given:
         values = exact.determined_by(slopes)
-        text = f"{what} does not determine the rest"
-        sets.append(_common_zeros(exact, speller, kind, f"velocity_from_{kind}", values, exact.ring.one, text))
+        text = f"{what} {'loses rank' if kind == 'open_task' else 'does not determine the rest'}"
+        name = f"velocity_from_{'measured' if kind == 'measured' else 'task'}"
+        sets.append(_common_zeros(exact, speller, kind, name, values, exact.ring.one, text))
 
 
 def essential_factors(ring: TrigRing, p: PolyElement) -> tuple[PolyElement, ...]:

@@ -16,6 +16,8 @@ from symgen.generation.results import Options
 from symgen.ir.kernel import Kernel
 from symgen.ir.wide_functions import works_with_pairs
 from symgen.model.model import Model
+from symgen.model.open_task import left_open, norm_of_motions
+from symgen.model.quantities import ROWS, TASK_PLACES, TASK_RATES
 from symgen.quantities.everything import OF_ALL
 from symgen.quantities.finish import short_of_inputs
 
@@ -44,7 +46,8 @@ def notices(draft: Draft, options: Options, certificate: Certificate | None) -> 
     unmade = ((n, name) for n, name in options.methods.items() if n not in kernels)
     idle = [Notice(f"--form {n}={name}: {n} is not generated") for n, name in unmade]
     unverified = () if certificate is None else certificate.notes
-    others = (*replaced(draft), *_short(draft), *_near_bounds(draft), *dense_motions(draft, options))
+    said = (*replaced(draft), *_short(draft), *_left_open(draft))
+    others = (*said, *_near_bounds(draft), *dense_motions(draft, options))
     recorded = draft.notes if options.as_recorded else ()
     of_kernels = (*absent, *others, *_size(draft, options), *idle, *map(Notice, (*unverified, *recorded)))
     return (*_renamed(draft.model), *of_kernels)
@@ -78,6 +81,14 @@ def _short(draft: Draft) -> tuple[Notice, ...]:
     generic = draft.derivations.generic
     asked = any(kernel.name == "inverse_dynamics" for kernel in draft.program.kernels)
     return (Notice(f"inverse_dynamics: {short_of_inputs(generic)}"),) if asked and not generic.full_actuation else ()
+
+
+def _left_open(draft: Draft) -> Iterator[Notice]:
+    """That a task does not determine the motion, and which one is taken."""
+    names = [kernel.name for kernel in draft.program.kernels if ROWS[kernel.name].needs in (TASK_PLACES, TASK_RATES)]
+    if names and draft.model.task_leaves.rates:
+        norm = norm_of_motions(draft.model)
+        yield Notice(f"{', '.join(names)}: {left_open(draft.model)}; of all motions the least is taken, {norm}")
 
 
 def _size(draft: Draft, options: Options) -> tuple[Notice, ...]:

@@ -14,7 +14,7 @@ from itertools import combinations
 from typing import TypeAlias
 
 from symgen.symbolic.matrix import Matrix, Vector
-from symgen.symbolic.passes.factoring import LONGEST_CANCELLED, Factoring
+from symgen.symbolic.passes.factoring import LONGEST_CANCELLED
 from symgen.symbolic.scalar import Graph, Scalar
 
 Multivector: TypeAlias = dict[int, Scalar]
@@ -118,19 +118,21 @@ def _family_size(starts: Iterable[Iterable[int]], columns: Sequence[Vector], deg
 class RowForms:
     """omega_I = wedge of the rows I of B, for all row subsets I of the generic rank rho (one when rho = r).
 
-    With `factoring` minors that are one product are written as one: det [a, b] as l m sin(knee), all of whose digits
-    hold where it is small, and not as the difference of two products.
+    `shortened` may write minors otherwise, such as one product: det [a, b] as l m sin(knee), all of whose digits hold
+    where it is small, and not as the difference of two products.
     """
 
-    def __init__(self, graph: Graph, rows: Matrix, n: int, rank: int, factoring: Factoring | None = None) -> None:
+    def __init__(
+        self, graph: Graph, rows: Matrix, n: int, rank: int, shortened: Callable[[Scalar], Scalar] | None = None
+    ) -> None:
         self.graph = graph
         self.rows = rows
         self.n = n
         self.rank = rank
         self.subsets = list(combinations(range(len(rows)), rank))
         self.forms = [wedge_all(unit(graph), [rows[k] for k in subset]) for subset in self.subsets]
-        if factoring is not None:
-            self.forms = [{mask: factoring.as_one_product(x) for mask, x in form.items()} for form in self.forms]
+        if shortened is not None:
+            self.forms = [{mask: shortened(x) for mask, x in form.items()} for form in self.forms]
         self.square = graph.sum(square(graph, form) for form in self.forms)
 
     def at_one_length(self, squares: Sequence[Scalar]) -> Scalar:

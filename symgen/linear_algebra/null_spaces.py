@@ -16,7 +16,6 @@ from symgen.linear_algebra.exterior import ActuationForms, RowForms, few_minors,
 from symgen.linear_algebra.guards import Guard, beside_lengths
 from symgen.linear_algebra.reflections import Reflections
 from symgen.symbolic.matrix import Matrix, Vector, dot, identity, matvec, subtract_vectors, transpose
-from symgen.symbolic.passes.factoring import Factoring
 from symgen.symbolic.scalar import Graph, Scalar
 
 # Minors of B up to which a null space is built from them; beyond, Householder reflections are cheaper anyway.
@@ -143,11 +142,11 @@ class MinorSpace:
     """By the minors of B: polynomials and one division."""
 
     def __init__(
-        self, graph: Graph, rows: Matrix, n: int, rank: int, factoring: Factoring | None = None
+        self, graph: Graph, rows: Matrix, n: int, rank: int, shortened: Callable[[Scalar], Scalar] | None = None
     ) -> None:
         self.graph, self.rows, self.n, self.rank = graph, rows, n, rank
         self.delta = n - rank
-        self.forms = RowForms(graph, rows, n, rank, factoring)
+        self.forms = RowForms(graph, rows, n, rank, shortened)
 
     @property
     def guards(self) -> tuple[Guard, ...]:

@@ -29,7 +29,7 @@ from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA, MinorMot
 from symgen.methods.forward_dynamics.motion import Problem
 from symgen.methods.given.configuration import GivenConfiguration
 from symgen.methods.given.functions import GivenBy
-from symgen.methods.given.motion import GivenMotion
+from symgen.methods.given.least_motion import MotionOfGiven, motion_of
 from symgen.methods.least_inputs import least_inputs
 from symgen.symbolic.calculus import derivative_along, gradient, jacobian
 from symgen.symbolic.matrix import (
@@ -61,7 +61,7 @@ class Derivation:
         self.space = space
         self.graph = mechanics.graph
         self.n, self.r, self.m = mechanics.n, mechanics.r, mechanics.m
-        self._motions: dict[GivenBy, GivenMotion] = {}
+        self._motions: dict[GivenBy, MotionOfGiven] = {}
         self._configurations: dict[GivenBy, GivenConfiguration] = {}
 
     # shared parts ----------------------------------------------------------------------------------------------------
@@ -217,10 +217,10 @@ class Derivation:
 
     # from what is given ----------------------------------------------------------------------------------------------
 
-    def given_motion(self, given_by: GivenBy) -> GivenMotion:
-        """What rates determine that are measured, or of a task."""
+    def given_motion(self, given_by: GivenBy) -> MotionOfGiven:
+        """What rates determine that are measured, or of a task; of one that leaves directions open the least motion."""
         if given_by not in self._motions:
-            self._motions[given_by] = GivenMotion(self, given_by(self.mechanics))
+            self._motions[given_by] = motion_of(self, given_by(self.mechanics))
         return self._motions[given_by]
 
     def given_configuration(self, given_by: GivenBy) -> GivenConfiguration:

@@ -16,8 +16,8 @@ def along_minors(mechanics: System, generic: Genericity) -> Derivation | str:
     if not has_few_minors(mechanics.constraint_jacobian, generic.rank):
         return f"B has {generic.minors} minors"
     # of independent rows the one determinant is multiplied out later, and what is left as it is shares its parts
-    factoring = mechanics.factoring if generic.rank < mechanics.r else None
-    space = MinorSpace(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, generic.rank, factoring)
+    shortened = mechanics.factoring.as_one_product if generic.rank < mechanics.r else None
+    space = MinorSpace(mechanics.graph, mechanics.constraint_jacobian, mechanics.n, generic.rank, shortened)
     return Derivation(mechanics, generic, space)
 
 

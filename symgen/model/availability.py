@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from symgen.model.model import Model
+from symgen.model.open_task import directions, left_open
 from symgen.model.quantities import (
     ACTUATORS,
     LIMITED,
     MEASURED_PLACES,
     OF_INPUTS,
     PARTITION,
+    TASK,
+    TASK_OPEN,
     TASK_PLACES,
-    TASK_RATES,
     VARIATIONS,
     QuantityRow,
 )
@@ -36,9 +38,8 @@ def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actua
             return f"the model has no {what}"
     if quantity.is_of_task and not model.task:
         return "the model has no `task`"
-    if open_ := {TASK_RATES: model.task_leaves.rates, TASK_PLACES: model.task_leaves.places}.get(quantity.needs, 0):
-        left = f"{open_} direction{'s' if open_ > 1 else ''}"
-        return f"the task leaves {left} open: further entries, such as coordinates, determine the rest"
+    if quantity.is_of_task and quantity.needs != TASK and (why := _beside_task(quantity, model)):
+        return why
     if quantity.needs == PARTITION and not model.independent_velocities:
         return "the model names no `independent_velocities`"
     if quantity.is_of_measured and not model.measured:
@@ -61,4 +62,19 @@ def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actua
         return "its constraints depend on each other: beside them it is not differentiable"
     if quantity.needs == OF_INPUTS and delta is not None and actuation not in (None, min(model.m, delta)):
         return "on the constraints its inputs reach less than beside them: u is not differentiable there"
+    return None
+
+
+def _beside_task(quantity: QuantityRow, model: Model) -> str | None:
+    """Why a task does not give what is found from it, or None."""
+    leaves, rolling = model.task_leaves, any(row.kind == "nonholonomic" for row in model.constraints)
+    if leaves.rates and leaves.idle:
+        those = "one of its functions follows" if leaves.idle == 1 else f"{leaves.idle} of its functions follow"
+        return f"{left_open(model)}, and {those} from the others: leave out what follows"
+    # the least step to a place may be across wheels
+    if quantity.needs == TASK_PLACES and leaves.places and rolling:
+        left = directions(leaves.places)
+        return f"the task leaves {left} open: further entries, such as coordinates, determine the rest"
+    if quantity.needs == TASK_OPEN and not leaves.rates:
+        return "the task leaves no direction open"
     return None

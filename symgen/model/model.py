@@ -212,10 +212,14 @@ class TaskCoordinate:
 
 @dataclass(frozen=True, slots=True)
 class TaskLeaves:
-    """How many directions a task leaves open, of admissible rates and of configurations."""
+    """How many directions a task leaves open, of admissible rates and of configurations.
+
+    `idle` is how many of its functions follow from the others along admissible motions.
+    """
 
     rates: int = 0
     places: int = 0
+    idle: int = 0
 
 
 @dataclass(frozen=True, slots=True)

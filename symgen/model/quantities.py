@@ -18,8 +18,9 @@ Argument: TypeAlias = Literal["q", "qd", "qdd", "u"] | FurtherName
 PARTITION, ACTUATORS, POINTS, LIMITED = "independent_velocities", "m = delta", "points", "limits of all inputs"
 # What encoders determine: of rates, and of places.
 MEASURED, MEASURED_PLACES = "measured", "measured places"
-# A task, one that determines rates, and one that determines places.
-TASK, TASK_RATES, TASK_PLACES = "task", "task rates", "task places"
+# A task, one that determines rates, one that determines places, each as the least where it leaves directions open, and
+# one that does.
+TASK, TASK_RATES, TASK_PLACES, TASK_OPEN = "task", "task rates", "task places", "open task"
 # Those that `all` takes where the model says `derivatives` only; the latter two need more than constraints that do not
 # depend on each other.
 DERIVATIVES, OF_INPUTS, VARIATIONS = "derivatives", "derivatives of inputs", "derivatives along constraints"
@@ -63,7 +64,7 @@ class QuantityRow:
     @property
     def is_of_task(self) -> bool:
         """Whether it is one of a task."""
-        return self.needs in (TASK, TASK_RATES, TASK_PLACES)
+        return self.needs in (TASK, TASK_RATES, TASK_PLACES, TASK_OPEN)
 
     def extents(self, sizes: Mapping[str, int]) -> tuple[int, ...]:
         """Its shape in numbers."""
@@ -144,6 +145,8 @@ QUANTITIES: tuple[QuantityRow, ...] = (
          "the admissible velocity with these rates of the task, or nearest to them", TASK_RATES),
     _row("acceleration_from_task", "q̈(ẍ)", "", "qdd_found", "q xd_t xdd_t", "n",
          "the admissible acceleration with these ones of the task, or nearest to them, at that velocity", TASK_RATES),
+    _row("task_nullspace_projector", "N_x", "", "N_x", "q", "n n",
+         "orthogonal projector onto the admissible velocities that leave the task still", TASK_OPEN),
     _row("inverse_dynamics", "u", "(27)", "u", "q qd qdd", "m", "the smallest inputs that produce the motion",
          main=True),
     _row("inverse_dynamics_jacobian", "J_u", "", "u_x", "q qd qdd", "m 3*n",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from symgen.backends.about import STATUS_MEANING, statuses_of
+from symgen.backends.about import status_meaning, statuses_of
 from symgen.backends.c.names import c_names, global_name, status_name
 from symgen.backends.defaults import default_values
 from symgen.backends.literals import decimal_text
@@ -132,7 +132,7 @@ def _statuses(model: Model, programs: Sequence[Program]) -> Iterator[str]:
     yield ""
     yield "| | | |"
     yield "|---|---|---|"
-    yield from (f"| {int(s)} | `{status_name(model, s)}` | {STATUS_MEANING[s]} |" for s in statuses_of(model))
+    yield from (f"| {int(s)} | `{status_name(model, s)}` | {status_meaning(s, model)} |" for s in statuses_of(model))
     yield ""
     limits = [(C_TYPE[p.scalar], decimal_text("float64", ANGLE_LIMIT[p.scalar])) for p in programs if p.sincos]
     if limits:

@@ -26,7 +26,7 @@ from symgen.methods.system import MethodInput
 from symgen.methods.table import Use
 from symgen.methods.table import methods as methods_of
 from symgen.model.model import Model
-from symgen.model.quantities import PARTITION, WEIGHT_ARGUMENTS
+from symgen.model.quantities import PARTITION, TASK_OPEN, TASK_RATES, WEIGHT_ARGUMENTS
 from symgen.quantities.catalogue import BY_NAME, CatalogueEntry, by_blocks, derive, derived_from, sizes
 from symgen.quantities.everything import WorkBudget
 from symgen.runtime.activity import working
@@ -176,9 +176,12 @@ class Candidates:
     def _factored(self, minors: Candidate) -> Candidate | None:
         """What was derived along minors multiplied out and factored, where that is short.
 
-        Minors of rows that depend on each other become small together: multiplied out, their squares would cancel.
+        Minors of rows that depend on each other become small together: multiplied out, their squares would cancel.  So
+        do those of a task that leaves directions open, beside its singularities.
         """
-        if self._generic.rank < self._generic.r or not 0 < _counted(minors) <= FACTORING_LIMIT:
+        of_task = BY_NAME[minors.derived.name].needs in (TASK_RATES, TASK_OPEN)
+        cancels = self._generic.rank < self._generic.r or (of_task and self._mechanics.model.task_leaves.rates > 0)
+        if cancels or not 0 < _counted(minors) <= FACTORING_LIMIT:
             return None
         kept = self._derivations["minors"].whole
         outputs = self._mechanics.factoring.shorten(minors.derived.outputs, kept)

@@ -10,6 +10,7 @@ from symgen.linear_algebra.null_spaces import rests_on_rank
 from symgen.mechanics.genericity import Genericity
 from symgen.methods.derivation import Derivation
 from symgen.methods.given.functions import GivenBy, measured, task
+from symgen.methods.given.least_motion import LeastMotion
 from symgen.methods.quantity import Quantity, is_fixed
 from symgen.methods.utilisation import utilisation
 from symgen.methods.variations import constraint_variations
@@ -94,6 +95,12 @@ def _given(given_by: GivenBy) -> Callable[[Derivation], tuple[Guard, ...]]:
     return lambda d: d.given_motion(given_by).guards
 
 
+def _null_motion(d: Derivation) -> LeastMotion:
+    motion = d.given_motion(task)
+    assert isinstance(motion, LeastMotion)
+    return motion
+
+
 def _utilisation(d: Derivation) -> Vector:
     allocation = d.mechanics.model.allocation
     assert allocation is not None
@@ -153,6 +160,7 @@ _DERIVED: dict[str, _Derived] = {
     "configuration_from_task": _configuration(task),
     "velocity_from_task": (lambda d: d.given_motion(task).velocity, _given(task)),
     "acceleration_from_task": (lambda d: d.given_motion(task).acceleration, _given(task)),
+    "task_nullspace_projector": (lambda d: flatten(_null_motion(d).projector), _given(task)),
     "inverse_dynamics": _BY_METHODS,
     "inverse_dynamics_jacobian": (lambda d: flatten(d.inverse_dynamics_jacobian(d.mechanics.motion)), _inputs),
     "inverse_dynamics_gradient": (lambda d: d.inverse_dynamics_gradient(), _inputs),

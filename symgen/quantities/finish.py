@@ -8,11 +8,20 @@ from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
 from symgen.methods.method import INPUTS, MOTIONS
 from symgen.methods.quantity import Quantity, is_fixed, scalars
+from symgen.model.model import Model
+from symgen.model.open_task import left_open, norm_of_motions
 from symgen.quantities.excess import with_test_of_excess
 from symgen.quantities.moving_axes import in_moving_axes
 from symgen.quantities.row_units import in_units_of_the_file
 from symgen.symbolic.hidden_zeros import without_hidden_zeros
 from symgen.symbolic.passes.grouping import grouped as grouped_scalars
+
+# What is least where a task leaves directions open.
+_LEAST = {
+    "configuration_from_task": "reached from q by steps that are the least each, {}",
+    "velocity_from_task": "of all such rates the least, {}",
+    "acceleration_from_task": "those of the motion that has the least rates, {}; not the least themselves",
+}
 
 
 def finished(mechanics: System, generic: Genericity, derived: Quantity) -> Quantity:
@@ -30,11 +39,13 @@ def complete(mechanics: System, generic: Genericity, derived: Quantity) -> Quant
     derived = replace(derived, outputs=outputs, guards=() if needless else derived.guards)
     tested = with_test_of_excess(mechanics, generic, derived)
     tested = in_units_of_the_file(mechanics.graph, mechanics.model, tested)
-    return _remarked(tested, generic)
+    return _remarked(tested, generic, mechanics.model)
 
 
-def _remarked(derived: Quantity, generic: Genericity) -> Quantity:
-    """What dependent rows leave open, or inputs cannot produce, is said where the quantity is called."""
+def _remarked(derived: Quantity, generic: Genericity, model: Model) -> Quantity:
+    """What dependent rows or a task leave open, or inputs cannot produce, is said where the quantity is called."""
+    if derived.name in _LEAST and model.task_leaves.rates:
+        return replace(derived, remark=f"{left_open(model)}: {_LEAST[derived.name].format(norm_of_motions(model))}")
     if derived.name == MOTIONS[1] and generic.rank < generic.r:
         which = f"not unique, as the constraints depend on each other (rank {generic.rank} of {generic.r})"
         return replace(derived, remark=f"{which}: these are the smallest; u and q̈ are not affected")

@@ -49,9 +49,7 @@ def solvable(
         factors = nested_factors(denominator, mechanics.factoring.fixed)
         if len(factors) > 1:
             return (*apart, *(Guard(status, factor, 1, space.guards) for factor in factors))
-    lengths = [dot(graph, column, column) for column in columns]
-    bounds = magnitude(graph, lengths)
-    sizes = [bound if _near(mechanics, x) else own for x, own, bound in zip(columns, lengths, bounds, strict=True)]
+    sizes, bounds = _lengths(mechanics, columns)
     if isinstance(forms, ReflectedInputs):
         directions = _by_pivots(graph, forms, forms.lengths(sizes), status, space.guards)
     else:
@@ -59,6 +57,27 @@ def solvable(
         directions = _by_minors(mechanics, generic, space, forms, sizes, status)
     short = _short(graph, sizes, bounds, forms.degree)
     return (*apart, *(Guard(status, measure, 2, space.guards, scale) for measure, scale in short), directions)
+
+
+def standing_out(
+    mechanics: System, vectors: Sequence[Vector], status: Status, first: tuple[Guard, ...]
+) -> tuple[Guard, ...]:
+    """The guards with `status` of vectors whose lengths have to stand out of the rounding of their terms, all of them.
+
+    What is looked at `first` names a cause.
+    """
+    sizes, bounds = _lengths(mechanics, vectors)
+    short = _short(mechanics.graph, sizes, bounds, len(vectors))
+    return tuple(Guard(status, measure, 2, first, scale) for measure, scale in short)
+
+
+def _lengths(mechanics: System, vectors: Sequence[Vector]) -> tuple[list[Scalar], list[Scalar]]:
+    """Squared lengths, and what bounds them: this itself where it is near them."""
+    graph = mechanics.graph
+    lengths = [dot(graph, x, x) for x in vectors]
+    bounds = magnitude(graph, lengths)
+    sizes = [bound if _near(mechanics, x) else own for x, own, bound in zip(vectors, lengths, bounds, strict=True)]
+    return sizes, bounds
 
 
 def _near(mechanics: System, vector: Vector) -> bool:

@@ -6,7 +6,7 @@ each defect a bound, to which what the reference itself violates (rounded states
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache, partial
 from typing import Any, TypeAlias
 
@@ -57,14 +57,15 @@ def _defects(
 
 def _laws(evaluation: Evaluation, admissible: bool) -> Iterator[tuple[tuple[str, ...], Law]]:
     """The quantities a law is about, the one it judges first, and the law."""
-    n, b = "nullspace_projector", "constraint_jacobian"
-    yield (n,), ("N N = N", lambda y: y[n] * y[n] - y[n], lambda _, e: 3 * e[n] + e[n] ** 2)
-    yield (n,), ("N' = N", lambda y: y[n].transpose() - y[n], lambda _, e: 2 * e[n])
-    yield (
-        (n, b),
-        ("B N = 0", lambda y: y[b] * y[n], lambda y, e: norm(y[b]) * e[n] + (norm(y[n]) + e[n]) * e[b]),
-    )
+    rows = ("constraint_jacobian", "B")
+    yield from _projection("nullspace_projector", "N", (rows,))
     yield from _penrose()
+    yield from _projection("task_nullspace_projector", "N_x", (rows, ("task_jacobian", "J_x")))
+    still, least = "task_nullspace_projector", "velocity_from_task"
+    yield (
+        (least, still),
+        ("N_x qd = 0 (qd the least rates)", lambda y: y[still] * y[least], _bound_of_product(still, least)),
+    )
     c = "projected_coriolis_matrix"
     rate = cache(partial(_projected_mass_rate, evaluation))
     yield (
@@ -80,6 +81,23 @@ def _laws(evaluation: Evaluation, admissible: bool) -> Iterator[tuple[tuple[str,
             (q,),
             ("power balance", lambda y: weight().transpose() * y[q] + rest(), lambda _, e: norm(weight()) * e[q]),
         )
+
+
+def _projection(n: str, symbol: str, vanishing: Sequence[tuple[str, str]]) -> Iterator[tuple[tuple[str, ...], Law]]:
+    """That N is an orthogonal projector, and that these matrices vanish on what it leaves."""
+    squared = f"{symbol} {symbol} = {symbol}"
+    yield (n,), (squared, lambda y: y[n] * y[n] - y[n], lambda _, e: 3 * e[n] + e[n] ** 2)
+    yield (n,), (f"{symbol}' = {symbol}", lambda y: y[n].transpose() - y[n], lambda _, e: 2 * e[n])
+    for b, letter in vanishing:
+        yield (n, b), (f"{letter} {symbol} = 0", partial(_product, b, n), _bound_of_product(b, n))
+
+
+def _product(a: str, b: str, y: Values) -> Any:
+    return y[a] * y[b]
+
+
+def _bound_of_product(a: str, b: str) -> Callable[[Values, Mapping[str, float]], float]:
+    return lambda y, e: norm(y[a]) * e[b] + (norm(y[b]) + e[b]) * e[a]
 
 
 def _penrose() -> Iterator[tuple[tuple[str, ...], Law]]:

@@ -1,4 +1,7 @@
-"""What measured coordinates or a task determine, from its definition: pseudoinverses of S N, and Newton's method."""
+"""What measured coordinates or a task determine, from its definition: pseudoinverses of S N, and Newton's method.
+
+Of a task that leaves directions open it is the least motion, and what leaves the task still.
+"""
 
 from __future__ import annotations
 
@@ -48,14 +51,20 @@ def _determined(
     k, rows = slopes.shape[0], s.residual.shape[0]
     quantities = {}
     B_plus = pseudoinverse(s.jacobian, ranks.constraints)
-    if k >= n - ranks.constraints:
-        inverse = pseudoinverse(slopes @ (casadi.SX.eye(n) - B_plus @ s.jacobian), n - ranks.constraints)
+    projector, leaves = casadi.SX.eye(n) - B_plus @ s.jacobian, model.task_leaves
+    least_motion = of == "task" and bool(leaves.rates) and not leaves.idle
+    if k >= n - ranks.constraints or least_motion:
+        inverse = pseudoinverse(slopes @ projector, min(k, n - ranks.constraints))
         velocity = inverse @ given.rates
         least = -B_plus @ (casadi.substitute(s.jacobian_dot, s.qd, velocity) @ velocity)
         left = given.accelerations - along(slopes, s.q, velocity) @ velocity
         quantities[f"velocity_from_{of}"] = velocity
         quantities[f"acceleration_from_{of}"] = least + inverse @ (left - slopes @ least)
-    if k >= n - ranks.geometric and (rows == s.jacobian.shape[0] or k >= n - rows):
+    if least_motion:
+        quantities["acceleration_from_task"] = along(velocity, s.q, velocity) + inverse @ given.accelerations
+        quantities["task_nullspace_projector"] = projector - inverse @ (slopes @ projector)
+    of_places = rows == s.jacobian.shape[0]
+    if (k >= n - ranks.geometric and (of_places or k >= n - rows)) or (least_motion and of_places):
         quantities[f"configuration_from_{of}"] = _configuration(s, given, ranks.geometric)
     return quantities
 
@@ -66,7 +75,7 @@ def _configuration(s: Lagrange, given: GivenFunctions, rank: int) -> casadi.SX:
     B = s.jacobian[:rows, :]
     B_plus = pseudoinverse(B, rank)
     least = -B_plus @ s.residual
-    moving = pseudoinverse(S @ (casadi.SX.eye(n) - B_plus @ B), n - rank)
+    moving = pseudoinverse(S @ (casadi.SX.eye(n) - B_plus @ B), min(S.shape[0], n - rank))
     after = s.q + least + moving @ (given.values - given.functions - S @ least)
     step = casadi.Function("step", [s.q, given.values, s.p], [after])
     result = s.q

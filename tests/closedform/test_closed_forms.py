@@ -209,9 +209,30 @@ configuration: {a: 2.2, b: 0.9, c: 1, e: 2.2}
     assert simplify(task**2 - (sin(a - b) * sin(c - e)) ** 2) == 0
 
 
-def test_a_task_that_leaves_directions_open_has_no_singular_set() -> None:
+def test_a_task_that_leaves_directions_open_fails_where_it_loses_rank() -> None:
     _, forms = derive("model: m\ncoordinates: {x: {}, y: {}}\nkinetic_energy: x_dot**2 + y_dot**2\ntask: {area: x*y}\n")
-    assert [s.kind for s in forms.singular_sets] == []
+    (lost,) = forms.singular_sets
+    assert lost.kind == "open_task"
+    assert set(lost.vanishing) == {Symbol("x"), Symbol("y")}
+
+
+def test_beside_rows_an_open_task_fails_with_the_minors_of_both() -> None:
+    """A bead on a circle and a second one on a line: their distance along the line."""
+    _, forms = derive(
+        """
+model: beads
+coordinates: {x: {}, y: {}, s: {}}
+kinetic_energy: x_dot**2 + y_dot**2 + s_dot**2
+constraints: {geometric: {circle: x**2 + y**2 - 1}}
+task: {apart: (x - s)**2}
+configuration: {x: 1, y: 0, s: 3}
+"""
+    )
+    (lost,) = (s for s in forms.singular_sets if s.kind == "open_task")
+    x, y, s = map(Symbol, "xys")
+    places = [{x: 1, y: 0, s: 1}, {x: 0, y: 1, s: 0}, {x: 0, y: 1, s: 3}, {x: 1, y: 0, s: 3}]
+    fails = [all(value.subs(place) == 0 for value in lost.vanishing) for place in places]
+    assert fails == [True, True, False, False]
 
 
 UNDERACTUATED = """

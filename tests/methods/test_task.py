@@ -251,10 +251,14 @@ def test_what_a_task_leaves_open_is_said(tmp_path: Path, capsys: pytest.CaptureF
     printed = capsys.readouterr().err
     for name in ("configuration_from_task", "velocity_from_task", "acceleration_from_task"):
         assert name in printed
-    assert "the task leaves 1 direction open" in " ".join(printed.split())
-    made = (tmp_path / "arm" / "python" / "arm.py").read_text(encoding="utf-8")
-    assert "def task_jacobian" in made
-    assert "def velocity_from_task" not in made
+    open_ = "the task leaves 1 direction open"
+    norm = "in the Euclidean norm of the coordinates as they stand"
+    assert f"{open_}; of all motions the least is taken, {norm}" in " ".join(printed.split())
+    made = " ".join((tmp_path / "arm" / "python" / "arm.py").read_text(encoding="utf-8").split())
+    assert "TASK_RANK = 10 # the task loses rank at this configuration" in made
+    assert f"{open_}: of all such rates the least, {norm}" in made
+    assert f"{open_}: those of the motion that has the least rates, {norm}; not the least themselves" in made
+    assert f"{open_}: reached from q by steps that are the least each, {norm}" in made
 
 
 @pytest.mark.parametrize(("least", "code"), [("1", 1), ("0.01", 0)])

@@ -58,4 +58,17 @@ task: {x: hook.x, y: hook.y, turn: a}
 outputs: all
 """
 
-EXTRA = {"crane": CRANE, "cranks": CRANKS, "under_actuated": UNDER_ACTUATED}
+# A ruler that turns about the foot of two links: of its task two directions stay open.
+RULER = """
+model: ruler
+coordinates: {x: {}, y: {}, a: {}, b: {}, c: {}}
+parameters: {l: 0.5, h: 0.3}
+kinetic_energy: (x_dot**2 + y_dot**2 + a_dot**2 + b_dot**2 + c_dot**2)/2
+constraints: {geometric: {across: x - l*cos(a) - h*cos(a + b), up: y - l*sin(a) - h*sin(a + b)}}
+inputs: {u: {acts_on: {a: 1}}}
+task: {reach: x*cos(c) + y*sin(c)}
+configuration: {x: 0.5691, y: 0.4743, a: 0.4, b: 0.8, c: 0.5}
+outputs: all
+"""
+
+EXTRA = {"crane": CRANE, "cranks": CRANKS, "ruler": RULER, "under_actuated": UNDER_ACTUATED}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symgen.backends.about import STATUS_MEANING, module_lines, parameter_text, statuses_of
+from symgen.backends.about import module_lines, parameter_text, status_meaning, statuses_of
 from symgen.backends.array_api.reserved import WORDS
 from symgen.backends.array_api.statements import ArrayStatements, array_helper
 from symgen.backends.comments import docstring_lines
@@ -60,7 +60,7 @@ def emit_array_api(model: Model, program: Program) -> dict[str, str]:
         about=module_lines(model, program),
         scalar=program.scalar,
         other=file_stem(model.c_name, other),
-        statuses=tuple((status.name, int(status), STATUS_MEANING[status]) for status in statuses_of(model)),
+        statuses=tuple((status.name, int(status), status_meaning(status, model)) for status in statuses_of(model)),
         not_finite=int(Status.NOT_FINITE),
         fields=tuple(
             (one.name, repr(in_range(program.scalar, values[one.name])), parameter_text(one))

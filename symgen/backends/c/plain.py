@@ -5,11 +5,11 @@ from __future__ import annotations
 from fractions import Fraction
 
 from symgen.backends.about import (
-    STATUS_MEANING,
     bound_lines,
     count_lines,
     renaming_lines,
     shape_text,
+    status_meaning,
     statuses_of,
     symbol_lines,
     unit_text,
@@ -66,7 +66,7 @@ def emit_c(model: Model, program: Program) -> dict[str, str]:
         StatusView(
             f"{macro_name(model.c_name)}_STATUS_DEFINED",
             f"{model.c_name}_status",
-            tuple((status_name(model, status), int(status), STATUS_MEANING[status]) for status in statuses_of(model)),
+            tuple((status_name(model, s), int(s), status_meaning(s, model)) for s in statuses_of(model)),
         ),
     )
     return files(view)

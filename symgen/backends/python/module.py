@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symgen import __version__
-from symgen.backends.about import STATUS_MEANING, module_lines, parameter_text, statuses_of
+from symgen.backends.about import module_lines, parameter_text, status_meaning, statuses_of
 from symgen.backends.c.endings import BATCH
 from symgen.backends.c.reserved import is_taken as is_taken_in_c
 from symgen.backends.comments import docstring_lines
@@ -85,7 +85,7 @@ def emit_python(model: Model, program: Program) -> dict[str, str]:
         about=module_lines(model, program),
         version=__version__,
         model_hash=model.text_hash,
-        statuses=tuple((status.name, int(status), STATUS_MEANING[status]) for status in statuses_of(model)),
+        statuses=tuple((status.name, int(status), status_meaning(status, model)) for status in statuses_of(model)),
         fields=_fields(model, names),
         functions=tuple(_kernel(kernel, names, None if pair is None else _SINCOS) for kernel in program.kernels),
         sincos=None if pair is None else numpy_helper(pair),

@@ -42,16 +42,16 @@ class GivenConfiguration:
     def __init__(self, derivation: Derivation, given: Given) -> None:
         self._derivation, self._graph, self._given = derivation, derivation.graph, given
         self._q, self._space = derivation.mechanics.q, derivation.geometric_space
-        determined = len(given.functions) == self._space.delta
+        met = len(given.functions) <= self._space.delta
         named = [k for k, place in enumerate(given.places) if place >= 0]
         # coordinates that are given are known; what else is given adds rows
-        self._held = {given.places[k]: given.values[k] for k in named} if determined else {}
-        others = [k for k in range(len(given.functions)) if k not in named] if determined else []
+        self._held = {given.places[k]: given.values[k] for k in named} if met else {}
+        others = [k for k in range(len(given.functions)) if k not in named] if met else []
         self._open = self._differences(others)
         self._rows: Matrix = (*derivation.mechanics.geometric_jacobian, *(given.slopes[k] for k in others))
         # on which side of their singularities the rows are, where they tell that
         self._orientation = self._graph.one
-        if determined:
+        if met:
             step, self._last_guards = first, self._first_guards = self._by_rows()
         else:
             step, self._last_guards = self._by_least_squares(curved=True)
@@ -101,7 +101,8 @@ class GivenConfiguration:
 
     def _by_rows(self) -> tuple[Vector, tuple[Guard, ...]]:
         """The step to what is given that closes the rows by the other coordinates, to the first order."""
-        rows = _SolvedRows(self._graph, self._rows, tuple(self._held), self._derivation.n, self._given.status)
+        rank = self._derivation.generic.geometric_rank + len(self._given.functions)
+        rows = _SolvedRows(self._graph, self._rows, tuple(self._held), self._derivation.n, rank, self._given.status)
         self._orientation = rows.orientation
         steps = [x - self._q[k] for k, x in self._held.items()]
         return rows.solve(steps, [-x for x in self._residual]), rows.guards
@@ -173,19 +174,22 @@ class GivenConfiguration:
 
 
 class _SolvedRows:
-    """Rows solved for the coordinates that are not given, where as many functions are as there are directions."""
+    """Rows, of this rank with what is given, solved for the other coordinates: by the least change of them."""
 
-    def __init__(self, graph: Graph, rows: Matrix, places: Sequence[int], n: int, status: Status) -> None:
+    def __init__(self, graph: Graph, rows: Matrix, places: Sequence[int], n: int, rank: int, status: Status) -> None:
         self._graph, self._rows, self._places = graph, rows, places
         self._free = [k for k in range(n) if k not in places]
         block = tuple(tuple(row[k] for k in self._free) for row in rows)
-        self._space = reflected(graph, block, len(self._free), len(self._free))
+        self._space = reflected(graph, block, len(self._free), rank - len(places))
         # rows that lose rank themselves leave the rest open, too: telling that apart takes them all once more
         self.guards = tuple(replace(guard, status=status) for guard in self._space.guards)
 
     @property
     def orientation(self) -> Scalar:
-        """On which side of its singularities the block is; 1 where rows depend on each other and do not tell."""
+        """On which side of its singularities the block is; 1 where no determinant tells.
+
+        Rows that depend on each other have none, and where directions stay open there are ways around singularities.
+        """
         regular = len(self._rows) == len(self._free)
         return self._space.reflections.determinant_sign if regular else self._graph.one
 

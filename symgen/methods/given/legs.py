@@ -82,7 +82,7 @@ def leg_motion(system: MethodInput, given: Given) -> LegMotion | str:
     if system.regular is not None:
         return system.regular
     if len(given.functions) + mechanics.r != mechanics.n:
-        return "more is given than determines the motion"
+        return "what is given is more than determines the motion, or less"
     numbers = ConstantRows((*mechanics.constraint_jacobian, *given.slopes))
     turned = TurnedRows(mechanics.graph, numbers.matrix, mechanics.q)
     rows = SparserRows(turned.matrix)

@@ -201,7 +201,7 @@ def left_by_task(mechanics: NumericSystem, assembly: Assembly, task: Sequence[Ta
     if not task:
         return TaskLeaves()
     n, geometric = len(mechanics.coordinates), len(mechanics.geometric)
-    rates, places = n, n
+    rates, places, idle = n, n, len(task)
     for place in assembly.places[:SAMPLES]:
         # a function may have no value at some of them
         with suppress(ArithmeticError, ValueError):
@@ -210,7 +210,8 @@ def left_by_task(mechanics: NumericSystem, assembly: Assembly, task: Sequence[Ta
             rows = mechanics.jacobian(place.q)
             rates = min(rates, n - rank([*rows, *moved]))
             places = min(places, n - rank([*rows[:geometric], *moved]))
-    return TaskLeaves(rates, places)
+            idle = min(idle, len(task) - rank([*rows, *moved]) + rank(rows))
+    return TaskLeaves(rates, places, idle)
 
 
 def _check_measured(

@@ -16,6 +16,7 @@ OPENING = {
     "parametrization alone",
     "measured": "What is measured does not determine the other rates everywhere",
     "task": "The task does not determine the rates everywhere",
+    "open_task": "The task loses rank where it cannot be moved in some direction",
 }
 # Symbols, numbers and operations of equations that are printed; of longer ones only the number is.
 LARGEST_LOCUS = 1500
@@ -50,7 +51,7 @@ def _one(context: Context, locus: SingularSet) -> list[Block]:
 
 
 def _slots(locus: SingularSet) -> list[Slot]:
-    if locus.kind in ("measured", "task"):
+    if locus.kind in ("measured", "task", "open_task"):
         return []
     symbol = SYMBOLS[locus.quantity]
     if locus.kind != "constraint":
@@ -65,4 +66,5 @@ def _nowhere(kind: str) -> str:
         "parameter": "The chosen velocities are independent everywhere, and {} always exists.",
         "measured": "What is measured determines the other rates in all configurations.",
         "task": "The task determines the rates in all configurations.",
+        "open_task": "The task can be moved in all directions from every configuration.",
     }[kind]

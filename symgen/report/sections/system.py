@@ -7,6 +7,7 @@ from fractions import Fraction
 from symgen.model.blocks.coordinates import ANGLE_RANGE
 from symgen.model.expressions.expression import Expression, Number
 from symgen.model.model import Input, Model, Range
+from symgen.model.open_task import directions, norm_of_motions
 from symgen.report.context import Context, text_of
 from symgen.report.document import (
     Block,
@@ -35,6 +36,7 @@ from symgen.report.mathematics.numerals import rational_text
 from symgen.report.mathematics.setting import product
 from symgen.report.prose import (
     ONE,
+    SYMBOLS,
     ZERO,
     B,
     Q,
@@ -226,7 +228,23 @@ def _given(model: Model) -> list[Block]:
             paragraph(f"Motions are planned in {'this coordinate' if one else 'these coordinates'} of a task:"),
             displayed(equations, "task"),
         ]
+        blocks += _least_motion(model)
     return blocks
+
+
+def _least_motion(model: Model) -> list[Block]:
+    """What is taken of the motions that a task leaves open."""
+    if not model.task_leaves.rates or model.task_leaves.idle:
+        return []
+    quantities = ("velocity_from_task", "acceleration_from_task", "task_nullspace_projector")
+    return [
+        paragraph(
+            f"This leaves {directions(model.task_leaves.rates)} open. Of all rates with which the constraints hold and "
+            f"the task moves as it shall, {{}} are the least, {norm_of_motions(model)}; {{}} are the accelerations of "
+            "the motion that has these rates, and {} projects onto the rates that leave the task still.",
+            *(SYMBOLS[name] for name in quantities),
+        )
+    ]
 
 
 def _inputs(context: Context) -> list[Block]:

@@ -69,21 +69,39 @@ def _task(e: Evaluation) -> GivenValues:
 
 
 def _inverse(e: Evaluation, given: GivenValues) -> Any:
-    """(S N)^+, of the rank of N."""
-    return right_pseudoinverse(given.at(e.q)[1] * e.projector, e.system.n - e.ranks.constraints)
+    """(S N)^+, of the rank of N, or of S where that leaves directions open."""
+    slopes = given.at(e.q)[1]
+    return right_pseudoinverse(slopes * e.projector, min(slopes.nrows(), e.system.n - e.ranks.constraints))
 
 
 def _velocity(e: Evaluation, given: GivenValues) -> Any:
-    """The admissible rates that are nearest to those given."""
+    """The admissible rates that are nearest to those given, the least of them where directions stay open."""
     return _inverse(e, given) * given.rates
 
 
 def _acceleration(e: Evaluation, given: GivenValues) -> Any:
-    """The same of accelerations, at that velocity."""
+    """The same of accelerations, at that velocity; where directions stay open, those of the least motion.
+
+    These are d/dt A^+ y of A = [B; S], y = [0; x_dot]: the derivative of a pseudoinverse of constant rank (Golub and
+    Pereyra, SIAM J. Numer. Anal. 10, 1973) adds (I - A^+ A) A_dot^T (A^+)^T q_dot to the least accelerations.
+    """
     velocity, inverse = _velocity(e, given), _inverse(e, given)
+    slopes, turning = given.at(e.q)[1], given.turning(velocity)
     least = -(e.inverse * e.motion(velocity)[1])
-    left = given.accelerations - given.turning(velocity) * velocity
-    return least + inverse * (left - given.at(e.q)[1] * least)
+    nearest = least + inverse * (given.accelerations - turning * velocity - slopes * least)
+    if slopes.nrows() >= e.system.n - e.ranks.constraints:
+        return nearest
+    by_task = inverse.transpose() * velocity
+    drift = turning.transpose() * by_task
+    if e.system.r:
+        by_rows = e.inverse.transpose() * (velocity - slopes.transpose() * by_task)
+        drift += e.constraints_dot(velocity).transpose() * by_rows
+    return nearest + _still(e, given) * drift
+
+
+def _still(e: Evaluation, given: GivenValues) -> Any:
+    """The projector onto admissible rates that leave what is given still: (I - (S N)^+ S) N."""
+    return e.projector - _inverse(e, given) * (given.at(e.q)[1] * e.projector)
 
 
 def _configuration(e: Evaluation, given: GivenValues) -> Any:
@@ -97,8 +115,21 @@ def _configuration(e: Evaluation, given: GivenValues) -> Any:
             return q
         if k and length > max(before, first) / 2:
             break
+        if _drifts(e, given, length, before, first):
+            return q
         first, before = first or length, length
     raise ZeroDivisionError("the configuration is not near enough to one with what is given")
+
+
+def _drifts(e: Evaluation, given: GivenValues, length: float, before: float, first: float) -> bool:
+    """Whether steps are what the roundings of rows that depend on each other drive along directions that stay open.
+
+    Moved by roundings such rows contradict each other: least steps then end in one of about the square of a rounding,
+    along what neither rows nor the task hold, which is taken each time.  Before that each is far shorter than the last.
+    """
+    rank = e.ranks.geometric
+    contradict = rank < e.system.r_geometric and given.values.nrows() < e.system.n - rank
+    return contradict and before < 2 * length and length <= first * NOTHING_LEFT
 
 
 def _places(e: Evaluation, given: GivenValues) -> Iterator[tuple[Any, float]]:
@@ -108,10 +139,11 @@ def _places(e: Evaluation, given: GivenValues) -> Iterator[tuple[Any, float]]:
         place = [x.mid() for x in q.entries()]
         values, slopes = given.at(place)
         residual, rows = e.system.geometry(place, e.parameters, e.literals)
-        inverse = right_pseudoinverse(rows, rank)
-        least = -(inverse * residual)
-        moving = slopes - (slopes * inverse) * rows
-        step = least + right_pseudoinverse(moving, n - rank) * (given.values - values - slopes * least)
+        closing = right_pseudoinverse(rows, rank)
+        least = -(closing * residual)
+        moving = slopes - (slopes * closing) * rows
+        inverse = right_pseudoinverse(moving, min(slopes.nrows(), n - rank))
+        step = least + inverse * (given.values - values - slopes * least)
         q = column(place) + step
         yield q, norm(step)
 
@@ -156,4 +188,5 @@ QUANTITIES_OF_GIVEN: dict[str, Callable[[Evaluation], Any]] = {
     "configuration_from_task": lambda e: _configuration(e, _task(e)),
     "velocity_from_task": lambda e: _velocity(e, _task(e)),
     "acceleration_from_task": lambda e: _acceleration(e, _task(e)),
+    "task_nullspace_projector": lambda e: _still(e, _task(e)),
 }

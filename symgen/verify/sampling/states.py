@@ -10,7 +10,7 @@ from math import comb, isfinite
 from typing import Any
 
 from symgen.ir.kernel import Scalar
-from symgen.model.quantities import MEASURED, MEASURED_PLACES, PARTITION, ROWS, TASK_PLACES, TASK_RATES
+from symgen.model.quantities import MEASURED, MEASURED_PLACES, PARTITION, ROWS, TASK_OPEN, TASK_PLACES, TASK_RATES
 from symgen.runtime.activity import working
 from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.evaluation import Evaluation
@@ -171,7 +171,7 @@ def _is_free(reference: Reference, state: State) -> bool:
 # By what quantities need: what a state has to be for them, near enough to the configuration a moment later among it.
 _REQUIRED: dict[tuple[str, ...], Callable[[Evaluation], bool]] = {
     (MEASURED, MEASURED_PLACES): measured_determine,
-    (TASK_RATES, TASK_PLACES): task_determines,
+    (TASK_RATES, TASK_PLACES, TASK_OPEN): task_determines,
     (MEASURED_PLACES,): is_near_measured,
     (TASK_PLACES,): is_near_task,
 }

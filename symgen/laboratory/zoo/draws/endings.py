@@ -30,7 +30,7 @@ OF_POINTS = ("point_position", "point_jacobian")
 OF_MEASURED = ("configuration_from_measured", "velocity_from_measured", "acceleration_from_measured")
 OF_TASK = (
     "task_position", "task_velocity", "task_jacobian", "configuration_from_task", "velocity_from_task",
-    "acceleration_from_task",
+    "acceleration_from_task", "task_nullspace_projector",
 )  # fmt: skip
 OF_INDEPENDENT = ("orthogonal_complement", "minimal_mass_matrix", "minimal_coriolis_matrix", "minimal_control_matrix")
 
@@ -159,7 +159,10 @@ def _limit(sketch: Sketch) -> None:
 
 
 def _task(sketch: Sketch) -> None:
-    """About as many functions of the configuration as there are directions: points, coordinates, sums of waves."""
+    """About as many functions of the configuration as there are directions: points, coordinates, sums of waves.
+
+    Of fewer the least motion is taken.
+    """
     dice, blocks, names = sketch.dice, sketch.blocks, list(sketch.start)
     turns = [entry["coordinate"] for entry in (blocks.get("joints") or {}).values() if entry["type"] == "revolute"]
     turns += [name for name, entry in (blocks.get("coordinates") or {}).items() if (entry or {}).get("unit") == "rad"]
@@ -175,7 +178,7 @@ def _task(sketch: Sketch) -> None:
         waves = f"{dice.length()}*cos({one}) + {dice.length()}*sin({one} + {other})"
         return dice.choice((f"{one} - {dice.length()}*{other}", waves))
 
-    count = max(1, freedom + dice.choice((-1, 0, 0, 0, 0, 1)))
+    count = max(1, freedom + dice.choice((-2, -1, -1, 0, 0, 0, 0, 1)))
     blocks["task"] = {f"{dice.choice(('x', 'aim', 'tip'))}_{k}": function() for k in range(count)}
     if isinstance(outputs := blocks.get("outputs"), list):
         blocks["outputs"] = [*outputs, *dice.sample(OF_TASK, dice.whole(1, len(OF_TASK)))]
