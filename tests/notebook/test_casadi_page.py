@@ -46,9 +46,9 @@ def optimum_by_casadi(first: Any, last: Any, start: Any) -> Any:
     problem = {"x": casadi.vertcat(*q), "f": cost, "g": casadi.vertcat(*loops)}
     options = {"print_time": False, "ipopt.print_level": 0, "ipopt.sb": "yes"}
     solver = casadi.nlpsol("solver", "ipopt", problem, options)
-    found = solver(x0=start.ravel(), lbg=0, ubg=0)
+    optimum = solver(x0=start.ravel(), lbg=0, ubg=0)
     assert solver.stats()["success"]
-    return found["x"].full().reshape(NODES, model.n)
+    return optimum["x"].full().reshape(NODES, model.n)
 
 
 @pytest.mark.slow

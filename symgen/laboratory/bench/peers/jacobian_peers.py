@@ -36,6 +36,8 @@ from symgen.witness.lagrange import differentiate
 Arrays: TypeAlias = Mapping[str, Any]
 LeftOut: TypeAlias = list[tuple[str, str]]
 PINOCCHIO = "Pinocchio"
+# Where no form is short enough, the shortest one is compiled nevertheless, up to this: a peer is worth minutes.
+LONGEST_ALONE = 100_000
 _ARRAYS = ("q", "qd", "qdd", "p")
 
 
@@ -46,15 +48,21 @@ def jacobian_peers(model: Model, states: Any) -> tuple[tuple[CCandidate, ...], t
     """
     left_out: LeftOut = []
     candidates: list[CCandidate] = []
+    derived: dict[str, tuple[int, Arrays, Any]] = {}
+    too_long = f"more than {LONGEST_LINES} operations, which take minutes to compile"
     for form, arrays, u in _forms(model, states, left_out):
-        if (length := _length(arrays, u)) <= LONGEST_LINES:
-            by = casadi.vertcat(*(arrays[name] for name in _ARRAYS[:3]))
-            slopes = casadi.jacobian(u, by)
-            length = _length(arrays, slopes)
-        if length > LONGEST_LINES:
-            left_out.append((f"CasADi {form}", f"more than {LONGEST_LINES} operations, which take minutes to compile"))
+        if _length(arrays, u) > LONGEST_LINES:
+            left_out.append((f"CasADi {form}", too_long))
         else:
+            slopes = casadi.jacobian(u, casadi.vertcat(*(arrays[name] for name in _ARRAYS[:3])))
+            derived[form] = _length(arrays, slopes), arrays, slopes
+    shortest = min((length for length, _, _ in derived.values()), default=0)
+    most = max(LONGEST_LINES, min(shortest, LONGEST_ALONE))
+    for form, (length, arrays, slopes) in derived.items():
+        if length <= most:
             candidates += _candidates(CasadiEngine.tool, form, arrays, slopes)
+        else:
+            left_out.append((f"CasADi {form}", too_long))
     derivatives = pinocchio_jacobian(model)
     if isinstance(derivatives, str):
         left_out.append((PINOCCHIO, derivatives))
