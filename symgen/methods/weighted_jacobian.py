@@ -1,8 +1,8 @@
 """Gradients J^T w by the Jacobian and products with it, for where one reverse sweep loses digits.
 
 A sweep carries weights through all that u or q_ddot is made of, and what cancels between two entries of J w is worked
-out to the digits of the larger one.  J has its entries one by one, with what cancels in each of them cancelled.  A product
-with second derivatives is the derivative of that along its direction.
+out to the digits of the larger one.  J has its entries one by one, with what cancels in each of them cancelled.  A
+product with second derivatives is the derivative of that along its direction.
 """
 
 from __future__ import annotations

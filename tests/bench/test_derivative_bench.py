@@ -1,4 +1,4 @@
-"""Derivatives of u beside CasADi's and Pinocchio's: the same J_u from every peer, and a page that says what is missed."""
+"""Derivatives of u beside CasADi's and Pinocchio's: the same J_u from every peer, a page of goals."""
 
 from __future__ import annotations
 

@@ -64,9 +64,9 @@ def curvature(e: Evaluation, value: Callable[[Evaluation], Any], direction: Mapp
     step = arb(2) ** -(ctx.prec // 4)
     ends = []
     for sign in (1, -1):
-        moved = {part: [x + sign * step * v for x, v in zip(getattr(e, part), direction[part], strict=True)]
-                 for part in direction}  # fmt: skip
-        state: dict[str, Any] = {**moved, "derivatives": {}}
+        state: dict[str, Any] = {"derivatives": {}}
+        for part, rates in direction.items():
+            state[part] = [x + sign * step * v for x, v in zip(getattr(e, part), rates, strict=True)]
         end = replace(e, **state)
         ends.append([slope[0, 0] for part in direction for slope in slopes(end, value, part, digits=4)])
     return arb_mat(len(ends[0]), 1, [(ahead - back) / (2 * step) for ahead, back in zip(*ends, strict=True)])
