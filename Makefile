@@ -54,12 +54,12 @@ bench: $(VENV)/installed
 
 # u of mechanisms given by bodies beside peers that walk their frames: docs/bench/mechanisms.md.
 WALKED := front_car_bodies rapkm_bodies delta gough_stewart chain8 chain16 chain32 arm7
-SLOPED := $(filter-out chain32,$(WALKED))
 bench-mechanisms: $(VENV)/installed
 	$(BIN)/symgen bench --bodies $(wildcard $(WALKED:%=models/%.yaml)) --quiet --out build/bench
 	$(BIN)/python tools/mechanisms_page.py build/bench $(WALKED)
 
 # Derivatives of u of both, beside CasADi's and Pinocchio's: docs/bench/derivatives.md.
+SLOPED := $(filter-out chain32,$(WALKED))
 bench-derivatives: $(VENV)/installed
 	$(BIN)/symgen bench --derivatives $(BENCHED) $(wildcard $(SLOPED:%=models/%.yaml)) --quiet --out build/bench
 	$(BIN)/python tools/derivatives_page.py build/bench $(notdir $(basename $(BENCHED))) $(SLOPED)
