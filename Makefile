@@ -9,7 +9,7 @@ CAMPAIGN_FILES := $(CAMPAIGN:%=models/%.yaml)
 MODELS := $(wildcard models/*.yaml)
 MECHANISMS := $(filter-out $(CAMPAIGN_FILES),$(MODELS))
 
-.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms generation stress skipping passes constants trig zoo zoo-case zoo-sweeps docs api lock robots jax
+.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms bench-derivatives generation stress skipping passes constants trig zoo zoo-case zoo-sweeps docs api lock robots jax
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -57,6 +57,12 @@ WALKED := front_car_bodies rapkm_bodies delta gough_stewart chain8 chain16 chain
 bench-mechanisms: $(VENV)/installed
 	$(BIN)/symgen bench --bodies $(wildcard $(WALKED:%=models/%.yaml)) --quiet --out build/bench
 	$(BIN)/python tools/mechanisms_page.py build/bench $(WALKED)
+
+# Derivatives of u of both, beside CasADi's and Pinocchio's: docs/bench/derivatives.md.
+SLOPED := $(filter-out chain32,$(WALKED))
+bench-derivatives: $(VENV)/installed
+	$(BIN)/symgen bench --derivatives $(BENCHED) $(wildcard $(SLOPED:%=models/%.yaml)) --quiet --out build/bench
+	$(BIN)/python tools/derivatives_page.py build/bench $(notdir $(basename $(BENCHED))) $(SLOPED)
 
 # CPU time and memory of cold starts, with their goals: docs/bench/generation.md, measured on this machine.
 generation: $(VENV)/installed

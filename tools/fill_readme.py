@@ -126,7 +126,7 @@ def quantities() -> str:
         "",
         "n coordinates, m inputs, r constraints, of these r_g geometric, δ degrees of freedom, k coordinates of a "
         "task, p points; q_m, qd_m and qdd_m are measured coordinates, rates and accelerations, x_t, xd_t and xdd_t "
-        "those of a task; w_u and w_qdd are weights of u and q̈.",
+        "those of a task; w_u and w_qdd are weights of u and q̈, v_x is a direction of (q, qd, qdd).",
         "",
         "| name | symbol | equation | what | arguments | shape |",
         "|---|---|---|---|---|---|",

@@ -10,7 +10,7 @@ from symgen.model.model import Model
 from symgen.naming import identifiers
 from symgen.records import dataclass
 
-ARGUMENT_NAMES = ("q", "qd", "qdd", "u", "q_m", "qd_m", "qdd_m", "x_t", "xd_t", "xdd_t", "w_u", "w_qdd", "p")
+ARGUMENT_NAMES = ("q", "qd", "qdd", "u", "q_m", "qd_m", "qdd_m", "x_t", "xd_t", "xdd_t", "w_u", "w_qdd", "v_x", "p")
 
 @dataclass(frozen=True, slots=True)
 class Names:

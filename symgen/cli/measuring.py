@@ -31,15 +31,21 @@ def bench(arguments: list[str]) -> int:
     parser.add_argument(
         "--states", metavar="N", type=number_of_states, default=1000, help="admissible states (default: 1000)"
     )
-    parser.add_argument(
+    kind = parser.add_mutually_exclusive_group()
+    kind.add_argument(
         "--bodies", action="store_true", help="u alone, beside peers that walk frames; for mechanisms of any size"
+    )
+    kind.add_argument(
+        "--derivatives", action="store_true", help="the derivatives of u alone, beside those of CasADi and Pinocchio"
     )
     add_quiet(parser)
     given = parser.parse_args(arguments)
 
     def one(path: Path, progress: Progress) -> int:
-        from symgen.laboratory.bench.command import run_bench, run_mechanism_bench
+        from symgen.laboratory.bench.command import run_bench, run_derivative_bench, run_mechanism_bench
 
+        if given.derivatives:
+            return run_derivative_bench(path, given.out, given.quiet, progress)
         if given.bodies:
             return run_mechanism_bench(path, given.out, given.quiet, progress)
         return run_bench(path, given.out, given.states, given.quiet, progress)

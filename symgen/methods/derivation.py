@@ -31,6 +31,7 @@ from symgen.methods.given.configuration import GivenConfiguration
 from symgen.methods.given.functions import GivenBy
 from symgen.methods.given.least_motion import MotionOfGiven, motion_of
 from symgen.methods.least_inputs import least_inputs
+from symgen.model.quantities import DIRECTION
 from symgen.symbolic.calculus import derivative_along, gradient, jacobian
 from symgen.symbolic.matrix import (
     Matrix,
@@ -360,6 +361,12 @@ class Derivation:
         """The derivatives of w^T u by q, q_dot and q_ddot, in one reverse sweep."""
         weighted = dot(self.graph, self.mechanics.further("w_u")[0], self.inverse_dynamics)
         return tuple(gradient(self.graph, weighted, self.mechanics.motion))
+
+    def inverse_dynamics_hessian_product(self) -> Vector:
+        """H v with the second derivatives H of w^T u by q, q_dot and q_ddot: forward over the reverse sweep."""
+        (direction,) = self.mechanics.further(DIRECTION)
+        along = dict(zip(self.mechanics.motion, direction, strict=True))
+        return tuple(derivative_along(self.graph, self.inverse_dynamics_gradient(), along))
 
     @cached_property
     def actuator_basis(self) -> Matrix:

@@ -62,7 +62,7 @@ _GIVEN_PLACES = ("configuration_from_measured", "configuration_from_task")
 _GIVEN_MOTIONS = (
     "velocity_from_measured", "acceleration_from_measured", "velocity_from_task", "acceleration_from_task",
 )  # fmt: skip
-_GRADIENTS = ("inverse_dynamics_gradient", "forward_dynamics_gradient")
+_GRADIENTS = ("inverse_dynamics_gradient", "forward_dynamics_gradient", "inverse_dynamics_hessian_product")
 _WEIGHTED = ("weighted_pseudoinverse", "weighted_nullspace_projector")
 
 # Of methods that count alike the first is taken.

@@ -1,7 +1,8 @@
 """Gradients J^T w by the Jacobian and products with it, for where one reverse sweep loses digits.
 
 A sweep carries weights through all that u or q_ddot is made of, and what cancels between two entries of J w is worked
-out to the digits of the larger one.  J has its entries one by one, with what cancels in each of them cancelled.
+out to the digits of the larger one.  J has its entries one by one, with what cancels in each of them cancelled.  A
+product with second derivatives is the derivative of that along its direction.
 """
 
 from __future__ import annotations
@@ -12,15 +13,16 @@ from symgen.methods.admission import ByTheorem
 from symgen.methods.method import INPUTS, MOTIONS, Candidate, Method
 from symgen.methods.table import Use, methods
 from symgen.methods.workspace import Workspace
-from symgen.model.quantities import FurtherName
+from symgen.model.quantities import DIRECTION, ROWS, FurtherName
 from symgen.records import dataclass
-from symgen.symbolic.calculus import jacobian
+from symgen.symbolic.calculus import derivative_along, jacobian
 from symgen.symbolic.matrix import dot
 
 # Of what, by which symbols, and the argument that holds the weights.
 _OF: dict[str, tuple[str, FurtherName]] = {
     "inverse_dynamics_gradient": (INPUTS, "w_u"),
     "forward_dynamics_gradient": (MOTIONS[0], "w_qdd"),
+    "inverse_dynamics_hessian_product": (INPUTS, "w_u"),
 }
 
 
@@ -49,6 +51,9 @@ class _WeightedJacobian(ByTheorem):
         slopes = jacobian(graph, best.derived.outputs, by)
         (weights,) = mechanics.further(argument)
         outputs = tuple(dot(graph, [row[k] for row in slopes], weights) for k in range(len(by)))
+        if DIRECTION in ROWS[quantity].arguments:
+            (direction,) = mechanics.further(DIRECTION)
+            outputs = tuple(derivative_along(graph, outputs, dict(zip(by, direction, strict=True))))
         return replace(best, derived=replace(best.derived, name=quantity, shape=(len(by),), outputs=outputs))
 
 

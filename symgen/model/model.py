@@ -292,20 +292,21 @@ class Model:
 
     @property
     def further_arguments(self) -> tuple[FurtherArgument, ...]:
-        """Those of measured coordinates, of the task and of weights, in the order of signatures; some are empty.
+        """Those of measured coordinates, the task, weights and a direction, in the order of signatures; some are empty.
 
         In trials rates of the task are those of coordinates: what they are multiplied with does not depend on them.
         """
         n, places, task = self.n, self.measured_places, range(len(self.task))
         coordinates, moving = [self.coordinates[k] for k in places], tuple(k % n for k in task) if n else ()
-        taken = {name for c in self.coordinates for name in (c.name, c.rate, c.acceleration)}
+        motion = [(c.name, c.rate, c.acceleration) for c in self.coordinates]
+        taken = {name for names in motion for name in names}
         taken |= {item.name for group in (self.parameters, self.definitions, self.inputs) for item in group}
 
         def free(name: str) -> str:
             return free(name + "_") if name in taken else name
 
         def one(argument: FurtherName, of: Iterable[int], names: Iterable[str]) -> FurtherArgument:
-            ending = {"q": "measured", "x": "task", "w": "weight"}[argument[0]]
+            ending = {"q": "measured", "x": "task", "w": "weight", "v": "direction"}[argument[0]]
             return FurtherArgument(argument, tuple(of), tuple(free(f"{name}_{ending}") for name in names))
 
         return (
@@ -317,6 +318,7 @@ class Model:
             one("xdd_t", moving, (f"{x.name}_ddot" for x in self.task)),
             one("w_u", range(self.m), (control.name for control in self.inputs)),
             one("w_qdd", range(n), (c.acceleration for c in self.coordinates)),
+            one("v_x", range(3 * n), (names[k] for k in range(3) for names in motion)),
         )
 
     def further_names(self, argument: FurtherName) -> tuple[str, ...]:

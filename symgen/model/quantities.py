@@ -9,10 +9,11 @@ from typing import Literal, TypeAlias, cast
 from symgen.records import dataclass
 
 # What some models have beside q, qd, qdd and u: measured coordinates with their rates and accelerations, those of the
-# task, and weights of inputs and of accelerations, of whose sums there are gradients.
-FurtherName: TypeAlias = Literal["q_m", "qd_m", "qdd_m", "x_t", "xd_t", "xdd_t", "w_u", "w_qdd"]
+# task, weights of inputs and of accelerations, of whose sums there are gradients, and a direction of (q, qd, qdd).
+FurtherName: TypeAlias = Literal["q_m", "qd_m", "qdd_m", "x_t", "xd_t", "xdd_t", "w_u", "w_qdd", "v_x"]
 MEASURED_ARGUMENTS: tuple[FurtherName, ...] = ("q_m", "qd_m", "qdd_m")
 WEIGHT_ARGUMENTS: tuple[FurtherName, ...] = ("w_u", "w_qdd")
+DIRECTION: FurtherName = "v_x"
 Argument: TypeAlias = Literal["q", "qd", "qdd", "u"] | FurtherName
 # What a model must have for some quantities.
 PARTITION, ACTUATORS, POINTS, LIMITED = "independent_velocities", "m = delta", "points", "limits of all inputs"
@@ -153,6 +154,8 @@ QUANTITIES: tuple[QuantityRow, ...] = (
          "derivatives of u by q, qd and qdd, each by itself", OF_INPUTS),
     _row("inverse_dynamics_gradient", "J_uᵀ w", "", "w_u_x", "q qd qdd w_u", "3*n",
          "derivatives of wᵀu by q, qd and qdd, for weights of the inputs", OF_INPUTS),
+    _row("inverse_dynamics_hessian_product", "H_{wᵀu} v", "", "w_u_xv", "q qd qdd w_u v_x", "3*n",
+         "derivatives of J_uᵀ w by q, qd and qdd along a direction v of these", OF_INPUTS),
     _row("inverse_dynamics_parameter_jacobian", "J_p", "", "u_p", "q qd qdd", "m parameters",
          "derivatives of u by the parameters, in their order", OF_INPUTS),
     _row("constraint_variations", "X", "", "X", "q qd qdd", "3*n 3*n",

@@ -8,7 +8,7 @@ from symgen.backends.defaults import default_values
 from symgen.ir.kernel import Kernel, Load, Local
 from symgen.model.model import Model, Range
 
-# Inputs, tasks and weights have no range in a model file: one unit, as for all else that has none.
+# Inputs, tasks, weights and directions have no range in a model file: one unit, as for all else that has none.
 _UNIT: Range = (Fraction(-1), Fraction(1))
 
 
@@ -29,6 +29,7 @@ def box(model: Model) -> dict[str, tuple[Range, ...]]:
         **{argument: (_UNIT,) * len(model.task) for argument in ("x_t", "xd_t", "xdd_t")},
         "w_u": (_UNIT,) * model.m,
         "w_qdd": (_UNIT,) * model.n,
+        "v_x": (_UNIT,) * (3 * model.n),
         "p": tuple(p.range or (values[p.name], values[p.name]) for p in model.parameters),
     }
 

@@ -26,12 +26,12 @@ from symgen.methods.system import MethodInput
 from symgen.methods.table import Use
 from symgen.methods.table import methods as methods_of
 from symgen.model.model import Model
-from symgen.model.quantities import PARTITION, TASK_OPEN, TASK_RATES, WEIGHT_ARGUMENTS
+from symgen.model.quantities import DIRECTION, PARTITION, TASK_OPEN, TASK_RATES, WEIGHT_ARGUMENTS
 from symgen.quantities.catalogue import BY_NAME, CatalogueEntry, by_blocks, derive, derived_from, sizes
 from symgen.quantities.everything import WorkBudget
 from symgen.runtime.activity import working
 from symgen.runtime.effort import TooLongError, at_most, worth_trying
-from symgen.symbolic.calculus import jacobian
+from symgen.symbolic.calculus import derivative_along, jacobian
 from symgen.symbolic.matrix import dot, flatten
 from symgen.symbolic.traverse import cost
 
@@ -43,6 +43,7 @@ TITLES = {BY_FRAMES: ARTICULATED}
 SLOPES = {
     "inverse_dynamics_jacobian": INPUTS,
     "inverse_dynamics_gradient": INPUTS,
+    "inverse_dynamics_hessian_product": INPUTS,
     "inverse_dynamics_parameter_jacobian": INPUTS,
     "forward_dynamics_jacobian": MOTIONS[0],
     "forward_dynamics_gradient": MOTIONS[0],
@@ -138,6 +139,9 @@ class Candidates:
         if weights := seen.further(*(name for name in WEIGHT_ARGUMENTS if name in entry.row.arguments)):
             values = tuple(dot(graph, one, values) for one in weights)
         outputs = flatten(jacobian(graph, values, by))
+        if DIRECTION in entry.row.arguments:
+            (direction,) = seen.further(DIRECTION)
+            outputs = tuple(derivative_along(graph, outputs, dict(zip(by, direction, strict=True))))
         shape = entry.shape(sizes(seen.model, self._generic))
         derived = replace(one.derived, name=entry.name, shape=shape, outputs=outputs)
         return {one.title: Candidate(self._system, derived, along=one.title)}

@@ -164,6 +164,7 @@ _DERIVED: dict[str, _Derived] = {
     "inverse_dynamics": _BY_METHODS,
     "inverse_dynamics_jacobian": (lambda d: flatten(d.inverse_dynamics_jacobian(d.mechanics.motion)), _inputs),
     "inverse_dynamics_gradient": (lambda d: d.inverse_dynamics_gradient(), _inputs),
+    "inverse_dynamics_hessian_product": (lambda d: d.inverse_dynamics_hessian_product(), _inputs),
     "inverse_dynamics_parameter_jacobian": (
         lambda d: flatten(d.inverse_dynamics_jacobian(d.mechanics.parameters)),
         _inputs,

@@ -3,7 +3,7 @@
 Where the machine is then it has not been seen, which is what measured values are good for: a configuration is looked
 for from the one before.  Rates and accelerations are measured as they are.  Weights are the numbers that the inputs and
 accelerations of a state are, on which what is weighted does not depend; rates and accelerations of the task are those
-of coordinates likewise.
+of coordinates likewise.  A direction of (q, qd, qdd) is (qd, qdd, q), none of the state's own.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import Any
 
 from symgen.backends.locals import array_arguments
 from symgen.ir.kernel import Argument, Kernel, Load
+from symgen.model.quantities import DIRECTION
 from symgen.verify.reference.given import MOMENT
 from symgen.verify.reference.reference import State
 
@@ -20,13 +21,13 @@ from symgen.verify.reference.reference import State
 _PARTS = {
     "q_m": "q", "qd_m": "qd", "qdd_m": "qdd", "x_t": "task", "xd_t": "qd", "xdd_t": "qdd", "w_u": "u", "w_qdd": "qdd",
 }  # fmt: skip
+_DIRECTION = ("qd", "qdd", "q")
 
 
 def entry(given: Mapping[str, Sequence[Any]], load: Load) -> Any:
     """The value of a load, of parts of one state by name, `p` among them."""
-    if load.argument not in _PARTS:
-        return given[load.argument][load.index]
-    value = given[_PARTS[load.argument]][load.place]
+    part, place = source(load, len(given["q"]))
+    value = given[part][place]
     return value + given["qd"][load.place] * MOMENT if load.argument == "q_m" else value
 
 
@@ -41,14 +42,16 @@ def loaded(given: Mapping[str, Any], load: Load) -> Any:
     return entry({name: rows.T for name, rows in given.items()}, load)
 
 
-def source(load: Load) -> tuple[str, int]:
-    """The part of a state that a load is of, and the place there."""
+def source(load: Load, n: int) -> tuple[str, int]:
+    """The part of a state of n coordinates that a load is of, and the place there."""
+    if load.argument == DIRECTION:
+        return _DIRECTION[load.place // n], load.place % n
     return (_PARTS[load.argument], load.place) if load.argument in _PARTS else (load.argument, load.index)
 
 
 def entries(state: State, argument: Argument) -> Sequence[Any]:
     """An array argument at a state."""
-    if argument.name not in _PARTS:
+    if argument.name not in _PARTS and argument.name != DIRECTION:
         return tuple(getattr(state, argument.name))
     loads = (Load("", argument.name, i, place=place) for i, place in enumerate(argument.places))
     return tuple(entry(parts_of(state), load) for load in loads)

@@ -70,6 +70,8 @@ def derive(model: Model, s: Lagrange, ranks: ConfigurationRanks) -> dict[str, ca
         quantities["inverse_dynamics_jacobian"] = casadi.jacobian(u, casadi.vertcat(s.q, s.qd, s.qdd))
         by = casadi.vertcat(s.q, s.qd, s.qdd)
         quantities["inverse_dynamics_gradient"] = casadi.gradient(casadi.dot(s.further["w_u"], u), by)
+        slope = quantities["inverse_dynamics_gradient"]
+        quantities["inverse_dynamics_hessian_product"] = casadi.jtimes(slope, by, s.further["v_x"])
         if model.parameters:
             quantities["inverse_dynamics_parameter_jacobian"] = casadi.jacobian(u, s.p)
     if ranks.constraints == model.r:

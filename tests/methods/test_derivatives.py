@@ -151,7 +151,47 @@ def test_gradients_are_weighted_rows_of_jacobians(name: str) -> None:
             same_values(gradient, products, by_name[gradient].outputs)
 
 
-@pytest.mark.parametrize("quantity", ["inverse_dynamics_gradient", "forward_dynamics_gradient"])
+@pytest.mark.parametrize("name", ["rapkm_2rrr_rr", "front_car", "rolling_disc", "delta", "double_pendulum"])
+def test_products_with_second_derivatives_are_differences_of_gradients(name: str) -> None:
+    names = ("inverse_dynamics_gradient", "inverse_dynamics_hessian_product")
+    selection = derive_quantities(shipped.model(name), names)
+    dice, mechanics = random.Random(name), selection.mechanics
+    w, v = mechanics.further("w_u", "v_x")
+    place = {str(node.payload): dice.uniform(0.3, 1.1) for node in (*mechanics.motion, *w, *v)}
+    product, step = values(selection, place)[names[1]], 1e-5
+    ends = []
+    for sign in (1, -1):
+        moved = {str(x.payload): place[str(x.payload)] + sign * step * place[str(d.payload)]
+                 for x, d in zip(mechanics.motion, v, strict=True)}  # fmt: skip
+        ends.append(values(selection, place | moved)[names[0]])
+    difference = (ends[0] - ends[1]) / (2 * step)
+    assert product.shape == (3 * shipped.model(name).n,)
+    assert product == pytest.approx(difference, rel=1e-6, abs=1e-7 * np.abs(product).max())
+
+
+def test_second_derivatives_of_a_pendulum_by_hand(tmp_path: Path) -> None:
+    name = "inverse_dynamics_hessian_product"
+    model = loaded(tmp_path, PENDULUM.replace("OUTPUTS", f"[{name}]").replace("FLAG", "false"))
+    a, a_dot, x_ddot, a_ddot, push, twist = 0.4, -1.3, 0.8, 2.1, 0.6, -0.9
+    point = {"x": 0.2, "a": a, "x_dot": 0.5, "a_dot": a_dot, "x_ddot": x_ddot, "a_ddot": a_ddot}
+    point |= {"push_weight": push, "twist_weight": twist}
+    v = {"x": 0.3, "a": 0.7, "x_dot": -0.2, "a_dot": 1.1, "x_ddot": -0.5, "a_ddot": 0.9}
+    point |= {f"{key}_direction": value for key, value in v.items()}
+    ml, g, s, c = 0.35, 9.81, math.sin(a), math.cos(a)
+    # of w^T u = push (ml (c a_ddot - s a_dot^2) + ...) + twist (ml (c x_ddot - g s) + ...)
+    by_a = push * ml * (-c * a_ddot + s * a_dot**2) - twist * ml * (c * x_ddot - g * s)
+    by_rate, by_x, by_own = -2 * push * ml * c * a_dot, -twist * ml * s, -push * ml * s
+    by_hand = [
+        0, by_a * v["a"] + by_rate * v["a_dot"] + by_x * v["x_ddot"] + by_own * v["a_ddot"],
+        0, by_rate * v["a"] - 2 * push * ml * s * v["a_dot"], by_x * v["a"], by_own * v["a"],
+    ]  # fmt: skip
+    assert values(derive_quantities(model, (name,)), point)[name] == pytest.approx(np.array(by_hand), rel=1e-13)
+
+
+GRADIENTS = ("inverse_dynamics_gradient", "forward_dynamics_gradient", "inverse_dynamics_hessian_product")
+
+
+@pytest.mark.parametrize("quantity", GRADIENTS)
 def test_the_product_with_the_jacobian_is_the_same_gradient(quantity: str) -> None:
     """The method that verification takes where a sweep loses digits, at numbers, and it is nobody's first choice."""
     model = shipped.model("front_car")
@@ -173,6 +213,7 @@ def test_names_of_weights_are_free(tmp_path: Path) -> None:
     model = loaded(tmp_path, text.replace("d: {value", "push_weight: {value").replace("-d*x_dot", "-push_weight*x_dot"))
     assert model.further_names("w_u") == ("push_weight_", "twist_weight")
     assert model.further_names("w_qdd") == ("x_ddot_weight", "a_ddot_weight")
+    assert model.further_names("v_x")[1:3] == ("a_direction", "x_dot_direction")
 
 
 @pytest.mark.parametrize("flag", ["true", "false"])

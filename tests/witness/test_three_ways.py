@@ -71,7 +71,8 @@ def states(model: Model, singularity: Any) -> list[State]:
         places = list(model.measured_places)
         moved = q[places] + generator.uniform(-1e-3, 1e-3, len(places))
         measured = {"q_m": moved, "qd_m": state["qd"][places], "qdd_m": state["qdd"][places]}
-        regular_states.append(state | measured | _task(model, state) | {"w_u": state["u"], "w_qdd": state["qdd"]})
+        given = {"w_u": state["u"], "w_qdd": state["qdd"], "v_x": generator.normal(size=3 * model.n)}
+        regular_states.append(state | measured | _task(model, state) | given)
     return regular_states
 
 

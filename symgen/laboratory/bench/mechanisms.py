@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import random
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,7 @@ import symgen
 from symgen.generation.results import WrongUseError
 from symgen.laboratory.bench.build import TIMED_STATES, CandidateFootprint, build, find_gcc, nanoseconds, results_of
 from symgen.laboratory.bench.callgrind import count_instructions, find_valgrind
-from symgen.laboratory.bench.candidate import Task
+from symgen.laboratory.bench.candidate import CCandidate, Task
 from symgen.laboratory.bench.peers.mechanism_roster import mechanism_peers
 from symgen.laboratory.bench.peers.pinocchio_program import Timed, pinocchio_time
 from symgen.laboratory.bench.symgen_kernels import generated, symgen_candidates
@@ -89,6 +89,21 @@ def mechanism_benchmark(path: Path, progress: Progress, out: Path | None = None)
     progress("writing peers")
     peers, left_out = mechanism_peers(model, load.states)
     candidates = [*symgen_candidates(model, programs, "float64"), *peers]
+    kernels, exact = measured_kernels(model, task, candidates, load, progress)
+    progress("running Pinocchio")
+    timed = pinocchio_time(model, states)
+    if isinstance(timed, Timed):
+        return MechanismBenchmark(
+            model.name, form, tuple(kernels), left_out, (timed.nanoseconds, _difference(np.array(timed.u), exact)),
+            draft.notes,
+        )
+    return MechanismBenchmark(model.name, form, tuple(kernels), left_out, timed, draft.notes)
+
+
+def measured_kernels(
+    model: Model, task: Task, candidates: Sequence[CCandidate], load: Workload, progress: Progress
+) -> tuple[list[MeasuredKernel], Any]:
+    """What each kernel took, and the results of the peer that takes least, which the others are compared with."""
     with tempfile.TemporaryDirectory(prefix="symgen-bench-") as folder:
         progress(f"compiling {len(candidates)} kernels")
         built = build(Path(folder), model, task, candidates, {"float64": load})
@@ -97,7 +112,9 @@ def mechanism_benchmark(path: Path, progress: Progress, out: Path | None = None)
         times = nanoseconds(built, PASSES)
         entries = [candidate.entry for candidate in candidates]
         counts = count_instructions(built.program, COUNTED_STATES, entries) if find_valgrind() else {}
-        exact = results[min(peers, key=lambda c: counts.get(c.entry, times[c.entry])).entry]
+        # where there are no peers, symgen's other kernel
+        others = [c for c in candidates if c.generator != "symgen"] or candidates[-1:]
+        exact = results[min(others, key=lambda c: counts.get(c.entry, times[c.entry])).entry]
         kernels = [
             MeasuredKernel(
                 generator=c.generator,
@@ -110,14 +127,7 @@ def mechanism_benchmark(path: Path, progress: Progress, out: Path | None = None)
             )
             for c in candidates
         ]
-    progress("running Pinocchio")
-    timed = pinocchio_time(model, states)
-    if isinstance(timed, Timed):
-        return MechanismBenchmark(
-            model.name, form, tuple(kernels), left_out, (timed.nanoseconds, _difference(np.array(timed.u), exact)),
-            draft.notes,
-        )
-    return MechanismBenchmark(model.name, form, tuple(kernels), left_out, timed, draft.notes)
+    return kernels, exact
 
 
 def drawn_states(model: Model, count: int) -> list[list[float]]:

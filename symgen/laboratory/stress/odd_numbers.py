@@ -41,7 +41,7 @@ def odd_numbers(
                 state = rounded_state(given, scalar)
                 for load in kernels.kernel(name, scalar).loads:
                     for odd in ODD[scalar]:
-                        part, place = source(load)
+                        part, place = source(load, len(state.q))
                         part = "parameters" if part == "p" else part
                         values = list(getattr(state, part))
                         values[place] = odd

@@ -8,14 +8,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from symgen.model.quantities import ROWS
+from symgen.model.quantities import DIRECTION, ROWS
 from symgen.verify.reference.allocation import allocated, utilisation
 from symgen.verify.reference.arithmetic.linear import column, identity, right_pseudoinverse
 from symgen.verify.reference.evaluation import Evaluation
 from symgen.verify.reference.given import QUANTITIES_OF_GIVEN
 from symgen.verify.reference.measures import actuation_measure, constraint_measure
 from symgen.verify.reference.parts import placed
-from symgen.verify.reference.slopes import jacobian
+from symgen.verify.reference.slopes import curvature, jacobian
 
 
 def _inverse_dynamics(e: Evaluation) -> Any:
@@ -40,6 +40,15 @@ def _inverse_dynamics_jacobian(e: Evaluation) -> Any:
 def _inverse_dynamics_gradient(e: Evaluation) -> Any:
     """J_u^T w, the weights being the numbers that are given as u."""
     return _inverse_dynamics_jacobian(e).transpose() * column(e.u)
+
+
+def _inverse_dynamics_hessian_product(e: Evaluation) -> Any:
+    """The second derivatives of w^T u times v, the weights being given as u and the direction as (qd, qdd, q)."""
+
+    def weighted(at: Evaluation) -> Any:
+        return column(e.u).transpose() * _inverse_dynamics(at)
+
+    return curvature(e, weighted, {"q": e.qd, "qd": e.qdd, "qdd": e.q})
 
 
 def _inverse_dynamics_parameter_jacobian(e: Evaluation) -> Any:
@@ -180,6 +189,7 @@ QUANTITIES: dict[str, Definition] = {
     "inverse_dynamics": _inverse_dynamics,
     "inverse_dynamics_jacobian": _inverse_dynamics_jacobian,
     "inverse_dynamics_gradient": _inverse_dynamics_gradient,
+    "inverse_dynamics_hessian_product": _inverse_dynamics_hessian_product,
     "inverse_dynamics_parameter_jacobian": _inverse_dynamics_parameter_jacobian,
     "forward_dynamics_jacobian": _forward_dynamics_jacobian,
     "forward_dynamics_gradient": _forward_dynamics_gradient,
@@ -199,6 +209,8 @@ QUANTITIES: dict[str, Definition] = {
 }
 # Of two thirds of the digits that others have.
 DIFFERENCED = frozenset(row.name for row in ROWS.values() if row.is_derivative)
+# What takes differences of differences, at a place ahead and one back.
+CURVED = frozenset(row.name for row in ROWS.values() if DIRECTION in row.arguments)
 # What no finite count of operations gives exactly.
 ITERATED = frozenset({"configuration_from_measured", "configuration_from_task"})
 # The matrices whose rates these take; the others do with what a velocity adds to forces and accelerations.

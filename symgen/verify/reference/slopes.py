@@ -1,12 +1,13 @@
 """Derivatives of the reference by central differences in many digits.
 
 A step of 2^(-b/3) at b binary digits leaves two thirds of them: what is left out and what is rounded are as large.
+Second derivatives take steps of 2^(-b/4) both ways, which leave half.
 They share nothing with the rules by which kernels are differentiated.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Literal, TypeAlias
 
@@ -21,9 +22,12 @@ AT_REST = (
 )  # fmt: skip
 
 
-def slopes(e: Evaluation, value: Callable[[Evaluation], Any], part: Part) -> list[Any]:
-    """The derivatives of a column by each entry of q, qd, qdd, u or the parameters, a column each."""
-    step = arb(2) ** -(ctx.prec // 3)
+def slopes(e: Evaluation, value: Callable[[Evaluation], Any], part: Part, digits: int = 3) -> list[Any]:
+    """The derivatives of a column by each entry of q, qd, qdd, u or the parameters, a column each.
+
+    The step is 2^(-b/digits).
+    """
+    step = arb(2) ** -(ctx.prec // digits)
     value(e)  # what it takes of AT_REST is known from here on
     columns = []
     for k in range(len(getattr(e, part))):
@@ -50,3 +54,19 @@ def jacobian(e: Evaluation, value: Callable[[Evaluation], Any], by: Sequence[Par
     columns = [slope for part in by for slope in slopes(e, value, part)]
     rows = columns[0].nrows()
     return arb_mat(rows, len(columns), [column[i, 0] for i in range(rows) for column in columns])
+
+
+def curvature(e: Evaluation, value: Callable[[Evaluation], Any], direction: Mapping[Part, Sequence[Any]]) -> Any:
+    """The second derivatives of a number (1 x 1) by parts of the state times a direction of these, a column.
+
+    Four values for each entry: on either side of it, a step ahead along the direction and a step back.
+    """
+    step = arb(2) ** -(ctx.prec // 4)
+    ends = []
+    for sign in (1, -1):
+        state: dict[str, Any] = {"derivatives": {}}
+        for part, rates in direction.items():
+            state[part] = [x + sign * step * v for x, v in zip(getattr(e, part), rates, strict=True)]
+        end = replace(e, **state)
+        ends.append([slope[0, 0] for part in direction for slope in slopes(end, value, part, digits=4)])
+    return arb_mat(len(ends[0]), 1, [(ahead - back) / (2 * step) for ahead, back in zip(*ends, strict=True)])

@@ -21,7 +21,7 @@ from symgen.verify.reference.given import (
     measured_determine,
     task_determines,
 )
-from symgen.verify.reference.quantities import DIFFERENCED, ITERATED, RATES
+from symgen.verify.reference.quantities import CURVED, DIFFERENCED, ITERATED, RATES
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.sampling.inertias import Inertias
 from symgen.verify.sampling.plain_values import SAMPLING_BITS, floats, measured, settled, values_at
@@ -60,6 +60,7 @@ def affordable_states(reference: Reference, quantities: Sequence[str], wanted: i
     operations = system.operations(rates) + solved * subsets
     # derivatives by coordinates take the whole at two more places for each
     places = 1 + 2 * system.n if DIFFERENCED.intersection(quantities) else 1
+    places *= 2 if CURVED.intersection(quantities) else 1
     places += USUAL_STEPS if ITERATED.intersection(quantities) else 0
     seconds_per_state = 30 * 1.3e-7 * operations * places
     return max(FEWEST_STATES, min(wanted, int(LONGEST_SECONDS / seconds_per_state)))

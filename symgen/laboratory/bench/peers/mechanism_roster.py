@@ -37,7 +37,8 @@ RECURSIVE = "recursion"
 FROM_ENERGIES = " from energies"
 
 
-def _of_inputs(engine: Engine, s: PeerSystem) -> list[Symbol]:
+def of_inputs(engine: Engine, s: PeerSystem) -> list[Symbol]:
+    """u of a tree whose inputs drive coordinates."""
     return elimination(engine, s, ())
 
 
@@ -45,7 +46,7 @@ def mechanism_peers(model: Model, states: Any) -> tuple[tuple[CCandidate, ...], 
     """Candidates in float64, and (name, reason) of what was left out; `states` (k, 3 n + P)."""
     candidates = _as_written(model)
     left_out: list[tuple[str, str]] = []
-    methods = _methods(model, states, left_out)
+    methods = methods_by_frames(model, states, left_out)
     engines: list[type[Engine]] = [CasadiEngine, CasadiSsaEngine]
     if _depth(model) > DEEPEST_WRITTEN_OUT:
         left_out.append(("SymPy, wrenfold", "written out, the sums of so many links in a row take minutes"))
@@ -61,9 +62,9 @@ def mechanism_peers(model: Model, states: Any) -> tuple[tuple[CCandidate, ...], 
                     candidates.append(_candidate(engine_type(), model, f"{name}{route}", derive, build))
                 except DeadPivotError:
                     left_out.append((f"{engine_type.tool} {name}{route}", "its fixed choice is singular everywhere"))
-    if is_recursive(model) and _selects(model):
+    if is_recursive(model) and selects(model):
         for engine in (CasadiEngine(), SsaEngine()):
-            candidates.append(_candidate(engine, model, RECURSIVE, mechanics_by_recursion, _of_inputs))
+            candidates.append(_candidate(engine, model, RECURSIVE, mechanics_by_recursion, of_inputs))
     if model.n <= MOST_DENSE:
         units, functions = householder_units(model, lagrange_by_frames(model), "c_householder_float64")
         candidates.append(CCandidate("C", "Householder QR", "float64", "c_householder_float64", units, functions))
@@ -90,10 +91,10 @@ def _others(left_out: list[tuple[str, str]]) -> list[type[Engine]]:
     return engines
 
 
-def _methods(model: Model, states: Any, left_out: list[tuple[str, str]]) -> dict[str, Build]:
+def methods_by_frames(model: Model, states: Any, left_out: list[tuple[str, str]]) -> dict[str, Build]:
     """lean up to a size, part, and elimination where M selects coordinates; a serial arm has one method."""
     if not model.r:
-        return {SERIAL: _of_inputs} if _selects(model) else {"lean": lean}
+        return {SERIAL: of_inputs} if selects(model) else {"lean": lean}
     methods: dict[str, Build] = {}
     if model.n <= MOST_LEAN or model.r > model.n // 2:
         methods["lean"] = lean
@@ -111,7 +112,8 @@ def _methods(model: Model, states: Any, left_out: list[tuple[str, str]]) -> dict
     return methods
 
 
-def _selects(model: Model) -> bool:
+def selects(model: Model) -> bool:
+    """Whether every input drives one coordinate alone."""
     engine = CasadiEngine()
     return selected_rows(engine, mechanics_by_frames(engine, model).M) is not None
 
@@ -120,19 +122,23 @@ def _as_written(model: Model) -> list[CCandidate]:
     """(27) with (28): through the matrices G and C where they are short, and with tau along directions."""
     if model.n > LONGEST_WRITTEN:
         return []
+    return [_matrix_candidate(model, s, method, balance) for method, s, balance in writings(model)]
+
+
+def writings(model: Model) -> list[tuple[str, Lagrange, Callable[[Lagrange], Any]]]:
+    """The names of what a user of CasADi writes, what it starts from, and how it makes tau."""
     routes: dict[str, Lagrange] = {"": lagrange_by_frames(model)}
     if model.n <= MOST_LEAN and model.r:
         routes[FROM_ENERGIES] = differentiate(model)
-    candidates = []
+    written: list[tuple[str, Lagrange, Callable[[Lagrange], Any]]] = []
     for route, s in routes.items():
         if model.r:
-            candidates.append(_matrix_candidate(model, s, f"literal{route}", native.direct_balance))
+            written.append((f"literal{route}", s, native.direct_balance))
         if model.n <= MOST_DENSE:
-            candidates.append(_matrix_candidate(model, s, f"native{route}", native.user_matrices))
+            written.append((f"native{route}", s, native.user_matrices))
     if not model.r:
-        s = lagrange_by_frames(model, world_axes=True)
-        candidates.append(_matrix_candidate(model, s, SERIAL_IN_WORLD_AXES, native.direct_balance))
-    return candidates
+        written.append((SERIAL_IN_WORLD_AXES, lagrange_by_frames(model, world_axes=True), native.direct_balance))
+    return written
 
 
 def _matrix_candidate(model: Model, s: Lagrange, method: str, balance: Callable[[Lagrange], Any]) -> CCandidate:

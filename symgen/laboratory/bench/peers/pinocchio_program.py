@@ -26,8 +26,9 @@ from symgen.model.model import Model
 
 # What Pinocchio's own build tells its users to define.
 DEFINITIONS = ("BOOST_MPL_LIMIT_LIST_SIZE=30", "BOOST_MPL_CFG_NO_PREPROCESSED_HEADERS", "NDEBUG",
-               "PINOCCHIO_ENABLE_TEMPLATE_INSTANTIATION")  # fmt: skip
+               "PINOCCHIO_ENABLE_TEMPLATE_INSTANTIATION", "BOOST_FUSION_INVOKE_MAX_ARITY=10")  # fmt: skip
 PROGRAM = "bench/pinocchio.cpp.jinja"
+DERIVATIVES_PROGRAM = "bench/pinocchio_derivatives.cpp.jinja"
 SLOWEST_COMPILER = 600.0
 
 
@@ -49,7 +50,7 @@ def pinocchio_time(model: Model, states: Sequence[Sequence[float]]) -> Timed | s
         text = tree_text(model, states)
     except NoTreeError as reason:
         return str(reason)
-    program = _program()
+    program = _program(PROGRAM)
     if isinstance(program, str):
         return program
     with tempfile.TemporaryDirectory(prefix="symgen-bench-") as folder:
@@ -68,8 +69,37 @@ def tree_text(model: Model, states: Sequence[Sequence[float]]) -> str:
     return _NumberedTree(model).text(states)
 
 
-@lru_cache(maxsize=1)
-def _program() -> Path | str:
+def pinocchio_jacobian(model: Model) -> Any:
+    """A CasADi function of (q, qd, qdd) whose value (m x 3 n) are the derivatives of RNEA; or why there is none.
+
+    It is what Pinocchio's `computeRNEADerivatives` does in CasADi's scalars, the parameters being numbers in it.
+    """
+    import casadi
+
+    if model.r:
+        return "it has derivatives of trees alone"
+    try:
+        tree = _NumberedTree(model)
+        text = tree.text(())
+    except NoTreeError as reason:
+        return str(reason)
+    program = _program(DERIVATIVES_PROGRAM)
+    if isinstance(program, str):
+        return program
+    with tempfile.TemporaryDirectory(prefix="symgen-bench-") as folder:
+        given, left = Path(folder) / "mechanism.txt", Path(folder) / "derivatives.casadi"
+        given.write_text(text, encoding="utf-8")
+        subprocess.run([str(program), str(given), str(left)], capture_output=True, text=True, check=True)
+        numbered = casadi.Function.load(str(left))
+    # joints are numbered in an order of their own
+    arrays = [casadi.SX.sym(name, model.n) for name in ("q", "qd", "qdd")]
+    slopes = numbered(*(array[tree.moved] for array in arrays))
+    columns = [k * model.n + tree.moved.index(i) for k in range(3) for i in range(model.n)]
+    return casadi.Function("derivatives", arrays, [slopes[:, columns]])
+
+
+@lru_cache(maxsize=2)
+def _program(template: str) -> Path | str:
     """The compiled program, once a run; or what it lacks."""
     module = find_spec("pinocchio")
     if module is None or module.origin is None:
@@ -80,16 +110,29 @@ def _program() -> Path | str:
     if prefix is None:
         return "its headers are not installed"
     folder = Path(_folder().name)
-    source, program = folder / "mechanism.cpp", folder / "mechanism"
-    source.write_text(render(PROGRAM, None), encoding="utf-8")
+    program = folder / Path(template).name.split(".")[0]
+    source = program.with_suffix(".cpp")
+    source.write_text(render(template, None), encoding="utf-8")
     command = ["g++", "-O2", "-std=c++17", *(f"-D{name}" for name in DEFINITIONS), f"-I{prefix / 'include'}"]
     command += [f"-I{prefix / 'include' / 'eigen3'}", "-I/usr/include/eigen3", "-o", str(program), str(source)]
     command += [f"-L{prefix / 'lib'}", "-lpinocchio_default", f"-Wl,-rpath,{prefix / 'lib'}"]
+    if template == DERIVATIVES_PROGRAM:
+        # it runs once for a function: what a compiler makes faster there takes it minutes
+        command += ["-O0", *_of_casadi()]
     completed = subprocess.run(command, capture_output=True, text=True, check=False, timeout=SLOWEST_COMPILER)
     if completed.returncode:
         line = next((line for line in completed.stderr.splitlines() if "error" in line), "unknown")
         return f"its program does not compile: {line.rsplit('error: ', 1)[-1]}"
     return program
+
+
+def _of_casadi() -> list[str]:
+    """Its headers, those of Eigen that it brings, and its library."""
+    import casadi
+
+    place = Path(casadi.__file__).parent
+    include = place / "include"
+    return [f"-I{include}", f"-I{include / 'eigen3'}", f"-L{place}", "-lcasadi", f"-Wl,-rpath,{place}"]
 
 
 @lru_cache(maxsize=1)

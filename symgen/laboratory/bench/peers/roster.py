@@ -44,7 +44,7 @@ def peers(model: Model, task: Task, states: Any) -> Peers:
         if task.quantity == "forward_dynamics" and is_recursive(model):
             candidates += _articulated(model)
         return Peers(tuple(candidates), tuple(left_out))
-    methods, left_out = _methods(model, s, states)
+    methods, left_out = expert_methods(model, s, states)
     # What inlining CasADi's exported helpers is worth, which a shared library does not allow.
     inlined = replace(_native(model, s, task, "native_fpie"), form="native -fPIE", flags=("-fPIE",))
     candidates = [_native(model, s, task), inlined, _native_in_lines(model, s, task)]
@@ -161,7 +161,8 @@ def in_single(candidate: CCandidate) -> CCandidate:
     return replace(candidate, scalar="float32", entry=single(candidate.entry), units=units, functions=functions)
 
 
-def _methods(model: Model, s: Lagrange, states: Any) -> tuple[dict[str, Build], list[tuple[str, str]]]:
+def expert_methods(model: Model, s: Lagrange, states: Any) -> tuple[dict[str, Build], list[tuple[str, str]]]:
+    """The cheap methods of u by name, and (name, reason) of those that do not apply."""
     from symgen.laboratory.bench.peers.formulas.algebra import ldl_solve
     from symgen.laboratory.bench.peers.formulas.expert import free_multipliers, independent_coordinates
     from symgen.laboratory.bench.peers.formulas.methods import elimination, lean, part
