@@ -26,18 +26,22 @@ STATUS_MEANING: dict[Status, str] = {
     Status.BRANCH: "the start is so far away that the result may belong to another assembly mode",
     Status.TASK_RANK: "the task does not determine the rest at this configuration",
     Status.LIMITS: "no inputs within their limits produce this motion",
+    Status.FRICTION_LOCK: "friction returns half or more of the reactions it grows with: the mechanism locks, or nearly",
 }
-# Those of models that name what is measured, of models that have a task, and of limits that are kept or refused.
+# Those of models that name what is measured, of models that have a task, of limits that are kept or refused, and of
+# friction that grows with reactions.
 _OF_MEASURED = frozenset({Status.MEASURED_RANK, Status.NOT_CLOSED, Status.BRANCH})
 _OF_TASK = frozenset({Status.TASK_RANK, Status.NOT_CLOSED, Status.BRANCH})
 _OF_LIMITS = frozenset({Status.LIMITS})
+_OF_FRICTION = frozenset({Status.FRICTION_LOCK})
 
 
 def statuses_of(model: Model) -> tuple[Status, ...]:
     """The statuses that kernels of a model may have."""
-    special = _OF_MEASURED | _OF_TASK | _OF_LIMITS
+    special = _OF_MEASURED | _OF_TASK | _OF_LIMITS | _OF_FRICTION
     met = (_OF_MEASURED if model.measured else frozenset()) | (_OF_TASK if model.task else frozenset())
     met |= _OF_LIMITS if model.keeps_limits else frozenset()
+    met |= _OF_FRICTION if model.rough else frozenset()
     return tuple(status for status in Status if status not in special or status in met)
 
 

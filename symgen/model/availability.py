@@ -5,6 +5,7 @@ from __future__ import annotations
 from symgen.model.model import Model
 from symgen.model.quantities import (
     ACTUATORS,
+    FRICTION,
     LIMITED,
     MEASURED_PLACES,
     OF_INPUTS,
@@ -14,6 +15,9 @@ from symgen.model.quantities import (
     VARIATIONS,
     QuantityRow,
 )
+
+# What would hold friction of reactions, and is made without it only.
+WITHOUT_FRICTION = frozenset({"forward_dynamics", "multipliers", "actuator_bias"})
 
 
 def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actuation: int | None = None) -> str | None:
@@ -50,6 +54,10 @@ def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actua
             return "rows that hold rates leave places open: all of these would have to be measured"
     if quantity.needs == ACTUATORS and delta is not None and not model.m == delta == actuation:
         return "it needs as many independent inputs as degrees of freedom"
+    if quantity.needs == FRICTION and not model.rough:
+        return "the model has no friction that grows with reactions"
+    if model.rough and (quantity.name in WITHOUT_FRICTION or quantity.is_derivative and quantity.needs != VARIATIONS):
+        return "it is not made with friction that grows with reactions; a model without `radius` or loads has it"
     if quantity.needs == LIMITED:
         if model.allocation is None or len(model.allocation.limits) < model.m:
             return "it needs `limits` of every input, under `allocation`"

@@ -18,6 +18,8 @@ from symgen.model.model import Force
 from symgen.records import dataclass
 
 HALF = Number(Fraction(1, 2))
+# What friction has that grows with a reaction, and no other.
+OF_REACTIONS = ("radius", "reaction", "rate")
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +71,13 @@ def read_friction(scope: Scope, tree: MappingNode) -> tuple[tuple[Force, ...], t
     forces: list[Force] = []
     fits: list[Fit] = []
     for key, node in entries(tree.get("friction")):
+        if is_rough(scope, tree, key, node):
+            continue  # which is read with the joints and loops, in `rough_places`
         if not is_coordinate(scope, key, "`friction`"):
+            continue
+        if (stray := next((x for part in OF_REACTIONS if (x := member(node, part)) is not None), None)) is not None:
+            remedy = "name the joint or the loop whose pin it is, or rows under `reaction`, in an entry of its own"
+            scope.wrong(f"friction in the coordinate `{key.value}` has no reaction to grow with", remedy, stray.span)
             continue
         rate: Expression = Name(f"{key.value}_dot")
         viscous, coulomb, width = (
@@ -87,6 +95,16 @@ def read_friction(scope: Scope, tree: MappingNode) -> tuple[tuple[Force, ...], t
             magnitude = plus(magnitude, times(coulomb, Call("tanh", (divided(rate, width),))))
         forces.append(Force(f"friction of {key.value}", negated(magnitude), rate, key.span))
     return tuple(forces), tuple(fits)
+
+
+def is_rough(scope: Scope, tree: MappingNode, key: ScalarNode, node: Node) -> bool:
+    """Whether an entry of `friction` is about a reaction: that of a joint, of a loop, or of rows that it names."""
+    if scope.kinds.get(key.value) == "coordinate":
+        return False
+    if member(node, "reaction") is not None:
+        return True
+    names = {other.value for block in ("joints", "loops") for other, _ in entries(tree.get(block))}
+    return key.value in names and not (member(node, "viscous") is not None and member(node, "coulomb") is None)
 
 
 def read_forces(scope: Scope, tree: MappingNode) -> tuple[Force, ...]:
