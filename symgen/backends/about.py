@@ -63,6 +63,11 @@ def symbol_lines(model: Model) -> Iterator[str]:
     if model.allocation is not None:
         yield "How inverse_dynamics shares the work among the inputs:"
         yield from _allocation_lines(model.allocation, model.keeps_limits)
+    if model.rough and model.friction_steps is not None:
+        yield "Friction that grows with reactions, in inverse_dynamics and not in applied_force:"
+        yield f"  of {', '.join(place.name for place in model.rough)}"
+        how = "explicit" if model.friction_steps.explicit else f"worked out in {model.friction_steps.steps} steps"
+        yield f"  {how}; status FRICTION_LOCK where it returns half of the reactions that it grows with"
 
 
 def _allocation_lines(allocation: Allocation, keeps_limits: bool) -> Iterator[str]:

@@ -15,7 +15,7 @@ b = R_ii d_i,
 n_i = (a.b + sqrt((a.b)^2 + (1 - b.b) a.a)) / (1 - b.b),
 
 which for one component is lambda = a / (1 - b sgn a).  What is left is iterated place by place, a stated number of
-times (`friction_steps`).  Where kappa reaches 1/2 there is a status in place of a result.
+times (`model/configurations/friction_steps.py`).  Where kappa reaches 1/2 there is a status in place of a result.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ from symgen.ir.kernel import Status
 from symgen.linear_algebra.guards import Guard
 from symgen.linear_algebra.null_spaces import NullSpace
 from symgen.mechanics.system import System
-from symgen.methods.friction_steps import friction_steps
 from symgen.methods.method import divisors
+from symgen.model.configurations.friction_steps import LOCKING_SHARE, MOST_FRICTION_STEPS
 from symgen.model.kinematics.released import released_model
 from symgen.model.model import RoughPlace
 from symgen.symbolic.hidden_zeros import without_hidden_zeros
@@ -38,9 +38,6 @@ from symgen.symbolic.matrix import Matrix, Vector, dot, matvec, subtract_vectors
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.translate import translate
 from symgen.symbolic.traverse import substitute
-
-# The share of a change of reactions that friction may return: from here on a mechanism is taken to lock.
-LOCKED = Fraction(1, 2)
 
 
 class ReactionFriction:
@@ -133,13 +130,14 @@ class ReactionFriction:
     @cached_property
     def steps(self) -> int:
         """How often every reaction is worked out."""
-        return friction_steps(self.mechanics, self.gains).steps
+        known = self.mechanics.model.friction_steps
+        return MOST_FRICTION_STEPS if known is None else known.steps
 
     @property
     def guards(self) -> tuple[Guard, ...]:
         """That kappa is less than one half."""
         graph = self.graph
-        excess = graph.function("max", (self.kappa - graph.const(LOCKED), graph.zero))
+        excess = graph.function("max", (self.kappa - graph.const(LOCKING_SHARE), graph.zero))
         return (Guard(Status.FRICTION_LOCK, excess, 1, scale=graph.one, positive=True, small=True),)
 
     @cached_property
@@ -164,7 +162,7 @@ class ReactionFriction:
             return self._length(a)
         across, square = dot(graph, a, b), dot(graph, b, b)
         # where this is less than one half there is a status; above 0 it keeps what is worked out there a number
-        left = graph.function("max", (one - square, graph.const(LOCKED)))
+        left = graph.function("max", (one - square, graph.const(LOCKING_SHARE)))
         if len(a) == 1:
             return (graph.function("abs", (a[0],)) + across) / left
         return (graph.function("sqrt", (across * across + left * dot(graph, a, a),)) + across) / left

@@ -12,6 +12,7 @@ from typing import Literal, TypeAlias
 
 from symgen.diagnostics import Notice, Span
 from symgen.model.configurations.assembly import Assembly
+from symgen.model.configurations.friction_steps import FrictionSteps
 from symgen.model.expressions.expression import Expression
 from symgen.model.mechanism import NO_MECHANISM, Mechanism
 from symgen.model.quantities import FurtherName
@@ -270,7 +271,7 @@ class Model:
     its configurations.  `row_units` are set where rows stand here times 2 to these powers (`quantities/row_units.py`).
     What is `measured` leaves places open where rows hold rates alone (`measures_places`); so may a `task`.
     `taken` are parameters of the file that are numbers here (`as_numbers`).
-    `released` are the joints of `rough` places whose reactions are no multipliers.
+    `released` are the joints of `rough` places whose reactions are no multipliers, `friction_steps` how their friction is worked out.
     """
 
     name: str
@@ -298,6 +299,7 @@ class Model:
     forces: tuple[Force, ...] = ()
     rough: tuple[RoughPlace, ...] = ()
     released: tuple[ReleasedJoint, ...] = ()
+    friction_steps: FrictionSteps | None = None
     allocation: Allocation | None = None
     trig_range: Literal["normal", "wide"] = "normal"
     derivatives: bool = False

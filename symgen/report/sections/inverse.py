@@ -31,6 +31,7 @@ from symgen.report.prose import (
 from symgen.report.prose import C as CORIOLIS
 from symgen.report.prose import Q as POTENTIAL
 from symgen.report.sections.allocation import allocated_inputs
+from symgen.report.sections.rough import friction_of_reactions
 
 
 def inverse_dynamics(context: Context) -> Section:
@@ -57,6 +58,7 @@ def inverse_dynamics(context: Context) -> Section:
         )
     if allocation is not None:
         blocks += allocated_inputs(context.model, allocation, structure.degree_of_actuation == m)
+    blocks += friction_of_reactions(context.model)
     blocks += _inputs_written_out(context)
     if full and m == structure.differential_freedom:
         wt = transposed(W)

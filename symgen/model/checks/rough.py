@@ -1,0 +1,55 @@
+"""Whether friction that grows with reactions is determined, and can be worked out, for a mechanism as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from symgen.diagnostics import Mistake, Notice
+from symgen.model.configurations.assembly import Assembly
+from symgen.model.configurations.friction_steps import LOCKING_SHARE, FrictionSteps
+from symgen.model.expressions.names import counted
+from symgen.model.model import Model
+
+
+def check_rough(model: Model, assembly: Assembly) -> Iterator[Mistake]:
+    """Reactions are determined by independent constraints, and by inputs that produce every motion by themselves."""
+    ranks, span = assembly.ranks, model.rough[0].span
+    if ranks.constraints < model.r:
+        yield Mistake(
+            f"friction grows with reactions that {counted(model.r, 'constraint')} of rank {ranks.constraints} leave open",
+            "remove constraints that hold what others hold already, or the friction of reactions",
+            span,
+        )
+    if ranks.actuation < model.n - ranks.constraints:
+        yield Mistake(
+            "friction grows with reactions of a motion that the inputs do not produce: they reach "
+            f"{ranks.actuation} of δ = {model.n - ranks.constraints} directions",
+            "add inputs for the other directions, or leave out the friction of reactions",
+            span,
+        )
+    if model.allocation is not None:
+        yield Mistake(
+            "friction of reactions beside an `allocation` is not made: the inputs change what they have to overcome",
+            "leave one of them out; without `allocation` the inputs are the smallest",
+            model.allocation.span,
+        )
+
+
+def check_locking(model: Model, steps: FrictionSteps) -> Iterator[Mistake | Notice]:
+    """How friction is worked out, and whether it locks."""
+    span = model.rough[0].span
+    if not steps.points or steps.locking == steps.points:
+        yield Mistake(
+            f"friction locks everywhere: it returns {steps.kappa:.2g} of the reactions it grows with, and {LOCKING_SHARE} "
+            "is too much",
+            "give smaller coefficients or radii; a mechanism that locks has no inverse dynamics",
+            span,
+        )
+        return
+    how = "is explicit" if steps.explicit else f"is worked out in {steps.steps} steps"
+    locks = f"; the status FRICTION_LOCK is met at {steps.locking} of them" if steps.locking else ""
+    yield Notice(
+        f"friction of reactions {how}: it returns {steps.kappa:.2g} of them at most, at {steps.points} configurations over "
+        f"the ranges{locks}",
+        span,
+    )
