@@ -17,7 +17,9 @@ from symgen.model.quantities import (
 )
 
 # What would hold friction of reactions, and is made without it only.
-WITHOUT_FRICTION = frozenset({"forward_dynamics", "multipliers", "actuator_bias"})
+WITHOUT_FRICTION = frozenset({"actuator_bias"})
+# What is made with it where it does not lock everywhere.
+MOTIONS = frozenset({"forward_dynamics", "multipliers"})
 
 
 def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actuation: int | None = None) -> str | None:
@@ -56,8 +58,13 @@ def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actua
         return "it needs as many independent inputs as degrees of freedom"
     if quantity.needs == FRICTION and not model.rough:
         return "the model has no friction that grows with reactions"
-    if model.rough and (quantity.name in WITHOUT_FRICTION or quantity.is_derivative and quantity.needs != VARIATIONS):
-        return "it is not made with friction that grows with reactions; a model without `radius` or loads has it"
+    if model.rough and (quantity.name in WITHOUT_FRICTION or (quantity.is_derivative and quantity.needs != VARIATIONS)):
+        return "it is not made with friction that grows with reactions: leave that out of a model of its own"
+    if model.rough and quantity.name in MOTIONS and model.motion_steps is not None and model.motion_steps.locks:
+        return (
+            f"friction locks: it returns {model.motion_steps.kappa:.2g} of the reactions that it grows with where inputs "
+            "are given, and half is too much; smaller coefficients or radii, or heavier bodies, let it move"
+        )
     if quantity.needs == LIMITED:
         if model.allocation is None or len(model.allocation.limits) < model.m:
             return "it needs `limits` of every input, under `allocation`"

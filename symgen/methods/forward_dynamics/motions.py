@@ -19,6 +19,7 @@ from symgen.mechanics.system import System
 from symgen.methods.admission import DECIMALS, ByTheorem, Singular, Validity
 from symgen.methods.derivation import Derivation
 from symgen.methods.forward_dynamics.motion import Motion
+from symgen.methods.forward_dynamics.rough_motion import rough_motion
 from symgen.methods.graphs import forget_others
 from symgen.methods.method import MOTIONS, Candidate
 from symgen.methods.quantity import resting_on
@@ -105,6 +106,8 @@ class WithoutNullSpace(ByTheorem):
 
 def motions_along(derivation: Derivation) -> dict[str, Motion]:
     """Those that may be chosen by themselves along the null space of a derivation, on its graph."""
+    if derivation.mechanics.model.rough:
+        return {"nullspace": rough_motion(derivation)}
     offered: dict[str, AlongNullSpace] = {}
     for row in methods(MOTIONS[0], Use.CHOSEN):
         one = row.load()
@@ -133,6 +136,8 @@ def _shared(
     workspace: Workspace, key: object, solved: Callable[[Workspace], tuple[System, Motion] | str], quantity: str
 ) -> Candidate | str:
     """One of both quantities; what was solved stays in the workspace for the other one."""
+    if workspace.model.rough:
+        return "friction grows with reactions, which is worked out along null spaces alone"
     if key not in workspace.motions:
         solution = solved(workspace)
         workspace.motions[key] = solution if isinstance(solution, str) else _kept(workspace.generic, *solution)

@@ -95,9 +95,9 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
             left = left_by_task(mechanics, assembly, model.task)
             model = replace(model, assembly=assembly, measures_places=places, task_leaves=left)
             if model.rough and len(scope.mistakes) == before:
-                steps = friction_steps(friction_shares(model, assembly))
+                steps, of_motion = (friction_steps(friction_shares(model, assembly, x)) for x in (False, True))
                 _add(scope, check_locking(model, steps))
-                return replace(model, friction_steps=steps)
+                return replace(model, friction_steps=steps, motion_steps=of_motion)
     return model
 
 

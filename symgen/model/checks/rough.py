@@ -38,7 +38,7 @@ def check_rough(model: Model, assembly: Assembly) -> Iterator[Mistake]:
 def check_locking(model: Model, steps: FrictionSteps) -> Iterator[Mistake | Notice]:
     """How friction is worked out, and whether it locks."""
     span = model.rough[0].span
-    if not steps.points or steps.locking == steps.points:
+    if steps.locks:
         yield Mistake(
             f"friction locks everywhere: it returns {steps.kappa:.2g} of the reactions it grows with, and {LOCKING_SHARE} "
             "is too much",

@@ -24,8 +24,11 @@ SHARE_POINTS, SHARE_SEED, SHARE_STARTS = 200, 19040401, 600
 NO_PIVOT = 1e-10
 
 
-def friction_shares(model: Model, assembly: Assembly) -> list[list[list[float]]]:
-    """K at each configuration, by the place whose reaction changes, then by the one that rubs."""
+def friction_shares(model: Model, assembly: Assembly, of_motion: bool) -> list[list[list[float]]]:
+    """K at each configuration, by the place whose reaction changes, then by the one that rubs.
+
+    For a motion the smallest inputs supply friction, `of_motion` for inputs the accelerations do.
+    """
     released = released_model(model)
     mechanics = NumericSystem(
         released.coordinates,
@@ -38,7 +41,7 @@ def friction_shares(model: Model, assembly: Assembly) -> list[list[list[float]]]
     samples = []
     for q, values in _points(model, assembly):
         try:
-            shares = _shares(model, mechanics.having(values), [*q, *[0.0] * (released.n - model.n)])
+            shares = _shares(model, mechanics.having(values), [*q, *[0.0] * (released.n - model.n)], of_motion)
         except (ArithmeticError, ValueError):
             continue
         if shares is not None and all(math.isfinite(x) for row in shares for x in row):
@@ -46,16 +49,22 @@ def friction_shares(model: Model, assembly: Assembly) -> list[list[list[float]]]
     return samples
 
 
-def _shares(model: Model, mechanics: NumericSystem, q: Sequence[float]) -> list[list[float]] | None:
+def _shares(
+    model: Model, mechanics: NumericSystem, q: Sequence[float], of_motion: bool
+) -> list[list[float]] | None:
     """K at one configuration; None where inputs or constraints lose rank."""
     rates = [Input(place.name, None, "", (), velocity=place.velocity) for place in model.rough]
-    rows, controls = mechanics.rows(q), mechanics.columns(q, model.inputs)
-    units = mechanics.columns(q, rates)
+    rows, units = mechanics.rows(q), mechanics.columns(q, rates)
     sizes = [evaluate(p.coefficient, mechanics.defaults) * evaluate(p.radius, mechanics.defaults) for p in model.rough]
     n, r = model.n, model.r
-    # (M M^T) y - B^T lambda = s, B y = 0: u = M^T y is the least that supplies s beside constraints
-    matrix = [[sum(c.get(i, 0.0) * c.get(j, 0.0) for c in controls) for j in range(n)] for i in range(n)]
-    matrix = [[*own, *(-row.get(i, 0.0) for row in rows)] for i, own in enumerate(matrix)]
+    # what supplies friction: (M M^T) y - B^T lambda = s with B y = 0, for u = M^T y, the least; or -G q_ddot in its place
+    if of_motion:
+        supply = [[-x for x in row] for row in mechanics.mass_matrix(q)]
+    else:
+        controls = mechanics.columns(q, model.inputs)
+        size = len(q)
+        supply = [[sum(c.get(i, 0.0) * c.get(j, 0.0) for c in controls) for j in range(size)] for i in range(size)]
+    matrix = [[*supply[i][:n], *(-row.get(i, 0.0) for row in rows)] for i in range(n)]
     matrix += [[*(row.get(j, 0.0) for j in range(n)), *[0.0] * r] for row in rows]
     columns = _solved(matrix, [[*(unit.get(i, 0.0) for i in range(n)), *[0.0] * r] for unit in units])
     if columns is None:
@@ -64,27 +73,20 @@ def _shares(model: Model, mechanics: NumericSystem, q: Sequence[float]) -> list[
     number = {row.name: k for k, row in enumerate(model.constraints)}
     shares = [[0.0] * len(units) for _ in units]
     for j, (unit, solution) in enumerate(zip(units, columns, strict=True)):
-        inputs = [sum(value * solution[i] for i, value in column.items() if i < n) for column in controls]
         for i, place in enumerate(model.rough):
             reaction = [solution[n + number[name]] for name in place.rows]
-            reaction += [_held(names[name], unit, controls, inputs, rows, solution[n:]) for name in place.released]
+            reaction += [_held(names[name], unit, supply, rows, solution, n) for name in place.released]
             shares[i][j] = sizes[j] * math.hypot(*reaction)
     return shares
 
 
 def _held(
-    place: int,
-    unit: Row,
-    controls: Sequence[Row],
-    inputs: Sequence[float],
-    rows: Sequence[Row],
-    multipliers: Sequence[float],
+    place: int, unit: Row, supply: Sequence[Sequence[float]], rows: Sequence[Row], solution: Sequence[float], n: int
 ) -> float:
     """What keeps a joint shut along a coordinate of its own."""
-    supplied = sum(column.get(place, 0.0) * u for column, u in zip(controls, inputs, strict=True))
-    return unit.get(place, 0.0) - supplied + sum(
-        row.get(place, 0.0) * x for row, x in zip(rows, multipliers, strict=True)
-    )
+    supplied = sum(x * y for x, y in zip(supply[place][:n], solution[:n], strict=True))
+    pressed = sum(row.get(place, 0.0) * x for row, x in zip(rows, solution[n:], strict=True))
+    return unit.get(place, 0.0) - supplied + pressed
 
 
 def _solved(matrix: list[list[float]], right: Sequence[list[float]]) -> list[list[float]] | None:

@@ -36,6 +36,11 @@ class FrictionSteps:
     locking: int
 
     @property
+    def locks(self) -> bool:
+        """Whether it is so at all of them, or none was found."""
+        return self.locking == self.points
+
+    @property
     def explicit(self) -> bool:
         """Whether no place changes the load of another one."""
         return self.steps == 1

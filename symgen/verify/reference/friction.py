@@ -61,11 +61,11 @@ def _element(place: RoughPlace) -> Force:
 _KNOWN: WeakKeyDictionary[ReferenceSystem, RoughSystem] = WeakKeyDictionary()
 
 
-def friction_of(e: Evaluation) -> ReferenceFriction:
-    """The friction of a state, with the systems behind it made once."""
+def friction_of(e: Evaluation, of_motion: bool = False) -> ReferenceFriction:
+    """The friction of a state, of its accelerations or of its inputs, with the systems behind it made once."""
     if e.system not in _KNOWN:
         _KNOWN[e.system] = RoughSystem(e.system.model)
-    return ReferenceFriction(e, _KNOWN[e.system])
+    return ReferenceFriction(e, _KNOWN[e.system], of_motion)
 
 
 @dataclass
@@ -74,6 +74,7 @@ class ReferenceFriction:
 
     e: Evaluation
     rough: RoughSystem
+    of_motion: bool = False  # for inputs that are given: accelerations supply friction
 
     def _of(self, system: ReferenceSystem, take: Callable[[ReferenceSystem, Sequence[Any]], Any]) -> Any:
         """What a system with joints let go says where they are shut, with the literals of this state."""
@@ -104,12 +105,24 @@ class ReferenceFriction:
         return [self._of(system, applied) for system in self.rough.sliding]
 
     def _reactions(self, force: Any) -> list[list[Any]]:
-        """What each place carries where a force, in all coordinates, is met by inputs and constraints."""
-        e, n = self.e, self.e.system.n
+        """What each place carries where a force, in all coordinates, is met by constraints and inputs.
+
+        With accelerations in the place of inputs, for a force that these have to supply.
+        """
+        e, n, shut = self.e, self.e.system.n, self._shut
         own = column(force.entries()[:n])
-        inputs = e.control_inverse * (e.projector * own)
-        multipliers = e.inverse.transpose() * (e.at.control * inputs - own)
-        held = force - self._shut.at.control * inputs + self._shut.at.constraints.transpose() * multipliers
+        if self.of_motion:
+            accelerations = -(e.weighted * own)
+            multipliers = -(e.inverse.transpose() * (own + e.at.mass * accelerations))
+            still = column([*accelerations.entries(), *[arb(0)] * (self.rough.released.n - n)])
+            held = force + shut.at.mass_times(still) + shut.at.constraints.transpose() * multipliers
+        else:
+            inputs = e.control_inverse * (e.projector * own)
+            multipliers = e.inverse.transpose() * (e.at.control * inputs - own)
+            held = force - shut.at.control * inputs + shut.at.constraints.transpose() * multipliers
+        return self._carried(multipliers, held)
+
+    def _carried(self, multipliers: Any, held: Any) -> list[list[Any]]:
         rows = {row.name: k for k, row in enumerate(self.rough.model.constraints)}
         return [
             [
@@ -118,6 +131,19 @@ class ReferenceFriction:
             ]
             for place in self.rough.model.rough
         ]
+
+    def _smooth(self) -> list[list[Any]]:
+        """What each place carries without friction."""
+        if not self.of_motion:
+            return self._reactions(self._shut.load)
+        e, shut = self.e, self._shut
+        multipliers = e.inverse.transpose() * (e.force - e.at.mass * e.accelerations)
+        moving = column([*e.accelerations.entries(), *[arb(0)] * (self.rough.released.n - e.system.n)])
+        load = shut.at.mass_times(moving) + shut.bias
+        return self._carried(
+            multipliers,
+            load - shut.at.control * column(e.u) + shut.at.constraints.transpose() * multipliers,
+        )
 
     @cached_property
     def answers(self) -> list[list[list[Any]]]:
@@ -139,7 +165,7 @@ class ReferenceFriction:
         """n_i, each a ball that holds the fixed point.  Raises LockedError."""
         if not self.kappa < ball(LOCKED_SHARE):
             raise LockedError
-        free, count = self._reactions(self._shut.load), len(self.answers)
+        free, count = self._smooth(), len(self.answers)
 
         def carried(loads: Sequence[Any]) -> list[list[Any]]:
             return [

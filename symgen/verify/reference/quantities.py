@@ -135,8 +135,16 @@ def _actuator_bias(e: Evaluation) -> Any:
     return e.quasi.transpose() * (inner + e.at.potential_gradient - e.applied(velocity))
 
 
+def _accelerations(e: Evaluation) -> Any:
+    """q_ddot, with the friction of reactions."""
+    return e.accelerations - e.weighted * friction_of(e, True).force if e.system.model.rough else e.accelerations
+
+
 def _multipliers(e: Evaluation) -> Any:
-    return e.inverse.transpose() * (e.force - e.at.mass * e.accelerations)
+    if not e.system.model.rough:
+        return e.inverse.transpose() * (e.force - e.at.mass * e.accelerations)
+    force = friction_of(e, True).force
+    return e.inverse.transpose() * (e.force - force - e.at.mass * (e.accelerations - e.weighted * force))
 
 
 def _multipliers_jacobian(e: Evaluation) -> Any:
@@ -198,7 +206,7 @@ QUANTITIES: dict[str, Definition] = {
     "actuator_velocity": lambda e: e.at.control.transpose() * e.rate,
     "actuator_mass_matrix": lambda e: e.quasi.transpose() * e.at.mass * e.quasi,
     "actuator_bias": _actuator_bias,
-    "forward_dynamics": lambda e: e.accelerations,
+    "forward_dynamics": _accelerations,
     "multipliers": _multipliers,
     "energy": _energy,
     "singularity": _singularity,
