@@ -19,7 +19,7 @@ from symgen.mechanics.system import System
 from symgen.methods.admission import DECIMALS, ByTheorem, Singular, Validity
 from symgen.methods.derivation import Derivation
 from symgen.methods.forward_dynamics.motion import Motion
-from symgen.methods.forward_dynamics.rough_motion import rough_motion
+from symgen.methods.forward_dynamics.rough_motion import rough_motions
 from symgen.methods.graphs import forget_others
 from symgen.methods.method import MOTIONS, Candidate
 from symgen.methods.quantity import resting_on
@@ -107,7 +107,7 @@ class WithoutNullSpace(ByTheorem):
 def motions_along(derivation: Derivation) -> dict[str, Motion]:
     """Those that may be chosen by themselves along the null space of a derivation, on its graph."""
     if derivation.mechanics.model.rough:
-        return {"nullspace": rough_motion(derivation)}
+        return rough_motions(derivation)
     offered: dict[str, AlongNullSpace] = {}
     for row in methods(MOTIONS[0], Use.CHOSEN):
         one = row.load()

@@ -7,45 +7,91 @@ reactions for a unit of friction: the masses take part in them.  Where these ret
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import TypeAlias
+
+from symgen.linear_algebra.constrained_inverse import ConstrainedInertia
+from symgen.linear_algebra.guards import Guard
+from symgen.linear_algebra.null_spaces import MinorSpace, NullSpace
 from symgen.linear_algebra.refinement import of_motion, refined
 from symgen.methods.derivation import Derivation
+from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
 from symgen.methods.forward_dynamics.motion import Motion, Problem
+from symgen.methods.forward_dynamics.schur import SchurQR
 from symgen.methods.friction_loads import FrictionLoads
 from symgen.methods.rough_columns import RoughColumns
 from symgen.symbolic.matrix import Vector, matvec, subtract_vectors
 from symgen.symbolic.traverse import substitute
+from symgen.validity.definiteness import positive_definite
+
+Solver: TypeAlias = Callable[[Vector, Vector], tuple[Vector, Vector]]
+"""q_ddot and lambda for f and a."""
 
 
-def rough_motion(derivation: Derivation) -> Motion:
-    """The motion under the inputs, friction included, along a null space."""
-    mechanics, graph, space, inertia = derivation.mechanics, derivation.graph, derivation.space, derivation.inertia
-    problem, rough = Problem(mechanics, space.guards), RoughColumns(mechanics)
+def rough_motions(derivation: Derivation) -> dict[str, Motion]:
+    """The motion under the inputs, friction included, by the methods that the system has along a null space."""
+    mechanics, generic, space = derivation.mechanics, derivation.generic, derivation.space
+    problem = Problem(mechanics, space.guards)
+    if 1 <= generic.delta <= LARGEST_DELTA and isinstance(space, MinorSpace):
+        minors = minor_motion(problem)
+        return {"minor": _with_friction(problem, _by_minors(problem, minors), minors.guards)}
+    motions = {}
+    if positive_definite(mechanics):
+        schur = SchurQR(problem, generic.rank)
+
+        def by_elimination(f: Vector, a: Vector) -> tuple[Vector, Vector]:
+            made = schur.motion(f, a, False)
+            return made.accelerations, made.multipliers
+
+        guards = schur.motion(problem.force, problem.bias, False).guards
+        motions["schur_qr"] = _with_friction(problem, by_elimination, guards)
+    if mechanics.r:
+        inertia = derivation.inertia
+        guards = (*space.guards, *(guard for guard in inertia.guards if guard not in space.guards))
+        motions["nullspace"] = _with_friction(problem, _by_basis(problem, space, inertia), guards)
+    return motions
+
+
+def _by_minors(problem: Problem, minors: MinorMotion) -> Solver:
+    def solved(f: Vector, a: Vector) -> tuple[Vector, Vector]:
+        if f is problem.force:
+            return minors.motion.accelerations, minors.motion.multipliers
+        return minors.solve(f), minors.press(f)
+
+    return solved
+
+
+def _by_basis(problem: Problem, space: NullSpace, inertia: ConstrainedInertia) -> Solver:
+    graph, mass_matrix = problem.graph, problem.mass_matrix
 
     def solve(f: Vector, c: Vector) -> tuple[Vector, Vector]:
         lifted = space.lift(c)
-        along = inertia.solve(subtract_vectors(f, matvec(graph, mechanics.mass_matrix, lifted)))
+        along = inertia.solve(subtract_vectors(f, matvec(graph, mass_matrix, lifted)))
         q_ddot = tuple(x + y for x, y in zip(along, lifted, strict=True))
-        rest = subtract_vectors(f, matvec(graph, mechanics.mass_matrix, q_ddot))
-        return q_ddot, space.lift_transposed(rest) if mechanics.r else ()
+        return q_ddot, space.lift_transposed(subtract_vectors(f, matvec(graph, mass_matrix, q_ddot)))
 
-    def solved(f: Vector, c: Vector) -> tuple[Vector, Vector]:
-        left_over = of_motion(graph, mechanics.mass_matrix, problem.rows, f, c)
-        return refined(graph, solve(f, c), left_over, solve)
+    def solved(f: Vector, a: Vector) -> tuple[Vector, Vector]:
+        asked = tuple(-x for x in a)
+        return refined(graph, solve(f, asked), of_motion(graph, mass_matrix, problem.rows, f, asked), solve)
 
-    still, unmoved = (graph.zero,) * mechanics.r, (graph.zero,) * mechanics.m
-    smooth, multipliers = solved(problem.force, tuple(-a for a in problem.bias))
-    beside = substitute(graph, rough.balance, dict(zip(mechanics.qdd, smooth, strict=True)))
-    free = rough.reactions(tuple(beside), mechanics.u, multipliers)
-    units = [solved(tuple(-x for x in column), still) for column in rough.columns]
+    return solved
+
+
+def _with_friction(problem: Problem, solved: Solver, guards: tuple[Guard, ...]) -> Motion:
+    """The motion that friction of the reactions which come of it leaves."""
+    mechanics, graph, rough = problem.mechanics, problem.graph, RoughColumns(problem.mechanics)
+    smooth, multipliers = solved(problem.force, problem.bias)
+    beside = tuple(substitute(graph, rough.balance, dict(zip(mechanics.qdd, smooth, strict=True))))
+    free = rough.reactions(beside, mechanics.u, multipliers)
+    unmoved = (graph.zero,) * mechanics.m
+    units = [solved(tuple(-x for x in column), (graph.zero,) * mechanics.r) for column in rough.columns]
     answers = []
     for (accelerations, pressing), along in zip(units, rough.beside, strict=True):
         inertial = matvec(graph, rough.masses, accelerations)
         answers.append(rough.reactions(tuple(x + y for x, y in zip(along, inertial, strict=True)), unmoved, pressing))
-    steps = mechanics.model.motion_steps
-    point = FrictionLoads(graph, free, answers, rough.sizes, rough.directions, steps)
-    own = tuple(guard for guard in inertia.guards if guard not in space.guards)
+    point = FrictionLoads(graph, free, answers, rough.sizes, rough.directions, mechanics.model.motion_steps)
     return Motion(
         point.added(smooth, [unit[0] for unit in units], point.loads),
         point.added(multipliers, [unit[1] for unit in units], point.loads),
-        (*space.guards, *own, *point.guards),
+        (*guards, *point.guards),
     )
