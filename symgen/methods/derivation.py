@@ -32,13 +32,12 @@ from symgen.methods.given.functions import GivenBy
 from symgen.methods.given.motion import GivenMotion
 from symgen.methods.least_inputs import least_inputs
 from symgen.methods.reaction_friction import ReactionFriction
-from symgen.symbolic.calculus import derivative_along, gradient, jacobian
+from symgen.symbolic.calculus import gradient, jacobian
 from symgen.symbolic.matrix import (
     Matrix,
     Vector,
     add,
     dot,
-    flatten,
     identity,
     matmul,
     matvec,

@@ -62,8 +62,8 @@ def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actua
         return "it is not made with friction that grows with reactions: leave that out of a model of its own"
     if model.rough and quantity.name in MOTIONS and model.motion_steps is not None and model.motion_steps.locks:
         return (
-            f"friction locks: it returns {model.motion_steps.kappa:.2g} of the reactions that it grows with where inputs "
-            "are given, and half is too much; smaller coefficients or radii, or heavier bodies, let it move"
+            f"friction locks where inputs are given: it returns {model.motion_steps.kappa:.2g} of the reactions it "
+            "grows with, and half is too much; smaller coefficients or radii let it move"
         )
     if quantity.needs == LIMITED:
         if model.allocation is None or len(model.allocation.limits) < model.m:

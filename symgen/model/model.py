@@ -271,8 +271,8 @@ class Model:
     its configurations.  `row_units` are set where rows stand here times 2 to these powers (`quantities/row_units.py`).
     What is `measured` leaves places open where rows hold rates alone (`measures_places`); so may a `task`.
     `taken` are parameters of the file that are numbers here (`as_numbers`).
-    `released` are the joints of `rough` places whose reactions are no multipliers, `friction_steps` how their friction is worked out
-    for a motion, `motion_steps` the same for inputs.
+    `released` are the joints of `rough` places whose reactions are no multipliers, `friction_steps` how their
+    friction is worked out for a motion, `motion_steps` the same for inputs.
     """
 
     name: str

@@ -54,7 +54,7 @@ def rough_motions(derivation: Derivation) -> dict[str, Motion]:
 
 def _by_minors(problem: Problem, minors: MinorMotion) -> Solver:
     def solved(f: Vector, a: Vector) -> tuple[Vector, Vector]:
-        if f is problem.force:
+        if f is problem.force and a is problem.bias:
             return minors.motion.accelerations, minors.motion.multipliers
         return minors.solve(f), minors.press(f)
 

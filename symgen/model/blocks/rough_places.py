@@ -26,7 +26,7 @@ KNOWN_LOAD = "give what it carries as a known load: an entry of the coordinate, 
 
 @dataclass(frozen=True, slots=True)
 class RoughPlaces:
-    """What `friction` says of reactions: the places, the joints that have to be let go for them, units to be checked."""
+    """What `friction` says of reactions: the places, the joints that are let go for them, units to be checked."""
 
     places: tuple[RoughPlace, ...] = ()
     released: tuple[ReleasedJoint, ...] = ()
@@ -146,20 +146,20 @@ class _Reader:
         kind, child = text_of(member(node, "type")) or "", text_of(member(node, "child")) or key.value
         frame, moving = self._frames.get(child), self._scope.moved_by.get(key.value, ())
         if kind not in ("revolute", "prismatic"):
-            return self._refused(key, f"a {kind} joint", "revolute and prismatic joints have one rate to rub along")
+            return self._not_made(key, f"a {kind} joint", "revolute and prismatic joints have one rate to rub along")
         if frame is None or isinstance(frame.rotation, Quaternion) or len(moving) != 1:
             return None  # a mistake in the joint, which is told there
         turns = 1 if kind == "revolute" else 0
         axis = main_axis(frame.rotation[-1].axis) if turns else _written_axis(member(node, "axis"))
         if axis is None:
             remedy = "turn the frame with `rotation`, so that the axis of the joint is x, y or z"
-            return self._refused(key, "a joint about an oblique axis", remedy)
+            return self._not_made(key, "a joint about an oblique axis", remedy)
         if wheel := next(self._wheels_without_load(child), None):
-            return self._refused(key, f"what carries the wheel `{wheel}`, whose load no row knows,", KNOWN_LOAD)
+            return self._not_made(key, f"what carries the wheel `{wheel}`, whose load no row knows,", KNOWN_LOAD)
         written = text_of(self._tree.get("kinetic_energy"))
         if not self._mechanism.bodies or (written or "0").strip() != "0":
             remedy = "describe what has mass under `bodies`: what a joint carries is not in an energy"
-            return self._refused(key, "a joint beside a `kinetic_energy`", remedy)
+            return self._not_made(key, "a joint beside a `kinetic_energy`", remedy)
         across = [index for index in range(3) if index != axis[0]]
         further = tuple((self._free(f"{child}_held_{AXES[index]}"), index) for index in across)
         return _Bearing(Name(f"{moving[0]}_dot"), bool(turns), (), ReleasedJoint(child, further, turns))
@@ -178,17 +178,18 @@ class _Reader:
             velocity = _difference(owners, VELOCITIES[along], owners[1])
             return _Bearing(velocity, False, tuple(f"{key.value}_{AXES[index]}" for index in held))
         if kind not in ("point", "revolute"):
-            return self._refused(key, f"a loop of type {kind}", "pins of type point or revolute, and prismatic guides")
+            return self._not_made(key, f"a loop of type {kind}", "pins of type point or revolute, and prismatic guides")
         normal = [index for index in range(3) if index not in held]
         tilts = any(row.startswith(f"{key.value}_tilt") for row in mine)
         if len(normal) != 1 or tilts or (kind == "revolute" and (axis or "z") != AXES[normal[0]]):
             remedy = f"close the loop elsewhere, so that `{key.value}` is a joint of the tree, under `joints`"
-            return self._refused(key, "a loop in space", remedy)
+            return self._not_made(key, "a loop in space", remedy)
         velocity = _difference(frames, TURNING_RATES[normal[0]], self._meeting(*frames))
         return _Bearing(velocity, True, tuple(f"{key.value}_{AXES[index]}" for index in held))
 
-    def _refused(self, key: ScalarNode, what: str, remedy: str) -> None:
+    def _not_made(self, key: ScalarNode, what: str, remedy: str) -> _Bearing | None:
         self._scope.wrong(f"friction of the reaction of {what} is not made: `{key.value}`", remedy, key.span)
+        return None
 
     def _frame_of(self, owner: str) -> str:
         points = {point.name: point.frame for point in self._mechanism.points}

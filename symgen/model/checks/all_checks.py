@@ -12,7 +12,7 @@ from symgen.model.checks.bodies import check_bodies
 from symgen.model.checks.empty_rows import check_empty_rows, parameters_that_count
 from symgen.model.checks.feasibility import check_motion, left_by_task, measures_places
 from symgen.model.checks.redundancy import check_redundancy
-from symgen.model.checks.rough import check_locking, check_rough
+from symgen.model.checks.rough import check_locking, check_rates, check_rough
 from symgen.model.checks.structure import check_domain, check_kinetic_energy, check_nonholonomic
 from symgen.model.checks.tied import tied_parameters
 from symgen.model.configurations.assembly import Assembly
@@ -57,6 +57,7 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
             _add(scope, check_domain(mechanics, column.velocity, f"the direction of `{column.name}`"))
     for place in model.rough:
         _add(scope, check_domain(mechanics, place.velocity, f"the rate of the friction of `{place.name}`"))
+    _add(scope, check_rates(mechanics, model.rough))
     for force in model.forces:
         _add(scope, check_domain(mechanics, force.velocity, f"the direction of `{force.name}`"))
     if len(scope.mistakes) > before:

@@ -1,14 +1,17 @@
-"""Whether friction that grows with reactions is determined, and can be worked out, for a mechanism as a whole."""
+"""Whether friction that grows with reactions is determined and can be worked out."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from symgen.diagnostics import Mistake, Notice
+from symgen.model.configurations.algebra import NotPolynomialError
 from symgen.model.configurations.assembly import Assembly
+from symgen.model.configurations.dense import RELATIVE
 from symgen.model.configurations.friction_steps import LOCKING_SHARE, FrictionSteps
+from symgen.model.configurations.mechanics import NumericSystem
 from symgen.model.expressions.names import counted
-from symgen.model.model import Model
+from symgen.model.model import Model, RoughPlace
 
 
 def check_rough(model: Model, assembly: Assembly) -> Iterator[Mistake]:
@@ -16,7 +19,8 @@ def check_rough(model: Model, assembly: Assembly) -> Iterator[Mistake]:
     ranks, span = assembly.ranks, model.rough[0].span
     if ranks.constraints < model.r:
         yield Mistake(
-            f"friction grows with reactions that {counted(model.r, 'constraint')} of rank {ranks.constraints} leave open",
+            f"friction grows with reactions that {counted(model.r, 'constraint')} of rank {ranks.constraints} do not "
+            "determine",
             "remove constraints that hold what others hold already, or the friction of reactions",
             span,
         )
@@ -40,8 +44,8 @@ def check_locking(model: Model, steps: FrictionSteps) -> Iterator[Mistake | Noti
     span = model.rough[0].span
     if steps.locks:
         yield Mistake(
-            f"friction locks everywhere: it returns {steps.kappa:.2g} of the reactions it grows with, and {LOCKING_SHARE} "
-            "is too much",
+            f"friction locks everywhere: it returns {steps.kappa:.2g} of the reactions it grows with, and "
+            f"{LOCKING_SHARE} is too much",
             "give smaller coefficients or radii; a mechanism that locks has no inverse dynamics",
             span,
         )
@@ -49,7 +53,25 @@ def check_locking(model: Model, steps: FrictionSteps) -> Iterator[Mistake | Noti
     how = "is explicit" if steps.explicit else f"is worked out in {steps.steps} steps"
     locks = f"; the status FRICTION_LOCK is met at {steps.locking} of them" if steps.locking else ""
     yield Notice(
-        f"friction of reactions {how}: it returns {steps.kappa:.2g} of them at most, at {steps.points} configurations over "
-        f"the ranges{locks}",
+        f"friction of reactions {how}: it returns {steps.kappa:.2g} of them at most, at {steps.points} configurations "
+        f"over the ranges{locks}",
         span,
     )
+    for path in model.paths:
+        yield Notice(f"the charts along `{path.name}` are those without friction of reactions", path.span)
+
+
+def check_rates(mechanics: NumericSystem, places: tuple[RoughPlace, ...]) -> Iterator[Mistake]:
+    """Rates that the file writes are linear in those of the coordinates."""
+    for place in places:
+        try:
+            terms = mechanics.polynomials(place.velocity)
+        except NotPolynomialError:
+            terms = [{(): (1.0, 1.0)}]
+        powers = [(len(rates), abs(value) > RELATIVE * size) for one in terms for rates, (value, size) in one.items()]
+        if any(count != 1 and counts for count, counts in powers):
+            yield Mistake(
+                f"the `rate` of the friction of `{place.name}` is not linear in the rates",
+                "write how fast the pin turns or the guide slides, such as beta_dot",
+                place.velocity.span or place.span,
+            )

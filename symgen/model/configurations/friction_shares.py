@@ -57,7 +57,7 @@ def _shares(
     rows, units = mechanics.rows(q), mechanics.columns(q, rates)
     sizes = [evaluate(p.coefficient, mechanics.defaults) * evaluate(p.radius, mechanics.defaults) for p in model.rough]
     n, r = model.n, model.r
-    # what supplies friction: (M M^T) y - B^T lambda = s with B y = 0, for u = M^T y, the least; or -G q_ddot in its place
+    # what supplies friction: (M M^T) y - B^T lambda = s with B y = 0, u = M^T y being the least; or -G q_ddot
     if of_motion:
         supply = [[-x for x in row] for row in mechanics.mass_matrix(q)]
     else:

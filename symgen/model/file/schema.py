@@ -335,7 +335,11 @@ MODEL = RecordShape(
         Key("loops", TableShape(_LOOP), "what closes kinematic loops: rows of geometric constraints"),
         Key("rolling", TableShape(_WHEEL), "wheels that roll without slip on the plane z = 0 of the world"),
         Key("springs", TableShape(_SPRING), "springs and dampers between points or in a coordinate"),
-        Key("friction", TableShape(_FRICTION), "coordinate: friction in it; joint or loop: friction that grows with its reaction"),
+        Key(
+            "friction",
+            TableShape(_FRICTION),
+            "coordinate: friction in it; joint or loop: friction that grows with its reaction",
+        ),
         Key("forces", TableShape(_FORCE), "forces and torques on points and frames that depend on the state"),
         Key(
             "points", TableShape(_POINT), "places with components `.x`, `.y`, `.z`, `.vx`, `.vy`, `.vz` in expressions"

@@ -45,13 +45,11 @@ def friction_of_reactions(model: Model) -> list[Block]:
     friction = equals(D, juxtaposed(_of(Letter("Σ"), j), s_j, d_j, n_j))
     size = equals(d_j, juxtaposed(_of(Letter("μ"), j), _of(Letter("ρ"), j), way))
     rest = juxtaposed(pseudoinverse(transposed(B)), Fenced(minus_sum((juxtaposed(M, u),), (tau, D))))
-    load = equals(
-        _of(Letter("n"), i),
-        Fenced(plus(_of(R, listed((i, number(0)))), juxtaposed(_of(Letter("Σ"), j), _of(R, listed((i, j))), d_j, n_j)), "|"),
-    )
-    share = Application(
-        _of(Letter("max", "upright"), i), juxtaposed(_of(Letter("Σ"), j), Fenced(juxtaposed(_of(R, listed((i, j))), d_j), "|"))
-    )
+    R_0, R_j = _of(R, listed((i, number(0)))), _of(R, listed((i, j)))
+    whole = plus(R_0, juxtaposed(_of(Letter("Σ"), j), R_j, d_j, n_j))
+    load = equals(_of(Letter("n"), i), Fenced(whole, "|"))
+    shares = juxtaposed(_of(Letter("Σ"), j), Fenced(juxtaposed(R_j, d_j), "|"))
+    share = Application(_of(Letter("max", "upright"), i), shares)
     rows = tuple(
         (
             (InlineCode(place.name),),
@@ -82,9 +80,9 @@ def friction_of_reactions(model: Model) -> list[Block]:
         displayed((load, equals(kappa, share)), "n"),
         paragraph(
             "A change of the loads comes back as the share {} of it at most, so that for less than 1 there is one "
-            f"solution. At {steps.points} configurations all over the ranges {{}} is {steps.kappa:.2g} at most with every "
-            f"place sliding; {worked_out}. Where {{}} reaches one half the function returns {{}} and leaves its result "
-            "as it was.",
+            f"solution. At {steps.points} configurations all over the ranges {{}} is {steps.kappa:.2g} at most with "
+            f"all places sliding; {worked_out}. Where {{}} reaches one half the function returns {{}} and leaves its "
+            "result as it was.",
             kappa,
             kappa,
             kappa,

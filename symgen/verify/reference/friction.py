@@ -1,4 +1,4 @@
-"""Friction that grows with reactions, by definition: the fixed point of the loads by Newton's method, its error bounded.
+"""Friction that grows with reactions, by definition: a fixed point found by Newton's method, with a bound of its error.
 
 Joints whose reactions are no multipliers are let go: the reference of a second system, in which their frames may leave
 their parents, says what keeps them shut.  Friction of a place comes from that system with one force element alone.  A
@@ -19,11 +19,11 @@ from weakref import WeakKeyDictionary
 from flint import arb, arb_mat, ctx
 
 from symgen.model.expressions.expression import Binary, Call, Number
-from symgen.model.kinematics.released import released_model
 from symgen.model.model import Force, Model, RoughPlace
 from symgen.verify.reference.arithmetic.linear import column, solve
 from symgen.verify.reference.arithmetic.tape import ball
 from symgen.verify.reference.evaluation import Evaluation
+from symgen.verify.reference.release import with_joints_released
 from symgen.verify.reference.system import ReferenceSystem
 
 # Newton steps for all digits: each doubles them.
@@ -41,7 +41,7 @@ class RoughSystem:
 
     def __init__(self, model: Model) -> None:
         self.model = model
-        self.released = released_model(model)
+        self.released = with_joints_released(model)
         bare = replace(self.released, applied_forces=())
         self.system = ReferenceSystem(self.released)
         self.sliding = [ReferenceSystem(replace(bare, forces=(_element(place),))) for place in model.rough]
