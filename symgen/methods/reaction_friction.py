@@ -42,9 +42,9 @@ class ReactionFriction:
     @cached_property
     def _point(self) -> FrictionLoads:
         rough, balance = self._rough, self._mechanics.balance
-        free = self._reactions(balance, rough.balance, self._smooth_inputs)
+        free = rough.loaded(self._reactions(balance, rough.balance, self._smooth_inputs))
         units = zip(rough.columns, rough.beside, self._unit_inputs, strict=True)
-        answers = [self._reactions(*unit) for unit in units]
+        answers = [rough.unloaded(self._reactions(*unit)) for unit in units]
         steps = self._mechanics.model.friction_steps
         return FrictionLoads(self._mechanics.graph, free, answers, rough.sizes, rough.directions, steps)
 

@@ -41,6 +41,17 @@ class RoughColumns:
         pairs = ((translate(graph, p.velocity, names), translate(graph, p.width, names)) for p in self._places)
         return tuple(graph.function("tanh", (rate / width,)) for rate, width in pairs)
 
+    def loaded(self, reactions: Sequence[Vector]) -> tuple[Vector, ...]:
+        """The reactions with the loads that are known (N) as a further component."""
+        names = self._mechanics.names
+        loads = [() if p.load is None else (translate(self._graph, p.load, names),) for p in self._places]
+        return tuple((*reaction, *load) for reaction, load in zip(reactions, loads, strict=True))
+
+    def unloaded(self, reactions: Sequence[Vector]) -> tuple[Vector, ...]:
+        """The same of what friction adds to reactions: 0."""
+        loads = [() if place.load is None else (self._graph.zero,) for place in self._places]
+        return tuple((*reaction, *load) for reaction, load in zip(reactions, loads, strict=True))
+
     @cached_property
     def _system(self) -> System:
         return System(released_model(self._mechanics.model), self._mechanics, lumped=self._mechanics.lumped)

@@ -151,7 +151,7 @@ class RoughPlace:
 
     Along `velocity`, a rate (1/s in a pin, m/s in a guide), it takes coefficient * radius * |R| * tanh(velocity/width);
     the radius of a guide is 1.  The components of R are the multipliers of `rows`, or what keeps `released` coordinates
-    at 0, which are not the model's (`kinematics/released.py`).
+    at 0, which are not the model's (`kinematics/released.py`), and a known `load` (N) at right angles to these.
     """
 
     name: str
@@ -161,6 +161,7 @@ class RoughPlace:
     velocity: Expression
     rows: tuple[str, ...] = ()
     released: tuple[str, ...] = ()
+    load: Expression | None = None
     span: Span | None = None
 
 

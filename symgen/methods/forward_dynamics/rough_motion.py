@@ -82,13 +82,14 @@ def _with_friction(problem: Problem, solved: Solver, guards: tuple[Guard, ...]) 
     mechanics, graph, rough = problem.mechanics, problem.graph, RoughColumns(problem.mechanics)
     smooth, multipliers = solved(problem.force, problem.bias)
     beside = tuple(substitute(graph, rough.balance, dict(zip(mechanics.qdd, smooth, strict=True))))
-    free = rough.reactions(beside, mechanics.u, multipliers)
+    free = rough.loaded(rough.reactions(beside, mechanics.u, multipliers))
     unmoved = (graph.zero,) * mechanics.m
     units = [solved(tuple(-x for x in column), (graph.zero,) * mechanics.r) for column in rough.columns]
     answers = []
     for (accelerations, pressing), along in zip(units, rough.beside, strict=True):
         inertial = matvec(graph, rough.masses, accelerations)
-        answers.append(rough.reactions(tuple(x + y for x, y in zip(along, inertial, strict=True)), unmoved, pressing))
+        held = tuple(x + y for x, y in zip(along, inertial, strict=True))
+        answers.append(rough.unloaded(rough.reactions(held, unmoved, pressing)))
     point = FrictionLoads(graph, free, answers, rough.sizes, rough.directions, mechanics.model.motion_steps)
     return Motion(
         point.added(smooth, [unit[0] for unit in units], point.loads),

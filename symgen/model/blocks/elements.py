@@ -19,7 +19,7 @@ from symgen.records import dataclass
 
 HALF = Number(Fraction(1, 2))
 # What friction has that grows with a reaction, and no other.
-OF_REACTIONS = ("radius", "reaction", "rate")
+OF_REACTIONS = ("radius", "reaction", "rate", "load")
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,7 +21,7 @@ from symgen.records import dataclass
 ONE = Number(Fraction(1))
 # What says how large friction of a reaction is, beside what it works on.
 SIZES = ("coulomb", "radius", "width")
-KNOWN_LOAD = "give what it carries as a known load: an entry of the coordinate, with `coulomb` as a force or torque"
+WHEEL = "name `reaction: [{0}_along, {0}_across]` of the wheel, its `rate`, and as `load` what it carries of the weight"
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +67,9 @@ def read_rough_places(
         joint = bearing.joint
         further = () if joint is None else tuple(name for name, _ in joint.coordinates)
         released += () if joint is None else (joint,)
-        place = RoughPlace(key.value, coefficient, radius, width, bearing.velocity, bearing.rows, further, key.span)
+        load = scope.expression(member(node, "load"), f"`load` of the friction of `{key.value}`", PARAMETERS)
+        carried = (bearing.velocity, bearing.rows, further, load)
+        place = RoughPlace(key.value, coefficient, radius, width, *carried, key.span)
         places.append(place)
         fits.append(Fit(width, bearing.velocity, -1, False, f"`width` of the friction of `{key.value}`"))
     return RoughPlaces(tuple(places), tuple(released), tuple(fits))
@@ -155,7 +157,8 @@ class _Reader:
             remedy = "turn the frame with `rotation`, so that the axis of the joint is x, y or z"
             return self._not_made(key, "a joint about an oblique axis", remedy)
         if wheel := next(self._wheels_without_load(child), None):
-            return self._not_made(key, f"what carries the wheel `{wheel}`, whose load no row knows,", KNOWN_LOAD)
+            what = f"what carries the wheel `{wheel}`, whose load no row knows,"
+            return self._not_made(key, what, WHEEL.format(wheel))
         written = text_of(self._tree.get("kinetic_energy"))
         if not self._mechanism.bodies or (written or "0").strip() != "0":
             remedy = "describe what has mass under `bodies`: what a joint carries is not in an energy"

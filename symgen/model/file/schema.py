@@ -162,6 +162,7 @@ _FRICTION = RecordShape(
         Key("radius", ExpressionShape(), "of the pin of a joint or loop: friction is coulomb*radius*reaction"),
         Key("reaction", Listing(Word(), 1), "rows of `constraints` whose multipliers are the force it carries"),
         Key("rate", ExpressionShape(), "the rate that friction of a `reaction` works on"),
+        Key("load", ExpressionShape(), "a known force at right angles to the reaction, such as a weight"),
     ),
 )
 _FORCE = RecordShape(

@@ -21,10 +21,12 @@ from flint import arb, arb_mat, ctx
 from symgen.model.expressions.expression import Binary, Call, Number
 from symgen.model.model import Force, Model, RoughPlace
 from symgen.verify.reference.arithmetic.linear import column, solve
-from symgen.verify.reference.arithmetic.tape import ball
+from symgen.verify.reference.arithmetic.tape import Tape, ball, replay_of
+from symgen.verify.reference.arithmetic.taylor import CONSTANT, Taylor
 from symgen.verify.reference.evaluation import Evaluation
 from symgen.verify.reference.release import with_joints_released
 from symgen.verify.reference.system import ReferenceSystem
+from symgen.verify.reference.translation import Translation
 
 # Newton steps for all digits: each doubles them.
 MOST_LOAD_STEPS = 40
@@ -132,6 +134,18 @@ class ReferenceFriction:
             for place in self.rough.model.rough
         ]
 
+    @cached_property
+    def _known_loads(self) -> list[list[Any]]:
+        """The loads (N) that are given, of each place one or none."""
+        model, loads = self.rough.model, []
+        for place in model.rough:
+            tape = Tape()
+            known = {p.name: {CONSTANT: tape.input(k)} for k, p in enumerate(model.parameters)}
+            given = Translation(Taylor(tape, 0, 0), known, {}, {})
+            wanted = [] if place.load is None else [given.polynomial(place.load).get(CONSTANT, tape.zero)]
+            loads.append(list(replay_of(tape, wanted).run(self.e.parameters)))
+        return loads
+
     def _smooth(self) -> list[list[Any]]:
         """What each place carries without friction."""
         if not self.of_motion:
@@ -165,12 +179,15 @@ class ReferenceFriction:
         """n_i, each a ball that holds the fixed point.  Raises LockedError."""
         if not self.kappa < ball(LOCKED_SHARE):
             raise LockedError
-        free, count = self._smooth(), len(self.answers)
+        count = len(self.answers)
+        free = [[*x, *known] for x, known in zip(self._smooth(), self._known_loads, strict=True)]
+        none = [[arb(0)] * len(known) for known in self._known_loads]
+        answers = [[[*x, *zero] for x, zero in zip(answer, none, strict=True)] for answer in self.answers]
 
         def carried(loads: Sequence[Any]) -> list[list[Any]]:
             return [
                 [
-                    x + sum((loads[j] * self.answers[j][i][k] for j in range(count)), arb(0))
+                    x + sum((loads[j] * answers[j][i][k] for j in range(count)), arb(0))
                     for k, x in enumerate(free[i])
                 ]
                 for i in range(count)
@@ -182,7 +199,7 @@ class ReferenceFriction:
             reactions = carried(loads)
             sizes = [_length(reaction) for reaction in reactions]
             slopes = [
-                [int(i == j) - _along(reactions[i], self.answers[j][i], sizes[i]) for j in range(count)]
+                [int(i == j) - _along(reactions[i], answers[j][i], sizes[i]) for j in range(count)]
                 for i in range(count)
             ]
             missing = column([size - load for size, load in zip(sizes, loads, strict=True)])

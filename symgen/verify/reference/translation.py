@@ -146,6 +146,7 @@ def _formulas(model: Model) -> Iterator[Expression]:
         yield element.velocity
     for place in model.rough:
         yield from (place.coefficient, place.radius, place.width, place.velocity)
+        yield from () if place.load is None else (place.load,)
     yield from _of_mechanism(model.mechanism)
 
 
