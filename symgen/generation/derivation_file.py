@@ -90,12 +90,19 @@ def derivation_json(draft: Draft) -> str:
 
 
 def _friction(model: Model) -> dict[str, Any]:
-    """How friction of reactions is worked out, where the model has some."""
-    steps = model.friction_steps
-    if not model.rough or steps is None:
-        return {}
-    known = {"kappa": round(steps.kappa, SHOWN_DECIMALS), "configurations": steps.points, "locking": steps.locking}
-    return {"friction": {"places": [place.name for place in model.rough], "steps": steps.steps, **known}}
+    """How friction of reactions is worked out, for a motion and for inputs, where the model has some."""
+    both = {"for_a_motion": model.friction_steps, "for_inputs": model.motion_steps}
+    known = {
+        name: {
+            "steps": one.steps,
+            "kappa": round(one.kappa, SHOWN_DECIMALS),
+            "configurations": one.points,
+            "locking": one.locking,
+        }
+        for name, one in both.items()
+        if one is not None
+    }
+    return {"friction": {"places": [place.name for place in model.rough], **known}} if model.rough else {}
 
 
 def _bounds(draft: Draft, quantity: str) -> dict[str, Any]:

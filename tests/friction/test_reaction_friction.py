@@ -207,7 +207,9 @@ def test_c_returns_the_bits_of_python_and_the_status(tool: Callable[[str], str],
 
 def test_one_scalar_reaction_is_explicit(tmp_path: Path) -> None:
     made = System(SCALAR, QUANTITIES[:2])
-    assert made.model.friction_steps is not None and made.model.friction_steps.explicit
+    steps = made.model.friction_steps
+    assert steps is not None
+    assert steps.explicit
     loaded, p = module(made, tmp_path), _defaults(made)
     source = np.random.default_rng(7)
     for _ in range(40):

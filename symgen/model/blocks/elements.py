@@ -9,6 +9,7 @@ from symgen.model.blocks.inputs import FORCES, chosen_action, distance, point_na
 from symgen.model.blocks.lengths import check_length
 from symgen.model.expressions.combine import divided, minus, negated, plus, times
 from symgen.model.expressions.expression import Call, Expression, Name, Number, Power
+from symgen.model.expressions.names import did_you_mean
 from symgen.model.file.declarations import is_coordinate
 from symgen.model.file.reading import entries, items, member
 from symgen.model.file.scope import PARAMETERS, STATE, Scope
@@ -18,7 +19,8 @@ from symgen.model.model import Force
 from symgen.records import dataclass
 
 HALF = Number(Fraction(1, 2))
-# What friction has that grows with a reaction, and no other.
+# Where reactions are, and what friction has that grows with one, and no other.
+PLACES_OF_REACTIONS = ("joints", "loops")
 OF_REACTIONS = ("radius", "reaction", "rate", "load")
 
 
@@ -73,6 +75,11 @@ def read_friction(scope: Scope, tree: MappingNode) -> tuple[tuple[Force, ...], t
     for key, node in entries(tree.get("friction")):
         if is_rough(scope, tree, key, node):
             continue  # which is read with the joints and loops, in `rough_places`
+        if member(node, "radius") is not None and scope.kinds.get(key.value) != "coordinate":
+            places = [other.value for block in PLACES_OF_REACTIONS for other, _ in entries(tree.get(block))]
+            remedy = did_you_mean(key.value, places, "name the joint or the loop whose pin has this radius")
+            scope.wrong_about(key.value, f"`{key.value}` in `friction` is no joint or loop", remedy, key.span)
+            continue
         if not is_coordinate(scope, key, "`friction`"):
             continue
         if (stray := next((x for part in OF_REACTIONS if (x := member(node, part)) is not None), None)) is not None:
@@ -103,7 +110,7 @@ def is_rough(scope: Scope, tree: MappingNode, key: ScalarNode, node: Node) -> bo
         return False
     if member(node, "reaction") is not None:
         return True
-    names = {other.value for block in ("joints", "loops") for other, _ in entries(tree.get(block))}
+    names = {other.value for block in PLACES_OF_REACTIONS for other, _ in entries(tree.get(block))}
     return key.value in names and not (member(node, "viscous") is not None and member(node, "coulomb") is None)
 
 

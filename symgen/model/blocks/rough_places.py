@@ -21,7 +21,7 @@ from symgen.records import dataclass
 ONE = Number(Fraction(1))
 # What says how large friction of a reaction is, beside what it works on.
 SIZES = ("coulomb", "radius", "width")
-WHEEL = "name `reaction: [{0}_along, {0}_across]` of the wheel, its `rate`, and as `load` what it carries of the weight"
+WHEEL = "name `reaction: [{}]`, the rows of the wheel, its `rate`, and as `load` what it carries of the weight"
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +51,7 @@ def read_rough_places(
     defaults: Mapping[str, float],
 ) -> RoughPlaces:
     """The places whose friction grows with what they carry."""
-    reader = _Reader(scope, tree, mechanism, [row.name for row in rows])
+    reader = _RoughReader(scope, tree, mechanism, [row.name for row in rows])
     places: list[RoughPlace] = []
     released: list[ReleasedJoint] = []
     fits: list[Fit] = []
@@ -99,7 +99,7 @@ def _size(
     return value
 
 
-class _Reader:
+class _RoughReader:
     """What entries are about."""
 
     def __init__(self, scope: Scope, tree: MappingNode, mechanism: Mechanism, rows: list[str]) -> None:
@@ -158,7 +158,8 @@ class _Reader:
             return self._not_made(key, "a joint about an oblique axis", remedy)
         if wheel := next(self._wheels_without_load(child), None):
             what = f"what carries the wheel `{wheel}`, whose load no row knows,"
-            return self._not_made(key, what, WHEEL.format(wheel))
+            rows = (row for row in self._rows if row in (f"{wheel}_along", f"{wheel}_across"))
+            return self._not_made(key, what, WHEEL.format(", ".join(rows)))
         written = text_of(self._tree.get("kinetic_energy"))
         if not self._mechanism.bodies or (written or "0").strip() != "0":
             remedy = "describe what has mass under `bodies`: what a joint carries is not in an energy"

@@ -97,7 +97,7 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
             model = replace(model, assembly=assembly, measures_places=places, task_leaves=left)
             if model.rough and len(scope.mistakes) == before:
                 steps, of_motion = (friction_steps(friction_shares(model, assembly, x)) for x in (False, True))
-                _add(scope, check_locking(model, steps))
+                _add(scope, check_locking(model, steps, of_motion))
                 return replace(model, friction_steps=steps, motion_steps=of_motion)
     return model
 

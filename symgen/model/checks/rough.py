@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from symgen.diagnostics import Mistake, Notice
+from symgen.model.availability import MOTIONS
 from symgen.model.configurations.algebra import NotPolynomialError
 from symgen.model.configurations.assembly import Assembly
 from symgen.model.configurations.dense import RELATIVE
@@ -39,8 +40,8 @@ def check_rough(model: Model, assembly: Assembly) -> Iterator[Mistake]:
         )
 
 
-def check_locking(model: Model, steps: FrictionSteps) -> Iterator[Mistake | Notice]:
-    """How friction is worked out, and whether it locks."""
+def check_locking(model: Model, steps: FrictionSteps, of_motion: FrictionSteps) -> Iterator[Mistake | Notice]:
+    """How friction is worked out, and whether it locks; `of_motion` is for inputs that are given."""
     span = model.rough[0].span
     if steps.locks:
         yield Mistake(
@@ -51,12 +52,18 @@ def check_locking(model: Model, steps: FrictionSteps) -> Iterator[Mistake | Noti
         )
         return
     how = "is explicit" if steps.explicit else f"is worked out in {steps.steps} steps"
-    locks = f"; the status FRICTION_LOCK is met at {steps.locking} of them" if steps.locking else ""
+    locks = f"; at {steps.locking} of them the status is FRICTION_LOCK as soon as all slide" if steps.locking else ""
     yield Notice(
         f"friction of reactions {how}: it returns {steps.kappa:.2g} of them at most, at {steps.points} configurations "
         f"over the ranges{locks}",
         span,
     )
+    if 0 < of_motion.locking < of_motion.points and not {"all", *MOTIONS}.isdisjoint(model.outputs):
+        yield Notice(
+            f"where inputs are given friction returns up to {of_motion.kappa:.2g} of the reactions: their status is "
+            f"FRICTION_LOCK at {of_motion.locking} of {of_motion.points} configurations as soon as all places slide",
+            span,
+        )
     for path in model.paths:
         yield Notice(f"the charts along `{path.name}` are those without friction of reactions", path.span)
 

@@ -15,7 +15,8 @@ from symgen.model.expressions.expression import Name
 from symgen.model.mechanism import NO_VECTOR, Frame, Quaternion
 from symgen.model.model import Coordinate, Model, ReleasedJoint
 
-STILL = (Fraction(0), Fraction(0))
+# Of coordinates that are kept at 0.
+KEPT_AT_ZERO = (Fraction(0), Fraction(0))
 
 
 def released_model(model: Model) -> Model:
@@ -24,7 +25,7 @@ def released_model(model: Model) -> Model:
     Nothing is left in it that is not part of its equations of motion.
     """
     further = [name for joint in model.released for name, _ in joint.coordinates]
-    coordinates = (Coordinate(name, "m", "of a joint let go", False, STILL, STILL, STILL) for name in further)
+    coordinates = (Coordinate(name, "m", "of a joint let go", False, KEPT_AT_ZERO, KEPT_AT_ZERO, KEPT_AT_ZERO) for name in further)
     by_frame = {joint.frame: joint for joint in model.released}
     frames = [
         own

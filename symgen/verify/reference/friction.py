@@ -34,7 +34,7 @@ MOST_LOAD_STEPS = 40
 LOCKED_SHARE = Fraction(1, 2)
 
 
-class LockedError(Exception):
+class FrictionLocksError(Exception):
     """Friction returns half or more of the reactions it grows with."""
 
 
@@ -176,9 +176,9 @@ class ReferenceFriction:
 
     @cached_property
     def loads(self) -> list[Any]:
-        """n_i, each a ball that holds the fixed point.  Raises LockedError."""
+        """n_i, each a ball that holds the fixed point.  Raises FrictionLocksError."""
         if not self.kappa < ball(LOCKED_SHARE):
-            raise LockedError
+            raise FrictionLocksError
         count = len(self.answers)
         free = [[*x, *known] for x, known in zip(self._smooth(), self._known_loads, strict=True)]
         none = [[arb(0)] * len(known) for known in self._known_loads]

@@ -21,7 +21,7 @@ from symgen.model.quantities import ROWS
 from symgen.verify.reference.arithmetic.linear import square
 from symgen.verify.reference.arithmetic.tape import ball, precision
 from symgen.verify.reference.evaluation import Evaluation
-from symgen.verify.reference.friction import LockedError
+from symgen.verify.reference.friction import FrictionLocksError
 from symgen.verify.reference.limits import NoneWithinError
 from symgen.verify.reference.manifold import ManifoldRanks, generic_ranks
 from symgen.verify.reference.measures import measures_of_parts
@@ -158,7 +158,7 @@ class Reference:
                     return work()
                 except NoneWithinError:
                     raise BeyondLimitsError(f"{self.model.name}: no inputs within their limits do this") from None
-                except LockedError:
+                except FrictionLocksError:
                     raise LocksError(f"{self.model.name}: friction locks at this state") from None
         raise ReferenceValueError(f"{self.model.name}: a rank drops at this state; {NEAR_SINGULAR}")
 

@@ -10,6 +10,7 @@ from symgen.model.expressions.expression import Name, Number
 from symgen.model.mechanism import Frame
 from symgen.model.model import Coordinate, Model
 
+# The range of what is 0.
 NOWHERE = (Fraction(0), Fraction(0))
 
 
