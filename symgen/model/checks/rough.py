@@ -51,13 +51,12 @@ def check_locking(model: Model, steps: FrictionSteps, of_motion: FrictionSteps) 
             span,
         )
         return
-    how = "is explicit" if steps.explicit else f"is worked out in {steps.steps} steps"
-    locks = f"; at {steps.locking} of them the status is FRICTION_LOCK as soon as all slide" if steps.locking else ""
-    yield Notice(
-        f"friction of reactions {how}: it returns {steps.kappa:.2g} of them at most, at {steps.points} configurations "
-        f"over the ranges{locks}",
-        span,
-    )
+    if steps.locking:
+        yield Notice(
+            f"friction returns up to {steps.kappa:.2g} of the reactions it grows with: the status is FRICTION_LOCK at "
+            f"{steps.locking} of {steps.points} configurations over the ranges as soon as all places slide",
+            span,
+        )
     if 0 < of_motion.locking < of_motion.points and not {"all", *MOTIONS}.isdisjoint(model.outputs):
         yield Notice(
             f"where inputs are given friction returns up to {of_motion.kappa:.2g} of the reactions: their status is "

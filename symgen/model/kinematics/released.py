@@ -25,7 +25,8 @@ def released_model(model: Model) -> Model:
     Nothing is left in it that is not part of its equations of motion.
     """
     further = [name for joint in model.released for name, _ in joint.coordinates]
-    coordinates = (Coordinate(name, "m", "of a joint let go", False, KEPT_AT_ZERO, KEPT_AT_ZERO, KEPT_AT_ZERO) for name in further)
+    ranges = (KEPT_AT_ZERO, KEPT_AT_ZERO, KEPT_AT_ZERO)
+    coordinates = (Coordinate(name, "m", "of a joint let go", False, *ranges) for name in further)
     by_frame = {joint.frame: joint for joint in model.released}
     frames = [
         own
