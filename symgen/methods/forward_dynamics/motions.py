@@ -19,7 +19,6 @@ from symgen.mechanics.system import System
 from symgen.methods.admission import DECIMALS, ByTheorem, Singular, Validity
 from symgen.methods.derivation import Derivation
 from symgen.methods.forward_dynamics.motion import Motion
-from symgen.methods.forward_dynamics.rough_motion import rough_motions
 from symgen.methods.graphs import forget_others
 from symgen.methods.method import MOTIONS, Candidate
 from symgen.methods.quantity import resting_on
@@ -40,6 +39,7 @@ STRUCTURED_WORTH = Fraction(1, 20)
 BY_FRAMES = "articulated"
 STRUCTURED = "its pivots are inertias met along the joints, positive where G is definite, and those of B"
 BY_BODIES_ALONE = "it is for bodies alone with one frame for each coordinate and definite G"
+NO_FRICTION = "friction grows with reactions, which it does not form"
 POSITIVE = "its pivots are those of G, which is positive definite everywhere, and those of B"
 
 
@@ -60,7 +60,8 @@ class AlongNullSpace(ByTheorem):
     `theorem` says why it is valid at every regular state: those that are `free` of the constraints are so where G is
     positive definite in every direction.  `lacking` says why a system does not have it, `offered` whether it may be
     chosen along the null space of a derivation.  Alone it has an `orthonormal` basis, or the minors of B.  What `grows`
-    may double with each row: it takes minors alone, and is given up where there are others.
+    may double with each row: it takes minors alone, and is given up where there are others.  A `rough` one has friction
+    that grows with reactions.
     """
 
     solved: Callable[[Derivation], Motion]
@@ -70,6 +71,7 @@ class AlongNullSpace(ByTheorem):
     free: bool = False
     orthonormal: bool = False
     grows: bool = False
+    rough: bool = False
 
     def build(self, workspace: Workspace, quantity: str) -> Candidate | str:
         """q_ddot or lambda on a graph that both have in common, or why the system does not have them so."""
@@ -84,6 +86,8 @@ class AlongNullSpace(ByTheorem):
 
     def _alone(self, workspace: Workspace) -> tuple[System, Motion] | str:
         generic = workspace.generic
+        if workspace.model.rough and not self.rough:
+            return NO_FRICTION
         if self.lacking is not None and (reason := self.lacking(generic)):
             return reason
         mechanics = System(workspace.model)
@@ -101,13 +105,11 @@ class WithoutNullSpace(ByTheorem):
 
     def build(self, workspace: Workspace, quantity: str) -> Candidate | str:
         """q_ddot or lambda on a graph that both have in common, or why the system does not have them so."""
-        return _shared(workspace, self, self.solved, quantity)
+        return NO_FRICTION if workspace.model.rough else _shared(workspace, self, self.solved, quantity)
 
 
 def motions_along(derivation: Derivation) -> dict[str, Motion]:
     """Those that may be chosen by themselves along the null space of a derivation, on its graph."""
-    if derivation.mechanics.model.rough:
-        return rough_motions(derivation)
     offered: dict[str, AlongNullSpace] = {}
     for row in methods(MOTIONS[0], Use.CHOSEN):
         one = row.load()
@@ -136,8 +138,6 @@ def _shared(
     workspace: Workspace, key: object, solved: Callable[[Workspace], tuple[System, Motion] | str], quantity: str
 ) -> Candidate | str:
     """One of both quantities; what was solved stays in the workspace for the other one."""
-    if workspace.model.rough:
-        return "friction grows with reactions, which is worked out along null spaces alone"
     if key not in workspace.motions:
         solution = solved(workspace)
         workspace.motions[key] = solution if isinstance(solution, str) else _kept(workspace.generic, *solution)

@@ -12,44 +12,46 @@ from typing import TypeAlias
 
 from symgen.linear_algebra.constrained_inverse import ConstrainedInertia
 from symgen.linear_algebra.guards import Guard
-from symgen.linear_algebra.null_spaces import MinorSpace, NullSpace
+from symgen.linear_algebra.null_spaces import NullSpace
 from symgen.linear_algebra.refinement import of_motion, refined
 from symgen.methods.derivation import Derivation
-from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
+from symgen.methods.forward_dynamics.minor_motion import MinorMotion, minor_motion
 from symgen.methods.forward_dynamics.motion import Motion, Problem
 from symgen.methods.forward_dynamics.schur import SchurQR
 from symgen.methods.friction_loads import FrictionLoads
 from symgen.methods.rough_columns import RoughColumns
 from symgen.symbolic.matrix import Vector, matvec, subtract_vectors
 from symgen.symbolic.traverse import substitute
-from symgen.validity.definiteness import positive_definite
 
 Solver: TypeAlias = Callable[[Vector, Vector], tuple[Vector, Vector]]
 """q_ddot and lambda for f and a."""
 
 
-def rough_motions(derivation: Derivation) -> dict[str, Motion]:
-    """The motion under the inputs, friction included, by the methods that the system has along a null space."""
-    mechanics, generic, space = derivation.mechanics, derivation.generic, derivation.space
-    problem = Problem(mechanics, space.guards)
-    if 1 <= generic.delta <= LARGEST_DELTA and isinstance(space, MinorSpace):
-        minors = minor_motion(problem)
-        return {"minor": _with_friction(problem, _by_minors(problem, minors), minors.guards)}
-    motions = {}
-    if positive_definite(mechanics):
-        schur = SchurQR(problem, generic.rank)
+def rough_by_minors(derivation: Derivation) -> Motion:
+    """The motion under the inputs, friction included, by the minors of B."""
+    problem = Problem(derivation.mechanics, derivation.space.guards)
+    minors = minor_motion(problem)
+    return _with_friction(problem, _by_minors(problem, minors), minors.guards)
 
-        def by_elimination(f: Vector, a: Vector) -> tuple[Vector, Vector]:
-            made = schur.motion(f, a, False)
-            return made.accelerations, made.multipliers
 
-        guards = schur.motion(problem.force, problem.bias, False).guards
-        motions["schur_qr"] = _with_friction(problem, by_elimination, guards)
-    if mechanics.r:
-        inertia = derivation.inertia
-        guards = (*space.guards, *(guard for guard in inertia.guards if guard not in space.guards))
-        motions["nullspace"] = _with_friction(problem, _by_basis(problem, space, inertia), guards)
-    return motions
+def rough_by_elimination(derivation: Derivation, refining: bool) -> Motion:
+    """The same by elimination of the accelerations; `refining` solves for what it leaves once more."""
+    problem = Problem(derivation.mechanics, derivation.space.guards)
+    schur = SchurQR(problem, derivation.generic.rank)
+
+    def solved(f: Vector, a: Vector) -> tuple[Vector, Vector]:
+        made = schur.motion(f, a, refining)
+        return made.accelerations, made.multipliers
+
+    return _with_friction(problem, solved, schur.motion(problem.force, problem.bias, False).guards)
+
+
+def rough_by_basis(derivation: Derivation) -> Motion:
+    """The same by an orthonormal basis of the null space."""
+    space, inertia = derivation.space, derivation.inertia
+    problem = Problem(derivation.mechanics, space.guards)
+    guards = (*space.guards, *(guard for guard in inertia.guards if guard not in space.guards))
+    return _with_friction(problem, _by_basis(problem, space, inertia), guards)
 
 
 def _by_minors(problem: Problem, minors: MinorMotion) -> Solver:
