@@ -77,7 +77,7 @@ def friction_of_reactions(model: Model) -> list[Block]:
             "load is solved for as a quadratic equation.",
             n_j,
         ),
-        displayed((load, equals(kappa, share)), "n"),
+        displayed((load, equals(kappa, share)), "loads"),
         paragraph(
             "A change of the loads comes back as the share {} of it at most, so that for less than 1 there is one "
             f"solution. At {steps.points} configurations all over the ranges {{}} is {steps.kappa:.2g} at most with "
