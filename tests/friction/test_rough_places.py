@@ -220,4 +220,5 @@ def test_a_load_stands_at_right_angles() -> None:
 def test_margins_are_those_of_the_page() -> None:
     from symgen.model.configurations.friction_steps import LOCKING_SHARE, SHARE_MARGIN
 
-    assert (LOCKING_SHARE, SHARE_MARGIN) == (Fraction(1, 2), Fraction(5, 4))
+    shares = (LOCKING_SHARE, SHARE_MARGIN)
+    assert shares == (Fraction(1, 2), Fraction(5, 4))
