@@ -26,11 +26,14 @@ STATUS_MEANING: dict[Status, str] = {
     Status.BRANCH: "the start is so far away that the result may belong to another assembly mode",
     Status.TASK_RANK: "the task does not determine the rest at this configuration",
     Status.LIMITS: "no inputs within their limits produce this motion",
+    Status.FRICTION_LOCK: "friction returns half of the reactions it grows with, or more: the mechanism all but locks",
 }
-# Those of models that name what is measured, of models that have a task, and of limits that are kept or refused.
+# Those of models that name what is measured, of models that have a task, of limits that are kept or refused, and of
+# friction that grows with reactions.
 _OF_MEASURED = frozenset({Status.MEASURED_RANK, Status.NOT_CLOSED, Status.BRANCH})
 _OF_TASK = frozenset({Status.TASK_RANK, Status.NOT_CLOSED, Status.BRANCH})
 _OF_LIMITS = frozenset({Status.LIMITS})
+_OF_FRICTION = frozenset({Status.FRICTION_LOCK})
 _OPEN_TASK = "the task loses rank at this configuration: a direction in which it cannot be moved"
 
 
@@ -42,9 +45,10 @@ def status_meaning(status: Status, model: Model) -> str:
 
 def statuses_of(model: Model) -> tuple[Status, ...]:
     """The statuses that kernels of a model may have."""
-    special = _OF_MEASURED | _OF_TASK | _OF_LIMITS
+    special = _OF_MEASURED | _OF_TASK | _OF_LIMITS | _OF_FRICTION
     met = (_OF_MEASURED if model.measured else frozenset()) | (_OF_TASK if model.task else frozenset())
     met |= _OF_LIMITS if model.keeps_limits else frozenset()
+    met |= _OF_FRICTION if model.rough else frozenset()
     return tuple(status for status in Status if status not in special or status in met)
 
 
@@ -66,6 +70,11 @@ def symbol_lines(model: Model) -> Iterator[str]:
     if model.allocation is not None:
         yield "How inverse_dynamics shares the work among the inputs:"
         yield from _allocation_lines(model.allocation, model.keeps_limits)
+    if model.rough and model.friction_steps is not None:
+        yield "Friction that grows with reactions, in inverse_dynamics and not in applied_force:"
+        yield f"  of {', '.join(place.name for place in model.rough)}"
+        how = "explicit" if model.friction_steps.explicit else f"worked out in {model.friction_steps.steps} steps"
+        yield f"  {how}; status FRICTION_LOCK where it returns half of the reactions that it grows with"
 
 
 def _allocation_lines(allocation: Allocation, keeps_limits: bool) -> Iterator[str]:

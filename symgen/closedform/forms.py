@@ -236,6 +236,10 @@ class _FormWriter:
         if self.model.allocation is not None:
             yield self._allocated(self.model.allocation)
             return
+        if self.model.rough:
+            reason = "not written out: friction grows with reactions, and reactions with friction"
+            yield ClosedForm("inverse_dynamics", None, (), reason)
+            return
         left = pseudoinverse.matrix
         known = None if left is None else NamedMatrix(left, pseudoinverse.intermediates)
         yield self._direct(

@@ -29,7 +29,7 @@ def dense_motions(draft: Draft, options: Options) -> tuple[Notice, ...]:
     dense = [c for c in choices if c.method != BY_FRAMES and ARTICULATED not in dict(c.costs)]
     names = [c.quantity for c in dense if c.quantity not in options.methods]
     long = [name for name in names if counts.get(name, 0) > LONG_MOTION]
-    if not long or not draft.model.mechanism.has_mass:
+    if not long or not draft.model.mechanism.has_mass or draft.model.rough:
         return ()
     from symgen.methods.forward_dynamics.articulated import lacking
 

@@ -17,7 +17,11 @@ from symgen.ir.given_trig import given_trig
 from symgen.ir.kernel import Kernel
 from symgen.ir.prepare import prepare
 from symgen.methods.selection import MethodChoice
+from symgen.model.model import Model
 from symgen.quantities.select import Rejection
+
+# Of shares of reactions in the file.
+SHOWN_DECIMALS = 4
 
 
 def derivation_json(draft: Draft) -> str:
@@ -60,6 +64,7 @@ def derivation_json(draft: Draft) -> str:
         },
         **({"parameters_as_numbers": [name for name, _ in model.taken]} if model.taken else {}),
         "actuation": structure.actuation,
+        **_friction(model),
         "blocks": [
             {
                 "rows": list(block.rows),
@@ -82,6 +87,22 @@ def derivation_json(draft: Draft) -> str:
         "kernels": kernels,
     }
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
+
+
+def _friction(model: Model) -> dict[str, Any]:
+    """How friction of reactions is worked out, for a motion and for inputs, where the model has some."""
+    both = {"for_a_motion": model.friction_steps, "for_inputs": model.motion_steps}
+    known = {
+        name: {
+            "steps": one.steps,
+            "kappa": round(one.kappa, SHOWN_DECIMALS),
+            "configurations": one.points,
+            "locking": one.locking,
+        }
+        for name, one in both.items()
+        if one is not None
+    }
+    return {"friction": {"places": [place.name for place in model.rough], **known}} if model.rough else {}
 
 
 def _bounds(draft: Draft, quantity: str) -> dict[str, Any]:

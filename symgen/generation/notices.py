@@ -50,7 +50,18 @@ def notices(draft: Draft, options: Options, certificate: Certificate | None) -> 
     others = (*said, *_near_bounds(draft), *dense_motions(draft, options))
     recorded = draft.notes if options.as_recorded else ()
     of_kernels = (*absent, *others, *_size(draft, options), *idle, *map(Notice, (*unverified, *recorded)))
-    return (*_renamed(draft.model), *of_kernels)
+    return (*_renamed(draft.model), *_friction(draft), *of_kernels)
+
+
+def _friction(draft: Draft) -> Iterator[Notice]:
+    """How friction of reactions is worked out in the kernels that hold it."""
+    both = (("inverse_dynamics", draft.model.friction_steps), ("forward_dynamics", draft.model.motion_steps))
+    made = {kernel.name for kernel in draft.program.kernels}
+    for quantity, steps in both:
+        if draft.model.rough and steps is not None and quantity in made:
+            how = "is explicit" if steps.explicit else f"takes {steps.steps} steps"
+            share = f"it returns {steps.kappa:.2g} of the reactions at most, at {steps.points} configurations"
+            yield Notice(f"{quantity}: friction of reactions {how}; {share} over the ranges")
 
 
 def _renamed(model: Model) -> tuple[Notice, ...]:

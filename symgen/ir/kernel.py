@@ -36,6 +36,7 @@ class Status(IntEnum):
     BRANCH = 9
     TASK_RANK = 10
     LIMITS = 11
+    FRICTION_LOCK = 12
 
 
 OperationName: TypeAlias = Choice[

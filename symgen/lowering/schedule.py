@@ -49,6 +49,7 @@ ORDER = (
     Status.BRANCH,
     Status.NOT_CLOSED,
     Status.LIMITS,
+    Status.FRICTION_LOCK,
 )
 
 

@@ -220,7 +220,7 @@ class System:
         forces = {f.coordinate: translate(self.graph, f.expression, self.names) for f in self.model.applied_forces}
         direct = self._components(tuple(forces.get(c.name, self.graph.zero) for c in self.model.coordinates))
         others = (
-            (translate(self.graph, force.magnitude, self.names), self._worked_on(force.velocity))
+            (translate(self.graph, force.magnitude, self.names), self.worked_on(force.velocity))
             for force in self.model.forces
         )
         return [(self.graph.one, direct), *others]
@@ -344,12 +344,12 @@ class System:
         ]
         given = (tuple(column.get(c.name, self.graph.zero) for c in self.model.coordinates) for column in columns)
         input_columns = [
-            self._components(column) if i.velocity is None else self._worked_on(i.velocity)
+            self._components(column) if i.velocity is None else self.worked_on(i.velocity)
             for i, column in zip(self.model.inputs, given, strict=True)
         ]
         return transpose(tuple(input_columns), self.n)
 
-    def _worked_on(self, velocity: Expression) -> Vector:
+    def worked_on(self, velocity: Expression) -> Vector:
         """The generalized force of a unit force that works on this rate: its coefficients."""
         rate = translate(self.graph, velocity, self.names)
         zero_rates = dict.fromkeys(self.qd, self.graph.zero)

@@ -31,6 +31,7 @@ from symgen.methods.given.configuration import GivenConfiguration
 from symgen.methods.given.functions import GivenBy
 from symgen.methods.given.least_motion import MotionOfGiven, motion_of
 from symgen.methods.least_inputs import least_inputs
+from symgen.methods.reaction_friction import ReactionFriction
 from symgen.model.quantities import DIRECTION
 from symgen.symbolic.calculus import derivative_along, gradient, jacobian
 from symgen.symbolic.matrix import (
@@ -38,7 +39,6 @@ from symgen.symbolic.matrix import (
     Vector,
     add,
     dot,
-    flatten,
     identity,
     matmul,
     matvec,
@@ -320,11 +320,13 @@ class Derivation:
         inertial = matmul(graph, self.mechanics.mass_matrix, self.complement_dot(qd), delta)
         return matmul(graph, transpose(self.complement, delta), add(coriolis, inertial), delta)
 
-    # inverse dynamics (27) and Remark 10 -----------------------------------------------------------------------------
+    # inverse dynamics (27) and Remark 3 ------------------------------------------------------------------------------
 
     @cached_property
     def inverse_dynamics(self) -> Vector:
         """u = (W^T M)^+ W^T tau, the minimum-norm least-squares inputs, or as the model's `allocation` says."""
+        if self.friction is not None:
+            return self.friction.inputs
         if self.allocation is not None:
             return self.allocation.solve(self.mechanics.balance)
         return self._solve_inputs(self.mechanics.balance)
@@ -337,9 +339,23 @@ class Derivation:
             return None
         return InputAllocation(self.mechanics, self.generic, allocation, self.space)
 
+    @cached_property
+    def friction(self) -> ReactionFriction | None:
+        """Of places whose friction grows with their reactions, where the model has some."""
+        rough = self.mechanics.model.rough
+        return ReactionFriction(self.mechanics, self.space, self._solve_inputs) if rough else None
+
+    def friction_residual(self) -> Vector:
+        """N_B (tau + D - M u) for given u."""
+        assert self.friction is not None
+        force = tuple(f + d for f, d in zip(self.mechanics.balance, self.friction.force, strict=True))
+        return residual(self.space, force, self.mechanics.inputs, self.mechanics.u)
+
     @property
     def inverse_dynamics_guards(self) -> tuple[Guard, ...]:
-        """The denominator of the input equations, with the weights of the inputs."""
+        """The denominator of the input equations, with the weights of the inputs; that friction does not lock."""
+        if self.friction is not None:
+            return (*self.space.guards, *self.actuation_guards, *self.friction.guards)
         if self.allocation is None:
             return self.actuation_guards
         solvable = self._solvable(self.allocation.forms, self.mechanics.inputs, Status.ACTUATION_RANK)
@@ -367,33 +383,6 @@ class Derivation:
         (direction,) = self.mechanics.further(DIRECTION)
         along = dict(zip(self.mechanics.motion, direction, strict=True))
         return tuple(derivative_along(self.graph, self.inverse_dynamics_gradient(), along))
-
-    @cached_property
-    def actuator_basis(self) -> Matrix:
-        """W = (M~^+)^T, n x m."""
-        return transpose(self.control_pseudoinverse, self.n)
-
-    def actuator_velocity(self) -> Vector:
-        """nu = M^T q_dot."""
-        return tuple(dot(self.graph, column, self.mechanics.qd) for column in self.mechanics.inputs)
-
-    def actuator_mass_matrix(self) -> Matrix:
-        """W^T G W."""
-        graph, m, w = self.graph, self.m, self.actuator_basis
-        half = matmul(graph, self.mechanics.mass_matrix, w, m)
-        product = matmul(graph, self.control_pseudoinverse, half, m)
-        return tuple(tuple(product[min(i, j)][max(i, j)] for j in range(m)) for i in range(m))
-
-    def actuator_bias(self) -> Vector:
-        """W^T (G W_dot nu + C v + Q - Q_a) at v = W nu, with W differentiated along v."""
-        graph, mechanics, w = self.graph, self.mechanics, self.actuator_basis
-        nu = self.actuator_velocity()
-        v = matvec(graph, w, nu)
-        turning = derivative_along(graph, flatten(w), dict(zip(mechanics.q, v, strict=True)))
-        rate = tuple(dot(graph, turning[i * self.m : (i + 1) * self.m], nu) for i in range(self.n))
-        here = dict(zip((*mechanics.qd, *mechanics.qdd), (*v, *rate), strict=True))
-        force = substitute(graph, mechanics.balance, here)
-        return matvec(graph, self.control_pseudoinverse, tuple(force))
 
     # diagnostics -----------------------------------------------------------------------------------------------------
 

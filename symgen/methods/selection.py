@@ -175,10 +175,11 @@ class Methods:
         """u of the minor method multiplied out and factored, where it is short enough to compete.
 
         Minors of rows that depend on each other become small together: multiplied out, their squares would cancel.
-        The other methods have nothing to cancel that their steps have left, nor has what is chosen among limits.
+        The other methods have nothing to cancel that their steps have left, nor has what is chosen among limits, nor a
+        fixed point of friction.
         """
         model = self.workspace.model
-        if model.keeps_limits or (model.allocation is not None and model.allocation.scale):
+        if model.keeps_limits or model.rough or (model.allocation is not None and model.allocation.scale):
             return None
         generic, minor = self._of_inputs.generic, self._candidates.get((INPUTS, "minor"), "")
         if best.derived.name != INPUTS:

@@ -51,6 +51,8 @@ class MethodInput:
         """Why methods that solve the balance exactly do not apply, or None: they need full actuation."""
         if self.mechanics.model.allocation is not None:
             return "the model's `allocation` shares the inputs in another way than by their norm"
+        if self.mechanics.model.rough:
+            return "friction grows with multipliers, which it does not form"
         return None if self.generic.full_actuation else "it needs inputs that span every admissible direction"
 
     @property

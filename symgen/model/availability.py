@@ -6,6 +6,7 @@ from symgen.model.model import Model
 from symgen.model.open_task import directions, left_open
 from symgen.model.quantities import (
     ACTUATORS,
+    FRICTION,
     LIMITED,
     MEASURED_PLACES,
     OF_INPUTS,
@@ -16,6 +17,11 @@ from symgen.model.quantities import (
     VARIATIONS,
     QuantityRow,
 )
+
+# What would hold friction of reactions, and is made without it only.
+WITHOUT_FRICTION = frozenset({"actuator_bias"})
+# What is made with it where it does not lock everywhere.
+MOTIONS = frozenset({"forward_dynamics", "multipliers"})
 
 
 def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actuation: int | None = None) -> str | None:
@@ -51,6 +57,15 @@ def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actua
             return "rows that hold rates leave places open: all of these would have to be measured"
     if quantity.needs == ACTUATORS and delta is not None and not model.m == delta == actuation:
         return "it needs as many independent inputs as degrees of freedom"
+    if quantity.needs == FRICTION and not model.rough:
+        return "the model has no friction that grows with reactions"
+    if model.rough and (quantity.name in WITHOUT_FRICTION or (quantity.is_derivative and quantity.needs != VARIATIONS)):
+        return "it is not made with friction that grows with reactions: leave that out of a model of its own"
+    if model.rough and quantity.name in MOTIONS and model.motion_steps is not None and model.motion_steps.locks:
+        return (
+            f"friction locks where inputs are given: it returns {model.motion_steps.kappa:.2g} of the reactions it "
+            "grows with, and half is too much; smaller coefficients or radii let it move"
+        )
     if quantity.needs == LIMITED:
         if model.allocation is None or len(model.allocation.limits) < model.m:
             return "it needs `limits` of every input, under `allocation`"

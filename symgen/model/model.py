@@ -12,6 +12,7 @@ from typing import Literal, TypeAlias
 
 from symgen.diagnostics import Notice, Span
 from symgen.model.configurations.assembly import Assembly
+from symgen.model.configurations.friction_steps import FrictionSteps
 from symgen.model.expressions.expression import Expression
 from symgen.model.mechanism import NO_MECHANISM, Mechanism
 from symgen.model.quantities import FurtherName
@@ -145,6 +146,38 @@ class Force:
 
 
 @dataclass(frozen=True, slots=True)
+class RoughPlace:
+    """A pin or a guide whose friction grows with the reaction R that it carries (Remark 3).
+
+    Along `velocity`, a rate (1/s in a pin, m/s in a guide), it takes coefficient * radius * |R| * tanh(velocity/width);
+    the radius of a guide is 1.  The components of R are the multipliers of `rows`, or what keeps `released` coordinates
+    at 0, which are not the model's (`kinematics/released.py`), and a known `load` (N) at right angles to these.
+    """
+
+    name: str
+    coefficient: Expression
+    radius: Expression
+    width: Expression
+    velocity: Expression
+    rows: tuple[str, ...] = ()
+    released: tuple[str, ...] = ()
+    load: Expression | None = None
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ReleasedJoint:
+    """The frame of a joint, and the coordinates with the axes (0, 1, 2) along which it could leave its parent.
+
+    `turns` is how many of the frame's last turns are the joint's own: axes are those before these.
+    """
+
+    frame: str
+    coordinates: tuple[tuple[str, int], ...]
+    turns: int
+
+
+@dataclass(frozen=True, slots=True)
 class PublishedMatrix:
     """A printed matrix (or column) of a quantity, and the corrected form where the print is wrong."""
 
@@ -243,6 +276,8 @@ class Model:
     its configurations.  `row_units` are set where rows stand here times 2 to these powers (`quantities/row_units.py`).
     What is `measured` leaves places open where rows hold rates alone (`measures_places`); so may a `task`.
     `taken` are parameters of the file that are numbers here (`as_numbers`).
+    `released` are the joints of `rough` places whose reactions are no multipliers, `friction_steps` how their
+    friction is worked out for a motion, `motion_steps` the same for inputs.
     """
 
     name: str
@@ -268,6 +303,10 @@ class Model:
     text_hash: str
     mechanism: Mechanism = NO_MECHANISM
     forces: tuple[Force, ...] = ()
+    rough: tuple[RoughPlace, ...] = ()
+    released: tuple[ReleasedJoint, ...] = ()
+    friction_steps: FrictionSteps | None = None
+    motion_steps: FrictionSteps | None = None
     allocation: Allocation | None = None
     trig_range: Literal["normal", "wide"] = "normal"
     derivatives: bool = False

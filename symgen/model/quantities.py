@@ -17,6 +17,7 @@ DIRECTION: FurtherName = "v_x"
 Argument: TypeAlias = Literal["q", "qd", "qdd", "u"] | FurtherName
 # What a model must have for some quantities.
 PARTITION, ACTUATORS, POINTS, LIMITED = "independent_velocities", "m = delta", "points", "limits of all inputs"
+FRICTION = "friction of reactions"
 # What encoders determine: of rates, and of places.
 MEASURED, MEASURED_PLACES = "measured", "measured places"
 # A task, one that determines rates, one that determines places, each as the least where it leaves directions open, and
@@ -162,6 +163,8 @@ QUANTITIES: tuple[QuantityRow, ...] = (
          "projector onto the changes of q, qd and qdd that the constraints allow", VARIATIONS),
     _row("inverse_dynamics_residual", "F Fᵀ(τ − M u)", "", "residual", "q qd qdd", "n",
          "the force no input can supply"),
+    _row("friction_residual", "N_B(τ + D(λ) − M u)", "Remark 3", "residual", "q qd qdd u", "n",
+         "what given inputs lack, with friction that grows with reactions", FRICTION),
     _row("utilisation", "ρ", "", "share", "q qd qdd", "1",
          "the share of their limits that the inputs need at least, possible up to 1", LIMITED),
     _row("actuator_velocity", "ν", "Remark 10", "nu", "q qd", "m", "velocities along the inputs", ACTUATORS),

@@ -18,6 +18,7 @@ from symgen.model.blocks.joint_forms import JointCoordinate, read_joints
 from symgen.model.blocks.loops import LoopRows
 from symgen.model.blocks.paths import read_paths
 from symgen.model.blocks.published import read_published
+from symgen.model.blocks.rough_places import read_rough_places
 from symgen.model.blocks.task import read_task
 from symgen.model.checks.all_checks import check_mechanics, notice_efforts, notice_empty_outputs
 from symgen.model.checks.dimensions import check_units
@@ -74,6 +75,7 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
     coordinates = read_coordinates(tree, ranges, definitions, used, joint_coordinates)
     made = LoopRows(scope, mechanism, coordinates, without_components(definitions), defaults)
     constraints = (*written, *made.of_loops(tree), *joints.rows, *made.of_wheels(tree))
+    rough = read_rough_places(scope, tree, mechanism, constraints, defaults)
     names = tuple(coordinate.name for coordinate in coordinates)
     whole = not scope.mistakes
     tolerances = tree.get("tolerances")
@@ -107,10 +109,12 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
         text_hash=hashlib.sha256(text.encode()).hexdigest(),
         mechanism=mechanism,
         forces=(*dampers, *friction, *elements),
+        rough=rough.places,
+        released=rough.released,
         trig_range="wide" if text_of(tree.get("trig_range")) == "wide" else "normal",
     )
     as_written = replace(model, potential_energy=potential, forces=elements)
-    scope.mistakes.extend(check_units(tree, as_written, (*fits, *fits_of_friction)))
+    scope.mistakes.extend(check_units(tree, as_written, (*fits, *fits_of_friction, *rough.fits)))
     model = check_mechanics(scope, tree, model, kinetic_read, whole)
     notice_empty_outputs(scope, tree, model)
     notice_efforts(scope, model)

@@ -66,7 +66,7 @@ class Candidates:
         moving = [name for name in MOTIONS if name in wanted]
         with working("articulated inertias"):
             self._alone = {name: self._without_null_space(name) for name in moving}
-        need = moving and not any(self._alone.values())
+        need = moving and not any(self._alone.values()) and not model.rough
         self._absolute = _in_absolute_angles(model, generic) if need else None
         self._motions: dict[str, dict[str, Motion]] = {}
 

@@ -8,6 +8,7 @@ from typing import TypeAlias
 from symgen.linear_algebra.guards import Guard, tested
 from symgen.linear_algebra.null_spaces import rests_on_rank
 from symgen.mechanics.genericity import Genericity
+from symgen.methods.actuator_coordinates import actuator_bias, actuator_mass_matrix, actuator_velocity
 from symgen.methods.derivation import Derivation
 from symgen.methods.given.functions import GivenBy, measured, task
 from symgen.methods.given.least_motion import LeastMotion
@@ -171,10 +172,11 @@ _DERIVED: dict[str, _Derived] = {
     ),
     "constraint_variations": (lambda d: flatten(constraint_variations(d)), _variations),
     "inverse_dynamics_residual": (lambda d: d.inverse_dynamics_residual(), _residual),
+    "friction_residual": (lambda d: d.friction_residual(), _inputs),
     "utilisation": (_utilisation, _actuator),
-    "actuator_velocity": (lambda d: d.actuator_velocity(), _none),
-    "actuator_mass_matrix": (lambda d: flatten(d.actuator_mass_matrix()), _actuation),
-    "actuator_bias": (lambda d: d.actuator_bias(), _actuator),
+    "actuator_velocity": (actuator_velocity, _none),
+    "actuator_mass_matrix": (lambda d: flatten(actuator_mass_matrix(d)), _actuation),
+    "actuator_bias": (actuator_bias, _actuator),
     "forward_dynamics": _BY_METHODS,
     "forward_dynamics_jacobian": _BY_METHODS,
     "forward_dynamics_gradient": _BY_METHODS,

@@ -13,7 +13,7 @@ from symgen.methods.method import INPUTS
 from symgen.methods.quantity import Quantity, scalars
 from symgen.methods.selection import AUTO, MethodChoice, Methods
 from symgen.model.model import Model
-from symgen.model.quantities import LIMITED, POINTS, TASK_OPEN
+from symgen.model.quantities import FRICTION, LIMITED, POINTS, TASK_OPEN
 from symgen.quantities.candidates import Candidates
 from symgen.quantities.catalogue import BY_NAME, CATALOGUE, CatalogueEntry, missing
 from symgen.quantities.everything import WorkBudget, too_long
@@ -100,6 +100,8 @@ def _is_meant(entry: CatalogueEntry, model: Model) -> bool:
         return bool(model.measured)
     if entry.row.is_of_task:
         return bool(model.task) and (entry.needs != TASK_OPEN or bool(model.task_leaves.rates))
+    if entry.needs == FRICTION:
+        return bool(model.rough)
     if entry.needs == LIMITED:
         return model.allocation is not None and bool(model.allocation.limits)
     return entry.needs != POINTS or bool(model.mechanism.points)

@@ -25,6 +25,7 @@ MEANING = {
     Status.NOT_CLOSED: "no configuration with what is measured closes the loops",
     Status.BRANCH: "what is measured is too far from where the machine was",
     Status.LIMITS: "no inputs within their limits produce the motion",
+    Status.FRICTION_LOCK: "friction grows too much with the reactions that it causes itself",
 }
 
 

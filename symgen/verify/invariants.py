@@ -14,6 +14,7 @@ from flint import arb_mat
 
 from symgen.verify.reference.arithmetic.linear import column, norm
 from symgen.verify.reference.evaluation import Evaluation
+from symgen.verify.reference.friction import friction_of
 from symgen.verify.reference.reference import REFERENCE_BITS, Reference
 from symgen.verify.sampling.states import Sample
 from symgen.verify.tolerance import FACTOR, Expectation
@@ -137,4 +138,9 @@ def _power_without_accelerations(e: Evaluation) -> Any:
     multipliers = e.inverse.transpose() * (e.force - e.at.mass * e.accelerations)
     constraint = (e.at.constraints * e.rate).transpose() * multipliers
     supplied = rate * (e.at.control * column(e.u) + e.applied(e.rate))
+    if e.system.model.rough:
+        force = friction_of(e, True).force
+        multipliers -= e.inverse.transpose() * (force - e.at.mass * (e.weighted * force))
+        constraint = (e.at.constraints * e.rate).transpose() * multipliers
+        supplied -= rate * force
     return kinetic + rate * e.at.potential_gradient - supplied + constraint

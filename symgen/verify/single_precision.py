@@ -39,7 +39,7 @@ def units_in_float32(kernel: Kernel, programs: Mapping[Scalar, Program], given: 
     unknown, exact = run_lanes(kernel, sincos, "float64", single, numbers="float32")
     refused, made = run_lanes(kernel, single_sincos, "float32", single)
     eps, dice = float(UNIT_ROUNDOFF["float32"]), random.Random(kernel.name)
-    unit = eps * distances(exact, 0 * exact)
+    unit = eps * distances(exact, np.zeros_like(exact))
     changes = np.zeros_like(unit)
     for _ in range(CHANGES):
         moved = {name: rows * _factors(rows.shape[1], eps, dice) for name, rows in single.items()}

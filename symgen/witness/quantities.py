@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import casadi
 
-from symgen.model.availability import lacking
+from symgen.model.availability import WITHOUT_FRICTION, lacking
 from symgen.model.configurations.assembly import ConfigurationRanks
 from symgen.model.model import Model
 from symgen.model.quantities import ROWS
@@ -66,7 +66,10 @@ def derive(model: Model, s: Lagrange, ranks: ConfigurationRanks) -> dict[str, ca
     }
     if model.allocation is not None and lacking(ROWS["utilisation"], model) is None:
         quantities["utilisation"] = utilisation(model, model.allocation, s, N, ranks.actuation)
-    if ranks.constraints == model.r and ranks.actuation == min(model.m, model.n - ranks.constraints):
+    if model.rough:  # u and what follows from it hold friction of reactions, which is a fixed point
+        for name in ("inverse_dynamics", "forward_dynamics", "multipliers", *WITHOUT_FRICTION):
+            quantities.pop(name, None)
+    elif ranks.constraints == model.r and ranks.actuation == min(model.m, model.n - ranks.constraints):
         quantities["inverse_dynamics_jacobian"] = casadi.jacobian(u, casadi.vertcat(s.q, s.qd, s.qdd))
         by = casadi.vertcat(s.q, s.qd, s.qdd)
         quantities["inverse_dynamics_gradient"] = casadi.gradient(casadi.dot(s.further["w_u"], u), by)
@@ -74,7 +77,7 @@ def derive(model: Model, s: Lagrange, ranks: ConfigurationRanks) -> dict[str, ca
         quantities["inverse_dynamics_hessian_product"] = casadi.jtimes(slope, by, s.further["v_x"])
         if model.parameters:
             quantities["inverse_dynamics_parameter_jacobian"] = casadi.jacobian(u, s.p)
-    if ranks.constraints == model.r:
+    if ranks.constraints == model.r and not model.rough:
         by = casadi.vertcat(s.q, s.qd, s.u)
         quantities["forward_dynamics_gradient"] = casadi.gradient(casadi.dot(s.further["w_qdd"], acceleration), by)
         if model.r:
@@ -87,6 +90,8 @@ def derive(model: Model, s: Lagrange, ranks: ConfigurationRanks) -> dict[str, ca
         quantities |= _minimal(model, s, ranks)
     if 0 < model.m == model.n - ranks.constraints == ranks.actuation:
         quantities |= _actuator(s, M_plus.T)
+        if model.rough:
+            del quantities["actuator_bias"]
     return {name: casadi.densify(value) for name, value in quantities.items() if 0 not in value.shape}
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from first_models import FIRST
+from rough_models import ROUGH
 
 HEAD = """\
 model: carriage
@@ -475,6 +476,7 @@ GROUPS = {
     "mechanism": MECHANISM,
     "bodies": BODIES,
     "elements": ELEMENTS,
+    "rough": ROUGH,
     "units": UNITS,
     "allocation": ALLOCATION,
     "published_and_paths": PUBLISHED_AND_PATHS,

@@ -17,7 +17,7 @@ DOCS = Path(__file__).parents[2] / "docs"
 @pytest.mark.slow
 @pytest.mark.campaign
 @pytest.mark.toolchain
-@pytest.mark.parametrize("name", ["derivatives", "encoders", "limits", "tracking"])
+@pytest.mark.parametrize("name", ["derivatives", "encoders", "friction", "limits", "tracking"])
 def test_every_block_runs_and_prints_what_the_page_says(
     name: str, tmp_path: Path, tool: Callable[[str], str]
 ) -> None:

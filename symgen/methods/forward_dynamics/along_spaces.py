@@ -18,6 +18,7 @@ from symgen.methods.forward_dynamics.held_lengths import completed_multipliers
 from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA, minor_motion
 from symgen.methods.forward_dynamics.motion import Motion, Problem
 from symgen.methods.forward_dynamics.motions import POSITIVE, AlongNullSpace, constraints, independent_rows
+from symgen.methods.forward_dynamics.rough_motion import rough_by_basis, rough_by_elimination, rough_by_minors
 from symgen.methods.forward_dynamics.schur import schur_qr
 from symgen.methods.method import Method
 from symgen.symbolic.matrix import Vector, matvec, subtract_vectors
@@ -82,10 +83,14 @@ def _solved_apart(
 
 
 def _minor(derivation: Derivation) -> Motion:
+    if derivation.mechanics.model.rough:
+        return rough_by_minors(derivation)
     return _solved_apart(derivation, lambda problem: minor_motion(problem).motion)
 
 
 def _schur_qr(derivation: Derivation, refining: bool = False) -> Motion:
+    if derivation.mechanics.model.rough:
+        return rough_by_elimination(derivation, refining)
     rank = derivation.generic.rank
     # it measures ranks itself where rows are many, or depend on each other
     measured = derivation.r > min(rank, LONGEST_PRODUCT)
@@ -100,6 +105,8 @@ def _schur_qr(derivation: Derivation, refining: bool = False) -> Motion:
 
 
 def _nullspace(derivation: Derivation) -> Motion:
+    if derivation.mechanics.model.rough:
+        return rough_by_basis(derivation)
     inertia, completed = derivation.inertia, completed_multipliers(derivation.mechanics)
     made = nullspace(Problem(derivation.mechanics, derivation.space.guards), derivation.space, inertia)
     return replace(made, multipliers=completed(made.multipliers))
@@ -148,10 +155,17 @@ def reactions(problem: Problem, space: NullSpace, force: Vector, accelerations: 
 
 
 MINOR: Method = AlongNullSpace(
-    _minor, "its denominator is the determinant of the equations of motion", _many_directions, _by_minors, grows=True
+    _minor,
+    "its denominator is the determinant of the equations of motion",
+    _many_directions,
+    _by_minors,
+    grows=True,
+    rough=True,
 )
-SCHUR_QR: Method = AlongNullSpace(_schur_qr, POSITIVE, offered=_by_elimination, free=True)
-SCHUR_QR_REFINED: Method = AlongNullSpace(partial(_schur_qr, refining=True), POSITIVE, constraints, free=True)
+SCHUR_QR: Method = AlongNullSpace(_schur_qr, POSITIVE, offered=_by_elimination, free=True, rough=True)
+SCHUR_QR_REFINED: Method = AlongNullSpace(
+    partial(_schur_qr, refining=True), POSITIVE, constraints, free=True, rough=True
+)
 NULLSPACE: Method = AlongNullSpace(
-    _nullspace, "its pivots are those of G along the constraints", constraints, _by_basis, orthonormal=True
+    _nullspace, "its pivots are those of G along the constraints", constraints, _by_basis, orthonormal=True, rough=True
 )

@@ -39,6 +39,7 @@ STRUCTURED_WORTH = Fraction(1, 20)
 BY_FRAMES = "articulated"
 STRUCTURED = "its pivots are inertias met along the joints, positive where G is definite, and those of B"
 BY_BODIES_ALONE = "it is for bodies alone with one frame for each coordinate and definite G"
+NO_FRICTION = "friction grows with reactions, which it does not form"
 POSITIVE = "its pivots are those of G, which is positive definite everywhere, and those of B"
 
 
@@ -59,7 +60,8 @@ class AlongNullSpace(ByTheorem):
     `theorem` says why it is valid at every regular state: those that are `free` of the constraints are so where G is
     positive definite in every direction.  `lacking` says why a system does not have it, `offered` whether it may be
     chosen along the null space of a derivation.  Alone it has an `orthonormal` basis, or the minors of B.  What `grows`
-    may double with each row: it takes minors alone, and is given up where there are others.
+    may double with each row: it takes minors alone, and is given up where there are others.  A `rough` one has friction
+    that grows with reactions.
     """
 
     solved: Callable[[Derivation], Motion]
@@ -69,6 +71,7 @@ class AlongNullSpace(ByTheorem):
     free: bool = False
     orthonormal: bool = False
     grows: bool = False
+    rough: bool = False
 
     def build(self, workspace: Workspace, quantity: str) -> Candidate | str:
         """q_ddot or lambda on a graph that both have in common, or why the system does not have them so."""
@@ -83,6 +86,8 @@ class AlongNullSpace(ByTheorem):
 
     def _alone(self, workspace: Workspace) -> tuple[System, Motion] | str:
         generic = workspace.generic
+        if workspace.model.rough and not self.rough:
+            return NO_FRICTION
         if self.lacking is not None and (reason := self.lacking(generic)):
             return reason
         mechanics = System(workspace.model)
@@ -100,7 +105,7 @@ class WithoutNullSpace(ByTheorem):
 
     def build(self, workspace: Workspace, quantity: str) -> Candidate | str:
         """q_ddot or lambda on a graph that both have in common, or why the system does not have them so."""
-        return _shared(workspace, self, self.solved, quantity)
+        return NO_FRICTION if workspace.model.rough else _shared(workspace, self, self.solved, quantity)
 
 
 def motions_along(derivation: Derivation) -> dict[str, Motion]:

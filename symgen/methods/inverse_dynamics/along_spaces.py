@@ -34,6 +34,7 @@ def _householder(workspace: Workspace) -> Candidate | str:
 def _along(system: MethodInput, derivation: Derivation) -> Candidate:
     u, guards, allocation = derivation.inverse_dynamics, derivation.inverse_dynamics_guards, derivation.allocation
     harmless = () if allocation is None else allocation.harmless_divisors(derivation.mechanics.balance)
+    harmless = harmless if derivation.friction is None else derivation.friction.harmless_divisors
     return solved_for_u(system, u, guards, harmless=harmless)
 
 

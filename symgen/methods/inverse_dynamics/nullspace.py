@@ -97,7 +97,7 @@ def _guards(system: MethodInput, forms: ActuationForms, regular: tuple[Guard, ..
 def _loads_nothing(system: MethodInput) -> bool:
     """Whether inputs that are independent of each other do no work on any row, wherever the system is."""
     mechanics, generic = system.mechanics, system.generic
-    if mechanics.model.allocation is not None or generic.m > generic.alpha or not generic.m:
+    if mechanics.model.allocation is not None or mechanics.model.rough or generic.m > generic.alpha or not generic.m:
         return False
     pairs = ((row, column) for row in mechanics.constraint_jacobian for column in mechanics.inputs)
     return all(dot(mechanics.graph, row, column).is_zero for row, column in pairs)

@@ -9,6 +9,7 @@ from symgen.model.blocks.inputs import FORCES, chosen_action, distance, point_na
 from symgen.model.blocks.lengths import check_length
 from symgen.model.expressions.combine import divided, minus, negated, plus, times
 from symgen.model.expressions.expression import Call, Expression, Name, Number, Power
+from symgen.model.expressions.names import did_you_mean
 from symgen.model.file.declarations import is_coordinate
 from symgen.model.file.reading import entries, items, member
 from symgen.model.file.scope import PARAMETERS, STATE, Scope
@@ -18,6 +19,9 @@ from symgen.model.model import Force
 from symgen.records import dataclass
 
 HALF = Number(Fraction(1, 2))
+# Where reactions are, and what friction has that grows with one, and no other.
+PLACES_OF_REACTIONS = ("joints", "loops")
+OF_REACTIONS = ("radius", "reaction", "rate", "load")
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +73,18 @@ def read_friction(scope: Scope, tree: MappingNode) -> tuple[tuple[Force, ...], t
     forces: list[Force] = []
     fits: list[Fit] = []
     for key, node in entries(tree.get("friction")):
+        if is_rough(scope, tree, key, node):
+            continue  # which is read with the joints and loops, in `rough_places`
+        if member(node, "radius") is not None and scope.kinds.get(key.value) != "coordinate":
+            places = [other.value for block in PLACES_OF_REACTIONS for other, _ in entries(tree.get(block))]
+            remedy = did_you_mean(key.value, places, "name the joint or the loop whose pin has this radius")
+            scope.wrong_about(key.value, f"`{key.value}` in `friction` is no joint or loop", remedy, key.span)
+            continue
         if not is_coordinate(scope, key, "`friction`"):
+            continue
+        if (stray := next((x for part in OF_REACTIONS if (x := member(node, part)) is not None), None)) is not None:
+            remedy = "name the joint or the loop whose pin it is, or rows under `reaction`, in an entry of its own"
+            scope.wrong(f"friction in the coordinate `{key.value}` has no reaction to grow with", remedy, stray.span)
             continue
         rate: Expression = Name(f"{key.value}_dot")
         viscous, coulomb, width = (
@@ -87,6 +102,16 @@ def read_friction(scope: Scope, tree: MappingNode) -> tuple[tuple[Force, ...], t
             magnitude = plus(magnitude, times(coulomb, Call("tanh", (divided(rate, width),))))
         forces.append(Force(f"friction of {key.value}", negated(magnitude), rate, key.span))
     return tuple(forces), tuple(fits)
+
+
+def is_rough(scope: Scope, tree: MappingNode, key: ScalarNode, node: Node) -> bool:
+    """Whether an entry of `friction` is about a reaction: that of a joint, of a loop, or of rows that it names."""
+    if scope.kinds.get(key.value) == "coordinate":
+        return False
+    if member(node, "reaction") is not None:
+        return True
+    names = {other.value for block in PLACES_OF_REACTIONS for other, _ in entries(tree.get(block))}
+    return key.value in names and not (member(node, "viscous") is not None and member(node, "coulomb") is None)
 
 
 def read_forces(scope: Scope, tree: MappingNode) -> tuple[Force, ...]:

@@ -12,10 +12,13 @@ from symgen.model.checks.bodies import check_bodies
 from symgen.model.checks.empty_rows import check_empty_rows, parameters_that_count
 from symgen.model.checks.feasibility import check_motion, left_by_task, measures_places
 from symgen.model.checks.redundancy import check_redundancy
+from symgen.model.checks.rough import check_locking, check_rates, check_rough
 from symgen.model.checks.structure import check_domain, check_kinetic_energy, check_nonholonomic
 from symgen.model.checks.tied import tied_parameters
 from symgen.model.configurations.assembly import Assembly
 from symgen.model.configurations.branches import branches
+from symgen.model.configurations.friction_shares import friction_shares
+from symgen.model.configurations.friction_steps import friction_steps
 from symgen.model.configurations.mechanics import NumericSystem
 from symgen.model.expressions.expression import Expression
 from symgen.model.expressions.names import shown_names
@@ -52,6 +55,9 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
             _add(scope, check_domain(mechanics, coefficient, f"the coefficient of `{column.name}` on `{coordinate}`"))
         if column.velocity is not None:
             _add(scope, check_domain(mechanics, column.velocity, f"the direction of `{column.name}`"))
+    for place in model.rough:
+        _add(scope, check_domain(mechanics, place.velocity, f"the rate of the friction of `{place.name}`"))
+    _add(scope, check_rates(mechanics, model.rough))
     for force in model.forces:
         _add(scope, check_domain(mechanics, force.velocity, f"the direction of `{force.name}`"))
     if len(scope.mistakes) > before:
@@ -82,11 +88,17 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
         if isinstance(assembly, Assembly) and len(scope.mistakes) == before:
             if model.allocation is not None:
                 _add(scope, check_redundancy(mechanics, assembly, model.inputs, model.allocation, model.outputs))
+            if model.rough:
+                _add(scope, check_rough(model, assembly))
             assembly = replace(assembly, tied=tied_parameters(written, mechanics, assembly))
             _add(scope, _notices_of_tied(model, assembly.tied))
             places = not model.measured or measures_places(mechanics, assembly, model.measured)
             left = left_by_task(mechanics, assembly, model.task)
-            return replace(model, assembly=assembly, measures_places=places, task_leaves=left)
+            model = replace(model, assembly=assembly, measures_places=places, task_leaves=left)
+            if model.rough and len(scope.mistakes) == before:
+                steps, of_motion = (friction_steps(friction_shares(model, assembly, x)) for x in (False, True))
+                _add(scope, check_locking(model, steps, of_motion))
+                return replace(model, friction_steps=steps, motion_steps=of_motion)
     return model
 
 

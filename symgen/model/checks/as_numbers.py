@@ -15,7 +15,7 @@ from symgen.model.model import Model, Parameter
 # what a model is made of that may name a parameter
 PARTS = (
     "parameters", "definitions", "kinetic_energy", "potential_energy", "constraints", "task", "inputs",
-    "applied_forces", "forces", "published", "paths", "mechanism",
+    "applied_forces", "forces", "rough", "published", "paths", "mechanism",
 )  # fmt: skip
 
 

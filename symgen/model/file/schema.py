@@ -157,8 +157,12 @@ _FRICTION = RecordShape(
     "friction",
     (
         Key("viscous", ExpressionShape(), "force per rate"),
-        Key("coulomb", ExpressionShape(), "dry friction: c*tanh(rate/width)"),
+        Key("coulomb", ExpressionShape(), "dry friction: c*tanh(rate/width); of a joint or loop its coefficient"),
         Key("width", ExpressionShape(), "the rate at which dry friction has 76 % of its full size"),
+        Key("radius", ExpressionShape(), "of the pin of a joint or loop: friction is coulomb*radius*reaction"),
+        Key("reaction", Listing(Word(), 1), "rows of `constraints` whose multipliers are the force it carries"),
+        Key("rate", ExpressionShape(), "the rate that friction of a `reaction` works on"),
+        Key("load", ExpressionShape(), "a known force at right angles to the reaction, such as a weight"),
     ),
 )
 _FORCE = RecordShape(
@@ -332,7 +336,11 @@ MODEL = RecordShape(
         Key("loops", TableShape(_LOOP), "what closes kinematic loops: rows of geometric constraints"),
         Key("rolling", TableShape(_WHEEL), "wheels that roll without slip on the plane z = 0 of the world"),
         Key("springs", TableShape(_SPRING), "springs and dampers between points or in a coordinate"),
-        Key("friction", TableShape(_FRICTION), "coordinate: friction in it"),
+        Key(
+            "friction",
+            TableShape(_FRICTION),
+            "coordinate: friction in it; joint or loop: friction that grows with its reaction",
+        ),
         Key("forces", TableShape(_FORCE), "forces and torques on points and frames that depend on the state"),
         Key(
             "points", TableShape(_POINT), "places with components `.x`, `.y`, `.z`, `.vx`, `.vy`, `.vz` in expressions"

@@ -32,6 +32,7 @@ def formulas(model: Model) -> Iterator[Expression]:
     for element in model.forces:
         yield element.magnitude
         yield element.velocity
+    yield from (place.velocity for place in model.rough)
 
 
 def printed_formulas(published: tuple[Published, ...]) -> Iterator[Expression]:

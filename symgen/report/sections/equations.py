@@ -30,11 +30,13 @@ from symgen.report.prose import (
     Slot,
     T,
     U,
+    bold,
     equals,
     g,
     juxtaposed,
     lam,
     listed,
+    minus_sum,
     paragraph,
     plus,
     q,
@@ -46,6 +48,7 @@ from symgen.report.prose import (
 )
 
 PARTIAL = Letter("∂", "upright")
+D = bold("D")
 
 
 def equations_of_motion(context: Context) -> Section:
@@ -63,6 +66,8 @@ def equations_of_motion(context: Context) -> Section:
         *_coriolis(context),
         *_potential(context),
     ]
+    if context.model.rough:
+        blocks += [paragraph("Friction {} grows with {}; it stands below, with the inputs.", D, lam)]
     if context.model.has_applied_forces:
         blocks += [paragraph("The applied forces are"), *context.quantity("applied_force", "Qa")]
     if context.model.r:
@@ -76,13 +81,15 @@ def equations_of_motion(context: Context) -> Section:
 
 
 def _motion(context: Context) -> Layout:
-    """G q̈ + C q̇ + Q + Bᵀλ = M u + Q_a, without what the model has not."""
+    """G q̈ + C q̇ + Q + Bᵀλ = M u + Q_a − D, without what the model has not."""
     left: list[Layout] = [juxtaposed(G, qdd), juxtaposed(C, qd), Q]
     if context.model.r:
         left.append(juxtaposed(transposed(B), lam))
     right: list[Layout] = [juxtaposed(M, u)] if context.model.m else []
     if context.model.has_applied_forces:
         right.append(Qa)
+    if context.model.rough:
+        return equals(plus(*left), minus_sum((plus(*right),), (D,)))
     return equals(plus(*left), plus(*right) if right else ZERO)
 
 

@@ -31,6 +31,7 @@ from symgen.report.prose import (
 from symgen.report.prose import C as CORIOLIS
 from symgen.report.prose import Q as POTENTIAL
 from symgen.report.sections.allocation import allocated_inputs
+from symgen.report.sections.rough import friction_of_reactions
 
 
 def inverse_dynamics(context: Context) -> Section:
@@ -43,7 +44,7 @@ def inverse_dynamics(context: Context) -> Section:
     blocks.append(_pseudoinverse(context, full))
     blocks += context.quantity("projected_control_pseudoinverse", "Mplus")
     blocks += [
-        paragraph("The {} that produce a motion are, paper (27),", "smallest inputs" if allocation else "inputs"),
+        paragraph("The {} that produce a motion are, paper (27),", _which_inputs(context)),
         displayed((equals(u, juxtaposed(pseudoinverse(Mt), tau)), equals(tau, _balance(context))), "u"),
     ]
     if context.model.r:
@@ -57,6 +58,7 @@ def inverse_dynamics(context: Context) -> Section:
         )
     if allocation is not None:
         blocks += allocated_inputs(context.model, allocation, structure.degree_of_actuation == m)
+    blocks += friction_of_reactions(context.model)
     blocks += _inputs_written_out(context)
     if full and m == structure.differential_freedom:
         wt = transposed(W)
@@ -145,10 +147,18 @@ def _projected_control(context: Context) -> list[Block]:
     return blocks
 
 
+def _which_inputs(context: Context) -> str:
+    """Of all that produce a motion those that (27) gives."""
+    if context.model.rough:
+        return "inputs without friction of reactions"
+    return "smallest inputs" if context.model.allocation is not None else "inputs"
+
+
 def _inputs_written_out(context: Context) -> list[Block]:
     if context.matrix("inverse_dynamics") is None or not context.full:
+        evaluated = FormulaReference("D" if context.model.rough else "u")
         return (
-            [paragraph("The generated code evaluates {} without forming {} or any inverse.", FormulaReference("u"), NB)]
+            [paragraph("The generated code evaluates {} without forming {} or any inverse.", evaluated, NB)]
             if context.model.r
             else []
         )

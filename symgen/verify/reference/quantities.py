@@ -12,6 +12,7 @@ from symgen.model.quantities import DIRECTION, ROWS
 from symgen.verify.reference.allocation import allocated, utilisation
 from symgen.verify.reference.arithmetic.linear import column, identity, right_pseudoinverse
 from symgen.verify.reference.evaluation import Evaluation
+from symgen.verify.reference.friction import friction_of
 from symgen.verify.reference.given import QUANTITIES_OF_GIVEN
 from symgen.verify.reference.measures import actuation_measure, constraint_measure
 from symgen.verify.reference.parts import placed
@@ -19,11 +20,17 @@ from symgen.verify.reference.slopes import curvature, jacobian
 
 
 def _inverse_dynamics(e: Evaluation) -> Any:
-    """u (27), or as the model's allocation says."""
+    """u (27), as the model's allocation says, or with the friction of reactions."""
+    if e.system.model.rough:
+        return e.control_inverse * (e.projector * (e.load + friction_of(e).force))
     allocation = e.system.model.allocation
     if allocation is not None:
         return allocated(e, allocation)
     return e.inputs
+
+
+def _friction_residual(e: Evaluation) -> Any:
+    return e.projector * (e.load + friction_of(e).force - e.at.control * column(e.u))
 
 
 def _utilisation(e: Evaluation) -> Any:
@@ -137,8 +144,16 @@ def _actuator_bias(e: Evaluation) -> Any:
     return e.quasi.transpose() * (inner + e.at.potential_gradient - e.applied(velocity))
 
 
+def _accelerations(e: Evaluation) -> Any:
+    """q_ddot, with the friction of reactions."""
+    return e.accelerations - e.weighted * friction_of(e, True).force if e.system.model.rough else e.accelerations
+
+
 def _multipliers(e: Evaluation) -> Any:
-    return e.inverse.transpose() * (e.force - e.at.mass * e.accelerations)
+    if not e.system.model.rough:
+        return e.inverse.transpose() * (e.force - e.at.mass * e.accelerations)
+    force = friction_of(e, True).force
+    return e.inverse.transpose() * (e.force - force - e.at.mass * (e.accelerations - e.weighted * force))
 
 
 def _multipliers_jacobian(e: Evaluation) -> Any:
@@ -196,11 +211,12 @@ QUANTITIES: dict[str, Definition] = {
     "multipliers_jacobian": _multipliers_jacobian,
     "constraint_variations": _constraint_variations,
     "inverse_dynamics_residual": _inverse_dynamics_residual,
+    "friction_residual": _friction_residual,
     "utilisation": _utilisation,
     "actuator_velocity": lambda e: e.at.control.transpose() * e.rate,
     "actuator_mass_matrix": lambda e: e.quasi.transpose() * e.at.mass * e.quasi,
     "actuator_bias": _actuator_bias,
-    "forward_dynamics": lambda e: e.accelerations,
+    "forward_dynamics": _accelerations,
     "multipliers": _multipliers,
     "energy": _energy,
     "singularity": _singularity,

@@ -21,6 +21,7 @@ from symgen.model.quantities import ROWS
 from symgen.verify.reference.arithmetic.linear import square
 from symgen.verify.reference.arithmetic.tape import ball, precision
 from symgen.verify.reference.evaluation import Evaluation
+from symgen.verify.reference.friction import FrictionLocksError
 from symgen.verify.reference.limits import NoneWithinError
 from symgen.verify.reference.manifold import ManifoldRanks, generic_ranks
 from symgen.verify.reference.measures import measures_of_parts
@@ -47,6 +48,10 @@ class ReferenceValueError(Exception):
 
 class BeyondLimitsError(ReferenceValueError):
     """No inputs within their limits produce the motion."""
+
+
+class LocksError(ReferenceValueError):
+    """Friction returns half or more of the reactions it grows with."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,6 +158,8 @@ class Reference:
                     return work()
                 except NoneWithinError:
                     raise BeyondLimitsError(f"{self.model.name}: no inputs within their limits do this") from None
+                except FrictionLocksError:
+                    raise LocksError(f"{self.model.name}: friction locks at this state") from None
         raise ReferenceValueError(f"{self.model.name}: a rank drops at this state; {NEAR_SINGULAR}")
 
     def evaluation(self, state: State, literals: Sequence[Any] | None = None) -> Evaluation:

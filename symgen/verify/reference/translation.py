@@ -144,6 +144,9 @@ def _formulas(model: Model) -> Iterator[Expression]:
     for element in model.forces:
         yield element.magnitude
         yield element.velocity
+    for place in model.rough:
+        yield from (place.coefficient, place.radius, place.width, place.velocity)
+        yield from () if place.load is None else (place.load,)
     yield from _of_mechanism(model.mechanism)
 
 

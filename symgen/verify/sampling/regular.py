@@ -21,7 +21,7 @@ from symgen.verify.reference.closing import admissible, closed
 from symgen.verify.reference.manifold import exceeds, starts
 from symgen.verify.reference.parameter_values import ParameterValues, default_parameters
 from symgen.verify.reference.parts import Part
-from symgen.verify.reference.reference import BeyondLimitsError, Reference, ReferenceValueError, State
+from symgen.verify.reference.reference import BeyondLimitsError, LocksError, Reference, ReferenceValueError, State
 from symgen.verify.sampling.plain_values import SAMPLING_BITS, floats, in_floats, measured, settled
 
 # Regular states that a verification needs.
@@ -46,6 +46,7 @@ LOOP_RESTARTS = 12
 PROBES, POOR = 40, 8
 CLOSED, BRANCH, TURNED = "do not close", "lie on other branches", "lie turns outside of the ranges"
 VALUE, SINGULAR, BEYOND = "have no value", "are singular", "need inputs beyond their limits"
+LOCKED = "lock by friction"
 
 
 @dataclass(frozen=True, slots=True)
@@ -322,6 +323,9 @@ class RegularStateSearch:
             )
         except BeyondLimitsError:
             self._ends[BEYOND] += 1
+            return None
+        except LocksError:
+            self._ends[LOCKED] += 1
             return None
         except ReferenceValueError:
             self._ends[VALUE] += 1

@@ -204,6 +204,8 @@ def _in_thresholds(
     if status == Status.ANGLE_RANGE:
         angles = [abs(x) for x, c in zip(state.q, model.coordinates, strict=True) if c.is_angle]
         return 2.0 if max(angles, default=0.0) < ANGLE_LIMITS[scalar] / 2 else 0.0
+    if status == Status.FRICTION_LOCK:
+        return known.get(status, 2.0)
     if status == Status.NOT_FINITE:
         return 2.0 if _representable(expected, scalar) else 0.0
     given: Any = {

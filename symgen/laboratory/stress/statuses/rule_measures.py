@@ -13,7 +13,11 @@ import numpy as np
 
 from symgen.ir.kernel import Status
 from symgen.laboratory.stress.conditions import Conditions
-from symgen.verify.reference.reference import Reference, ReferenceValueError, State
+from symgen.verify.reference.friction import friction_of
+from symgen.verify.reference.reference import REFERENCE_BITS, Reference, ReferenceValueError, State
+
+# Of kappa, where kernels lock, less what rounding makes of it.
+LEAST_ROOM = 0.5 * (1 - 1e-5)
 
 
 class ScaledMeasures:
@@ -24,6 +28,12 @@ class ScaledMeasures:
         self._conditions = Conditions(reference)
 
     def at(self, state: State) -> dict[Status, float]:
+        """The measures of ranks, and where friction grows with reactions how far that is from locking."""
+        reference = self._reference
+        locking = {Status.FRICTION_LOCK: least_room(reference, state)} if reference.model.rough else {}
+        return self._of_ranks(state) | locking
+
+    def _of_ranks(self, state: State) -> dict[Status, float]:
         """Squares of volumes for ranks, a volume for the mass matrix along the constraints; 0 where there is none."""
         conditions, ranks, system = self._conditions, self._reference.ranks, self._reference.system
         measures = conditions.measures(state)
@@ -49,6 +59,23 @@ class ScaledMeasures:
             Status.ACTUATION_RANK: constraint * inputs,
             Status.MASS_RANK: mass,
         }
+
+
+def least_room(reference: Reference, state: State) -> float:
+    """1 / (2 kappa), at most 1 where friction locks, for a motion or for inputs; 0 where ranks drop.
+
+    What rounding makes of kappa counts as locking.
+    """
+
+    def largest() -> float:
+        e = reference.evaluation(state)
+        return max(float(friction_of(e, of_motion).kappa) for of_motion in (False, True))
+
+    try:
+        kappa = reference.regular(largest, REFERENCE_BITS)
+    except ReferenceValueError:
+        return 0.0
+    return LEAST_ROOM / kappa if kappa else 2.0
 
 
 def _unit_rows(B: Any) -> Any:

@@ -12,8 +12,9 @@ from symgen.model.model import Model
 
 
 def by_energies(model: Model) -> Model:
-    """The model by energies; itself where it has no bodies form."""
-    given = energy_form(model)
+    """The model by energies, without friction of reactions, which energies do not know; itself where it has neither."""
+    smooth = replace(model, rough=(), released=(), friction_steps=None, motion_steps=None) if model.rough else model
+    given = energy_form(smooth)
     if given is model:
         return model
     taken = {c.name for c in given.coordinates} | {p.name for p in given.parameters} | {i.name for i in given.inputs}
