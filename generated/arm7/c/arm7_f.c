@@ -213,6 +213,28 @@ arm7_params_f arm7_default_params_f(void) {
 }
 
 arm7_status arm7_inverse_dynamics_f(const float q[7], const float qd[7], const float qdd[7], const arm7_params_f *p, float u[7]) {
+    const float d_5 = p->d_5;
+    if (ARM7_RARELY_F(!(d_5 >= 0.041f))) {
+        return ARM7_PARAMETER_RANGE;
+    }
+    const float I_zz2 = p->I_zz2;
+    if (ARM7_RARELY_F(!(280.0f >= I_zz2))) {
+        return ARM7_PARAMETER_RANGE;
+    }
+    const float I_xz2 = p->I_xz2;
+    const float size_of_I_xz2 = fabsf(I_xz2);
+    if (ARM7_RARELY_F(!(110.0f >= size_of_I_xz2))) {
+        return ARM7_PARAMETER_RANGE;
+    }
+    const float I_yz2 = p->I_yz2;
+    const float size_of_I_yz2 = fabsf(I_yz2);
+    if (ARM7_RARELY_F(!(200.0f >= size_of_I_yz2))) {
+        return ARM7_PARAMETER_RANGE;
+    }
+    const float m_4 = p->m_4;
+    if (ARM7_RARELY_F(!(48.0f >= m_4))) {
+        return ARM7_PARAMETER_RANGE;
+    }
     const float q_2 = q[1];
     const float t1 = fabsf(q_2);
     const float q_3 = q[2];
@@ -266,7 +288,6 @@ arm7_status arm7_inverse_dynamics_f(const float q[7], const float qd[7], const f
     const float t27 = t25 * t26;
     const float q_2_ddot = qdd[1];
     const float t28 = q_2_ddot + t27;
-    const float I_xz2 = p->I_xz2;
     const float t29 = I_xz2 * t28;
     const float t30 = q_1_ddot * t7;
     const float q_2_dot = qd[1];
@@ -274,7 +295,6 @@ arm7_status arm7_inverse_dynamics_f(const float q[7], const float qd[7], const f
     const float t32 = t30 + t31;
     const float I_xx2 = p->I_xx2;
     const float t33 = I_xx2 * t32;
-    const float I_zz2 = p->I_zz2;
     const float I_yy2 = p->I_yy2;
     const float t34 = I_zz2 - I_yy2;
     const float t35 = t31 * t34;
@@ -290,7 +310,6 @@ arm7_status arm7_inverse_dynamics_f(const float q[7], const float qd[7], const f
     const float t44 = t26 * t26;
     const float t45 = q_2_dot * q_2_dot;
     const float t46 = t44 - t45;
-    const float I_yz2 = p->I_yz2;
     const float t47 = I_yz2 * t46;
     const float t48 = t43 + t47;
     const float c_x2 = p->c_x2;
@@ -432,7 +451,6 @@ arm7_status arm7_inverse_dynamics_f(const float q[7], const float qd[7], const f
     const float t159 = c_z4 * t115;
     const float t160 = t158 - t159;
     const float t161 = t160 - t107;
-    const float m_4 = p->m_4;
     const float t162 = m_4 * t161;
     const float t163 = c_y4 * t162;
     const float t164 = t72 * t12;
@@ -476,7 +494,6 @@ arm7_status arm7_inverse_dynamics_f(const float q[7], const float qd[7], const f
     const float t195 = t193 - t194;
     const float t196 = t187 + t195;
     const float t197 = t184 + t196;
-    const float d_5 = p->d_5;
     const float t198 = d_5 * t176;
     const float t199 = t169 - t198;
     const float t14 = cosine[3];
@@ -1072,6 +1089,10 @@ arm7_status arm7_inverse_dynamics_f(const float q[7], const float qd[7], const f
 }
 
 arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const float u[7], const arm7_params_f *p, float qdd[7]) {
+    const float d_3 = p->d_3;
+    if (ARM7_RARELY_F(!(1300.0f >= d_3))) {
+        return ARM7_PARAMETER_RANGE;
+    }
     const float d_5 = p->d_5;
     if (ARM7_RARELY_F(!(4.0f >= d_5))) {
         return ARM7_PARAMETER_RANGE;
@@ -1080,12 +1101,16 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
     if (ARM7_RARELY_F(!(2.2f >= d_7))) {
         return ARM7_PARAMETER_RANGE;
     }
+    const float m_2 = p->m_2;
+    if (ARM7_RARELY_F(!(40000.0f >= m_2))) {
+        return ARM7_PARAMETER_RANGE;
+    }
     const float I_zz2 = p->I_zz2;
-    if (ARM7_RARELY_F(!(16000.0f >= I_zz2))) {
+    if (ARM7_RARELY_F(!(500.0f >= I_zz2))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_3 = p->m_3;
-    if (ARM7_RARELY_F(!(3000.0f >= m_3))) {
+    if (ARM7_RARELY_F(!(940.0f >= m_3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x3 = p->c_x3;
@@ -1097,15 +1122,15 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx3 = p->I_xx3;
-    if (ARM7_RARELY_F(!(160.0f >= I_xx3))) {
+    if (ARM7_RARELY_F(!(53.0f >= I_xx3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy3 = p->I_yy3;
-    if (ARM7_RARELY_F(!(85.0f >= I_yy3))) {
+    if (ARM7_RARELY_F(!(48.0f >= I_yy3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz3 = p->I_zz3;
-    if (ARM7_RARELY_F(!(6700.0f >= I_zz3))) {
+    if (ARM7_RARELY_F(!(2100.0f >= I_zz3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_4 = p->m_4;
@@ -1121,7 +1146,7 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx4 = p->I_xx4;
-    if (ARM7_RARELY_F(!(48.0f >= I_xx4))) {
+    if (ARM7_RARELY_F(!(85.0f >= I_xx4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy4 = p->I_yy4;
@@ -1129,7 +1154,7 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz4 = p->I_zz4;
-    if (ARM7_RARELY_F(!(6000.0f >= I_zz4))) {
+    if (ARM7_RARELY_F(!(1900.0f >= I_zz4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_5 = p->m_5;
@@ -1150,19 +1175,19 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx5 = p->I_xx5;
-    if (ARM7_RARELY_F(!(53.0f >= I_xx5))) {
+    if (ARM7_RARELY_F(!(30.0f >= I_xx5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy5 = p->I_yy5;
-    if (ARM7_RARELY_F(!(48.0f >= I_yy5))) {
+    if (ARM7_RARELY_F(!(27.0f >= I_yy5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz5 = p->I_zz5;
-    if (ARM7_RARELY_F(!(1200.0f >= I_zz5))) {
+    if (ARM7_RARELY_F(!(2100.0f >= I_zz5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_6 = p->m_6;
-    if (ARM7_RARELY_F(!(56.0f >= m_6))) {
+    if (ARM7_RARELY_F(!(18.0f >= m_6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x6 = p->c_x6;
@@ -1187,7 +1212,7 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz6 = p->I_zz6;
-    if (ARM7_RARELY_F(!(1200.0f >= I_zz6))) {
+    if (ARM7_RARELY_F(!(720.0f >= I_zz6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_7 = p->m_7;
@@ -1195,7 +1220,7 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x7 = p->c_x7;
-    if (ARM7_RARELY_F(!(0.31f >= c_x7))) {
+    if (ARM7_RARELY_F(!(0.17f >= c_x7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_y7 = p->c_y7;
@@ -1208,15 +1233,15 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx7 = p->I_xx7;
-    if (ARM7_RARELY_F(!(1.6f >= I_xx7))) {
+    if (ARM7_RARELY_F(!(0.094f >= I_xx7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy7 = p->I_yy7;
-    if (ARM7_RARELY_F(!(0.85f >= I_yy7))) {
+    if (ARM7_RARELY_F(!(0.27f >= I_yy7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz7 = p->I_zz7;
-    if (ARM7_RARELY_F(!(670.0f >= I_zz7))) {
+    if (ARM7_RARELY_F(!(370.0f >= I_zz7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float q_2 = q[1];
@@ -1253,7 +1278,6 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
     float sine[8];
     float cosine[8];
     arm7_sincos_group_f(6, angle, sine, cosine);
-    const float m_2 = p->m_2;
     const float c_x2 = p->c_x2;
     const float t19 = m_2 * c_x2;
     const float t20 = c_x2 * t19;
@@ -1897,7 +1921,6 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
     const float t627 = t619 + t626;
     const float t628 = t9 * t627;
     const float t629 = t618 + t628;
-    const float d_3 = p->d_3;
     const float t630 = d_3 * t629;
     const float t631 = t575 + t630;
     const float t632 = t575 + t631;

@@ -701,6 +701,10 @@ arm7_prepared arm7_prepare(const arm7_params *p) {
 }
 
 arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7], const double u[7], const arm7_prepared *p, double qdd[7]) {
+    const double d_3 = p->value[0];
+    if (ARM7_RARELY(!(1300.0 >= d_3))) {
+        return ARM7_PARAMETER_RANGE;
+    }
     const double d_5 = p->value[1];
     if (ARM7_RARELY(!(4.0 >= d_5))) {
         return ARM7_PARAMETER_RANGE;
@@ -709,12 +713,16 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
     if (ARM7_RARELY(!(2.2 >= d_7))) {
         return ARM7_PARAMETER_RANGE;
     }
+    const double m_2 = p->value[4];
+    if (ARM7_RARELY(!(40000.0 >= m_2))) {
+        return ARM7_PARAMETER_RANGE;
+    }
     const double I_zz2 = p->value[8];
-    if (ARM7_RARELY(!(16000.0 >= I_zz2))) {
+    if (ARM7_RARELY(!(500.0 >= I_zz2))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double m_3 = p->value[12];
-    if (ARM7_RARELY(!(3000.0 >= m_3))) {
+    if (ARM7_RARELY(!(940.0 >= m_3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x3 = p->value[13];
@@ -726,11 +734,15 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx3 = p->value[16];
-    if (ARM7_RARELY(!(160.0 >= I_xx3))) {
+    if (ARM7_RARELY(!(53.0 >= I_xx3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy3 = p->value[17];
-    if (ARM7_RARELY(!(85.0 >= I_yy3))) {
+    if (ARM7_RARELY(!(48.0 >= I_yy3))) {
+        return ARM7_PARAMETER_RANGE;
+    }
+    const double I_zz3 = p->value[18];
+    if (ARM7_RARELY(!(3700.0 >= I_zz3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double m_4 = p->value[22];
@@ -746,11 +758,15 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx4 = p->value[26];
-    if (ARM7_RARELY(!(48.0 >= I_xx4))) {
+    if (ARM7_RARELY(!(85.0 >= I_xx4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy4 = p->value[27];
     if (ARM7_RARELY(!(24.0 >= I_yy4))) {
+        return ARM7_PARAMETER_RANGE;
+    }
+    const double I_zz4 = p->value[28];
+    if (ARM7_RARELY(!(3400.0 >= I_zz4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double m_5 = p->value[32];
@@ -770,15 +786,15 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx5 = p->value[36];
-    if (ARM7_RARELY(!(53.0 >= I_xx5))) {
+    if (ARM7_RARELY(!(30.0 >= I_xx5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy5 = p->value[37];
-    if (ARM7_RARELY(!(48.0 >= I_yy5))) {
+    if (ARM7_RARELY(!(27.0 >= I_yy5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double m_6 = p->value[42];
-    if (ARM7_RARELY(!(56.0 >= m_6))) {
+    if (ARM7_RARELY(!(18.0 >= m_6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x6 = p->value[43];
@@ -806,7 +822,7 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x7 = p->value[53];
-    if (ARM7_RARELY(!(0.31 >= c_x7))) {
+    if (ARM7_RARELY(!(0.17 >= c_x7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_y7 = p->value[54];
@@ -818,11 +834,11 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx7 = p->value[56];
-    if (ARM7_RARELY(!(1.6 >= I_xx7))) {
+    if (ARM7_RARELY(!(0.094 >= I_xx7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy7 = p->value[57];
-    if (ARM7_RARELY(!(0.85 >= I_yy7))) {
+    if (ARM7_RARELY(!(0.27 >= I_yy7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double q_2 = q[1];
@@ -1405,7 +1421,6 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
     const double t627 = t619 + t626;
     const double t628 = t9 * t627;
     const double t629 = t618 + t628;
-    const double d_3 = p->value[0];
     const double t630 = d_3 * t629;
     const double t631 = t575 + t630;
     const double t632 = t575 + t631;
@@ -1539,7 +1554,6 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
     const double g = p->value[3];
     const double t902 = g * t7;
     const double t903 = t901 - t902;
-    const double m_2 = p->value[4];
     const double t904 = m_2 * t903;
     const double c_z2 = p->value[7];
     const double t905 = c_z2 * t904;
@@ -2085,7 +2099,6 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
     const double t1412 = I_xy4 * t1411;
     const double t1413 = p->value[147];
     const double t1414 = t979 * t1413;
-    const double I_zz4 = p->value[28];
     const double t1415 = I_zz4 * t984;
     const double t1416 = t1414 + t1415;
     const double t1417 = I_yz4 * t974;
@@ -2175,7 +2188,6 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
     const double t1496 = I_xy3 * t1495;
     const double t1497 = p->value[150];
     const double t1498 = t964 * t1497;
-    const double I_zz3 = p->value[18];
     const double t1499 = I_zz3 * t892;
     const double t1500 = t1498 - t1499;
     const double t1501 = I_yz3 * t983;

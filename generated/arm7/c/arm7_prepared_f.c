@@ -688,6 +688,10 @@ arm7_prepared_f arm7_prepare_f(const arm7_params_f *p) {
 }
 
 arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7], const float u[7], const arm7_prepared_f *p, float qdd[7]) {
+    const float d_3 = p->value[0];
+    if (ARM7_RARELY_F(!(1300.0f >= d_3))) {
+        return ARM7_PARAMETER_RANGE;
+    }
     const float d_5 = p->value[1];
     if (ARM7_RARELY_F(!(4.0f >= d_5))) {
         return ARM7_PARAMETER_RANGE;
@@ -696,12 +700,16 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     if (ARM7_RARELY_F(!(2.2f >= d_7))) {
         return ARM7_PARAMETER_RANGE;
     }
+    const float m_2 = p->value[4];
+    if (ARM7_RARELY_F(!(40000.0f >= m_2))) {
+        return ARM7_PARAMETER_RANGE;
+    }
     const float I_zz2 = p->value[8];
-    if (ARM7_RARELY_F(!(16000.0f >= I_zz2))) {
+    if (ARM7_RARELY_F(!(500.0f >= I_zz2))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_3 = p->value[12];
-    if (ARM7_RARELY_F(!(3000.0f >= m_3))) {
+    if (ARM7_RARELY_F(!(940.0f >= m_3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x3 = p->value[13];
@@ -713,15 +721,15 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx3 = p->value[16];
-    if (ARM7_RARELY_F(!(160.0f >= I_xx3))) {
+    if (ARM7_RARELY_F(!(53.0f >= I_xx3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy3 = p->value[17];
-    if (ARM7_RARELY_F(!(85.0f >= I_yy3))) {
+    if (ARM7_RARELY_F(!(48.0f >= I_yy3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz3 = p->value[18];
-    if (ARM7_RARELY_F(!(6700.0f >= I_zz3))) {
+    if (ARM7_RARELY_F(!(2100.0f >= I_zz3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_4 = p->value[22];
@@ -737,7 +745,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx4 = p->value[26];
-    if (ARM7_RARELY_F(!(48.0f >= I_xx4))) {
+    if (ARM7_RARELY_F(!(85.0f >= I_xx4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy4 = p->value[27];
@@ -745,7 +753,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz4 = p->value[28];
-    if (ARM7_RARELY_F(!(6000.0f >= I_zz4))) {
+    if (ARM7_RARELY_F(!(1900.0f >= I_zz4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_5 = p->value[32];
@@ -765,19 +773,19 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx5 = p->value[36];
-    if (ARM7_RARELY_F(!(53.0f >= I_xx5))) {
+    if (ARM7_RARELY_F(!(30.0f >= I_xx5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy5 = p->value[37];
-    if (ARM7_RARELY_F(!(48.0f >= I_yy5))) {
+    if (ARM7_RARELY_F(!(27.0f >= I_yy5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz5 = p->value[38];
-    if (ARM7_RARELY_F(!(1200.0f >= I_zz5))) {
+    if (ARM7_RARELY_F(!(2100.0f >= I_zz5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_6 = p->value[42];
-    if (ARM7_RARELY_F(!(56.0f >= m_6))) {
+    if (ARM7_RARELY_F(!(18.0f >= m_6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x6 = p->value[43];
@@ -801,7 +809,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz6 = p->value[48];
-    if (ARM7_RARELY_F(!(1200.0f >= I_zz6))) {
+    if (ARM7_RARELY_F(!(720.0f >= I_zz6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_7 = p->value[52];
@@ -809,7 +817,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x7 = p->value[53];
-    if (ARM7_RARELY_F(!(0.31f >= c_x7))) {
+    if (ARM7_RARELY_F(!(0.17f >= c_x7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_y7 = p->value[54];
@@ -821,15 +829,15 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx7 = p->value[56];
-    if (ARM7_RARELY_F(!(1.6f >= I_xx7))) {
+    if (ARM7_RARELY_F(!(0.094f >= I_xx7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy7 = p->value[57];
-    if (ARM7_RARELY_F(!(0.85f >= I_yy7))) {
+    if (ARM7_RARELY_F(!(0.27f >= I_yy7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz7 = p->value[58];
-    if (ARM7_RARELY_F(!(670.0f >= I_zz7))) {
+    if (ARM7_RARELY_F(!(370.0f >= I_zz7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float q_2 = q[1];
@@ -1412,7 +1420,6 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float t627 = t619 + t626;
     const float t628 = t9 * t627;
     const float t629 = t618 + t628;
-    const float d_3 = p->value[0];
     const float t630 = d_3 * t629;
     const float t631 = t575 + t630;
     const float t632 = t575 + t631;
@@ -1546,7 +1553,6 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
     const float g = p->value[3];
     const float t902 = g * t7;
     const float t903 = t901 - t902;
-    const float m_2 = p->value[4];
     const float t904 = m_2 * t903;
     const float c_z2 = p->value[7];
     const float t905 = c_z2 * t904;

@@ -48,6 +48,28 @@ typedef char symgen_needs_no_fsingle_precision_constant[sizeof(0.1) == sizeof(do
 
 arm7_status arm7_inverse_dynamics_sc(const arm7_trig *sc, const double q[7], const double qd[7], const double qdd[7], const arm7_params *p, double u[7]) {
     (void)q;
+    const double d_5 = p->d_5;
+    if (ARM7_RARELY(!(d_5 >= 0.041))) {
+        return ARM7_PARAMETER_RANGE;
+    }
+    const double I_zz2 = p->I_zz2;
+    if (ARM7_RARELY(!(280.0 >= I_zz2))) {
+        return ARM7_PARAMETER_RANGE;
+    }
+    const double I_xz2 = p->I_xz2;
+    const double size_of_I_xz2 = fabs(I_xz2);
+    if (ARM7_RARELY(!(110.0 >= size_of_I_xz2))) {
+        return ARM7_PARAMETER_RANGE;
+    }
+    const double I_yz2 = p->I_yz2;
+    const double size_of_I_yz2 = fabs(I_yz2);
+    if (ARM7_RARELY(!(200.0 >= size_of_I_yz2))) {
+        return ARM7_PARAMETER_RANGE;
+    }
+    const double m_4 = p->m_4;
+    if (ARM7_RARELY(!(48.0 >= m_4))) {
+        return ARM7_PARAMETER_RANGE;
+    }
     const double c_x1 = p->c_x1;
     const double t19 = c_x1 * c_x1;
     const double c_y1 = p->c_y1;
@@ -67,7 +89,6 @@ arm7_status arm7_inverse_dynamics_sc(const arm7_trig *sc, const double q[7], con
     const double t27 = t25 * t26;
     const double q_2_ddot = qdd[1];
     const double t28 = q_2_ddot + t27;
-    const double I_xz2 = p->I_xz2;
     const double t29 = I_xz2 * t28;
     const double t30 = q_1_ddot * sin_q_2;
     const double q_2_dot = qd[1];
@@ -75,7 +96,6 @@ arm7_status arm7_inverse_dynamics_sc(const arm7_trig *sc, const double q[7], con
     const double t32 = t30 + t31;
     const double I_xx2 = p->I_xx2;
     const double t33 = I_xx2 * t32;
-    const double I_zz2 = p->I_zz2;
     const double I_yy2 = p->I_yy2;
     const double t34 = I_zz2 - I_yy2;
     const double t35 = t31 * t34;
@@ -91,7 +111,6 @@ arm7_status arm7_inverse_dynamics_sc(const arm7_trig *sc, const double q[7], con
     const double t44 = t26 * t26;
     const double t45 = q_2_dot * q_2_dot;
     const double t46 = t44 - t45;
-    const double I_yz2 = p->I_yz2;
     const double t47 = I_yz2 * t46;
     const double t48 = t43 + t47;
     const double c_x2 = p->c_x2;
@@ -233,7 +252,6 @@ arm7_status arm7_inverse_dynamics_sc(const arm7_trig *sc, const double q[7], con
     const double t159 = c_z4 * t115;
     const double t160 = t158 - t159;
     const double t161 = t160 - t107;
-    const double m_4 = p->m_4;
     const double t162 = m_4 * t161;
     const double t163 = c_y4 * t162;
     const double t164 = t72 * cos_q_4;
@@ -277,7 +295,6 @@ arm7_status arm7_inverse_dynamics_sc(const arm7_trig *sc, const double q[7], con
     const double t195 = t193 - t194;
     const double t196 = t187 + t195;
     const double t197 = t184 + t196;
-    const double d_5 = p->d_5;
     const double t198 = d_5 * t176;
     const double t199 = t169 - t198;
     const double cos_q_5 = sc->cos_q_5;
@@ -874,6 +891,10 @@ arm7_status arm7_inverse_dynamics_sc(const arm7_trig *sc, const double q[7], con
 
 arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], const double qd[7], const double u[7], const arm7_params *p, double qdd[7]) {
     (void)q;
+    const double d_3 = p->d_3;
+    if (ARM7_RARELY(!(1300.0 >= d_3))) {
+        return ARM7_PARAMETER_RANGE;
+    }
     const double d_5 = p->d_5;
     if (ARM7_RARELY(!(4.0 >= d_5))) {
         return ARM7_PARAMETER_RANGE;
@@ -882,12 +903,16 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
     if (ARM7_RARELY(!(2.2 >= d_7))) {
         return ARM7_PARAMETER_RANGE;
     }
+    const double m_2 = p->m_2;
+    if (ARM7_RARELY(!(40000.0 >= m_2))) {
+        return ARM7_PARAMETER_RANGE;
+    }
     const double I_zz2 = p->I_zz2;
-    if (ARM7_RARELY(!(16000.0 >= I_zz2))) {
+    if (ARM7_RARELY(!(500.0 >= I_zz2))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double m_3 = p->m_3;
-    if (ARM7_RARELY(!(3000.0 >= m_3))) {
+    if (ARM7_RARELY(!(940.0 >= m_3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x3 = p->c_x3;
@@ -899,11 +924,15 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx3 = p->I_xx3;
-    if (ARM7_RARELY(!(160.0 >= I_xx3))) {
+    if (ARM7_RARELY(!(53.0 >= I_xx3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy3 = p->I_yy3;
-    if (ARM7_RARELY(!(85.0 >= I_yy3))) {
+    if (ARM7_RARELY(!(48.0 >= I_yy3))) {
+        return ARM7_PARAMETER_RANGE;
+    }
+    const double I_zz3 = p->I_zz3;
+    if (ARM7_RARELY(!(3700.0 >= I_zz3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double m_4 = p->m_4;
@@ -919,11 +948,15 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx4 = p->I_xx4;
-    if (ARM7_RARELY(!(48.0 >= I_xx4))) {
+    if (ARM7_RARELY(!(85.0 >= I_xx4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy4 = p->I_yy4;
     if (ARM7_RARELY(!(24.0 >= I_yy4))) {
+        return ARM7_PARAMETER_RANGE;
+    }
+    const double I_zz4 = p->I_zz4;
+    if (ARM7_RARELY(!(3400.0 >= I_zz4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double m_5 = p->m_5;
@@ -944,15 +977,15 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx5 = p->I_xx5;
-    if (ARM7_RARELY(!(53.0 >= I_xx5))) {
+    if (ARM7_RARELY(!(30.0 >= I_xx5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy5 = p->I_yy5;
-    if (ARM7_RARELY(!(48.0 >= I_yy5))) {
+    if (ARM7_RARELY(!(27.0 >= I_yy5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double m_6 = p->m_6;
-    if (ARM7_RARELY(!(56.0 >= m_6))) {
+    if (ARM7_RARELY(!(18.0 >= m_6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x6 = p->c_x6;
@@ -981,7 +1014,7 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x7 = p->c_x7;
-    if (ARM7_RARELY(!(0.31 >= c_x7))) {
+    if (ARM7_RARELY(!(0.17 >= c_x7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_y7 = p->c_y7;
@@ -994,14 +1027,13 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx7 = p->I_xx7;
-    if (ARM7_RARELY(!(1.6 >= I_xx7))) {
+    if (ARM7_RARELY(!(0.094 >= I_xx7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy7 = p->I_yy7;
-    if (ARM7_RARELY(!(0.85 >= I_yy7))) {
+    if (ARM7_RARELY(!(0.27 >= I_yy7))) {
         return ARM7_PARAMETER_RANGE;
     }
-    const double m_2 = p->m_2;
     const double c_x2 = p->c_x2;
     const double t19 = m_2 * c_x2;
     const double t20 = c_x2 * t19;
@@ -1412,7 +1444,6 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
     const double t398 = t392 + t397;
     const double t399 = d_5 * t398;
     const double t400 = c_x4 * t353;
-    const double I_zz4 = p->I_zz4;
     const double t401 = I_zz4 + t339;
     const double t402 = t400 + t401;
     const double t403 = t399 + t402;
@@ -1453,7 +1484,6 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
     const double t433 = c_y3 * t430;
     const double t434 = c_x3 * t28;
     const double t435 = t433 + t434;
-    const double I_zz3 = p->I_zz3;
     const double t436 = I_zz3 + t435;
     const double t437 = sin_q_4 * t408;
     const double t438 = t420 + t437;
@@ -1650,7 +1680,6 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
     const double t627 = t619 + t626;
     const double t628 = sin_q_3 * t627;
     const double t629 = t618 + t628;
-    const double d_3 = p->d_3;
     const double t630 = d_3 * t629;
     const double t631 = t575 + t630;
     const double t632 = t575 + t631;

@@ -901,8 +901,8 @@ size_t delta_forward_dynamics_batch(size_t count, size_t stride, const double *q
             const double t467 = t399 - t466;
             const double t468 = t189 * t467;
             double rest = (t459 - t459) * t465 * t468 + (t476 - t476) * t484 * t492;
-            rest += 2.0 >= J_a ? 0.0 : 1.0;
-            rest += 0.88 >= J_m ? 0.0 : 1.0;
+            rest += 3.5 >= J_a ? 0.0 : 1.0;
+            rest += 2.8 >= J_m ? 0.0 : 1.0;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += 100000.0 >= t2 ? 0.0 : 1.0;
             rest += 100000.0 >= t3 ? 0.0 : 1.0;
@@ -1482,6 +1482,7 @@ size_t delta_multipliers_batch(size_t count, size_t stride, const double *q, con
             const double t460 = t454 - t459;
             const double t461 = t195 * t460;
             double rest = (t461 - t461) * t458 * t452;
+            rest += 20.0 >= m_a ? 0.0 : 1.0;
             rest += 5.0 >= m_r ? 0.0 : 1.0;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += 100000.0 >= t2 ? 0.0 : 1.0;

@@ -438,11 +438,11 @@ delta_status delta_inverse_dynamics_sc(const delta_trig *sc, const double q[6], 
 
 delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], const double qd[6], const double u[3], const delta_params *p, double qdd[6]) {
     const double J_a = p->J_a;
-    if (DELTA_RARELY(!(2.0 >= J_a))) {
+    if (DELTA_RARELY(!(3.5 >= J_a))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double J_m = p->J_m;
-    if (DELTA_RARELY(!(0.88 >= J_m))) {
+    if (DELTA_RARELY(!(2.8 >= J_m))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double r = p->r;
@@ -989,6 +989,10 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
 }
 
 delta_status delta_multipliers_sc(const delta_trig *sc, const double q[6], const double qd[6], const double u[3], const delta_params *p, double lambda_B[3]) {
+    const double m_a = p->m_a;
+    if (DELTA_RARELY(!(20.0 >= m_a))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const double m_r = p->m_r;
     if (DELTA_RARELY(!(5.0 >= m_r))) {
         return DELTA_PARAMETER_RANGE;
@@ -1275,7 +1279,6 @@ delta_status delta_multipliers_sc(const delta_trig *sc, const double q[6], const
     const double t382 = t311 * t381;
     const double t385 = t384 * t327;
     const double t174 = 0.5 * m_r;
-    const double m_a = p->m_a;
     const double t173 = 0.25 * m_a;
     const double t175 = t173 + t174;
     const double t176 = l_1 * l_1;

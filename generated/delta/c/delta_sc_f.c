@@ -262,7 +262,7 @@ delta_status delta_inverse_dynamics_sc_f(const delta_trig_f *sc, const float q[6
         return DELTA_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;
-    if (DELTA_RARELY_F(!(l_2 >= 0.14f))) {
+    if (DELTA_RARELY_F(!(l_2 >= 0.00043f))) {
         return DELTA_PARAMETER_RANGE;
     }
     if (DELTA_RARELY_F(!(8.5f >= l_2))) {
@@ -436,11 +436,11 @@ delta_status delta_inverse_dynamics_sc_f(const delta_trig_f *sc, const float q[6
 
 delta_status delta_forward_dynamics_sc_f(const delta_trig_f *sc, const float q[6], const float qd[6], const float u[3], const delta_params_f *p, float qdd[6]) {
     const float J_a = p->J_a;
-    if (DELTA_RARELY_F(!(2.0f >= J_a))) {
+    if (DELTA_RARELY_F(!(3.5f >= J_a))) {
         return DELTA_PARAMETER_RANGE;
     }
     const float J_m = p->J_m;
-    if (DELTA_RARELY_F(!(0.88f >= J_m))) {
+    if (DELTA_RARELY_F(!(2.8f >= J_m))) {
         return DELTA_PARAMETER_RANGE;
     }
     const float r = p->r;
@@ -987,8 +987,8 @@ delta_status delta_forward_dynamics_sc_f(const delta_trig_f *sc, const float q[6
 }
 
 delta_status delta_multipliers_sc_f(const delta_trig_f *sc, const float q[6], const float qd[6], const float u[3], const delta_params_f *p, float lambda_B[3]) {
-    const float l_2 = p->l_2;
-    if (DELTA_RARELY_F(!(l_2 >= 7.5e-08f))) {
+    const float m_a = p->m_a;
+    if (DELTA_RARELY_F(!(20.0f >= m_a))) {
         return DELTA_PARAMETER_RANGE;
     }
     const float m_r = p->m_r;
@@ -1277,7 +1277,6 @@ delta_status delta_multipliers_sc_f(const delta_trig_f *sc, const float q[6], co
     const float t382 = t311 * t381;
     const float t385 = t384 * t327;
     const float t174 = 0.5f * m_r;
-    const float m_a = p->m_a;
     const float t173 = 0.25f * m_a;
     const float t175 = t173 + t174;
     const float t176 = l_1 * l_1;

@@ -1150,7 +1150,15 @@ front_car_status front_car_orthogonal_complement(const double q[4], const front_
 
 front_car_status front_car_projected_mass_matrix(const double q[4], const front_car_params *p, double G_tilde[16]) {
     const double L = p->L;
-    if (FRONT_CAR_RARELY(!(L >= 0.18))) {
+    if (FRONT_CAR_RARELY(!(L >= 0.32))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
+    const double m_1 = p->m_1;
+    if (FRONT_CAR_RARELY(!(m_1 >= 50.0))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
+    const double Theta_1 = p->Theta_1;
+    if (FRONT_CAR_RARELY(!(40000.0 >= Theta_1))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
     const double theta = q[2];
@@ -1190,13 +1198,11 @@ front_car_status front_car_projected_mass_matrix(const double q[4], const front_
     const double t20 = t15 * t15;
     const double t21 = t11 / t20;
     const double t22 = t6 * t6;
-    const double m_1 = p->m_1;
     const double t23 = m_1 * t22;
     const double m_2 = p->m_2;
     const double t24 = m_2 + t23;
     const double t25 = L * t24;
     const double t26 = L * t25;
-    const double Theta_1 = p->Theta_1;
     const double t27 = Theta_1 * t7;
     const double t28 = t26 + t27;
     const double t29 = t6 * t28;
@@ -1255,6 +1261,13 @@ front_car_status front_car_projected_mass_matrix(const double q[4], const front_
 }
 
 front_car_status front_car_projected_coriolis_matrix(const double q[4], const double qd[4], const front_car_params *p, double C_tilde[16]) {
+    const double L = p->L;
+    if (FRONT_CAR_RARELY(!(L >= 0.11))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
+    if (FRONT_CAR_RARELY(!(40.0 >= L))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const double theta = q[2];
     const double t1 = fabs(theta);
     const double phi = q[3];
@@ -1271,7 +1284,6 @@ front_car_status front_car_projected_coriolis_matrix(const double q[4], const do
     front_car_sincos_group(2, angle, sine, cosine);
     const double t5 = sine[1];
     const double t7 = t5 * t5;
-    const double L = p->L;
     const double t6 = cosine[1];
     const double t8 = L * t6;
     const double t3 = sine[0];
@@ -1600,7 +1612,7 @@ front_car_status front_car_minimal_mass_matrix(const double q[4], const front_ca
 
 front_car_status front_car_minimal_coriolis_matrix(const double q[4], const double qd[4], const front_car_params *p, double C_bar[4]) {
     const double L = p->L;
-    if (FRONT_CAR_RARELY(!(L >= 0.18))) {
+    if (FRONT_CAR_RARELY(!(L >= 0.57))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
     const double phi = q[3];
@@ -2361,6 +2373,10 @@ front_car_status front_car_forward_dynamics(const double q[4], const double qd[4
 }
 
 front_car_status front_car_multipliers(const double q[4], const double qd[4], const double u[2], const front_car_params *p, double lambda_B[2]) {
+    const double L = p->L;
+    if (FRONT_CAR_RARELY(!(L >= 0.11))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const double phi = q[3];
     const double t1 = fabs(phi);
     const double theta = q[2];
@@ -2377,7 +2393,6 @@ front_car_status front_car_multipliers(const double q[4], const double qd[4], co
     front_car_sincos_group(2, angle, sine, cosine);
     const double t3 = sine[0];
     const double t7 = t3 * t3;
-    const double L = p->L;
     const double t4 = cosine[0];
     const double t8 = L * t4;
     const double t9 = t8 * t8;
@@ -2564,6 +2579,10 @@ front_car_status front_car_energy(const double q[4], const double qd[4], const f
 }
 
 front_car_status front_car_singularity(const double q[4], const front_car_params *p, double measure[2]) {
+    const double L = p->L;
+    if (FRONT_CAR_RARELY(!(L >= 0.11))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const double phi = q[3];
     const double t1 = fabs(phi);
     const double theta = q[2];
@@ -2578,7 +2597,6 @@ front_car_status front_car_singularity(const double q[4], const front_car_params
     double sine[2];
     double cosine[2];
     front_car_sincos_group(2, angle, sine, cosine);
-    const double L = p->L;
     const double t4 = cosine[0];
     const double t7 = L * t4;
     const double t8 = -t7;

@@ -545,6 +545,10 @@ front_car_status front_car_nullspace_projector_f(const float q[4], const front_c
 }
 
 front_car_status front_car_nullspace_projector_dot_f(const float q[4], const float qd[4], const front_car_params_f *p, float N_B_dot[16]) {
+    const float L = p->L;
+    if (FRONT_CAR_RARELY_F(!(400000000.0f >= L))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const float phi = q[3];
     const float t1 = fabsf(phi);
     const float theta = q[2];
@@ -561,7 +565,6 @@ front_car_status front_car_nullspace_projector_dot_f(const float q[4], const flo
     front_car_sincos_group_f(2, angle, sine, cosine);
     const float t3 = sine[0];
     const float t7 = t3 * t3;
-    const float L = p->L;
     const float t4 = cosine[0];
     const float t8 = L * t4;
     const float t5 = sine[1];
@@ -1137,7 +1140,15 @@ front_car_status front_car_orthogonal_complement_f(const float q[4], const front
 
 front_car_status front_car_projected_mass_matrix_f(const float q[4], const front_car_params_f *p, float G_tilde[16]) {
     const float L = p->L;
-    if (FRONT_CAR_RARELY_F(!(L >= 0.18f))) {
+    if (FRONT_CAR_RARELY_F(!(L >= 0.57f))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
+    const float m_1 = p->m_1;
+    if (FRONT_CAR_RARELY_F(!(m_1 >= 50.0f))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
+    const float Theta_1 = p->Theta_1;
+    if (FRONT_CAR_RARELY_F(!(40000.0f >= Theta_1))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
     const float theta = q[2];
@@ -1177,13 +1188,11 @@ front_car_status front_car_projected_mass_matrix_f(const float q[4], const front
     const float t20 = t15 * t15;
     const float t21 = t11 / t20;
     const float t22 = t6 * t6;
-    const float m_1 = p->m_1;
     const float t23 = m_1 * t22;
     const float m_2 = p->m_2;
     const float t24 = m_2 + t23;
     const float t25 = L * t24;
     const float t26 = L * t25;
-    const float Theta_1 = p->Theta_1;
     const float t27 = Theta_1 * t7;
     const float t28 = t26 + t27;
     const float t29 = t6 * t28;
@@ -1242,6 +1251,13 @@ front_car_status front_car_projected_mass_matrix_f(const float q[4], const front
 }
 
 front_car_status front_car_projected_coriolis_matrix_f(const float q[4], const float qd[4], const front_car_params_f *p, float C_tilde[16]) {
+    const float L = p->L;
+    if (FRONT_CAR_RARELY_F(!(L >= 0.11f))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
+    if (FRONT_CAR_RARELY_F(!(40.0f >= L))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const float theta = q[2];
     const float t1 = fabsf(theta);
     const float phi = q[3];
@@ -1258,7 +1274,6 @@ front_car_status front_car_projected_coriolis_matrix_f(const float q[4], const f
     front_car_sincos_group_f(2, angle, sine, cosine);
     const float t5 = sine[1];
     const float t7 = t5 * t5;
-    const float L = p->L;
     const float t6 = cosine[1];
     const float t8 = L * t6;
     const float t3 = sine[0];
@@ -1587,7 +1602,7 @@ front_car_status front_car_minimal_mass_matrix_f(const float q[4], const front_c
 
 front_car_status front_car_minimal_coriolis_matrix_f(const float q[4], const float qd[4], const front_car_params_f *p, float C_bar[4]) {
     const float L = p->L;
-    if (FRONT_CAR_RARELY_F(!(L >= 0.18f))) {
+    if (FRONT_CAR_RARELY_F(!(L >= 0.32f))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
     if (FRONT_CAR_RARELY_F(!(120000000.0f >= L))) {
@@ -2354,6 +2369,10 @@ front_car_status front_car_forward_dynamics_f(const float q[4], const float qd[4
 }
 
 front_car_status front_car_multipliers_f(const float q[4], const float qd[4], const float u[2], const front_car_params_f *p, float lambda_B[2]) {
+    const float L = p->L;
+    if (FRONT_CAR_RARELY_F(!(L >= 0.11f))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const float phi = q[3];
     const float t1 = fabsf(phi);
     const float theta = q[2];
@@ -2370,7 +2389,6 @@ front_car_status front_car_multipliers_f(const float q[4], const float qd[4], co
     front_car_sincos_group_f(2, angle, sine, cosine);
     const float t3 = sine[0];
     const float t7 = t3 * t3;
-    const float L = p->L;
     const float t4 = cosine[0];
     const float t8 = L * t4;
     const float t9 = t8 * t8;
@@ -2557,6 +2575,10 @@ front_car_status front_car_energy_f(const float q[4], const float qd[4], const f
 }
 
 front_car_status front_car_singularity_f(const float q[4], const front_car_params_f *p, float measure[2]) {
+    const float L = p->L;
+    if (FRONT_CAR_RARELY_F(!(L >= 0.11f))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const float phi = q[3];
     const float t1 = fabsf(phi);
     const float theta = q[2];
@@ -2571,7 +2593,6 @@ front_car_status front_car_singularity_f(const float q[4], const front_car_param
     float sine[4];
     float cosine[4];
     front_car_sincos_group_f(2, angle, sine, cosine);
-    const float L = p->L;
     const float t4 = cosine[0];
     const float t7 = L * t4;
     const float t8 = -t7;

@@ -516,6 +516,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_applied_force(const double q[6], const double
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_residual(const double q[6], const rapkm_2rrr_rr_params *p, double g[4]) {
+    const double l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_1 = q[0];
     const double b_1 = q[3];
     const double t1 = a_1 + b_1;
@@ -556,7 +560,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_residual(const double q[6], const 
     const double t11 = cosine[0];
     const double t13 = cosine[1];
     const double t22 = t11 - t13;
-    const double l_1 = p->l_1;
     const double t23 = l_1 * t22;
     const double t15 = cosine[2];
     const double t17 = cosine[3];
@@ -872,7 +875,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_jacobian_dot(const double q[6], co
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_pseudoinverse(const double q[6], const rapkm_2rrr_rr_params *p, double B_pinv[24]) {
     const double l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.027))) {
+    if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double a_2 = q[1];
@@ -1402,6 +1405,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_nullspace_projector(const double q[6], const 
     if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const double l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_2 = q[1];
     const double b_2 = q[4];
     const double t1 = a_2 + b_2;
@@ -1439,7 +1446,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_nullspace_projector(const double q[6], const 
     double sine[6];
     double cosine[6];
     rapkm_2rrr_rr_sincos_group(6, angle, sine, cosine);
-    const double l_2 = p->l_2;
     const double t10 = sine[0];
     const double t22 = l_2 * t10;
     const double t23 = t22 * t22;
@@ -2998,6 +3004,34 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse(const double q[6], con
     if (RAPKM_2RRR_RR_RARELY(!(1.6 >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const double m_1 = p->m_1;
+    if (RAPKM_2RRR_RR_RARELY(!(m_1 >= 0.0051))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const double m_2 = p->m_2;
+    if (RAPKM_2RRR_RR_RARELY(!(10.0 >= m_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const double J_1 = p->J_1;
+    if (RAPKM_2RRR_RR_RARELY(!(J_1 >= 1.1e-05))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const double J_2 = p->J_2;
+    if (RAPKM_2RRR_RR_RARELY(!(J_2 >= 1.1e-05))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    if (RAPKM_2RRR_RR_RARELY(!(0.1 >= J_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const double J_motor = p->J_motor;
+    if (RAPKM_2RRR_RR_RARELY(!(J_motor >= 1.1e-05))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const double m_payload = p->m_payload;
+    const double size_of_m_payload = fabs(m_payload);
+    if (RAPKM_2RRR_RR_RARELY(!(1700.0 >= size_of_m_payload))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_3 = q[2];
     const double t1 = fabs(a_3);
     const double b_3 = q[5];
@@ -3034,14 +3068,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse(const double q[6], con
     rapkm_2rrr_rr_sincos_group(6, angle, sine, cosine);
     const double t19 = l_2 * l_2;
     const double t206 = l_1 * l_2;
-    const double m_2 = p->m_2;
     const double t207 = 0.5 * m_2;
     const double t223 = l_1 * l_1;
     const double t203 = m_2 * t19;
     const double t204 = 0.25 * t203;
-    const double J_2 = p->J_2;
     const double J_elbow = J_2 + t204;
-    const double m_payload = p->m_payload;
     const double t245 = m_payload * t19;
     const double J_elbow_1 = J_elbow + t245;
     const double t242 = m_payload + t207;
@@ -3049,10 +3080,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse(const double q[6], con
     const double t243 = t14 * t206;
     const double t244 = t242 * t243;
     const double t246 = J_elbow_1 + t244;
-    const double J_1 = p->J_1;
-    const double J_motor = p->J_motor;
     const double t222 = J_1 + J_motor;
-    const double m_1 = p->m_1;
     const double t224 = 0.25 * m_1;
     const double t225 = m_2 + t224;
     const double t226 = t223 * t225;
@@ -3907,7 +3935,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse(const double q[6], con
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector(const double q[6], const rapkm_2rrr_rr_params *p, double N_BG[36]) {
     const double l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.027))) {
+    if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
@@ -3915,6 +3943,19 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector(const double q[6
     }
     const double l_2 = p->l_2;
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const double m_2 = p->m_2;
+    if (RAPKM_2RRR_RR_RARELY(!(10.0 >= m_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const double J_2 = p->J_2;
+    if (RAPKM_2RRR_RR_RARELY(!(3.1 >= J_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const double m_payload = p->m_payload;
+    const double size_of_m_payload = fabs(m_payload);
+    if (RAPKM_2RRR_RR_RARELY(!(10.0 >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double a_2 = q[1];
@@ -4171,12 +4212,9 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector(const double q[6
     const double t226 = t211 + t225;
     const double t227 = 2.8398992587956425e-29 * t226;
     const double t248 = l_2 * l_2;
-    const double m_2 = p->m_2;
     const double t249 = m_2 * t248;
     const double t250 = 0.25 * t249;
-    const double J_2 = p->J_2;
     const double J_elbow = J_2 + t250;
-    const double m_payload = p->m_payload;
     const double t292 = m_payload * t248;
     const double J_elbow_1 = J_elbow + t292;
     const double t252 = l_1 * l_2;
@@ -5723,6 +5761,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix(const double q[6], cons
     if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const double m_payload = p->m_payload;
+    const double size_of_m_payload = fabs(m_payload);
+    if (RAPKM_2RRR_RR_RARELY(!(560.0 >= size_of_m_payload))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_2 = q[1];
     const double t1 = fabs(a_2);
     const double b_2 = q[4];
@@ -6063,7 +6106,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix(const double q[6], cons
     const double t297 = t296 * t296;
     const double t298 = t266 + t297;
     const double t299 = l_1 * l_1;
-    const double m_payload = p->m_payload;
     const double t300 = m_payload * t299;
     const double J_1 = p->J_1;
     const double J_motor = p->J_motor;
@@ -6586,6 +6628,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix(const double q[6], 
     if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const double m_payload = p->m_payload;
+    const double size_of_m_payload = fabs(m_payload);
+    if (RAPKM_2RRR_RR_RARELY(!(10.0 >= size_of_m_payload))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_2 = q[1];
     const double t1 = fabs(a_2);
     const double b_2 = q[4];
@@ -6927,7 +6974,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix(const double q[6], 
     const double t298 = t297 * t297;
     const double t299 = t267 + t298;
     const double t300 = l_1 * l_1;
-    const double m_payload = p->m_payload;
     const double t301 = m_payload * t300;
     const double J_1 = p->J_1;
     const double J_motor = p->J_motor;
@@ -8779,6 +8825,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix(const double q[6], co
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const double m_payload = p->m_payload;
+    const double size_of_m_payload = fabs(m_payload);
+    if (RAPKM_2RRR_RR_RARELY(!(1700.0 >= size_of_m_payload))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double b_1 = q[3];
     const double t1 = fabs(b_1);
     const double a_3 = q[2];
@@ -9674,7 +9725,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix(const double q[6], co
     const double t885 = J_elbow * t852;
     const double t886 = t884 + t885;
     const double t887 = t883 + t886;
-    const double m_payload = p->m_payload;
     const double t220 = m_payload + t219;
     const double t221 = t208 * t220;
     const double t218 = m_payload * t34;
@@ -9886,7 +9936,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_velocity(const double q[6], const 
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY(!(1.6 >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double a_2 = q[1];
@@ -10271,6 +10321,9 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_velocity(const double q[6], const 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_acceleration(const double q[6], const double qd[6], const double qdd[6], const rapkm_2rrr_rr_params *p, double qdd_admissible[6]) {
     const double l_1 = p->l_1;
     if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double a_2 = q[1];
@@ -10862,6 +10915,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration(const double q[6], co
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const double y_1 = p->y_1;
+    const double size_of_y_1 = fabs(y_1);
+    if (RAPKM_2RRR_RR_RARELY(!(1.0 >= size_of_y_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_1 = q[0];
     const double b_1 = q[3];
     const double t1 = a_1 + b_1;
@@ -11209,7 +11267,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration(const double q[6], co
     const double t301 = sqrt(t226);
     const double t302 = copysign(t301, t217);
     const double t303 = t217 + t302;
-    const double y_1 = p->y_1;
     const double t304 = y_1 + t22;
     const double tip_1_y = t304 + t23;
     const double y_3 = p->y_3;
@@ -11663,6 +11720,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration(const double q[6], co
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_measured(const double q_m[3], const double q[6], const rapkm_2rrr_rr_params *p, double q_found[6]) {
+    const double l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double l_2 = p->l_2;
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -11704,7 +11765,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_measured(const double q_m[
     double sine[6];
     double cosine[6];
     rapkm_2rrr_rr_sincos_group(6, angle, sine, cosine);
-    const double l_1 = p->l_1;
     const double t10 = sine[0];
     const double t22 = l_1 * t10;
     const double t12 = sine[1];
@@ -15583,6 +15643,9 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_measured(const double q[6],
     if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_3 = q[2];
     const double b_3 = q[5];
     const double t1 = a_3 + b_3;
@@ -18539,6 +18602,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_task(const double q[6], con
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics(const double q[6], const double qd[6], const double qdd[6], const rapkm_2rrr_rr_params *p, double u[3]) {
+    const double m_payload = p->m_payload;
+    const double size_of_m_payload = fabs(m_payload);
+    if (RAPKM_2RRR_RR_RARELY(!(310.0 >= size_of_m_payload))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_1 = q[0];
     const double b_1 = q[3];
     const double t1 = a_1 + b_1;
@@ -18642,7 +18710,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics(const double q[6], const dou
     const double t107 = t104 + t106;
     const double t108 = t102 + t107;
     const double t109 = t76 * t108;
-    const double m_payload = p->m_payload;
     const double t66 = m_payload * t63;
     const double t67 = t65 + t66;
     const double t13 = cosine[0];
@@ -18793,7 +18860,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics(const double q[6], const dou
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double J_2 = p->J_2;
-    if (RAPKM_2RRR_RR_RARELY(!(100000.0 >= J_2))) {
+    if (RAPKM_2RRR_RR_RARELY(!(310.0 >= J_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double J_motor = p->J_motor;
@@ -18802,7 +18869,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics(const double q[6], const dou
     }
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
-    if (RAPKM_2RRR_RR_RARELY(!(170.0 >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY(!(10.0 >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double b_1 = q[3];
@@ -19672,9 +19739,13 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics(const double q[6], const dou
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers(const double q[6], const double qd[6], const double u[3], const rapkm_2rrr_rr_params *p, double lambda_B[4]) {
+    const double J_2 = p->J_2;
+    if (RAPKM_2RRR_RR_RARELY(!(0.1 >= J_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
-    if (RAPKM_2RRR_RR_RARELY(!(170.0 >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY(!(17000.0 >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double a_2 = q[1];
@@ -19949,7 +20020,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers(const double q[6], const double q
     const double m_2 = p->m_2;
     const double t228 = m_2 * t227;
     const double t229 = 0.25 * t228;
-    const double J_2 = p->J_2;
     const double J_elbow = J_2 + t229;
     const double t240 = m_payload * t227;
     const double J_elbow_1 = J_elbow + t240;
@@ -20450,6 +20520,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers(const double q[6], const double q
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_energy(const double q[6], const double qd[6], const rapkm_2rrr_rr_params *p, double T_U[2]) {
+    const double m_payload = p->m_payload;
+    const double size_of_m_payload = fabs(m_payload);
+    if (RAPKM_2RRR_RR_RARELY(!(10.0 >= size_of_m_payload))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double b_1 = q[3];
     const double t1 = fabs(b_1);
     const double b_2 = q[4];
@@ -20471,7 +20546,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_energy(const double q[6], const double qd[6],
     rapkm_2rrr_rr_sincos_group(3, angle, sine, cosine);
     const double m_2 = p->m_2;
     const double t10 = 0.5 * m_2;
-    const double m_payload = p->m_payload;
     const double t11 = m_payload + t10;
     const double l_1 = p->l_1;
     const double l_2 = p->l_2;
@@ -20548,7 +20622,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_energy(const double q[6], const double qd[6],
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_singularity(const double q[6], const rapkm_2rrr_rr_params *p, double measure[2]) {
     const double l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.027))) {
+    if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double a_2 = q[1];

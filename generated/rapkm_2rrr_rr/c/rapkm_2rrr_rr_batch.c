@@ -113,6 +113,7 @@ size_t rapkm_2rrr_rr_inverse_dynamics_batch(size_t count, size_t stride, const d
     const double J_2 = p->J_2;
     const double J_motor = p->J_motor;
     const double m_payload = p->m_payload;
+    const double size_of_m_payload = fabs(m_payload);
     const double t53 = l_1 * l_1;
     const double t63 = l_1 * l_2;
     const double t64 = m_2 * t63;
@@ -320,6 +321,7 @@ size_t rapkm_2rrr_rr_inverse_dynamics_batch(size_t count, size_t stride, const d
             const double t161 = t41 * t156;
             const double t162 = t138 - t161;
             double rest = (t158 - t158) * t160 * t162;
+            rest += 310.0 >= size_of_m_payload ? 0.0 : 1.0;
             rest += 100000.0 >= t7 ? 0.0 : 1.0;
             rest += 100000.0 >= t8 ? 0.0 : 1.0;
             rest += 100000.0 >= t9 ? 0.0 : 1.0;
@@ -1214,9 +1216,9 @@ size_t rapkm_2rrr_rr_forward_dynamics_batch(size_t count, size_t stride, const d
             double rest = (t748 - t748) * t751 * t754 + (t760 - t760) * t766 * t772;
             rest += 5600.0 >= m_1 ? 0.0 : 1.0;
             rest += 100.0 >= J_1 ? 0.0 : 1.0;
-            rest += 100000.0 >= J_2 ? 0.0 : 1.0;
+            rest += 310.0 >= J_2 ? 0.0 : 1.0;
             rest += 170.0 >= J_motor ? 0.0 : 1.0;
-            rest += 170.0 >= size_of_m_payload ? 0.0 : 1.0;
+            rest += 10.0 >= size_of_m_payload ? 0.0 : 1.0;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += 100000.0 >= t2 ? 0.0 : 1.0;
             rest += 100000.0 >= t3 ? 0.0 : 1.0;
@@ -2029,7 +2031,8 @@ size_t rapkm_2rrr_rr_multipliers_batch(size_t count, size_t stride, const double
             const double t678 = t340 * t677;
             const double t679 = t671 - t678;
             double rest = (t679 - t679) * t677 * t669 + t663 - t663;
-            rest += 170.0 >= size_of_m_payload ? 0.0 : 1.0;
+            rest += 0.1 >= J_2 ? 0.0 : 1.0;
+            rest += 17000.0 >= size_of_m_payload ? 0.0 : 1.0;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += 100000.0 >= t2 ? 0.0 : 1.0;
             rest += 100000.0 >= t3 ? 0.0 : 1.0;

@@ -100,6 +100,7 @@ size_t rapkm_2rrr_rr_inverse_dynamics_batch_f(size_t count, size_t stride, const
     const float J_2 = p->J_2;
     const float J_motor = p->J_motor;
     const float m_payload = p->m_payload;
+    const float size_of_m_payload = fabsf(m_payload);
     const float t53 = l_1 * l_1;
     const float t63 = l_1 * l_2;
     const float t64 = m_2 * t63;
@@ -307,6 +308,7 @@ size_t rapkm_2rrr_rr_inverse_dynamics_batch_f(size_t count, size_t stride, const
             const float t161 = t41 * t156;
             const float t162 = t138 - t161;
             float rest = (t158 - t158) * t160 * t162;
+            rest += 310.0f >= size_of_m_payload ? 0.0f : 1.0f;
             rest += 100.0f >= t7 ? 0.0f : 1.0f;
             rest += 100.0f >= t8 ? 0.0f : 1.0f;
             rest += 100.0f >= t9 ? 0.0f : 1.0f;
@@ -1200,10 +1202,11 @@ size_t rapkm_2rrr_rr_forward_dynamics_batch_f(size_t count, size_t stride, const
             const float t772 = t771 - t754;
             float rest = (t748 - t748) * t751 * t754 + (t760 - t760) * t766 * t772;
             rest += 5600.0f >= m_1 ? 0.0f : 1.0f;
+            rest += 56000.0f >= m_2 ? 0.0f : 1.0f;
             rest += 100.0f >= J_1 ? 0.0f : 1.0f;
-            rest += 17000.0f >= J_2 ? 0.0f : 1.0f;
+            rest += 310.0f >= J_2 ? 0.0f : 1.0f;
             rest += 170.0f >= J_motor ? 0.0f : 1.0f;
-            rest += 170.0f >= size_of_m_payload ? 0.0f : 1.0f;
+            rest += 10.0f >= size_of_m_payload ? 0.0f : 1.0f;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += 100.0f >= t2 ? 0.0f : 1.0f;
             rest += 100.0f >= t3 ? 0.0f : 1.0f;
@@ -2016,7 +2019,12 @@ size_t rapkm_2rrr_rr_multipliers_batch_f(size_t count, size_t stride, const floa
             const float t678 = t340 * t677;
             const float t679 = t671 - t678;
             float rest = (t679 - t679) * t677 * t669 + t663 - t663;
-            rest += 170.0f >= size_of_m_payload ? 0.0f : 1.0f;
+            rest += 170000.0f >= m_1 ? 0.0f : 1.0f;
+            rest += 56000.0f >= m_2 ? 0.0f : 1.0f;
+            rest += 1700.0f >= J_1 ? 0.0f : 1.0f;
+            rest += 0.1f >= J_2 ? 0.0f : 1.0f;
+            rest += 1000.0f >= J_motor ? 0.0f : 1.0f;
+            rest += 17000.0f >= size_of_m_payload ? 0.0f : 1.0f;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += 100.0f >= t2 ? 0.0f : 1.0f;
             rest += 100.0f >= t3 ? 0.0f : 1.0f;

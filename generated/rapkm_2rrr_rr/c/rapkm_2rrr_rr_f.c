@@ -503,6 +503,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_applied_force_f(const float q[6], const float
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_residual_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float g[4]) {
+    const float l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_1 = q[0];
     const float b_1 = q[3];
     const float t1 = a_1 + b_1;
@@ -543,7 +547,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_residual_f(const float q[6], const
     const float t11 = cosine[0];
     const float t13 = cosine[1];
     const float t22 = t11 - t13;
-    const float l_1 = p->l_1;
     const float t23 = l_1 * t22;
     const float t15 = cosine[2];
     const float t17 = cosine[3];
@@ -859,7 +862,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_jacobian_dot_f(const float q[6], c
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_pseudoinverse_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float B_pinv[24]) {
     const float l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.027f))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_2 = q[1];
@@ -1389,6 +1392,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_nullspace_projector_f(const float q[6], const
     if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const float l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_2 = q[1];
     const float b_2 = q[4];
     const float t1 = a_2 + b_2;
@@ -1426,7 +1433,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_nullspace_projector_f(const float q[6], const
     float sine[8];
     float cosine[8];
     rapkm_2rrr_rr_sincos_group_f(6, angle, sine, cosine);
-    const float l_2 = p->l_2;
     const float t10 = sine[0];
     const float t22 = l_2 * t10;
     const float t23 = t22 * t22;
@@ -2982,7 +2988,35 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse_f(const float q[6], co
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(1.6f >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float m_1 = p->m_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(m_1 >= 0.0051f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float m_2 = p->m_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(10.0f >= m_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float J_1 = p->J_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(J_1 >= 1.1e-05f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float J_2 = p->J_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(J_2 >= 1.1e-05f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    if (RAPKM_2RRR_RR_RARELY_F(!(0.1f >= J_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float J_motor = p->J_motor;
+    if (RAPKM_2RRR_RR_RARELY_F(!(J_motor >= 1.1e-05f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float m_payload = p->m_payload;
+    const float size_of_m_payload = fabsf(m_payload);
+    if (RAPKM_2RRR_RR_RARELY_F(!(1700.0f >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_3 = q[2];
@@ -3021,14 +3055,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse_f(const float q[6], co
     rapkm_2rrr_rr_sincos_group_f(6, angle, sine, cosine);
     const float t19 = l_2 * l_2;
     const float t206 = l_1 * l_2;
-    const float m_2 = p->m_2;
     const float t207 = 0.5f * m_2;
     const float t223 = l_1 * l_1;
     const float t203 = m_2 * t19;
     const float t204 = 0.25f * t203;
-    const float J_2 = p->J_2;
     const float J_elbow = J_2 + t204;
-    const float m_payload = p->m_payload;
     const float t245 = m_payload * t19;
     const float J_elbow_1 = J_elbow + t245;
     const float t242 = m_payload + t207;
@@ -3036,10 +3067,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse_f(const float q[6], co
     const float t243 = t14 * t206;
     const float t244 = t242 * t243;
     const float t246 = J_elbow_1 + t244;
-    const float J_1 = p->J_1;
-    const float J_motor = p->J_motor;
     const float t222 = J_1 + J_motor;
-    const float m_1 = p->m_1;
     const float t224 = 0.25f * m_1;
     const float t225 = m_2 + t224;
     const float t226 = t223 * t225;
@@ -3894,7 +3922,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse_f(const float q[6], co
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float N_BG[36]) {
     const float l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.027f))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
@@ -3902,6 +3930,19 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector_f(const float q[
     }
     const float l_2 = p->l_2;
     if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float m_2 = p->m_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(10.0f >= m_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float J_2 = p->J_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.1f >= J_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float m_payload = p->m_payload;
+    const float size_of_m_payload = fabsf(m_payload);
+    if (RAPKM_2RRR_RR_RARELY_F(!(10.0f >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_2 = q[1];
@@ -4158,12 +4199,9 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector_f(const float q[
     const float t226 = t211 + t225;
     const float t227 = 8.185452e-12f * t226;
     const float t248 = l_2 * l_2;
-    const float m_2 = p->m_2;
     const float t249 = m_2 * t248;
     const float t250 = 0.25f * t249;
-    const float J_2 = p->J_2;
     const float J_elbow = J_2 + t250;
-    const float m_payload = p->m_payload;
     const float t292 = m_payload * t248;
     const float J_elbow_1 = J_elbow + t292;
     const float t252 = l_1 * l_2;
@@ -4722,6 +4760,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_matrix_f(const float q[6], 
     if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const float l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(30.0f >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_3 = q[2];
     const float b_3 = q[5];
     const float t1 = a_3 + b_3;
@@ -4759,7 +4801,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_matrix_f(const float q[6], 
     float sine[8];
     float cosine[8];
     rapkm_2rrr_rr_sincos_group_f(6, angle, sine, cosine);
-    const float l_2 = p->l_2;
     const float t13 = cosine[1];
     const float t22 = l_2 * t13;
     const float t12 = sine[1];
@@ -5720,6 +5761,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix_f(const float q[6], con
     if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const float m_payload = p->m_payload;
+    const float size_of_m_payload = fabsf(m_payload);
+    if (RAPKM_2RRR_RR_RARELY_F(!(560.0f >= size_of_m_payload))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_2 = q[1];
     const float t1 = fabsf(a_2);
     const float b_2 = q[4];
@@ -6060,7 +6106,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix_f(const float q[6], con
     const float t297 = t296 * t296;
     const float t298 = t266 + t297;
     const float t299 = l_1 * l_1;
-    const float m_payload = p->m_payload;
     const float t300 = m_payload * t299;
     const float J_1 = p->J_1;
     const float J_motor = p->J_motor;
@@ -6583,6 +6628,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const float m_payload = p->m_payload;
+    const float size_of_m_payload = fabsf(m_payload);
+    if (RAPKM_2RRR_RR_RARELY_F(!(10.0f >= size_of_m_payload))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_2 = q[1];
     const float t1 = fabsf(a_2);
     const float b_2 = q[4];
@@ -6924,7 +6974,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t298 = t297 * t297;
     const float t299 = t267 + t298;
     const float t300 = l_1 * l_1;
-    const float m_payload = p->m_payload;
     const float t301 = m_payload * t300;
     const float J_1 = p->J_1;
     const float J_motor = p->J_motor;
@@ -8781,7 +8830,12 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix_f(const float q[6], c
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float x_2 = p->x_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 3.5e-06f))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 6.3e-06f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float m_payload = p->m_payload;
+    const float size_of_m_payload = fabsf(m_payload);
+    if (RAPKM_2RRR_RR_RARELY_F(!(1700.0f >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float b_1 = q[3];
@@ -9679,7 +9733,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix_f(const float q[6], c
     const float t885 = J_elbow * t852;
     const float t886 = t884 + t885;
     const float t887 = t883 + t886;
-    const float m_payload = p->m_payload;
     const float t220 = m_payload + t219;
     const float t221 = t208 * t220;
     const float t218 = m_payload * t34;
@@ -9895,7 +9948,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_velocity_f(const float q[6], const
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(1.6f >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_2 = q[1];
@@ -10280,6 +10333,9 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_velocity_f(const float q[6], const
 rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_acceleration_f(const float q[6], const float qd[6], const float qdd[6], const rapkm_2rrr_rr_params_f *p, float qdd_admissible[6]) {
     const float l_1 = p->l_1;
     if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_2 = q[1];
@@ -10871,6 +10927,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration_f(const float q[6], c
     if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const float y_1 = p->y_1;
+    const float size_of_y_1 = fabsf(y_1);
+    if (RAPKM_2RRR_RR_RARELY_F(!(1.0f >= size_of_y_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_1 = q[0];
     const float b_1 = q[3];
     const float t1 = a_1 + b_1;
@@ -11218,7 +11279,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration_f(const float q[6], c
     const float t301 = sqrtf(t226);
     const float t302 = copysignf(t301, t217);
     const float t303 = t217 + t302;
-    const float y_1 = p->y_1;
     const float t304 = y_1 + t22;
     const float tip_1_y = t304 + t23;
     const float y_3 = p->y_3;
@@ -11673,7 +11733,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration_f(const float q[6], c
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_measured_f(const float q_m[3], const float q[6], const rapkm_2rrr_rr_params_f *p, float q_found[6]) {
     const float l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY_F(!(16.0f >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;
@@ -15595,6 +15655,9 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_measured_f(const float q[6]
     if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_3 = q[2];
     const float b_3 = q[5];
     const float t1 = a_3 + b_3;
@@ -18557,6 +18620,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_task_f(const float q[6], co
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_f(const float q[6], const float qd[6], const float qdd[6], const rapkm_2rrr_rr_params_f *p, float u[3]) {
+    const float m_payload = p->m_payload;
+    const float size_of_m_payload = fabsf(m_payload);
+    if (RAPKM_2RRR_RR_RARELY_F(!(310.0f >= size_of_m_payload))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_1 = q[0];
     const float b_1 = q[3];
     const float t1 = a_1 + b_1;
@@ -18660,7 +18728,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_f(const float q[6], const fl
     const float t107 = t104 + t106;
     const float t108 = t102 + t107;
     const float t109 = t76 * t108;
-    const float m_payload = p->m_payload;
     const float t66 = m_payload * t63;
     const float t67 = t65 + t66;
     const float t13 = cosine[0];
@@ -18806,12 +18873,16 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     if (RAPKM_2RRR_RR_RARELY_F(!(5600.0f >= m_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const float m_2 = p->m_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(56000.0f >= m_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float J_1 = p->J_1;
     if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= J_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float J_2 = p->J_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(17000.0f >= J_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(310.0f >= J_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float J_motor = p->J_motor;
@@ -18820,7 +18891,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     }
     const float m_payload = p->m_payload;
     const float size_of_m_payload = fabsf(m_payload);
-    if (RAPKM_2RRR_RR_RARELY_F(!(170.0f >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(10.0f >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float b_1 = q[3];
@@ -19092,7 +19163,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
     const float t227 = l_2 * l_2;
-    const float m_2 = p->m_2;
     const float t228 = m_2 * t227;
     const float t229 = 0.25f * t228;
     const float J_elbow = J_2 + t229;
@@ -19690,9 +19760,29 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float qd[6], const float u[3], const rapkm_2rrr_rr_params_f *p, float lambda_B[4]) {
+    const float m_1 = p->m_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(170000.0f >= m_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float m_2 = p->m_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(56000.0f >= m_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float J_1 = p->J_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(1700.0f >= J_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float J_2 = p->J_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(0.1f >= J_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float J_motor = p->J_motor;
+    if (RAPKM_2RRR_RR_RARELY_F(!(1000.0f >= J_motor))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float m_payload = p->m_payload;
     const float size_of_m_payload = fabsf(m_payload);
-    if (RAPKM_2RRR_RR_RARELY_F(!(170.0f >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(17000.0f >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_2 = q[1];
@@ -19964,18 +20054,13 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
     const float t227 = l_2 * l_2;
-    const float m_2 = p->m_2;
     const float t228 = m_2 * t227;
     const float t229 = 0.25f * t228;
-    const float J_2 = p->J_2;
     const float J_elbow = J_2 + t229;
     const float t240 = m_payload * t227;
     const float J_elbow_1 = J_elbow + t240;
     const float t248 = l_1 * l_1;
-    const float J_1 = p->J_1;
-    const float J_motor = p->J_motor;
     const float t247 = J_1 + J_motor;
-    const float m_1 = p->m_1;
     const float t249 = 0.25f * m_1;
     const float t250 = m_2 + t249;
     const float t251 = t248 * t250;
@@ -20468,6 +20553,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_energy_f(const float q[6], const float qd[6], const rapkm_2rrr_rr_params_f *p, float T_U[2]) {
+    const float m_payload = p->m_payload;
+    const float size_of_m_payload = fabsf(m_payload);
+    if (RAPKM_2RRR_RR_RARELY_F(!(10.0f >= size_of_m_payload))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float b_1 = q[3];
     const float t1 = fabsf(b_1);
     const float b_2 = q[4];
@@ -20489,7 +20579,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_energy_f(const float q[6], const float qd[6],
     rapkm_2rrr_rr_sincos_group_f(3, angle, sine, cosine);
     const float m_2 = p->m_2;
     const float t10 = 0.5f * m_2;
-    const float m_payload = p->m_payload;
     const float t11 = m_payload + t10;
     const float l_1 = p->l_1;
     const float l_2 = p->l_2;
@@ -20566,7 +20655,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_energy_f(const float q[6], const float qd[6],
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_singularity_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float measure[2]) {
     const float l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.027f))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_2 = q[1];

@@ -146,6 +146,7 @@ RAPKM_2RRR_RR_GROUP void rapkm_2rrr_rr_sincos_group(const int count, const doubl
 }
 
 rapkm_2rrr_rr_prepared rapkm_2rrr_rr_prepare(const rapkm_2rrr_rr_params *p) {
+    const double m_payload = p->m_payload;
     const double l_1 = p->l_1;
     const double l_2 = p->l_2;
     const double m_2 = p->m_2;
@@ -153,40 +154,45 @@ rapkm_2rrr_rr_prepared rapkm_2rrr_rr_prepare(const rapkm_2rrr_rr_params *p) {
     const double J_motor = p->J_motor;
     const double m_1 = p->m_1;
     const double J_2 = p->J_2;
-    const double m_payload = p->m_payload;
-    const double v1 = l_1 * l_1;
-    const double v2 = l_1 * l_2;
-    const double v3 = m_2 * v2;
-    const double v4 = 0.5 * v3;
-    const double v5 = J_1 + J_motor;
-    const double v6 = 0.25 * m_1;
-    const double v7 = m_2 + v6;
-    const double v8 = v1 * v7;
-    const double v9 = v5 + v8;
-    const double v10 = 1.0 / l_2;
-    const double v11 = l_2 * l_2;
-    const double v12 = m_2 * v11;
-    const double v13 = 0.25 * v12;
-    const double v14 = J_2 + v13;
-    const double v15 = m_payload * v2;
-    const double v16 = v4 + v15;
-    const double v17 = m_payload * v11;
-    const double v18 = v14 + v17;
-    const double v19 = m_payload * v1;
-    const double v20 = v19 + v9;
+    const double v1 = fabs(m_payload);
+    const double v2 = l_1 * l_1;
+    const double v3 = l_1 * l_2;
+    const double v4 = m_2 * v3;
+    const double v5 = 0.5 * v4;
+    const double v6 = J_1 + J_motor;
+    const double v7 = 0.25 * m_1;
+    const double v8 = m_2 + v7;
+    const double v9 = v2 * v8;
+    const double v10 = v6 + v9;
+    const double v11 = 1.0 / l_2;
+    const double v12 = l_2 * l_2;
+    const double v13 = m_2 * v12;
+    const double v14 = 0.25 * v13;
+    const double v15 = J_2 + v14;
+    const double v16 = m_payload * v3;
+    const double v17 = v5 + v16;
+    const double v18 = m_payload * v12;
+    const double v19 = v15 + v18;
+    const double v20 = m_payload * v2;
+    const double v21 = v20 + v10;
     rapkm_2rrr_rr_prepared prepared;
     prepared.value[0] = l_1;
-    prepared.value[1] = v4;
-    prepared.value[2] = v9;
+    prepared.value[1] = v1;
+    prepared.value[2] = v5;
     prepared.value[3] = v10;
-    prepared.value[4] = v14;
-    prepared.value[5] = v16;
-    prepared.value[6] = v18;
-    prepared.value[7] = v20;
+    prepared.value[4] = v11;
+    prepared.value[5] = v15;
+    prepared.value[6] = v17;
+    prepared.value[7] = v19;
+    prepared.value[8] = v21;
     return prepared;
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared(const double q[6], const double qd[6], const double qdd[6], const rapkm_2rrr_rr_prepared *p, double u[3]) {
+    const double size_of_m_payload = p->value[1];
+    if (RAPKM_2RRR_RR_RARELY(!(310.0 >= size_of_m_payload))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_1 = q[0];
     const double b_1 = q[3];
     const double t1 = a_1 + b_1;
@@ -224,7 +230,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared(const double q[6], 
     double cosine[6];
     rapkm_2rrr_rr_sincos_group(5, angle, sine, cosine);
     const double t16 = sine[2];
-    const double t65 = p->value[1];
+    const double t65 = p->value[2];
     const double t89 = t16 * t65;
     const double a_2_ddot = qdd[1];
     const double b_2_ddot = qdd[4];
@@ -234,7 +240,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared(const double q[6], 
     const double a_2_dot = qd[1];
     const double b_2_dot = qd[4];
     const double t144 = a_2_dot + b_2_dot;
-    const double t59 = p->value[2];
+    const double t59 = p->value[3];
     const double t141 = a_2_ddot * t59;
     const double t142 = t92 * t94;
     const double t143 = t141 + t142;
@@ -243,12 +249,12 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared(const double q[6], 
     const double t147 = t143 - t146;
     const double t90 = a_2_dot * t89;
     const double t91 = a_2_dot * t90;
-    const double J_elbow = p->value[4];
+    const double J_elbow = p->value[5];
     const double t93 = J_elbow * t92;
     const double t95 = a_2_ddot * t94;
     const double t96 = t93 + t95;
     const double t97 = t91 + t96;
-    const double t76 = p->value[3];
+    const double t76 = p->value[4];
     const double t98 = t76 * t97;
     const double t20 = sine[4];
     const double t100 = t20 * t65;
@@ -274,7 +280,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared(const double q[6], 
     const double t108 = t102 + t107;
     const double t109 = t76 * t108;
     const double t13 = cosine[0];
-    const double t67 = p->value[5];
+    const double t67 = p->value[6];
     const double t68 = t13 * t67;
     const double t12 = sine[0];
     const double t73 = t12 * t67;
@@ -284,13 +290,13 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared(const double q[6], 
     const double a_1_dot = qd[0];
     const double t77 = a_1_dot * a_1_dot;
     const double t78 = t77 * t73;
-    const double J_elbow_1 = p->value[6];
+    const double J_elbow_1 = p->value[7];
     const double t83 = J_elbow_1 * t62;
     const double t84 = a_1_ddot * t68;
     const double t85 = t83 + t84;
     const double t86 = t78 + t85;
     const double t87 = t76 * t86;
-    const double t60 = p->value[7];
+    const double t60 = p->value[8];
     const double t61 = a_1_ddot * t60;
     const double t69 = t62 * t68;
     const double t70 = t61 + t69;

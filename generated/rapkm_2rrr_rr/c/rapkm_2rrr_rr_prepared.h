@@ -14,12 +14,12 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    double value[8];
+    double value[9];
 } rapkm_2rrr_rr_prepared;
 
 rapkm_2rrr_rr_prepared rapkm_2rrr_rr_prepare(const rapkm_2rrr_rr_params *p);
 
-/* u: the smallest inputs that produce the motion, (27); 123 operations instead of 143 */
+/* u: the smallest inputs that produce the motion, (27); 123 operations instead of 144 */
 rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared(const double q[6], const double qd[6], const double qdd[6], const rapkm_2rrr_rr_prepared *p, double u[3]);
 
 #ifdef __cplusplus

@@ -133,6 +133,7 @@ RAPKM_2RRR_RR_GROUP_F void rapkm_2rrr_rr_sincos_group_f(const int count, const f
 }
 
 rapkm_2rrr_rr_prepared_f rapkm_2rrr_rr_prepare_f(const rapkm_2rrr_rr_params_f *p) {
+    const float m_payload = p->m_payload;
     const float l_1 = p->l_1;
     const float l_2 = p->l_2;
     const float m_2 = p->m_2;
@@ -140,40 +141,45 @@ rapkm_2rrr_rr_prepared_f rapkm_2rrr_rr_prepare_f(const rapkm_2rrr_rr_params_f *p
     const float J_motor = p->J_motor;
     const float m_1 = p->m_1;
     const float J_2 = p->J_2;
-    const float m_payload = p->m_payload;
-    const float v1 = l_1 * l_1;
-    const float v2 = l_1 * l_2;
-    const float v3 = m_2 * v2;
-    const float v4 = 0.5f * v3;
-    const float v5 = J_1 + J_motor;
-    const float v6 = 0.25f * m_1;
-    const float v7 = m_2 + v6;
-    const float v8 = v1 * v7;
-    const float v9 = v5 + v8;
-    const float v10 = 1.0f / l_2;
-    const float v11 = l_2 * l_2;
-    const float v12 = m_2 * v11;
-    const float v13 = 0.25f * v12;
-    const float v14 = J_2 + v13;
-    const float v15 = m_payload * v2;
-    const float v16 = v4 + v15;
-    const float v17 = m_payload * v11;
-    const float v18 = v14 + v17;
-    const float v19 = m_payload * v1;
-    const float v20 = v19 + v9;
+    const float v1 = fabsf(m_payload);
+    const float v2 = l_1 * l_1;
+    const float v3 = l_1 * l_2;
+    const float v4 = m_2 * v3;
+    const float v5 = 0.5f * v4;
+    const float v6 = J_1 + J_motor;
+    const float v7 = 0.25f * m_1;
+    const float v8 = m_2 + v7;
+    const float v9 = v2 * v8;
+    const float v10 = v6 + v9;
+    const float v11 = 1.0f / l_2;
+    const float v12 = l_2 * l_2;
+    const float v13 = m_2 * v12;
+    const float v14 = 0.25f * v13;
+    const float v15 = J_2 + v14;
+    const float v16 = m_payload * v3;
+    const float v17 = v5 + v16;
+    const float v18 = m_payload * v12;
+    const float v19 = v15 + v18;
+    const float v20 = m_payload * v2;
+    const float v21 = v20 + v10;
     rapkm_2rrr_rr_prepared_f prepared;
     prepared.value[0] = l_1;
-    prepared.value[1] = v4;
-    prepared.value[2] = v9;
+    prepared.value[1] = v1;
+    prepared.value[2] = v5;
     prepared.value[3] = v10;
-    prepared.value[4] = v14;
-    prepared.value[5] = v16;
-    prepared.value[6] = v18;
-    prepared.value[7] = v20;
+    prepared.value[4] = v11;
+    prepared.value[5] = v15;
+    prepared.value[6] = v17;
+    prepared.value[7] = v19;
+    prepared.value[8] = v21;
     return prepared;
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared_f(const float q[6], const float qd[6], const float qdd[6], const rapkm_2rrr_rr_prepared_f *p, float u[3]) {
+    const float size_of_m_payload = p->value[1];
+    if (RAPKM_2RRR_RR_RARELY_F(!(310.0f >= size_of_m_payload))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_1 = q[0];
     const float b_1 = q[3];
     const float t1 = a_1 + b_1;
@@ -211,7 +217,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared_f(const float q[6],
     float cosine[8];
     rapkm_2rrr_rr_sincos_group_f(5, angle, sine, cosine);
     const float t16 = sine[2];
-    const float t65 = p->value[1];
+    const float t65 = p->value[2];
     const float t89 = t16 * t65;
     const float a_2_ddot = qdd[1];
     const float b_2_ddot = qdd[4];
@@ -221,7 +227,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared_f(const float q[6],
     const float a_2_dot = qd[1];
     const float b_2_dot = qd[4];
     const float t144 = a_2_dot + b_2_dot;
-    const float t59 = p->value[2];
+    const float t59 = p->value[3];
     const float t141 = a_2_ddot * t59;
     const float t142 = t92 * t94;
     const float t143 = t141 + t142;
@@ -230,12 +236,12 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared_f(const float q[6],
     const float t147 = t143 - t146;
     const float t90 = a_2_dot * t89;
     const float t91 = a_2_dot * t90;
-    const float J_elbow = p->value[4];
+    const float J_elbow = p->value[5];
     const float t93 = J_elbow * t92;
     const float t95 = a_2_ddot * t94;
     const float t96 = t93 + t95;
     const float t97 = t91 + t96;
-    const float t76 = p->value[3];
+    const float t76 = p->value[4];
     const float t98 = t76 * t97;
     const float t20 = sine[4];
     const float t100 = t20 * t65;
@@ -261,7 +267,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared_f(const float q[6],
     const float t108 = t102 + t107;
     const float t109 = t76 * t108;
     const float t13 = cosine[0];
-    const float t67 = p->value[5];
+    const float t67 = p->value[6];
     const float t68 = t13 * t67;
     const float t12 = sine[0];
     const float t73 = t12 * t67;
@@ -271,13 +277,13 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared_f(const float q[6],
     const float a_1_dot = qd[0];
     const float t77 = a_1_dot * a_1_dot;
     const float t78 = t77 * t73;
-    const float J_elbow_1 = p->value[6];
+    const float J_elbow_1 = p->value[7];
     const float t83 = J_elbow_1 * t62;
     const float t84 = a_1_ddot * t68;
     const float t85 = t83 + t84;
     const float t86 = t78 + t85;
     const float t87 = t76 * t86;
-    const float t60 = p->value[7];
+    const float t60 = p->value[8];
     const float t61 = a_1_ddot * t60;
     const float t69 = t62 * t68;
     const float t70 = t61 + t69;

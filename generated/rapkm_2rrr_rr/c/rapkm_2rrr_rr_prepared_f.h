@@ -14,12 +14,12 @@ extern "C" {
 
 /* What the parameters determine; its contents are of no use elsewhere. */
 typedef struct {
-    float value[8];
+    float value[9];
 } rapkm_2rrr_rr_prepared_f;
 
 rapkm_2rrr_rr_prepared_f rapkm_2rrr_rr_prepare_f(const rapkm_2rrr_rr_params_f *p);
 
-/* u: the smallest inputs that produce the motion, (27); 123 operations instead of 143 */
+/* u: the smallest inputs that produce the motion, (27); 123 operations instead of 144 */
 rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared_f(const float q[6], const float qd[6], const float qdd[6], const rapkm_2rrr_rr_prepared_f *p, float u[3]);
 
 #ifdef __cplusplus

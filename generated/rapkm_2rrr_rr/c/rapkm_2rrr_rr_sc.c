@@ -48,6 +48,11 @@ typedef char symgen_needs_no_fsingle_precision_constant[sizeof(0.1) == sizeof(do
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_sc(const rapkm_2rrr_rr_trig *sc, const double q[6], const double qd[6], const double qdd[6], const rapkm_2rrr_rr_params *p, double u[3]) {
     (void)q;
+    const double m_payload = p->m_payload;
+    const double size_of_m_payload = fabs(m_payload);
+    if (RAPKM_2RRR_RR_RARELY(!(310.0 >= size_of_m_payload))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double sin_a_1 = sc->sin_a_1;
     const double cos_b_1 = sc->cos_b_1;
     const double sum0 = sin_a_1 * cos_b_1;
@@ -159,7 +164,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_sc(const rapkm_2rrr_rr_trig 
     const double t107 = t104 + t106;
     const double t108 = t102 + t107;
     const double t109 = t76 * t108;
-    const double m_payload = p->m_payload;
     const double t66 = m_payload * t63;
     const double t67 = t65 + t66;
     const double t68 = cos_b_1 * t67;
@@ -291,7 +295,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc(const rapkm_2rrr_rr_trig 
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double J_2 = p->J_2;
-    if (RAPKM_2RRR_RR_RARELY(!(100000.0 >= J_2))) {
+    if (RAPKM_2RRR_RR_RARELY(!(310.0 >= J_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double J_motor = p->J_motor;
@@ -300,7 +304,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc(const rapkm_2rrr_rr_trig 
     }
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
-    if (RAPKM_2RRR_RR_RARELY(!(170.0 >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY(!(10.0 >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double cos_a_2 = sc->cos_a_2;
@@ -1137,9 +1141,13 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc(const rapkm_2rrr_rr_trig 
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_sc(const rapkm_2rrr_rr_trig *sc, const double q[6], const double qd[6], const double u[3], const rapkm_2rrr_rr_params *p, double lambda_B[4]) {
     (void)q;
+    const double J_2 = p->J_2;
+    if (RAPKM_2RRR_RR_RARELY(!(0.1 >= J_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
-    if (RAPKM_2RRR_RR_RARELY(!(170.0 >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY(!(17000.0 >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double sin_a_1 = sc->sin_a_1;
@@ -1380,7 +1388,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_sc(const rapkm_2rrr_rr_trig *sc, 
     const double m_2 = p->m_2;
     const double t228 = m_2 * t227;
     const double t229 = 0.25 * t228;
-    const double J_2 = p->J_2;
     const double J_elbow = J_2 + t229;
     const double t240 = m_payload * t227;
     const double J_elbow_1 = J_elbow + t240;

@@ -43,6 +43,11 @@
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_sc_f(const rapkm_2rrr_rr_trig_f *sc, const float q[6], const float qd[6], const float qdd[6], const rapkm_2rrr_rr_params_f *p, float u[3]) {
     (void)q;
+    const float m_payload = p->m_payload;
+    const float size_of_m_payload = fabsf(m_payload);
+    if (RAPKM_2RRR_RR_RARELY_F(!(310.0f >= size_of_m_payload))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float sin_a_1 = sc->sin_a_1;
     const float cos_b_1 = sc->cos_b_1;
     const float sum0 = sin_a_1 * cos_b_1;
@@ -154,7 +159,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_sc_f(const rapkm_2rrr_rr_tri
     const float t107 = t104 + t106;
     const float t108 = t102 + t107;
     const float t109 = t76 * t108;
-    const float m_payload = p->m_payload;
     const float t66 = m_payload * t63;
     const float t67 = t65 + t66;
     const float t68 = cos_b_1 * t67;
@@ -281,12 +285,16 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc_f(const rapkm_2rrr_rr_tri
     if (RAPKM_2RRR_RR_RARELY_F(!(5600.0f >= m_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const float m_2 = p->m_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(56000.0f >= m_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float J_1 = p->J_1;
     if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= J_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float J_2 = p->J_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(17000.0f >= J_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(310.0f >= J_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float J_motor = p->J_motor;
@@ -295,7 +303,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc_f(const rapkm_2rrr_rr_tri
     }
     const float m_payload = p->m_payload;
     const float size_of_m_payload = fabsf(m_payload);
-    if (RAPKM_2RRR_RR_RARELY_F(!(170.0f >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(10.0f >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float cos_a_2 = sc->cos_a_2;
@@ -533,7 +541,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc_f(const rapkm_2rrr_rr_tri
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
     const float t227 = l_2 * l_2;
-    const float m_2 = p->m_2;
     const float t228 = m_2 * t227;
     const float t229 = 0.25f * t228;
     const float J_elbow = J_2 + t229;
@@ -1132,9 +1139,29 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc_f(const rapkm_2rrr_rr_tri
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_sc_f(const rapkm_2rrr_rr_trig_f *sc, const float q[6], const float qd[6], const float u[3], const rapkm_2rrr_rr_params_f *p, float lambda_B[4]) {
     (void)q;
+    const float m_1 = p->m_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(170000.0f >= m_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float m_2 = p->m_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(56000.0f >= m_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float J_1 = p->J_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(1700.0f >= J_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float J_2 = p->J_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(0.1f >= J_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float J_motor = p->J_motor;
+    if (RAPKM_2RRR_RR_RARELY_F(!(1000.0f >= J_motor))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float m_payload = p->m_payload;
     const float size_of_m_payload = fabsf(m_payload);
-    if (RAPKM_2RRR_RR_RARELY_F(!(170.0f >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(17000.0f >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float sin_a_1 = sc->sin_a_1;
@@ -1372,18 +1399,13 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_sc_f(const rapkm_2rrr_rr_trig_f *
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
     const float t227 = l_2 * l_2;
-    const float m_2 = p->m_2;
     const float t228 = m_2 * t227;
     const float t229 = 0.25f * t228;
-    const float J_2 = p->J_2;
     const float J_elbow = J_2 + t229;
     const float t240 = m_payload * t227;
     const float J_elbow_1 = J_elbow + t240;
     const float t248 = l_1 * l_1;
-    const float J_1 = p->J_1;
-    const float J_motor = p->J_motor;
     const float t247 = J_1 + J_motor;
-    const float m_1 = p->m_1;
     const float t249 = 0.25f * m_1;
     const float t250 = m_2 + t249;
     const float t251 = t248 * t250;
