@@ -158,14 +158,16 @@ def _defaults(made: System) -> Any:
     return given
 
 
-def test_where_friction_returns_half_there_is_a_status(tmp_path: Path) -> None:
+@pytest.mark.parametrize("scalar", ["float64", "float32"])
+def test_where_friction_returns_half_there_is_a_status(scalar: Scalar, tmp_path: Path) -> None:
     made = system()
     (q, qd, qdd), *_ = SliderCrank(_defaults(made)).motions(1, 5)
     seen = []
     for size in np.linspace(0.5, 12, 24):
-        state = made.state(q.tolist(), qd.tolist(), qdd.tolist(), [1.0], {"mu_p": 0.1 * size, "mu_g": 0.15 * size})
+        rougher = {"mu_p": 0.1 * size, "mu_g": 0.15 * size}
+        state = made.state(q.tolist(), qd.tolist(), qdd.tolist(), [1.0], rougher, scalar)
         for name in QUANTITIES:
-            status, _ = made.run(name, state)
+            status, _ = made.run(name, state, scalar)
             try:
                 made.reference.matrices(state, (name,))
                 locks = False
@@ -225,3 +227,11 @@ def test_one_scalar_reaction_is_explicit(tmp_path: Path) -> None:
         u = p.J * a_dd + slope[0] * force
         got = loaded.inverse_dynamics(np.array([a, x]), np.array([a_d, x_d]), np.array([a_dd, x_dd]))
         assert got[0] == pytest.approx(u, rel=1e-10, abs=1e-12)
+
+
+def test_methods_that_form_no_reactions_are_refused_by_name(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    from symgen.cli.main import main
+
+    for form, why in (("elimination", "multipliers"), ("forward_dynamics=articulated", "reactions")):
+        assert main([str(MODEL), "--form", form, "--no-verify", "--out", str(tmp_path), "--quiet"]) != 0
+        assert f"friction grows with {why}, which it does not form" in capsys.readouterr().err
