@@ -58,27 +58,45 @@ class FrictionLoads:
         graph, places = self.graph, range(len(self.free))
         ways = [graph.function("abs", (way,)) for way in self.directions]
         gains = [[self._length(self.answers[j][i]) * self.sizes[j] for j in places] for i in places]
-        shares = [dot(graph, row, ways) for row in gains]
-        largest = shares[0]
-        for share in shares[1:]:
-            largest = graph.function("max", (largest, share))
-        return largest
+        return self._largest([dot(graph, row, ways) for row in gains])
 
     @property
     def guards(self) -> tuple[Guard, ...]:
-        """That kappa is less than one half."""
+        """That kappa is less than one half, and that the last step has changed nothing any more.
+
+        Beyond the ranges that the steps are counted for kappa may be larger than there, and they too few.
+        """
         graph = self.graph
         excess = graph.function("max", (self.kappa - graph.const(LOCKING_SHARE), graph.zero))
-        return (Guard(Status.FRICTION_LOCK, excess, 1, scale=graph.one, positive=True, small=True),)
+        locks = Guard(Status.FRICTION_LOCK, excess, 1, scale=graph.one, positive=True, small=True)
+        *_, before, last = self._iterates
+        if self.steps == 1:
+            return (locks,)
+        changes = [graph.function("abs", (x - y,)) for x, y in zip(last, before, strict=True)]
+        change, size = self._largest(changes), self._largest(last)
+        return (locks, Guard(Status.FRICTION_LOCK, change, 1, scale=size, small=True))
+
+    def _largest(self, values: Sequence[Scalar]) -> Scalar:
+        largest = values[0]
+        for value in values[1:]:
+            largest = self.graph.function("max", (largest, value))
+        return largest
 
     @cached_property
-    def loads(self) -> Vector:
-        """n_j (N) after the stated number of steps."""
-        loads: list[Scalar] = [self.graph.zero] * len(self.free)
-        for _ in range(self.steps):
+    def _iterates(self) -> tuple[Vector, ...]:
+        """n_j (N) from none on: the stated number of steps, and where these are several, one more that shows them."""
+        iterates: list[Vector] = [(self.graph.zero,) * len(self.free)]
+        for _ in range(self.steps + (self.steps > 1)):
+            loads = list(iterates[-1])
             for i in range(len(loads)):
                 loads[i] = self._own(i, loads)
-        return tuple(loads)
+            iterates.append(tuple(loads))
+        return tuple(iterates)
+
+    @property
+    def loads(self) -> Vector:
+        """n_j (N) after all steps."""
+        return self._iterates[-1]
 
     @cached_property
     def once_more(self) -> Vector:

@@ -41,7 +41,7 @@ def noise_in_units(kernel: Kernel, sincos: Function | None, given: Mapping[str, 
             second = distances(up - here, here - down) / OF_THREE
         changes = np.maximum(changes, np.where(known, slope, 0.0))
         noise = np.maximum(noise, np.where(known, second, 0.0))
-    unit = changes + eps * distances(here, 0 * here)
+    unit = changes + eps * distances(here, np.zeros_like(here))
     with np.errstate(all="ignore"):
         return np.where((status == 0) & (noise > 0), noise / unit, 0.0)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import subprocess
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from types import ModuleType
@@ -17,10 +18,14 @@ from laws_harness import System
 
 from symgen.backends.c.plain import emit_c
 from symgen.backends.python.module import emit_python
+from symgen.generation.draft import draft_of
+from symgen.generation.results import Options
+from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Scalar, Status
+from symgen.verify.given import arrays
 from symgen.verify.reference.reference import LocksError
 
-MODEL = Path(__file__).parents[2] / "models/rough_slider_crank.yaml"
+MODEL = Path(__file__).with_name("rough_slider_crank.yaml")
 QUANTITIES = ("inverse_dynamics", "friction_residual", "forward_dynamics", "multipliers")
 # A crank, a connecting rod and a block on a guide, whose reaction is one number: lambda = a / (1 - b sgn a).
 SCALAR = """\
@@ -178,6 +183,20 @@ def test_where_friction_returns_half_there_is_a_status(scalar: Scalar, tmp_path:
     assert {*seen} == {Status.OK, Status.FRICTION_LOCK}
     loaded = module(made, tmp_path)
     assert np.isnan(loaded.inverse_dynamics(q[None], qd[None], qdd[None], loaded.Parameters(mu_p=9.0))).all()
+
+@pytest.mark.parametrize("scalar", ["float64", "float32"])
+@pytest.mark.parametrize(("steps", "settles"), [(3, False), (40, True)])
+def test_steps_that_are_too_few_are_a_status(scalar: Scalar, steps: int, settles: bool) -> None:
+    """Where friction returns a third of the reactions, forty steps change nothing any more, and three do."""
+    made = system()
+    known = made.model.friction_steps
+    assert known is not None
+    few = draft_of(replace(made.model, friction_steps=replace(known, steps=steps)), ("inverse_dynamics",), Options())
+    (q, qd, qdd), *_ = SliderCrank(_defaults(made)).motions(1, 5)
+    state = made.state(q.tolist(), qd.tolist(), qdd.tolist(), [1.0], {"mu_p": 0.3, "mu_g": 0.3}, scalar)
+    kernel, sincos = few.kernels("inverse_dynamics")[scalar], few.programs[scalar].sincos
+    status, _ = Interpreter(sincos, scalar).run(kernel, arrays(state, [kernel]), state.parameters)
+    assert status is (Status.OK if settles else Status.FRICTION_LOCK)
 
 
 @pytest.mark.toolchain
