@@ -20,7 +20,7 @@ from symgen.verify.many_states import run_lanes
 from symgen.verify.single_precision import distances
 
 # Of every number that is given, the share that a state is moved by: far more than it is rounded by, and little enough.
-STEP = 2.0**-40
+NOISE_STEP = 2.0**-40
 # Lines through each state.
 LINES = 3
 # The second difference of three independent errors, in their mean size.
@@ -37,7 +37,7 @@ def noise_in_units(kernel: Kernel, sincos: Function | None, given: Mapping[str, 
         (refused, up), (lost, down) = (run_lanes(kernel, sincos, "float64", one) for one in (above, below))
         known = status + refused + lost == 0
         with np.errstate(all="ignore"):
-            slope = distances(up, down) / 2 * (eps / STEP)
+            slope = distances(up, down) / 2 * (eps / NOISE_STEP)
             second = distances(up - here, here - down) / OF_THREE
         changes = np.maximum(changes, np.where(known, slope, 0.0))
         noise = np.maximum(noise, np.where(known, second, 0.0))
@@ -50,6 +50,6 @@ def _aside(given: Mapping[str, Lanes], dice: random.Random) -> tuple[dict[str, L
     """States on both sides, exactly as far away."""
     above, below = {}, {}
     for name, rows in given.items():
-        up = rows + rows * np.array([dice.choice((-STEP, STEP)) for _ in range(rows.shape[1])])
+        up = rows + rows * np.array([dice.choice((-NOISE_STEP, NOISE_STEP)) for _ in range(rows.shape[1])])
         above[name], below[name] = up, rows - (up - rows)
     return above, below

@@ -66,19 +66,21 @@ STATE = State((0.0, 2.0), (3.0, 4.0), (5.0, 6.0), (7.0,), (8.0,))
 
 def test_states_are_packed_row_by_row() -> None:
     data = pack_states([STATE, STATE], "float32", load_text(CART, "cart.yaml"))
-    count, *row = struct.unpack("<I15f", data[:64])
-    assert len(data) == 4 + 2 * 60
+    count, *row = struct.unpack("<I21f", data[:88])
+    assert len(data) == 4 + 2 * 84
     assert (count, row[:7]) == (2, [0, *map(float, range(2, 8))])
-    assert row[10:] == pytest.approx([8, 0, 1, math.sin(2), math.cos(2)])
+    assert row[16:] == pytest.approx([8, 0, 1, math.sin(2), math.cos(2)])
 
 
-def test_what_is_measured_the_task_and_weights_stand_before_parameters() -> None:
+def test_what_is_measured_the_task_weights_and_a_direction_stand_before_parameters() -> None:
     given = load_text(CART + "measured: [x, a]\ntask: {tip: x + sin(a), x: x, turn: 2*a}\n", "cart.yaml")
     data = pack_states([replace(STATE, task=(9.0, 10.0, 11.0))], "float64", given)
-    assert len(data) == 4 + 8 * (7 + 6 + 9 + 3 + 1 + 4)
-    _, *row = struct.unpack("<I30d", data)
+    assert len(data) == 4 + 8 * (7 + 6 + 9 + 3 + 6 + 1 + 4)
+    _, *row = struct.unpack("<I36d", data)
     measured, task, weights = [3 / 1024, 2 + 4 / 1024, 3, 4, 5, 6], [9, 10, 11, 3, 4, 3, 5, 6, 5], [7, 5, 6]
-    assert row[6:26] == [7, *measured, *task, *weights, 8]
+    # the direction of a second derivative by q, q_dot and q_ddot is (q_dot, q_ddot, q)
+    direction = [3, 4, 5, 6, 0, 2]
+    assert row[6:32] == [7, *measured, *task, *weights, *direction, 8]
 
 
 def test_results_are_read_back_and_short_files_refused() -> None:
