@@ -26,7 +26,7 @@ STATUS_MEANING: dict[Status, str] = {
     Status.BRANCH: "the start is so far away that the result may belong to another assembly mode",
     Status.TASK_RANK: "the task does not determine the rest at this configuration",
     Status.LIMITS: "no inputs within their limits produce this motion",
-    Status.FRICTION_LOCK: "friction returns half of the reactions it grows with, or more than its steps are made for: all but locked",
+    Status.FRICTION_LOCK: "friction returns half of the reactions it grows with, or more than its steps hold",
 }
 # Those of models that name what is measured, of models that have a task, of limits that are kept or refused, and of
 # friction that grows with reactions.

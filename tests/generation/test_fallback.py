@@ -343,6 +343,7 @@ def test_so_does_any_quantity_of_which_next_to_nothing_is_left(
     assert kernel.get("twice_the_digits") == wide
 
 
+@pytest.mark.campaign
 def test_states_that_lead_nowhere_do_not_end_the_search(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     spoil_choice(monkeypatch, edgy)
     settled = Settling.sample
@@ -357,6 +358,7 @@ def test_states_that_lead_nowhere_do_not_end_the_search(yoke: Path, monkeypatch:
     assert "at a state searched for" in rejected["why"]
 
 
+@pytest.mark.campaign
 def test_what_passes_narrowly_at_a_state_searched_for_leaves_no_margin(
     yoke: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -386,6 +388,7 @@ def test_the_method_taken_is_the_one_that_counts_least_of_those_that_pass(
     assert min(cost for one in others for cost in one.values()) == min(taken["counted_cost"].values())
 
 
+@pytest.mark.campaign
 def test_what_no_method_passes_is_left_out_alone(
     whole: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

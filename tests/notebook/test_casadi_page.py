@@ -51,6 +51,7 @@ def optimum_by_casadi(first: Any, last: Any, start: Any) -> Any:
     return optimum["x"].full().reshape(NODES, model.n)
 
 
+@pytest.mark.campaign
 @pytest.mark.slow
 @pytest.mark.toolchain
 def test_an_optimum_through_a_singularity_of_minimal_coordinates(tmp_path: Path, tool: Callable[[str], str]) -> None:
@@ -74,6 +75,7 @@ def test_an_optimum_through_a_singularity_of_minimal_coordinates(tmp_path: Path,
     assert optimum_by_casadi(nodes[0], nodes[-1], straight) == pytest.approx(nodes, abs=1e-6)
 
 
+@pytest.mark.campaign
 @pytest.mark.slow
 @pytest.mark.toolchain
 def test_jacobians_of_an_external_function_are_those_of_its_values(tmp_path: Path, tool: Callable[[str], str]) -> None:
