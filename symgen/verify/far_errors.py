@@ -1,10 +1,10 @@
 """The rounding errors of a quantity where parameters are far from their values, in units of d + eps |y|.
 
-In float64 they are estimated.  In float32 estimates to the first order are not all there is: one digit of three may be
-lost by refinement that no longer converges, or by numbers too small for the type.  There they are measured as well,
-beside the same operations in float64.  Kernels with twice the digits lose what the same operations on plain numbers
-do in float32, but for the digits that pairs gain; in float64 there is nothing beside which they could be held, plain
-numbers may have lost all of theirs, and noise is measured (`rounding_noise.py`).
+They are estimated, and estimates to the first order are not all there is: one digit of three may be lost by refinement
+that no longer converges, by a pivot without a digit, or by numbers too small for the type.  So they are measured as
+well: in float32 beside the same operations in float64, in float64 as noise (`rounding_noise.py`).  Kernels with twice
+the digits lose in float32 what the same operations on plain numbers do, but for the digits that pairs gain; in float64
+plain numbers may have lost all of theirs, and noise alone counts.
 """
 
 from __future__ import annotations
@@ -80,8 +80,7 @@ class FarErrors:
 
     def _of_pairs(self, far: Far) -> dict[Scalar, Lanes]:
         """In float64 their noise; in float32 what is lost on plain numbers, less the digits that pairs gain."""
-        double = noise_in_units(self._kernels["float64"], self._programs["float64"].sincos, far.given)
-        by_scalar: dict[Scalar, Lanes] = {"float64": np.maximum(double, self._refusals("float64", far))}
+        by_scalar: dict[Scalar, Lanes] = {"float64": np.maximum(self._noise(far), self._refusals("float64", far))}
         if self._single is not None:
             own, unit = self._estimates.with_units(far.given)
             by_scalar["float32"] = np.maximum(self._refusals("float32", far), own / unit * 2.0**-GAINED)
@@ -92,13 +91,16 @@ class FarErrors:
         estimated = own / unit
         refused = np.flatnonzero(~np.isfinite(unit))
         estimated[refused] = self._refusals("float64", far.only(refused))
-        by_scalar: dict[Scalar, Lanes] = {"float64": estimated}
+        by_scalar: dict[Scalar, Lanes] = {"float64": np.maximum(estimated, self._noise(far))}
         if self._single is not None:
             off, size = self._measured(self._single, far), float(UNIT_ROUNDOFF["float32"]) * unit
             # a unit is infinite where the kernel of float64 refuses, or where squares of slopes are too large for it
             measured = np.divide(off, size, out=np.where(np.isfinite(off), 0.0, off), where=np.isfinite(size))
             by_scalar["float32"] = measured if works_with_pairs(self._single) else np.maximum(measured, estimated)
         return by_scalar
+
+    def _noise(self, far: Far) -> Lanes:
+        return noise_in_units(self._kernels["float64"], self._programs["float64"].sincos, far.given)
 
     def _refusals(self, scalar: Scalar, far: Far) -> Lanes:
         """Infinite where a kernel refuses without a reason, 0 elsewhere."""
