@@ -1115,7 +1115,7 @@ arm7_status arm7_forward_dynamics(const double q[7], const double qd[7], const d
         return ARM7_PARAMETER_RANGE;
     }
     const double m_2 = p->m_2;
-    if (ARM7_RARELY(!(40000.0 >= m_2))) {
+    if (ARM7_RARELY(!(22000.0 >= m_2))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_zz2 = p->I_zz2;
@@ -1159,7 +1159,7 @@ arm7_status arm7_forward_dynamics(const double q[7], const double qd[7], const d
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx4 = p->I_xx4;
-    if (ARM7_RARELY(!(85.0 >= I_xx4))) {
+    if (ARM7_RARELY(!(48.0 >= I_xx4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy4 = p->I_yy4;

@@ -2917,7 +2917,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             rest += 1300.0 >= d_3 ? 0.0 : 1.0;
             rest += 4.0 >= d_5 ? 0.0 : 1.0;
             rest += 2.2 >= d_7 ? 0.0 : 1.0;
-            rest += 40000.0 >= m_2 ? 0.0 : 1.0;
+            rest += 22000.0 >= m_2 ? 0.0 : 1.0;
             rest += 500.0 >= I_zz2 ? 0.0 : 1.0;
             rest += 940.0 >= m_3 ? 0.0 : 1.0;
             rest += 1.6 >= c_x3 ? 0.0 : 1.0;
@@ -2928,7 +2928,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             rest += 1500.0 >= m_4 ? 0.0 : 1.0;
             rest += 1.1 >= c_x4 ? 0.0 : 1.0;
             rest += 1.7 >= c_y4 ? 0.0 : 1.0;
-            rest += 85.0 >= I_xx4 ? 0.0 : 1.0;
+            rest += 48.0 >= I_xx4 ? 0.0 : 1.0;
             rest += 24.0 >= I_yy4 ? 0.0 : 1.0;
             rest += 3400.0 >= I_zz4 ? 0.0 : 1.0;
             rest += 170.0 >= m_5 ? 0.0 : 1.0;

@@ -29,10 +29,10 @@ singularity            0      0      0      0      0      0
 Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:
   inverse_dynamics 0.041 <= d_5, I_zz2 <= 280, |I_xz2| <= 110, |I_yz2| <= 200
   inverse_dynamics m_4 <= 48
-  forward_dynamics d_3 <= 1300, d_5 <= 4, d_7 <= 2.2, m_2 <= 40000
+  forward_dynamics d_3 <= 1300, d_5 <= 4, d_7 <= 2.2, m_2 <= 22000
   forward_dynamics I_zz2 <= 500, m_3 <= 940, c_x3 <= 1.6, c_z3 <= 5600
   forward_dynamics I_xx3 <= 53, I_yy3 <= 48, I_zz3 <= 3700, m_4 <= 1500
-  forward_dynamics c_x4 <= 1.1, c_y4 <= 1.7, I_xx4 <= 85, I_yy4 <= 24
+  forward_dynamics c_x4 <= 1.1, c_y4 <= 1.7, I_xx4 <= 48, I_yy4 <= 24
   forward_dynamics I_zz4 <= 3400, m_5 <= 170, c_x5 <= 2.6, c_y5 <= 2
   forward_dynamics |c_z5| <= 3.1, I_xx5 <= 30, I_yy5 <= 27, m_6 <= 18
   forward_dynamics c_x6 <= 1, c_y6 <= 0.29, |c_z6| <= 3.5, I_xx6 <= 3.2
@@ -1215,7 +1215,7 @@ def forward_dynamics(q: ArrayLike, qd: ArrayLike, u: ArrayLike, p: Parameters = 
         status = _first(status, ~np.asarray(1300.0 >= d_3), 6)
         status = _first(status, ~np.asarray(4.0 >= d_5), 6)
         status = _first(status, ~np.asarray(2.2 >= d_7), 6)
-        status = _first(status, ~np.asarray(40000.0 >= m_2), 6)
+        status = _first(status, ~np.asarray(22000.0 >= m_2), 6)
         status = _first(status, ~np.asarray(500.0 >= I_zz2), 6)
         status = _first(status, ~np.asarray(940.0 >= m_3), 6)
         status = _first(status, ~np.asarray(1.6 >= c_x3), 6)
@@ -1226,7 +1226,7 @@ def forward_dynamics(q: ArrayLike, qd: ArrayLike, u: ArrayLike, p: Parameters = 
         status = _first(status, ~np.asarray(1500.0 >= m_4), 6)
         status = _first(status, ~np.asarray(1.1 >= c_x4), 6)
         status = _first(status, ~np.asarray(1.7 >= c_y4), 6)
-        status = _first(status, ~np.asarray(85.0 >= I_xx4), 6)
+        status = _first(status, ~np.asarray(48.0 >= I_xx4), 6)
         status = _first(status, ~np.asarray(24.0 >= I_yy4), 6)
         status = _first(status, ~np.asarray(3400.0 >= I_zz4), 6)
         status = _first(status, ~np.asarray(170.0 >= m_5), 6)

@@ -1370,6 +1370,9 @@ static DELTA_APART delta_status delta_velocity_from_measured_cause(const double 
 
 delta_status delta_velocity_from_measured(const double q[6], const double qd_m[3], const delta_params *p, double qd_found[6]) {
     const double l_2 = p->l_2;
+    if (DELTA_RARELY(!(l_2 >= 2.4e-06))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     if (DELTA_RARELY(!(8.5 >= l_2))) {
         return DELTA_PARAMETER_RANGE;
     }
@@ -1554,7 +1557,14 @@ delta_status delta_velocity_from_measured(const double q[6], const double qd_m[3
 }
 
 delta_status delta_acceleration_from_measured(const double q[6], const double qd_m[3], const double qdd_m[3], const delta_params *p, double qdd_found[6]) {
+    const double r = p->r;
+    if (DELTA_RARELY(!(0.7 >= r))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const double l_2 = p->l_2;
+    if (DELTA_RARELY(!(l_2 >= 2.4e-06))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     if (DELTA_RARELY(!(8.5 >= l_2))) {
         return DELTA_PARAMETER_RANGE;
     }
@@ -1577,7 +1587,6 @@ delta_status delta_acceleration_from_measured(const double q[6], const double qd
     double sine[4];
     double cosine[4];
     delta_sincos_group(3, angle, sine, cosine);
-    const double r = p->r;
     const double t10 = 0.5 * r;
     const double x = q[3];
     const double t11 = x - t10;
@@ -2041,6 +2050,10 @@ delta_status delta_acceleration_from_measured(const double q[6], const double qd
 }
 
 delta_status delta_configuration_from_task(const double x_t[3], const double q[6], const delta_params *p, double q_found[6]) {
+    const double l_2 = p->l_2;
+    if (DELTA_RARELY(!(8.5 >= l_2))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const double a_1 = q[0];
     const double t1 = fabs(a_1);
     const double a_2 = q[1];
@@ -2133,7 +2146,6 @@ delta_status delta_configuration_from_task(const double x_t[3], const double q[6
     if (DELTA_RARELY(!(t62 > 0.0))) {
         return DELTA_TASK_RANK;
     }
-    const double l_2 = p->l_2;
     const double t63 = l_2 * l_2;
     const double x_task = x_t[0];
     const double t64 = x_task - x;
@@ -2733,6 +2745,10 @@ delta_status delta_configuration_from_task(const double x_t[3], const double q[6
 }
 
 delta_status delta_velocity_from_task(const double q[6], const double xd_t[3], const delta_params *p, double qd_found[6]) {
+    const double l_2 = p->l_2;
+    if (DELTA_RARELY(!(l_2 >= 7.6e-09))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const double a_1 = q[0];
     const double t1 = fabs(a_1);
     const double a_2 = q[1];
@@ -3517,6 +3533,10 @@ delta_status delta_velocity_from_task(const double q[6], const double xd_t[3], c
 }
 
 delta_status delta_acceleration_from_task(const double q[6], const double xd_t[3], const double xdd_t[3], const delta_params *p, double qdd_found[6]) {
+    const double l_2 = p->l_2;
+    if (DELTA_RARELY(!(l_2 >= 2.4e-08))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const double a_1 = q[0];
     const double t1 = fabs(a_1);
     const double a_2 = q[1];
@@ -4802,12 +4822,24 @@ delta_status delta_inverse_dynamics(const double q[6], const double qd[6], const
 }
 
 delta_status delta_forward_dynamics(const double q[6], const double qd[6], const double u[3], const delta_params *p, double qdd[6]) {
+    const double l_2 = p->l_2;
+    if (DELTA_RARELY(!(l_2 >= 2.4e-08))) {
+        return DELTA_PARAMETER_RANGE;
+    }
+    const double m_a = p->m_a;
+    if (DELTA_RARELY(!(m_a >= 0.03))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const double J_a = p->J_a;
-    if (DELTA_RARELY(!(3.5 >= J_a))) {
+    if (DELTA_RARELY(!(2.0 >= J_a))) {
+        return DELTA_PARAMETER_RANGE;
+    }
+    const double m_r = p->m_r;
+    if (DELTA_RARELY(!(m_r >= 0.0051))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double J_m = p->J_m;
-    if (DELTA_RARELY(!(2.8 >= J_m))) {
+    if (DELTA_RARELY(!(1.5 >= J_m))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double a_1 = q[0];
@@ -5113,9 +5145,7 @@ delta_status delta_forward_dynamics(const double q[6], const double qd[6], const
     if (DELTA_RARELY(!(t148 > t172))) {
         return DELTA_CONSTRAINT_RANK;
     }
-    const double m_r = p->m_r;
     const double t174 = 0.5 * m_r;
-    const double m_a = p->m_a;
     const double t173 = 0.25 * m_a;
     const double t175 = t173 + t174;
     const double t176 = l_1 * l_1;
@@ -5373,6 +5403,10 @@ delta_status delta_forward_dynamics(const double q[6], const double qd[6], const
 }
 
 delta_status delta_multipliers(const double q[6], const double qd[6], const double u[3], const delta_params *p, double lambda_B[3]) {
+    const double l_2 = p->l_2;
+    if (DELTA_RARELY(!(l_2 >= 7.6e-09))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const double m_a = p->m_a;
     if (DELTA_RARELY(!(20.0 >= m_a))) {
         return DELTA_PARAMETER_RANGE;
@@ -5906,6 +5940,10 @@ delta_status delta_multipliers(const double q[6], const double qd[6], const doub
 }
 
 delta_status delta_singularity(const double q[6], const delta_params *p, double measure[2]) {
+    const double l_2 = p->l_2;
+    if (DELTA_RARELY(!(l_2 >= 2.4e-07))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const double a_3 = q[2];
     const double t1 = fabs(a_3);
     const double a_1 = q[0];

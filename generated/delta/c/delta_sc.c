@@ -437,12 +437,24 @@ delta_status delta_inverse_dynamics_sc(const delta_trig *sc, const double q[6], 
 }
 
 delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], const double qd[6], const double u[3], const delta_params *p, double qdd[6]) {
+    const double l_2 = p->l_2;
+    if (DELTA_RARELY(!(l_2 >= 2.4e-08))) {
+        return DELTA_PARAMETER_RANGE;
+    }
+    const double m_a = p->m_a;
+    if (DELTA_RARELY(!(m_a >= 0.03))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const double J_a = p->J_a;
-    if (DELTA_RARELY(!(3.5 >= J_a))) {
+    if (DELTA_RARELY(!(2.0 >= J_a))) {
+        return DELTA_PARAMETER_RANGE;
+    }
+    const double m_r = p->m_r;
+    if (DELTA_RARELY(!(m_r >= 0.0051))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double J_m = p->J_m;
-    if (DELTA_RARELY(!(2.8 >= J_m))) {
+    if (DELTA_RARELY(!(1.5 >= J_m))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double r = p->r;
@@ -729,9 +741,7 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
     if (DELTA_RARELY(!(t148 > t172))) {
         return DELTA_CONSTRAINT_RANK;
     }
-    const double m_r = p->m_r;
     const double t174 = 0.5 * m_r;
-    const double m_a = p->m_a;
     const double t173 = 0.25 * m_a;
     const double t175 = t173 + t174;
     const double t176 = l_1 * l_1;
@@ -989,6 +999,10 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
 }
 
 delta_status delta_multipliers_sc(const delta_trig *sc, const double q[6], const double qd[6], const double u[3], const delta_params *p, double lambda_B[3]) {
+    const double l_2 = p->l_2;
+    if (DELTA_RARELY(!(l_2 >= 7.6e-09))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const double m_a = p->m_a;
     if (DELTA_RARELY(!(20.0 >= m_a))) {
         return DELTA_PARAMETER_RANGE;

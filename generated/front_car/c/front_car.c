@@ -1615,6 +1615,10 @@ front_car_status front_car_minimal_coriolis_matrix(const double q[4], const doub
     if (FRONT_CAR_RARELY(!(L >= 0.57))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
+    const double Theta_1 = p->Theta_1;
+    if (FRONT_CAR_RARELY(!(120000000.0 >= Theta_1))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const double phi = q[3];
     const double t1 = fabs(phi);
     const double theta = q[2];
@@ -1662,7 +1666,6 @@ front_car_status front_car_minimal_coriolis_matrix(const double q[4], const doub
     }
     const double m_2 = p->m_2;
     const double t25 = m_2 * t11;
-    const double Theta_1 = p->Theta_1;
     const double t26 = Theta_1 + t25;
     const double phi_dot = qd[3];
     const double t27 = phi_dot * t6;
