@@ -35,6 +35,8 @@ STATUSES = {
     4: "angle range",
     5: "mass rank",
     6: "parameter range",
+    11: "limits",
+    12: "friction lock",
 }
 ANGLE_RANGE, PARAMETER_RANGE = 4, 6
 # angles up to twice this have sines in every kernel: sums of two are beyond it
