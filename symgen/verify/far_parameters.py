@@ -34,6 +34,7 @@ from symgen.verify.far_states import (
 from symgen.verify.interpreted import outcomes
 from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.reference.reference import ReferenceValueError, State
+from symgen.verify.rounding_noise import noise_in_units
 from symgen.verify.running.compile import Outcome
 from symgen.verify.single_precision import units_in_float32
 from symgen.verify.tolerance import FACTOR, is_beyond
@@ -190,7 +191,8 @@ class _Bounds:
         held = max(1, NUMBERS_HELD // (self._size * starts))
         worst: dict[tuple[int, int], Lanes] = {}
         as_given = self._far.states.shifted([(read[0], 1.0)], starts)
-        lossy = units_in_float32(self._plain, self._programs, as_given) > UNITS_LOST / 2
+        noise = noise_in_units(self._kernels["float64"], self._programs["float64"].sincos, as_given)
+        lossy = np.maximum(noise, units_in_float32(self._plain, self._programs, as_given)) > UNITS_LOST / 2
         for at in range(0, len(sides), held):
             part = sides[at : at + held]
             given = self._far.states.shifted([(k, 10.0 ** (sign * FURTHEST)) for k, sign in part], starts)

@@ -19,8 +19,9 @@ from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.many_states import run_lanes
 from symgen.verify.single_precision import distances
 
-# Of every number that is given, the share that a state is moved by: far more than it is rounded by, and little enough.
-NOISE_STEP = 2.0**-40
+# Of every number that is given, the share that a state is moved by: more than it is rounded by, and so little that
+# functions are straight.
+NOISE_STEP = 2.0**-45
 # Lines through each state.
 LINES = 3
 # The second difference of three independent errors, in their mean size.
