@@ -1370,9 +1370,6 @@ static DELTA_APART delta_status delta_velocity_from_measured_cause(const double 
 
 delta_status delta_velocity_from_measured(const double q[6], const double qd_m[3], const delta_params *p, double qd_found[6]) {
     const double l_2 = p->l_2;
-    if (DELTA_RARELY(!(l_2 >= 2.4e-06))) {
-        return DELTA_PARAMETER_RANGE;
-    }
     if (DELTA_RARELY(!(8.5 >= l_2))) {
         return DELTA_PARAMETER_RANGE;
     }
@@ -1562,9 +1559,6 @@ delta_status delta_acceleration_from_measured(const double q[6], const double qd
         return DELTA_PARAMETER_RANGE;
     }
     const double l_2 = p->l_2;
-    if (DELTA_RARELY(!(l_2 >= 2.4e-06))) {
-        return DELTA_PARAMETER_RANGE;
-    }
     if (DELTA_RARELY(!(8.5 >= l_2))) {
         return DELTA_PARAMETER_RANGE;
     }
@@ -2050,10 +2044,6 @@ delta_status delta_acceleration_from_measured(const double q[6], const double qd
 }
 
 delta_status delta_configuration_from_task(const double x_t[3], const double q[6], const delta_params *p, double q_found[6]) {
-    const double l_2 = p->l_2;
-    if (DELTA_RARELY(!(8.5 >= l_2))) {
-        return DELTA_PARAMETER_RANGE;
-    }
     const double a_1 = q[0];
     const double t1 = fabs(a_1);
     const double a_2 = q[1];
@@ -2146,6 +2136,7 @@ delta_status delta_configuration_from_task(const double x_t[3], const double q[6
     if (DELTA_RARELY(!(t62 > 0.0))) {
         return DELTA_TASK_RANK;
     }
+    const double l_2 = p->l_2;
     const double t63 = l_2 * l_2;
     const double x_task = x_t[0];
     const double t64 = x_task - x;
@@ -2745,10 +2736,6 @@ delta_status delta_configuration_from_task(const double x_t[3], const double q[6
 }
 
 delta_status delta_velocity_from_task(const double q[6], const double xd_t[3], const delta_params *p, double qd_found[6]) {
-    const double l_2 = p->l_2;
-    if (DELTA_RARELY(!(l_2 >= 7.6e-09))) {
-        return DELTA_PARAMETER_RANGE;
-    }
     const double a_1 = q[0];
     const double t1 = fabs(a_1);
     const double a_2 = q[1];
@@ -3533,10 +3520,6 @@ delta_status delta_velocity_from_task(const double q[6], const double xd_t[3], c
 }
 
 delta_status delta_acceleration_from_task(const double q[6], const double xd_t[3], const double xdd_t[3], const delta_params *p, double qdd_found[6]) {
-    const double l_2 = p->l_2;
-    if (DELTA_RARELY(!(l_2 >= 2.4e-08))) {
-        return DELTA_PARAMETER_RANGE;
-    }
     const double a_1 = q[0];
     const double t1 = fabs(a_1);
     const double a_2 = q[1];
@@ -4822,8 +4805,8 @@ delta_status delta_inverse_dynamics(const double q[6], const double qd[6], const
 }
 
 delta_status delta_forward_dynamics(const double q[6], const double qd[6], const double u[3], const delta_params *p, double qdd[6]) {
-    const double l_2 = p->l_2;
-    if (DELTA_RARELY(!(l_2 >= 2.4e-08))) {
+    const double R = p->R;
+    if (DELTA_RARELY(!(R >= 0.015))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double m_a = p->m_a;
@@ -4834,12 +4817,12 @@ delta_status delta_forward_dynamics(const double q[6], const double qd[6], const
     if (DELTA_RARELY(!(2.0 >= J_a))) {
         return DELTA_PARAMETER_RANGE;
     }
-    const double m_r = p->m_r;
-    if (DELTA_RARELY(!(m_r >= 0.0051))) {
+    const double m_p = p->m_p;
+    if (DELTA_RARELY(!(30.0 >= m_p))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double J_m = p->J_m;
-    if (DELTA_RARELY(!(1.5 >= J_m))) {
+    if (DELTA_RARELY(!(2.8 >= J_m))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double a_1 = q[0];
@@ -4868,7 +4851,6 @@ delta_status delta_forward_dynamics(const double q[6], const double qd[6], const
     const double l_1 = p->l_1;
     const double t9 = cosine[2];
     const double t100 = l_1 * t9;
-    const double R = p->R;
     const double t101 = R + t100;
     const double t102 = 0.5 * t101;
     const double t104 = t36 - t102;
@@ -5145,6 +5127,7 @@ delta_status delta_forward_dynamics(const double q[6], const double qd[6], const
     if (DELTA_RARELY(!(t148 > t172))) {
         return DELTA_CONSTRAINT_RANK;
     }
+    const double m_r = p->m_r;
     const double t174 = 0.5 * m_r;
     const double t173 = 0.25 * m_a;
     const double t175 = t173 + t174;
@@ -5164,7 +5147,6 @@ delta_status delta_forward_dynamics(const double q[6], const double qd[6], const
     }
     const double t189 = 1.0 / t179;
     const double t187 = 1.5 * m_r;
-    const double m_p = p->m_p;
     const double t188 = m_p + t187;
     if (DELTA_RARELY(!(t188 > 0.0))) {
         return DELTA_MASS_RANK;
@@ -5403,10 +5385,6 @@ delta_status delta_forward_dynamics(const double q[6], const double qd[6], const
 }
 
 delta_status delta_multipliers(const double q[6], const double qd[6], const double u[3], const delta_params *p, double lambda_B[3]) {
-    const double l_2 = p->l_2;
-    if (DELTA_RARELY(!(l_2 >= 7.6e-09))) {
-        return DELTA_PARAMETER_RANGE;
-    }
     const double m_a = p->m_a;
     if (DELTA_RARELY(!(20.0 >= m_a))) {
         return DELTA_PARAMETER_RANGE;
@@ -5940,10 +5918,6 @@ delta_status delta_multipliers(const double q[6], const double qd[6], const doub
 }
 
 delta_status delta_singularity(const double q[6], const delta_params *p, double measure[2]) {
-    const double l_2 = p->l_2;
-    if (DELTA_RARELY(!(l_2 >= 2.4e-07))) {
-        return DELTA_PARAMETER_RANGE;
-    }
     const double a_3 = q[2];
     const double t1 = fabs(a_3);
     const double a_1 = q[0];

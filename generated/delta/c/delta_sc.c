@@ -437,8 +437,8 @@ delta_status delta_inverse_dynamics_sc(const delta_trig *sc, const double q[6], 
 }
 
 delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], const double qd[6], const double u[3], const delta_params *p, double qdd[6]) {
-    const double l_2 = p->l_2;
-    if (DELTA_RARELY(!(l_2 >= 2.4e-08))) {
+    const double R = p->R;
+    if (DELTA_RARELY(!(R >= 0.015))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double m_a = p->m_a;
@@ -449,12 +449,12 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
     if (DELTA_RARELY(!(2.0 >= J_a))) {
         return DELTA_PARAMETER_RANGE;
     }
-    const double m_r = p->m_r;
-    if (DELTA_RARELY(!(m_r >= 0.0051))) {
+    const double m_p = p->m_p;
+    if (DELTA_RARELY(!(30.0 >= m_p))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double J_m = p->J_m;
-    if (DELTA_RARELY(!(1.5 >= J_m))) {
+    if (DELTA_RARELY(!(2.8 >= J_m))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double r = p->r;
@@ -464,7 +464,6 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
     const double l_1 = p->l_1;
     const double cos_a_3 = sc->cos_a_3;
     const double t100 = l_1 * cos_a_3;
-    const double R = p->R;
     const double t101 = R + t100;
     const double t102 = 0.5 * t101;
     const double t104 = t36 - t102;
@@ -741,6 +740,7 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
     if (DELTA_RARELY(!(t148 > t172))) {
         return DELTA_CONSTRAINT_RANK;
     }
+    const double m_r = p->m_r;
     const double t174 = 0.5 * m_r;
     const double t173 = 0.25 * m_a;
     const double t175 = t173 + t174;
@@ -760,7 +760,6 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
     }
     const double t189 = 1.0 / t179;
     const double t187 = 1.5 * m_r;
-    const double m_p = p->m_p;
     const double t188 = m_p + t187;
     if (DELTA_RARELY(!(t188 > 0.0))) {
         return DELTA_MASS_RANK;
@@ -999,10 +998,6 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
 }
 
 delta_status delta_multipliers_sc(const delta_trig *sc, const double q[6], const double qd[6], const double u[3], const delta_params *p, double lambda_B[3]) {
-    const double l_2 = p->l_2;
-    if (DELTA_RARELY(!(l_2 >= 7.6e-09))) {
-        return DELTA_PARAMETER_RANGE;
-    }
     const double m_a = p->m_a;
     if (DELTA_RARELY(!(20.0 >= m_a))) {
         return DELTA_PARAMETER_RANGE;

@@ -476,15 +476,12 @@ void eva_multipliers(void) {
 void eva_singularity(void);
 
 void eva_singularity(void) {
-    static const double low_0[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
-    static const double high_0[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
-    static const double low_1[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
-    static const double high_1[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
-    static const double low_2[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
-    static const double high_2[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
     double q[6];
     delta_params p;
     double y[2];
+    q[0] = Frama_C_double_interval(-0.6, 1.2);
+    q[1] = Frama_C_double_interval(-0.6, 1.2);
+    q[2] = Frama_C_double_interval(-0.6, 1.2);
     q[3] = Frama_C_double_interval(-0.25, 0.25);
     q[4] = Frama_C_double_interval(-0.25, 0.25);
     q[5] = Frama_C_double_interval(-0.9, -0.5);
@@ -498,19 +495,7 @@ void eva_singularity(void) {
     p.m_p = Frama_C_double_interval(0.2, 3.0);
     p.J_m = Frama_C_double_interval(0.005, 0.05);
     p.g = Frama_C_double_interval(9.81, 9.81);
-    //@ loop unroll 8;
-    for (int i_0 = 0; i_0 < 8; i_0++) {
-    q[0] = Frama_C_double_interval(low_0[i_0], high_0[i_0]);
-    //@ loop unroll 8;
-    for (int i_1 = 0; i_1 < 8; i_1++) {
-    q[1] = Frama_C_double_interval(low_1[i_1], high_1[i_1]);
-    //@ loop unroll 8;
-    for (int i_2 = 0; i_2 < 8; i_2++) {
-    q[2] = Frama_C_double_interval(low_2[i_2], high_2[i_2]);
     delta_status status = delta_singularity(q, &p, y);
     //@ assert regular: status == DELTA_OK || status == DELTA_NOT_FINITE;
     (void)status;
-    }
-    }
-    }
 }

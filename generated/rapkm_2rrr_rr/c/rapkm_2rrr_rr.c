@@ -878,13 +878,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_pseudoinverse(const double q[6], c
     if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY(!(5300000.0 >= l_1))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
-    const double l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY(!(940000.0 >= l_2))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     const double a_2 = q[1];
     const double b_2 = q[4];
     const double t1 = a_2 + b_2;
@@ -922,6 +915,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_constraint_pseudoinverse(const double q[6], c
     double sine[6];
     double cosine[6];
     rapkm_2rrr_rr_sincos_group(6, angle, sine, cosine);
+    const double l_2 = p->l_2;
     const double t10 = sine[0];
     const double t22 = l_2 * t10;
     const double t16 = sine[3];
@@ -1411,9 +1405,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_nullspace_projector(const double q[6], const 
     if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY(!(5300000.0 >= l_1))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     const double l_2 = p->l_2;
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -1899,13 +1890,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_nullspace_projector_dot(const double q[6], co
     if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY(!(3000000.0 >= l_1))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
-    const double l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY(!(530000.0 >= l_2))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     const double a_2 = q[1];
     const double b_2 = q[4];
     const double t1 = a_2 + b_2;
@@ -1943,6 +1927,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_nullspace_projector_dot(const double q[6], co
     double sine[6];
     double cosine[6];
     rapkm_2rrr_rr_sincos_group(6, angle, sine, cosine);
+    const double l_2 = p->l_2;
     const double t10 = sine[0];
     const double t22 = l_2 * t10;
     const double t16 = sine[3];
@@ -3961,13 +3946,13 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector(const double q[6
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double m_2 = p->m_2;
-    if (RAPKM_2RRR_RR_RARELY(!(m_2 >= 0.00051))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     if (RAPKM_2RRR_RR_RARELY(!(10.0 >= m_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double J_2 = p->J_2;
+    if (RAPKM_2RRR_RR_RARELY(!(J_2 >= 1.1e-09))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     if (RAPKM_2RRR_RR_RARELY(!(3.1 >= J_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
@@ -4791,9 +4776,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_matrix(const double q[6], c
     if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY(!(30000000.0 >= l_1))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     const double a_3 = q[2];
     const double b_3 = q[5];
     const double t1 = a_3 + b_3;
@@ -5612,14 +5594,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_pseudoinverse(const double 
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement(const double q[6], const rapkm_2rrr_rr_params *p, double F_B[12]) {
-    const double l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY(!(940000.0 >= l_2))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
-    const double x_2 = p->x_2;
-    if (RAPKM_2RRR_RR_RARELY(!(x_2 >= 3.5e-09))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     const double a_1 = q[0];
     const double b_1 = q[3];
     const double t1 = a_1 + b_1;
@@ -5676,6 +5650,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement(const double q[6], cons
     double cosine[10];
     rapkm_2rrr_rr_sincos_group(9, angle, sine, cosine);
     const double l_1 = p->l_1;
+    const double l_2 = p->l_2;
     const double t37 = l_1 * l_2;
     const double t25 = sine[3];
     const double t34 = cosine[7];
@@ -5789,21 +5764,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix(const double q[6], cons
     if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY(!(3000000.0 >= l_1))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
-    const double l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY(!(940000.0 >= l_2))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
-    const double m_2 = p->m_2;
-    if (RAPKM_2RRR_RR_RARELY(!(5600.0 >= m_2))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
-    const double J_2 = p->J_2;
-    if (RAPKM_2RRR_RR_RARELY(!(J_2 >= 1.1e-08))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
     if (RAPKM_2RRR_RR_RARELY(!(560.0 >= size_of_m_payload))) {
@@ -5850,6 +5810,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix(const double q[6], cons
     const double t10 = cosine[1];
     const double t20 = t7 * t10;
     const double t21 = t19 + t20;
+    const double l_2 = p->l_2;
     const double t22 = l_2 * t21;
     const double t23 = t22 * t22;
     const double t24 = l_1 * t7;
@@ -6154,6 +6115,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix(const double q[6], cons
     const double t301 = J_1 + J_motor;
     const double m_1 = p->m_1;
     const double t302 = 0.25 * m_1;
+    const double m_2 = p->m_2;
     const double t303 = m_2 + t302;
     const double t304 = t299 * t303;
     const double t305 = t301 + t304;
@@ -6167,6 +6129,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix(const double q[6], cons
     const double t313 = l_2 * l_2;
     const double t314 = m_2 * t313;
     const double t315 = 0.25 * t314;
+    const double J_2 = p->J_2;
     const double J_elbow = J_2 + t315;
     const double t316 = m_payload * t313;
     const double J_elbow_1 = J_elbow + t316;
@@ -6668,11 +6631,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix(const double q[6], 
     if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY(!(1600000.0 >= l_1))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
-    const double l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY(!(530000.0 >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double m_payload = p->m_payload;
@@ -6721,6 +6680,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix(const double q[6], 
     const double t10 = cosine[1];
     const double t20 = t7 * t10;
     const double t21 = t19 + t20;
+    const double l_2 = p->l_2;
     const double t22 = l_2 * t21;
     const double t23 = t22 * t22;
     const double t24 = l_1 * t7;
@@ -8602,12 +8562,8 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix(const double q[6], const 
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    const double x_2 = p->x_2;
-    if (RAPKM_2RRR_RR_RARELY(!(x_2 >= 6.3e-09))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     const double m_2 = p->m_2;
-    if (RAPKM_2RRR_RR_RARELY(!(m_2 >= 5.1e-07))) {
+    if (RAPKM_2RRR_RR_RARELY(!(m_2 >= 8.9e-07))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double m_payload = p->m_payload;
@@ -8878,17 +8834,9 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix(const double q[6], co
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    const double x_2 = p->x_2;
-    if (RAPKM_2RRR_RR_RARELY(!(x_2 >= 1.2e-08))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
-    const double m_2 = p->m_2;
-    if (RAPKM_2RRR_RR_RARELY(!(310.0 >= m_2))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
-    if (RAPKM_2RRR_RR_RARELY(!(1000.0 >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY(!(170.0 >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double b_1 = q[3];
@@ -9724,6 +9672,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix(const double q[6], co
     const double t876 = t874 + t875;
     const double t877 = t228 * t876;
     const double t878 = t873 + t877;
+    const double m_2 = p->m_2;
     const double t511 = l_1 * m_2;
     const double t512 = l_2 * t511;
     const double t513 = t512 * t11;
@@ -9896,10 +9845,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_applied_force(const double q[6], cons
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix(const double q[6], const rapkm_2rrr_rr_params *p, double M_bar[6]) {
-    const double l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY(!(940000.0 >= l_2))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     const double a_1 = q[0];
     const double b_1 = q[3];
     const double t1 = a_1 + b_1;
@@ -9940,6 +9885,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix(const double q[6], con
     double cosine[6];
     rapkm_2rrr_rr_sincos_group(6, angle, sine, cosine);
     const double l_1 = p->l_1;
+    const double l_2 = p->l_2;
     const double t24 = l_1 * l_2;
     const double t14 = sine[1];
     const double t17 = cosine[2];
@@ -9996,9 +9942,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix(const double q[6], con
 rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_velocity(const double q[6], const double qd[6], const rapkm_2rrr_rr_params *p, double qd_admissible[6]) {
     const double l_1 = p->l_1;
     if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
-    if (RAPKM_2RRR_RR_RARELY(!(5300000.0 >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double l_2 = p->l_2;
@@ -10392,10 +10335,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_acceleration(const double q[6], co
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    const double l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY(!(940000.0 >= l_2))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     const double a_2 = q[1];
     const double b_2 = q[4];
     const double t1 = a_2 + b_2;
@@ -10433,6 +10372,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_acceleration(const double q[6], co
     double sine[6];
     double cosine[6];
     rapkm_2rrr_rr_sincos_group(6, angle, sine, cosine);
+    const double l_2 = p->l_2;
     const double t10 = sine[0];
     const double t22 = l_2 * t10;
     const double t12 = sine[1];
@@ -15715,10 +15655,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_measured(const double q[6],
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    const double l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY(!(1600000.0 >= l_2))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     const double a_3 = q[2];
     const double b_3 = q[5];
     const double t1 = a_3 + b_3;
@@ -15756,6 +15692,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_measured(const double q[6],
     double sine[6];
     double cosine[6];
     rapkm_2rrr_rr_sincos_group(6, angle, sine, cosine);
+    const double l_2 = p->l_2;
     const double t12 = sine[1];
     const double t22 = l_2 * t12;
     const double t23 = t22 * t22;
@@ -16488,10 +16425,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_task_jacobian(const double q[6], const rapkm_
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_task(const double x_t[2], const double q[6], const rapkm_2rrr_rr_params *p, double q_found[6]) {
-    const double l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY(!(94000.0 >= l_1))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     const double l_2 = p->l_2;
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -16534,6 +16467,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_task(const double x_t[2], 
     const double t19 = l_2 * t9;
     const double t10 = cosine[1];
     const double t20 = l_2 * t10;
+    const double l_1 = p->l_1;
     const double t21 = l_1 + t20;
     const double t22 = 2.0 * t21;
     const double t23 = 2.0 * t20;
@@ -17165,10 +17099,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_task(const double x_t[2], 
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_task(const double q[6], const double xd_t[2], const rapkm_2rrr_rr_params *p, double qd_found[6]) {
-    const double x_2 = p->x_2;
-    if (RAPKM_2RRR_RR_RARELY(!(x_2 >= 6.3e-09))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     const double a_1 = q[0];
     const double t1 = fabs(a_1);
     const double b_1 = q[3];
@@ -17899,10 +17829,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_task(const double q[6], const d
 rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_task(const double q[6], const double xd_t[2], const double xdd_t[2], const rapkm_2rrr_rr_params *p, double qdd_found[6]) {
     const double l_2 = p->l_2;
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
-    const double x_2 = p->x_2;
-    if (RAPKM_2RRR_RR_RARELY(!(x_2 >= 1.2e-08))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double a_1 = q[0];
@@ -18688,22 +18614,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_task(const double q[6], con
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics(const double q[6], const double qd[6], const double qdd[6], const rapkm_2rrr_rr_params *p, double u[3]) {
-    const double l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY(!(940000.0 >= l_2))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
-    const double m_1 = p->m_1;
-    if (RAPKM_2RRR_RR_RARELY(!(10.0 >= m_1))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
-    const double J_1 = p->J_1;
-    if (RAPKM_2RRR_RR_RARELY(!(0.1 >= J_1))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
-    const double J_motor = p->J_motor;
-    if (RAPKM_2RRR_RR_RARELY(!(0.1 >= J_motor))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
     if (RAPKM_2RRR_RR_RARELY(!(310.0 >= size_of_m_payload))) {
@@ -18747,6 +18657,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics(const double q[6], const dou
     rapkm_2rrr_rr_sincos_group(5, angle, sine, cosine);
     const double l_1 = p->l_1;
     const double t53 = l_1 * l_1;
+    const double l_2 = p->l_2;
     const double t63 = l_1 * l_2;
     const double m_2 = p->m_2;
     const double t64 = m_2 * t63;
@@ -18761,7 +18672,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics(const double q[6], const dou
     const double a_2_dot = qd[1];
     const double b_2_dot = qd[4];
     const double t144 = a_2_dot + b_2_dot;
+    const double J_1 = p->J_1;
+    const double J_motor = p->J_motor;
     const double t55 = J_1 + J_motor;
+    const double m_1 = p->m_1;
     const double t56 = 0.25 * m_1;
     const double t57 = m_2 + t56;
     const double t58 = t53 * t57;
@@ -20723,11 +20637,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_singularity(const double q[6], const rapkm_2r
     if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY(!(5.3 >= l_1))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
-    const double l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY(!(300000.0 >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double a_2 = q[1];
@@ -20769,6 +20679,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_singularity(const double q[6], const rapkm_2r
     rapkm_2rrr_rr_sincos_group(6, angle, sine, cosine);
     const double t10 = sine[0];
     const double t22 = l_1 * t10;
+    const double l_2 = p->l_2;
     const double t12 = sine[1];
     const double t23 = l_2 * t12;
     const double t24 = t22 + t23;

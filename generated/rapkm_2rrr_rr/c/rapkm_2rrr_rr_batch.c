@@ -321,10 +321,6 @@ size_t rapkm_2rrr_rr_inverse_dynamics_batch(size_t count, size_t stride, const d
             const double t161 = t41 * t156;
             const double t162 = t138 - t161;
             double rest = (t158 - t158) * t160 * t162;
-            rest += 940000.0 >= l_2 ? 0.0 : 1.0;
-            rest += 10.0 >= m_1 ? 0.0 : 1.0;
-            rest += 0.1 >= J_1 ? 0.0 : 1.0;
-            rest += 0.1 >= J_motor ? 0.0 : 1.0;
             rest += 310.0 >= size_of_m_payload ? 0.0 : 1.0;
             rest += 100000.0 >= t7 ? 0.0 : 1.0;
             rest += 100000.0 >= t8 ? 0.0 : 1.0;

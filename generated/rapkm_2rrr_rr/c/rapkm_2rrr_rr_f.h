@@ -82,7 +82,7 @@
  *   projected_mass_matrix 0.015 <= l_1, |m_payload| <= 560
  *   projected_coriolis_matrix 0.015 <= l_1, |m_payload| <= 10
  *   minimal_mass_matrix 0.015 <= l_1, l_2 <= 3, 3.5e-06 <= x_2, |m_payload| <= 10
- *   minimal_coriolis_matrix 0.015 <= l_1 <= 3, l_2 <= 3, 6.3e-06 <= x_2, |m_payload| <= 1700
+ *   minimal_coriolis_matrix 0.015 <= l_1 <= 3, l_2 <= 3, 6.3e-06 <= x_2, |m_payload| <= 170
  *   minimal_control_matrix 3.5e-06 <= x_2
  *   admissible_velocity 0.015 <= l_1, l_2 <= 3
  *   admissible_acceleration 0.015 <= l_1 <= 3

@@ -177,39 +177,19 @@ rapkm_2rrr_rr_prepared rapkm_2rrr_rr_prepare(const rapkm_2rrr_rr_params *p) {
     const double v21 = v20 + v10;
     rapkm_2rrr_rr_prepared prepared;
     prepared.value[0] = l_1;
-    prepared.value[1] = l_2;
-    prepared.value[2] = m_1;
-    prepared.value[3] = J_1;
-    prepared.value[4] = J_motor;
-    prepared.value[5] = v1;
-    prepared.value[6] = v5;
-    prepared.value[7] = v10;
-    prepared.value[8] = v11;
-    prepared.value[9] = v15;
-    prepared.value[10] = v17;
-    prepared.value[11] = v19;
-    prepared.value[12] = v21;
+    prepared.value[1] = v1;
+    prepared.value[2] = v5;
+    prepared.value[3] = v10;
+    prepared.value[4] = v11;
+    prepared.value[5] = v15;
+    prepared.value[6] = v17;
+    prepared.value[7] = v19;
+    prepared.value[8] = v21;
     return prepared;
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared(const double q[6], const double qd[6], const double qdd[6], const rapkm_2rrr_rr_prepared *p, double u[3]) {
-    const double l_2 = p->value[1];
-    if (RAPKM_2RRR_RR_RARELY(!(940000.0 >= l_2))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
-    const double m_1 = p->value[2];
-    if (RAPKM_2RRR_RR_RARELY(!(10.0 >= m_1))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
-    const double J_1 = p->value[3];
-    if (RAPKM_2RRR_RR_RARELY(!(0.1 >= J_1))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
-    const double J_motor = p->value[4];
-    if (RAPKM_2RRR_RR_RARELY(!(0.1 >= J_motor))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
-    const double size_of_m_payload = p->value[5];
+    const double size_of_m_payload = p->value[1];
     if (RAPKM_2RRR_RR_RARELY(!(310.0 >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
@@ -250,7 +230,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared(const double q[6], 
     double cosine[6];
     rapkm_2rrr_rr_sincos_group(5, angle, sine, cosine);
     const double t16 = sine[2];
-    const double t65 = p->value[6];
+    const double t65 = p->value[2];
     const double t89 = t16 * t65;
     const double a_2_ddot = qdd[1];
     const double b_2_ddot = qdd[4];
@@ -260,7 +240,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared(const double q[6], 
     const double a_2_dot = qd[1];
     const double b_2_dot = qd[4];
     const double t144 = a_2_dot + b_2_dot;
-    const double t59 = p->value[7];
+    const double t59 = p->value[3];
     const double t141 = a_2_ddot * t59;
     const double t142 = t92 * t94;
     const double t143 = t141 + t142;
@@ -269,12 +249,12 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared(const double q[6], 
     const double t147 = t143 - t146;
     const double t90 = a_2_dot * t89;
     const double t91 = a_2_dot * t90;
-    const double J_elbow = p->value[9];
+    const double J_elbow = p->value[5];
     const double t93 = J_elbow * t92;
     const double t95 = a_2_ddot * t94;
     const double t96 = t93 + t95;
     const double t97 = t91 + t96;
-    const double t76 = p->value[8];
+    const double t76 = p->value[4];
     const double t98 = t76 * t97;
     const double t20 = sine[4];
     const double t100 = t20 * t65;
@@ -300,7 +280,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared(const double q[6], 
     const double t108 = t102 + t107;
     const double t109 = t76 * t108;
     const double t13 = cosine[0];
-    const double t67 = p->value[10];
+    const double t67 = p->value[6];
     const double t68 = t13 * t67;
     const double t12 = sine[0];
     const double t73 = t12 * t67;
@@ -310,13 +290,13 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared(const double q[6], 
     const double a_1_dot = qd[0];
     const double t77 = a_1_dot * a_1_dot;
     const double t78 = t77 * t73;
-    const double J_elbow_1 = p->value[11];
+    const double J_elbow_1 = p->value[7];
     const double t83 = J_elbow_1 * t62;
     const double t84 = a_1_ddot * t68;
     const double t85 = t83 + t84;
     const double t86 = t78 + t85;
     const double t87 = t76 * t86;
-    const double t60 = p->value[12];
+    const double t60 = p->value[8];
     const double t61 = a_1_ddot * t60;
     const double t69 = t62 * t68;
     const double t70 = t61 + t69;

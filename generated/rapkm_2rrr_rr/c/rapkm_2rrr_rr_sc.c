@@ -48,22 +48,6 @@ typedef char symgen_needs_no_fsingle_precision_constant[sizeof(0.1) == sizeof(do
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_sc(const rapkm_2rrr_rr_trig *sc, const double q[6], const double qd[6], const double qdd[6], const rapkm_2rrr_rr_params *p, double u[3]) {
     (void)q;
-    const double l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY(!(940000.0 >= l_2))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
-    const double m_1 = p->m_1;
-    if (RAPKM_2RRR_RR_RARELY(!(10.0 >= m_1))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
-    const double J_1 = p->J_1;
-    if (RAPKM_2RRR_RR_RARELY(!(0.1 >= J_1))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
-    const double J_motor = p->J_motor;
-    if (RAPKM_2RRR_RR_RARELY(!(0.1 >= J_motor))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
     if (RAPKM_2RRR_RR_RARELY(!(310.0 >= size_of_m_payload))) {
@@ -119,6 +103,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_sc(const rapkm_2rrr_rr_trig 
     const double sum35 = sum33 + sum34;
     const double l_1 = p->l_1;
     const double t53 = l_1 * l_1;
+    const double l_2 = p->l_2;
     const double t63 = l_1 * l_2;
     const double m_2 = p->m_2;
     const double t64 = m_2 * t63;
@@ -131,7 +116,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_sc(const rapkm_2rrr_rr_trig 
     const double a_2_dot = qd[1];
     const double b_2_dot = qd[4];
     const double t144 = a_2_dot + b_2_dot;
+    const double J_1 = p->J_1;
+    const double J_motor = p->J_motor;
     const double t55 = J_1 + J_motor;
+    const double m_1 = p->m_1;
     const double t56 = 0.25 * m_1;
     const double t57 = m_2 + t56;
     const double t58 = t53 * t57;
