@@ -178,12 +178,12 @@ class Methods:
         The other methods have nothing to cancel that their steps have left, nor has what is chosen among limits, nor a
         fixed point of friction.
         """
+        if best.derived.name != INPUTS:
+            return None
         model = self.workspace.model
         if model.keeps_limits or model.rough or (model.allocation is not None and model.allocation.scale):
             return None
         generic, minor = self._of_inputs.generic, self._candidates.get((INPUTS, "minor"), "")
-        if best.derived.name != INPUTS:
-            return None
         if generic.rank < generic.r or isinstance(minor, str) or not 0 < minor.weight <= _factoring_limit(best):
             return None
         along = self._of_inputs.minor

@@ -53,6 +53,14 @@ def module(made: System, folder: Path) -> ModuleType:
     return load_generated(path)
 
 
+def _along(angle: float) -> Any:
+    return np.array([np.cos(angle), np.sin(angle)])
+
+
+def _across(angle: float) -> Any:
+    return np.array([-np.sin(angle), np.cos(angle)])
+
+
 class SliderCrank:
     """The machine as a mechanic draws it: each body cut free, seven forces and the torque, friction as it turns out."""
 
@@ -78,10 +86,8 @@ class SliderCrank:
         """Forces A, B, C in the pins (two each), N on the slider, and the torque of the motor."""
         p, (a, relative, _), (a_d, b_rate, s_d), (a_dd, b_acc, s_dd) = self.p, q, qd, qdd
         b, b_d, b_dd = a + relative, a_d + b_rate, a_dd + b_acc
-        along = lambda angle: np.array([np.cos(angle), np.sin(angle)])  # noqa: E731
-        across = lambda angle: np.array([-np.sin(angle), np.cos(angle)])  # noqa: E731
-        pin = p.r * (across(a) * a_dd - along(a) * a_d**2)
-        crank, rod = pin / 2, pin + p.l / 2 * (across(b) * b_dd - along(b) * b_d**2)
+        pin = p.r * (_across(a) * a_dd - _along(a) * a_d**2)
+        crank, rod = pin / 2, pin + p.l / 2 * (_across(b) * b_dd - _along(b) * b_d**2)
         rough = p.mu_p * p.rho
         way = [np.tanh(a_d / p.w_p), np.tanh(b_rate / p.w_p), np.tanh(b_d / p.w_p), np.tanh(s_d / p.w_g)]
         x = np.zeros(8)
@@ -96,10 +102,10 @@ class SliderCrank:
             rows[4:6, 4:6], rows[5, 6] = np.eye(2), 1
             right[4:6] = p.m_s * (np.array([s_dd, 0]) - weight) + np.array([p.mu_g * abs(N) * way[3], 0])
             # moments about the pin A of the crank and about B of the rod
-            lever, half = p.r * along(a), p.r / 2 * along(a)
+            lever, half = p.r * _along(a), p.r / 2 * _along(a)
             rows[6, 2:4], rows[6, 7] = [lever[1], -lever[0]], 1
             right[6] = p.J_c * a_dd + p.m_c * _cross(half, crank - weight) + torque[0] - torque[1]
-            lever, half = p.l * along(b), p.l / 2 * along(b)
+            lever, half = p.l * _along(b), p.l / 2 * _along(b)
             rows[7, 4:6] = [lever[1], -lever[0]]
             right[7] = p.J_r * b_dd + p.m_r * _cross(half, rod - weight) + torque[1] + torque[2]
             x = np.linalg.solve(rows, right)

@@ -51,21 +51,33 @@ def optimum_by_casadi(first: Any, last: Any, start: Any) -> Any:
     return optimum["x"].full().reshape(NODES, model.n)
 
 
+@pytest.fixture
+def page_run(tmp_path: Path, tool: Callable[[str], str]) -> Callable[[str], str]:
+    """Runs the page's blocks in languages that a pattern names, beside the shipped model, and gives what they print."""
+    tool("cc")
+    environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
+    (tmp_path / "rapkm_2rrr_rr.yaml").write_bytes((shipped.ROOT / "models/rapkm_2rrr_rr.yaml").read_bytes())
+
+    def run(languages: str) -> str:
+        printed = ""
+        for language, block in re.findall(rf"```({languages})\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL):
+            command = ["sh", "-ec", block] if language == "sh" else [sys.executable, "-c", block]
+            made = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+            assert made.returncode == 0, made.stderr
+            printed += made.stdout
+        return printed
+
+    return run
+
+
 @pytest.mark.campaign
 @pytest.mark.slow
 @pytest.mark.toolchain
-def test_an_optimum_through_a_singularity_of_minimal_coordinates(tmp_path: Path, tool: Callable[[str], str]) -> None:
-    tool("cc")
-    page = PAGE.read_text(encoding="utf-8")
-    environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
-    (tmp_path / "rapkm_2rrr_rr.yaml").write_bytes((shipped.ROOT / "models/rapkm_2rrr_rr.yaml").read_bytes())
-    printed = ""
-    for language, block in re.findall(r"```(\w+)\n(.*?)```", page, re.DOTALL):
-        command = ["sh", "-ec", block] if language == "sh" else [sys.executable, "-c", block]
-        made = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
-        assert made.returncode == 0, made.stderr
-        printed += made.stdout
-    said = re.findall(r"prints `([^`]+)`", page)
+def test_an_optimum_through_a_singularity_of_minimal_coordinates(
+    tmp_path: Path, page_run: Callable[[str], str]
+) -> None:
+    printed = page_run(r"\w+")
+    said = re.findall(r"prints `([^`]+)`", PAGE.read_text(encoding="utf-8"))
     assert len(said) == 4
     for line in said:
         assert line in printed
@@ -78,14 +90,11 @@ def test_an_optimum_through_a_singularity_of_minimal_coordinates(tmp_path: Path,
 @pytest.mark.campaign
 @pytest.mark.slow
 @pytest.mark.toolchain
-def test_jacobians_of_an_external_function_are_those_of_its_values(tmp_path: Path, tool: Callable[[str], str]) -> None:
+def test_jacobians_of_an_external_function_are_those_of_its_values(
+    tmp_path: Path, page_run: Callable[[str], str]
+) -> None:
     """What CasADi makes of `jac_u` and `jac_g` against differences of `u` and `g`."""
-    tool("cc")
-    page = PAGE.read_text(encoding="utf-8")
-    environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
-    (tmp_path / "rapkm_2rrr_rr.yaml").write_bytes((shipped.ROOT / "models/rapkm_2rrr_rr.yaml").read_bytes())
-    (block,) = re.findall(r"```sh\n(.*?)```", page, re.DOTALL)
-    subprocess.run(["sh", "-ec", block], cwd=tmp_path, env=environment, capture_output=True, check=True)
+    page_run("sh")
     library = str(tmp_path / "rapkm_external.so")
     for name, count in (("u", 3), ("g", 1)):
         function = casadi.external(name, library)

@@ -10,15 +10,19 @@ from pathlib import Path
 from typing import Any
 
 import symgen
-from symgen.generation.results import WrongUseError
-from symgen.laboratory.bench.build import TIMED_STATES, find_gcc
+from symgen.laboratory.bench.build import TIMED_STATES
 from symgen.laboratory.bench.candidate import Task
-from symgen.laboratory.bench.mechanisms import MeasuredKernel, Progress, drawn_states, measured_kernels
+from symgen.laboratory.bench.mechanisms import (
+    MeasuredKernel,
+    Progress,
+    drawn_states,
+    measurable,
+    measured_draft,
+    measured_kernels,
+)
 from symgen.laboratory.bench.peers.jacobian_peers import jacobian_peers
-from symgen.laboratory.bench.symgen_kernels import generated, symgen_candidates
+from symgen.laboratory.bench.symgen_kernels import symgen_candidates
 from symgen.laboratory.bench.workload import Workload
-from symgen.model.blocks.allocation import without_allocation
-from symgen.model.load import load_model
 
 JACOBIAN = "inverse_dynamics_jacobian"
 
@@ -46,18 +50,12 @@ def derivative_benchmark(path: Path, progress: Progress, out: Path | None = None
     """
     import numpy as np
 
-    if find_gcc() is None:
-        raise WrongUseError("symgen bench compiles everything with gcc, and there is no gcc on this machine")
-    model = without_allocation(load_model(path))
-    if not model.m:
-        raise WrongUseError(f"{path}: nothing to measure, the model has no inputs")
+    model = measurable(path)
     task = Task(JACOBIAN, "qdd", model.m * 3 * model.n)
     states = np.array(drawn_states(model, TIMED_STATES))
     nothing = np.zeros((len(states), task.size))
     progress("deriving J_u")
-    draft = generated(model, task, ("float64",), out)
-    if draft.derivations.left_out:
-        raise WrongUseError(f"{path}: nothing to measure: {'; '.join(draft.notes)}")
+    draft = measured_draft(path, model, task, out)
     own = symgen_candidates(model, {draft.choice(JACOBIAN).title: draft.written}, "float64")
     progress("writing peers")
     peers, left_out = jacobian_peers(model, states)

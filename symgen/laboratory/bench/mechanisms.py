@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import symgen
+from symgen.generation.draft import Draft
 from symgen.generation.results import WrongUseError
 from symgen.laboratory.bench.build import TIMED_STATES, CandidateFootprint, build, find_gcc, nanoseconds, results_of
 from symgen.laboratory.bench.callgrind import count_instructions, find_valgrind
@@ -72,18 +73,12 @@ def mechanism_benchmark(path: Path, progress: Progress, out: Path | None = None)
     """
     import numpy as np
 
-    if find_gcc() is None:
-        raise WrongUseError("symgen bench compiles everything with gcc, and there is no gcc on this machine")
-    model = without_allocation(load_model(path))
-    if not model.m:
-        raise WrongUseError(f"{path}: nothing to measure, the model has no inputs")
+    model = measurable(path)
     task = Task(TASK, "qdd", model.m)
     states = drawn_states(model, TIMED_STATES)
     load = Workload("float64", np.array(states), np.zeros((len(states), model.m)), np.zeros((len(states), model.m)), [])
     progress("deriving u")
-    draft = generated(model, task, ("float64",), out)
-    if draft.derivations.left_out:
-        raise WrongUseError(f"{path}: nothing to measure: {'; '.join(draft.notes)}")
+    draft = measured_draft(path, model, task, out)
     form = draft.choice(TASK).title
     programs = {form: draft.written}
     progress("writing peers")
@@ -98,6 +93,27 @@ def mechanism_benchmark(path: Path, progress: Progress, out: Path | None = None)
             draft.notes,
         )
     return MechanismBenchmark(model.name, form, tuple(kernels), left_out, timed, draft.notes)
+
+
+def measurable(path: Path) -> Model:
+    """The model of a file, without its allocation: peers have none.
+
+    Raises ModelError for mistakes in the file, WrongUseError without gcc, or where there is no u.
+    """
+    if find_gcc() is None:
+        raise WrongUseError("symgen bench compiles everything with gcc, and there is no gcc on this machine")
+    model = without_allocation(load_model(path))
+    if not model.m:
+        raise WrongUseError(f"{path}: nothing to measure, the model has no inputs")
+    return model
+
+
+def measured_draft(path: Path, model: Model, task: Task, out: Path | None) -> Draft:
+    """What is measured of symgen, as a run under `out` has verified it, or as derivation chooses."""
+    draft = generated(model, task, ("float64",), out)
+    if draft.derivations.left_out:
+        raise WrongUseError(f"{path}: nothing to measure: {'; '.join(draft.notes)}")
+    return draft
 
 
 def measured_kernels(

@@ -67,7 +67,7 @@ def equations_of_motion(context: Context) -> Section:
         *_potential(context),
     ]
     if context.model.rough:
-        blocks += [paragraph("Friction {} grows with {}; it stands below, with the inputs.", D, lam)]
+        blocks += [paragraph("Friction {} grows with reactions; it stands below, with the inputs.", D)]
     if context.model.has_applied_forces:
         blocks += [paragraph("The applied forces are"), *context.quantity("applied_force", "Qa")]
     if context.model.r:

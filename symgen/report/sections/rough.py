@@ -61,28 +61,29 @@ def friction_of_reactions(model: Model) -> list[Block]:
         for place in model.rough
     )
     heads = tuple(say(x) for x in ("Place", "Coefficient", "Radius", "Rate", "Width"))
-    worked_out = "no place changes the load of another one, so that they are explicit"
+    worked_out, too_few = "no place changes the load of another one, so that they are explicit", ""
     if not steps.explicit:
         worked_out = f"they are worked out place by place, {steps.steps} times, which leaves less than a rounding"
+        too_few = ", or one time more changes a load,"
     return [
         paragraph(
             "Friction of pins and guides grows with the reactions that they carry, and changes them (Remark 3 of the "
             "paper). The inputs supply it beside the load, as it is with the reactions that come of them:"
         ),
         displayed((equals(u, juxtaposed(pseudoinverse(Mt), Fenced(plus(tau, D)))), friction, size), "D"),
-        displayed((equals(lam, rest),), "lambda_D"),
+        *((displayed((equals(lam, rest),), "lambda_D"),) if model.r else ()),
         Table(heads, rows, (0, 1, 1, 1, 1)),
         paragraph(
-            "The loads {} are the sizes of reactions, which are affine in them; a pin or guide that changes its own "
-            "load is solved for as a quadratic equation.",
+            "A guide counts as a pin of radius 1. The loads {} are the sizes of reactions, which are affine in them; a "
+            "pin or guide that changes its own load is solved for as a quadratic equation.",
             n_j,
         ),
         displayed((load, equals(kappa, share)), "loads"),
         paragraph(
             "A change of the loads comes back as the share {} of it at most, so that for less than 1 there is one "
             f"solution. At {steps.points} configurations all over the ranges {{}} is {steps.kappa:.2g} at most with "
-            f"all places sliding; {worked_out}. Where {{}} reaches one half the function returns {{}} and leaves its "
-            "result as it was.",
+            f"all places sliding; {worked_out}. Where {{}} reaches one half{too_few} the function returns {{}} and "
+            "leaves its result as it was.",
             kappa,
             kappa,
             kappa,

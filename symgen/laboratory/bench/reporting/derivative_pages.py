@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any
 
 from symgen.laboratory.bench.peers.jacobian_peers import PINOCCHIO
+from symgen.laboratory.bench.reporting.markdown import markdown_table
+from symgen.laboratory.bench.reporting.mechanism_pages import COLUMNS, Results, Row, counted
 from symgen.terminal import columns
-
-Row: TypeAlias = Mapping[str, Any]
-Results: TypeAlias = Mapping[str, Mapping[str, Any]]
-COLUMNS = ("", "instructions", "ns", "code", "stack", "operations", "difference")
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +46,7 @@ def page(results: Results) -> str:
     if results:
         parts.append(_goals(results))
     for name, result in results.items():
-        parts.append(f"## {name}\n\n{_table(COLUMNS, _rows(result))}")
+        parts.append(f"## {name}\n\n{markdown_table(COLUMNS, _rows(result))}")
         parts += [f"Not measured: {what} ({why}).\n" for what, why in result["left_out"]]
     return "\n".join(parts)
 
@@ -76,14 +74,14 @@ def _goals(results: Results) -> str:
     rows = []
     for name, result in results.items():
         kernels = result["kernels"]
-        counts = [f"{_count(_own(kernels, trig)):.0f}" for trig in ("libm", "portable")]
+        counts = [f"{counted(_own(kernels, trig)):.0f}" for trig in ("libm", "portable")]
         rows.append([name, *counts, *(_shown(kernels, goal) for goal in GOALS)])
     failures = missed(results)
     verdict = f"Missed: {'; '.join(failures)}." if failures else "No goal is missed."
     return (
         "## Goals\n\nInstructions of symgen's J_u, with the C library's sine and cosine and with its own; and with the "
         "library's on both sides over the cheapest form of a tool, in brackets the goal, bold if missed.\n\n"
-        f"{_table(head, rows)}\n{verdict}\n"
+        f"{markdown_table(head, rows)}\n{verdict}\n"
     )
 
 
@@ -92,12 +90,12 @@ def _shown(kernels: Sequence[Row], goal: SlopeGoal) -> str:
     if quotient is None or peer is None:
         return ""
     shown = f"{quotient:.2f}" if _is_met(quotient, goal) else f"**{quotient:.2f}**"
-    return f"{shown}: {_count(peer):.0f} {peer['generator']} {peer['form']}"
+    return f"{shown}: {counted(peer):.0f} {peer['generator']} {peer['form']}"
 
 
 def _quotient(kernels: Sequence[Row], goal: SlopeGoal) -> float | None:
     peer = _peer(kernels, goal.against)
-    return None if peer is None else _count(_own(kernels, "libm")) / _count(peer)
+    return None if peer is None else counted(_own(kernels, "libm")) / counted(peer)
 
 
 def _is_met(quotient: float, goal: SlopeGoal) -> bool:
@@ -111,16 +109,11 @@ def _own(kernels: Sequence[Row], trig: str) -> Row:
 
 
 def _peer(kernels: Sequence[Row], against: str) -> Row | None:
-    return min((row for row in kernels if row["generator"].startswith(against)), key=_count, default=None)
-
-
-def _count(row: Row) -> float:
-    """Instructions, or times where there is no valgrind."""
-    return float(row["nanoseconds"] if row["instructions"] is None else row["instructions"])
+    return min((row for row in kernels if row["generator"].startswith(against)), key=counted, default=None)
 
 
 def _rows(result: Mapping[str, Any]) -> list[tuple[str, ...]]:
-    return [_cells(row) for row in sorted(result["kernels"], key=_count)]
+    return [_cells(row) for row in sorted(result["kernels"], key=counted)]
 
 
 def _cells(row: Row) -> tuple[str, ...]:
@@ -134,7 +127,3 @@ def _cells(row: Row) -> tuple[str, ...]:
         f"{row['difference']:.1e}",
     )
 
-
-def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    lines = [head, ["---"] * len(head), *rows]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)

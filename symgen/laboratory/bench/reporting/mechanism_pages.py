@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from symgen.laboratory.bench.reporting.goals import AS_WRITTEN, Goal
+from symgen.laboratory.bench.reporting.markdown import markdown_table
 from symgen.laboratory.bench.reporting.mechanism_goals import (
     AS_WRITTEN_METHODS,
     CHEAPEST_WRITTEN,
@@ -48,7 +49,7 @@ def page(results: Results) -> str:
     if names:
         parts += [_goals(results, names), _library(results, names), _early(results, names)]
     for name, result in results.items():
-        parts.append(f"## {name}\n\n{_table(COLUMNS, _rows(result))}")
+        parts.append(f"## {name}\n\n{markdown_table(COLUMNS, _rows(result))}")
         parts += [f"Not measured: {what} ({why}).\n" for what, why in _left_out(result)]
     return "\n".join(parts)
 
@@ -62,7 +63,7 @@ def table_of(result: Mapping[str, Any]) -> str:
 
 
 def _rows(result: Mapping[str, Any]) -> list[tuple[str, ...]]:
-    return [_cells(row) for row in sorted(result["kernels"], key=_count)]
+    return [_cells(row) for row in sorted(result["kernels"], key=counted)]
 
 
 def _goals(results: Results, names: Sequence[str]) -> str:
@@ -71,7 +72,7 @@ def _goals(results: Results, names: Sequence[str]) -> str:
         cells = [ratio(results[name]["kernels"], goal, goal.ratios[MECHANISMS.index(name)]) for name in names]
         rows.append([f"{goal.against}, symgen with {goal.trig}", *cells])
     text = "## Goals\n\nInstructions of symgen's u over the peer's; in brackets the goal, bold if missed.\n\n"
-    return text + _table(["against", *names], rows)
+    return text + markdown_table(["against", *names], rows)
 
 
 def _library(results: Results, names: Sequence[str]) -> str:
@@ -83,7 +84,7 @@ def _library(results: Results, names: Sequence[str]) -> str:
     return (
         "## Pinocchio\n\nTimes of symgen's u with portable sine and cosine over those of Pinocchio, in a program of "
         "its own: RNEA, and for loops the Jacobians of their points and Eigen's reflections of B^T. Its parameters are "
-        "fixed when its model is built.\n\n" + _table(["", *measured], [["time", *cells]])
+        "fixed when its model is built.\n\n" + markdown_table(["", *measured], [["time", *cells]])
     )
 
 
@@ -107,12 +108,12 @@ def ratio(rows: Sequence[Row], goal: Goal, wanted: float | None) -> str:
     mine, peer = _own(rows, goal.trig), _peer(rows, goal.against)
     if peer is None:
         return "none"
-    quotient = _count(mine) / _count(peer)
+    quotient = counted(mine) / counted(peer)
     digits = 3 if wanted is not None and wanted < 0.1 else 2
     shown = f"{quotient:.{digits}f}"
     shown = shown if wanted is None or round(quotient, digits) <= wanted else f"**{shown}**"
     asked = "" if wanted is None else f" ({wanted})"
-    return f"{shown}{asked}: {_count(mine):.0f} / {_count(peer):.0f} {peer['generator']} {peer['form']}"
+    return f"{shown}{asked}: {counted(mine):.0f} / {counted(peer):.0f} {peer['generator']} {peer['form']}"
 
 
 def _early(results: Results, names: Sequence[str]) -> str:
@@ -124,8 +125,8 @@ def _early(results: Results, names: Sequence[str]) -> str:
             if peer is None or count is None:
                 cells.append("")
                 continue
-            libm, portable = (_count(_own(results[name]["kernels"], trig)) / count for trig in ("libm", "portable"))
-            here = f"here {100 * (_count(peer) / count - 1):+.0f} %"
+            libm, portable = (counted(_own(results[name]["kernels"], trig)) / count for trig in ("libm", "portable"))
+            here = f"here {100 * (counted(peer) / count - 1):+.0f} %"
             cells.append(f"{count}; {here}; symgen {libm:.2f} ({portable:.2f}) of it")
         rows.append([against, *cells])
     return (
@@ -134,7 +135,7 @@ def _early(results: Results, names: Sequence[str]) -> str:
         "Gough-Stewart platform of the early counts have other parameters: the platform here has its joints given by "
         "angles, whose sines the peers evaluate. The arm's strongest peers here, recursions, were not counted then, "
         "nor when its goals were set.\n\n"
-        + _table(["against", *names], rows)
+        + markdown_table(["against", *names], rows)
     )
 
 
@@ -149,10 +150,10 @@ def _peer(rows: Sequence[Row], against: str) -> Row | None:
         peers = next(filter(None, kinds), [])
     elif against == CHEAPEST_WRITTEN:
         peers = [row for row in peers if row["form"] in WRITTEN]
-    return min(peers, key=_count, default=None)
+    return min(peers, key=counted, default=None)
 
 
-def _count(row: Row) -> float:
+def counted(row: Row) -> float:
     """Instructions, or times where there is no valgrind."""
     return float(row["nanoseconds"] if row["instructions"] is None else row["instructions"])
 
@@ -167,8 +168,3 @@ def _cells(row: Row) -> tuple[str, ...]:
         " ".join(f"{count} {kind}" for kind, count in (row["operations"] or {}).items()),
         f"{row['difference']:.1e}",
     )
-
-
-def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    lines = [head, ["---"] * len(head), *rows]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)

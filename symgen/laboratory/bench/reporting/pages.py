@@ -21,6 +21,7 @@ from symgen.laboratory.bench.reporting.goals import (
     VALID_METHODS,
     Goal,
 )
+from symgen.laboratory.bench.reporting.markdown import markdown_table
 from symgen.laboratory.bench.reporting.quantity_pages import quantity_section
 
 Row: TypeAlias = Mapping[str, Any]
@@ -106,7 +107,8 @@ def _goals(measured: Results) -> str:
         for goal in GOALS
     ]
     text = "## Goals\n\nInstructions of symgen's u over the peer's, float64; in brackets the goal, bold if missed.\n\n"
-    text += _table(["against", *PAPER], rows) + "\nThe same of the times:\n\n" + _table(["against", *PAPER], times)
+    head = ["against", *PAPER]
+    text += markdown_table(head, rows) + "\nThe same of the times:\n\n" + markdown_table(head, times)
     return text
 
 
@@ -140,7 +142,8 @@ def _footprints(measured: Results) -> str:
         "denominators and results and to tell the causes of a failure; stack is that of their frames together. The "
         "peers test nothing. With libm nobody's sine and cosine are counted, with portable symgen's are and the "
         "peers' are not: linked statically, `sincos` of the GNU library adds 12 kB. "
-        "[0019](../decisions/0019-instructions-and-bytes.md) says what the tests take.\n\n" + _table(["", *PAPER], rows)
+        "[0019](../decisions/0019-instructions-and-bytes.md) says what the tests take.\n\n"
+        + markdown_table(["", *PAPER], rows)
     )
 
 
@@ -170,7 +173,7 @@ def _reproduced(measured: Results) -> str:
     return (
         "## The peers are no straw men\n\nInstructions of u in float64 as counted before the goals were set, and "
         f"here; bold where a peer is more than {100 * REPRODUCED_WITHIN:.0f} % dearer here, a minus where it is "
-        f"cheaper.{note}\n\n" + _table(["", *PAPER], rows)
+        f"cheaper.{note}\n\n" + markdown_table(["", *PAPER], rows)
     )
 
 
@@ -181,7 +184,7 @@ def _model(result: Mapping[str, Any], charts: Sequence[str]) -> list[str]:
         rows = [_cells(row) for row in sorted(comparison["measured"], key=_place)]
         head = ["", "", "ns", "instructions", "operations", "code", "stack", "median", "99 %", "largest", "units"]
         title = f"{comparison['quantity']}, {comparison['states']} states"
-        parts.append(f"<details><summary>{title}</summary>\n\n{_table(head, rows)}\n</details>\n")
+        parts.append(f"<details><summary>{title}</summary>\n\n{markdown_table(head, rows)}\n</details>\n")
         parts += [f"Not measured: {name} ({why}).\n" for name, why in comparison["left_out"].items()]
     return parts
 
@@ -241,8 +244,3 @@ def _counted(measured: Results) -> bool:
     """Whether the paper's models were all measured, with valgrind."""
     rows = [row for name in PAPER for row in measured.get(name, ()) if row["language"] == "C"]
     return all(name in measured for name in PAPER) and all(row["instructions"] is not None for row in rows)
-
-
-def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    lines = [head, ["---"] * len(head), *rows]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
