@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import yaml
 
+from symgen.diagnostics import ModelError
 from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.draws.describe import MISTAKE, Description
 from symgen.laboratory.zoo.draws.endings import MAIN, independent
@@ -19,6 +20,7 @@ from symgen.laboratory.zoo.witness.fields import Floats
 from symgen.laboratory.zoo.witness.mechanics import equations
 from symgen.laboratory.zoo.witness.reader import SystemReader
 from symgen.laboratory.zoo.witness.urdf_file import expanded
+from symgen.model.load import load_text
 
 DRAWS = range(3)
 
@@ -124,3 +126,13 @@ def test_a_link_with_a_reserved_name_is_a_mistake() -> None:
     drawn = draw(4002, 42, "")
     assert '<link name="delete">' in drawn.files["robot.urdf"]
     assert MISTAKE in drawn.marks
+
+
+def test_a_mistake_on_purpose_is_in_the_file() -> None:
+    """Whatever a family writes over the ends of files: a start at a singular pose keeps the name that is none, too."""
+    mistaken = [drawn for index in range(50, 60) if MISTAKE in (drawn := draw(1360, index, "")).marks]
+    mistaken += [drawn for index in range(120) if MISTAKE in (drawn := draw(5, index, "parallelogram_energies")).marks]
+    assert any("start at a singular pose" in drawn.marks for drawn in mistaken)
+    for drawn in mistaken:
+        with pytest.raises(ModelError):
+            load_text(drawn.text, "zoo.yaml")

@@ -48,7 +48,8 @@ def parallelogram_energies(dice: Dice) -> Description:
     if cranks == 2 and dice.chance(0.5):
         # all bars on one line: two branches meet there, and both have the same ranks
         flat = dict.fromkeys(sketch.start, "0")
-        blocks = {**description.blocks, "configuration": flat}
+        # a name on purpose that is none stays
+        blocks = {**description.blocks, "configuration": {**description.blocks.get("configuration", {}), **flat}}
         return replace(description, blocks=blocks, marks=(*description.marks, "start at a singular pose"))
     return description
 
