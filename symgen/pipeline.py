@@ -32,6 +32,7 @@ from symgen.runtime.activity import working
 
 if TYPE_CHECKING:
     from symgen.generation.parameter_bounds import ParameterBounds
+    from symgen.generation.rank_thresholds import RankThresholds
     from symgen.generation.trial import Trial
     from symgen.report.facts import ReportFiles
     from symgen.report.proof import ProofFacts
@@ -56,7 +57,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
     outputs = requested_outputs(model, options)
     draft: Draft | None = None
     trial: Trial | None = None
-    bounds: ParameterBounds | None = None
+    limits: tuple[RankThresholds, ParameterBounds] | None = None
     while True:
         with _reporting(model, options.verify) if "report" in options.parts else nullcontext() as reporting:
             if draft is None:
@@ -64,6 +65,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
                 draft = _derive(model, outputs, options)
                 if options.verify and verified(options):
                     from symgen.generation.parameter_bounds import ParameterBounds
+                    from symgen.generation.rank_thresholds import RankThresholds
                     from symgen.generation.trial import Trial
 
                     with _literals_in_range(path):
@@ -71,12 +73,12 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
                     draft, tried = trial.settled(draft)
                     if not draft.program.kernels:
                         return _result(draft, options, {}, replace(tried, left_out=draft.left_out))
-                    bounds = ParameterBounds(trial.expected)
-            if bounds is not None:
+                    limits = RankThresholds(trial.expected), ParameterBounds(trial.expected)
+            for limit in limits or ():
                 with _literals_in_range(path):
                     check_literals(draft.programs)
-                progress("verifying: how far parameters may be")
-                draft = bounds.of(draft)
+                progress(f"verifying: {limit.WHAT}")
+                draft = limit.of(draft)
             if reporting is not None:
                 reporting.send(facts(draft))
             progress("writing")

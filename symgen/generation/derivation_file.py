@@ -20,6 +20,8 @@ from symgen.methods.selection import MethodChoice
 from symgen.model.model import Model
 from symgen.quantities.select import Rejection
 
+# The key of decades by which thresholds of rank are raised.
+RAISED = "thresholds_raised_by_decades"
 # Of shares of reactions in the file.
 SHOWN_DECIMALS = 4
 
@@ -39,6 +41,7 @@ def derivation_json(draft: Draft) -> str:
             **({"form": choice.method} if choice.method else {}),
             **({"twice_the_digits": list(choice.wide)} if choice.wide else {}),
             **_bounds(draft, kernel.name),
+            **_raised(draft, kernel.name),
             "counted_cost": dict(choice.costs),
             "operations": _operations(kernel),
             "statuses": sorted({check.status.name for block in kernel.blocks for check in block.checks}),
@@ -110,6 +113,12 @@ def _bounds(draft: Draft, quantity: str) -> dict[str, Any]:
     bounds = {scalar: draft.bounds.get(scalar, {}).get(quantity, ()) for scalar in draft.kernels(quantity)}
     by_scalar = {scalar: {bound.parameter: _ends(bound) for bound in own} for scalar, own in bounds.items()}
     return {"bounds": by_scalar} if any(by_scalar.values()) else {}
+
+
+def _raised(draft: Draft, quantity: str) -> dict[str, Any]:
+    """By how many decades thresholds of rank are above what rounding leaves, by type, where any is."""
+    decades = {scalar: every[quantity] for scalar, every in draft.raised.items() if quantity in every}
+    return {RAISED: decades} if decades else {}
 
 
 def _ends(bound: Bound) -> list[float | None]:

@@ -10,6 +10,7 @@ from symgen.generation.results import Options, Trig, WrongUseError
 from symgen.ir.bounded import Bound, bounded
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.ir.library_trig import with_library_trig
+from symgen.ir.raised import with_raised_thresholds
 from symgen.lowering.schedule import schedule
 from symgen.mechanics.structure import Structure, analyse
 from symgen.mechanics.system import System
@@ -34,8 +35,9 @@ LARGE_GRAPH = 100_000
 class Draft:
     """The derived quantities of a model and their kernels; `left_out` is what verification rejects by every method.
 
-    `bounds` are those of parameters by type and quantity, which `written` programs check.  `notice` says why it does
-    not hold what an earlier verification led to, where that was asked for.
+    `bounds` are those of parameters by type and quantity, and thresholds of rank are `raised` by so many decades: so
+    are `written` programs.  `notice` says why it does not hold what an earlier verification led to, where that was
+    asked for.
     """
 
     model: Model
@@ -46,16 +48,18 @@ class Draft:
     left_out: tuple[LeftOut, ...] = ()
     notice: str = ""
     bounds: Mapping[Scalar, Mapping[str, tuple[Bound, ...]]] = field(default_factory=dict)
+    raised: Mapping[Scalar, Mapping[str, int]] = field(default_factory=dict)
 
     @property
     def written(self) -> dict[Scalar, Program]:
-        """The programs as they are written: with the checks of bounds."""
+        """The programs as they are written: with the checks of bounds and thresholds that are raised."""
         names = tuple(parameter.name for parameter in self.model.parameters)
         positive = positive_parameters(self.model) | nonnegative_parameters(self.model)
         made = {}
         for scalar, program in self.programs.items():
-            bounds = self.bounds.get(scalar, {})
-            kernels = (bounded(kernel, bounds.get(kernel.name, ()), names, positive) for kernel in program.kernels)
+            bounds, decades = self.bounds.get(scalar, {}), self.raised.get(scalar, {})
+            raised = (with_raised_thresholds(kernel, decades.get(kernel.name, 0)) for kernel in program.kernels)
+            kernels = (bounded(kernel, bounds.get(kernel.name, ()), names, positive) for kernel in raised)
             made[scalar] = replace(program, kernels=tuple(kernels))
         return made
 

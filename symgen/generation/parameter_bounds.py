@@ -14,6 +14,8 @@ from symgen.verify.far_parameters import FarParameters
 class ParameterBounds:
     """The bounds for one model, through all rounds of its verification."""
 
+    WHAT = "how far parameters may be"
+
     def __init__(self, expected: Expected) -> None:
         self._far = FarParameters(expected)
         self._known: dict[str, tuple[dict[Scalar, Kernel], dict[Scalar, tuple[Bound, ...]]]] = {}

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symgen import __version__
+from symgen.generation.derivation_file import RAISED
 from symgen.generation.draft import REJECTED, Draft, draft_of
 from symgen.ir.bounded import Bound
 from symgen.ir.kernel import UNIT_ROUNDOFF
@@ -45,6 +46,7 @@ class _VerificationRecord:
     taken: Mapping[str, _Taken]
     left_out: Mapping[str, tuple[Scalar, ...]]
     bounds: Mapping[Scalar, Mapping[str, tuple[Bound, ...]]]
+    raised: Mapping[Scalar, Mapping[str, int]]
 
 
 class _UnusableError(Exception):
@@ -96,6 +98,10 @@ def _record(content: Mapping[str, Any]) -> _VerificationRecord:
             scalar: {name: tuple(_bounds(one.get("bounds", {}).get(scalar, {}))) for name, one in kernels}
             for scalar in UNIT_ROUNDOFF
         },
+        {
+            scalar: {name: int(one.get(RAISED, {}).get(scalar, 0)) for name, one in kernels}
+            for scalar in UNIT_ROUNDOFF
+        },
     )
 
 
@@ -118,7 +124,11 @@ def _with_record(draft: Draft, record: _VerificationRecord, asked: Container[str
         }
         for scalar, every in record.bounds.items()
     }
-    draft = replace(draft, bounds=bounds)
+    raised = {
+        scalar: {name: decades for name, decades in every.items() if decades and name in present and name not in asked}
+        for scalar, every in record.raised.items()
+    }
+    draft = replace(draft, bounds=bounds, raised=raised)
     replaced = [name for name in dict.fromkeys(one.quantity for one in record.rejected) if name in present]
     if not replaced:
         return draft

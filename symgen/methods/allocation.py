@@ -117,12 +117,16 @@ class InputAllocation:
         return tuple(one for one in divisors(self.solve(force)) if one not in judged)
 
     def guards(self, inputs: Vector) -> tuple[Guard, ...]:
-        """That inputs for which limits are kept exactly do keep them: else none produce the motion within these."""
+        """That inputs for which limits are kept exactly do keep them: else none produce the motion within these.
+
+        Rounding leaves as much of a limit as of the largest input, which may be far beyond it where that one has none.
+        """
         if not self._mechanics.model.keeps_limits or self._allocation.scale:
             return ()
-        graph, excess, sizes = self._graph, self._graph.zero, []
+        graph, excess = self._graph, self._graph.zero
+        sizes = [graph.function("abs", (x,)) for x in inputs]
         for slab in self._slabs(inputs, [()] * len(inputs), [graph.zero] * len(inputs)):
             beyond = larger(graph, slab.start - slab.upper, slab.lower - slab.start)
             excess = larger(graph, excess, beyond)
-            sizes += [graph.function("abs", (x,)) for x in (slab.lower, slab.upper, slab.start)]
+            sizes += [graph.function("abs", (x,)) for x in (slab.lower, slab.upper)]
         return (Guard(Status.LIMITS, excess, 1, scale=graph.sum(sizes), positive=True, small=True),)

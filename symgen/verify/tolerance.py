@@ -32,8 +32,10 @@ from symgen.verify.reference.reference import Reference, State
 FACTOR = 16.0
 # Random changes of which d is the largest effect.
 PERTURBATIONS = 8
-# Binary digits of states that are moved, and of what they make of results.
-PERTURBED_BITS = 160
+# Binary digits of states that are moved, and of what they make of results; next to singular states this leaves none,
+# and more are taken where results are not known to a share of eps.
+PERTURBED_BITS, MOST_PERTURBED = 160, 640
+KNOWN = 1 / 16
 # Binary digits of a distance: only its size counts.
 DISTANCE_BITS = 64
 
@@ -115,16 +117,27 @@ def _estimates(
     generator = random.Random(seed)
     with precision(PERTURBED_BITS):
         state = State(*(tuple(map(ball, part)) for part in state.parts))
+
+    def values(names: Sequence[str], signs: Sequence[int], whole: bool, bits: int) -> dict[str, Any]:
+        with precision(bits):
+            moved, literals = perturbed(reference, state, scalar, signs, whole)
+        made = reference.matrices(moved, names, bits, literals)
+        vague = any(_radius(made[name]) > KNOWN * eps * sizes[name] > 0 for name in names)
+        return values(names, signs, whole, 2 * bits) if vague and bits < MOST_PERTURBED else made
+
     for signs in _signs(reference, state, generator):
         results: dict[str, Any] = {}
         for names, whole in kinds:
-            with precision(PERTURBED_BITS):
-                moved, literals = perturbed(reference, state, scalar, signs, whole)
-            results |= reference.matrices(moved, names, PERTURBED_BITS, literals)
+            results |= values(names, signs, whole, PERTURBED_BITS)
         with precision(DISTANCE_BITS):
             for name, matrix in results.items():
                 worst[name] = max(worst[name], norm(matrix - exact[name]))
         yield made()
+
+
+def _radius(matrix: Any) -> float:
+    """The largest of its entries."""
+    return max((float(x.rad()) for x in matrix.entries()), default=0.0)
 
 
 def perturbed(

@@ -136,6 +136,18 @@ def compared(directions: int, count: int, folder: Path) -> Problem:
     return problem
 
 
+@pytest.mark.parametrize("directions", [2, 3])
+def test_a_limit_far_below_the_other_inputs_is_no_reason_to_refuse(directions: int, tmp_path: Path) -> None:
+    """What rounding leaves of it is as much as of the others: loads of 1e9 beside a limit of 1."""
+    text, _, _ = CASES[directions]
+    made = module(System(f"{text}allocation: {{limits: {{d_1: [-1, 1]}}}}\n", QUANTITIES), tmp_path, "heavy")
+    source = np.random.default_rng(3)
+    q, qd, qdd = source.uniform(-1, 1, (3, 200, 2))
+    u = made.inverse_dynamics(q, qd, 1e9 * qdd)
+    assert np.isfinite(u).all()
+    assert np.abs(u[:, 0]).max() < 1 + 1e-15 * np.abs(u).max()
+
+
 @pytest.mark.parametrize("directions", CASES)
 def test_inputs_are_the_nearest_within_their_limits_or_there_are_none(directions: int, tmp_path: Path) -> None:
     compared(directions, 1_000, tmp_path)

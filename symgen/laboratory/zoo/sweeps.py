@@ -153,7 +153,7 @@ def _towards(
         seen: Counter[int] = Counter()
         for number, start in enumerate([*(state.q for state in starts), *approach.nearest(kind, NEAREST)]):
             for decade, q in approach.towards(kind, start, Dice("approach", seed, kind, number)):
-                nearest = walker.refined(q, parameters) if seen[decade] < PER_DECADE else None
+                nearest = walker.refined(q, parameters, ranks.geometric) if seen[decade] < PER_DECADE else None
                 if nearest is not None:
                     seen[decade] += 1
                     state = walker.state(nearest, parameters, ranks.constraints)
@@ -174,7 +174,7 @@ def _scaled(
             for exponent in EXPONENTS:
                 far = {**parameters, name: parameters[name] * 10.0**exponent}
                 q = walker.closed(start.q, far)
-                q = None if q is None else walker.refined(q, far)
+                q = None if q is None else walker.refined(q, far, ranks.geometric)
                 if q is not None:
                     state = walker.state(q, far, ranks.constraints)
                     yield LedState(SCALED, f"{name} times 1e{exponent}", state, ranks)

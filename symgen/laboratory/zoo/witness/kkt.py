@@ -30,11 +30,13 @@ from symgen.laboratory.zoo.witness.tape import FileNumber, NodeProgram
 
 @dataclass(frozen=True)
 class GenericRanks:
-    """Generic ranks: of the constraints, and of the inputs on what they leave free; and usual `lengths` of rows."""
+    """Generic ranks: of the constraints, and of the inputs on what they leave free; usual `lengths` of rows, and the
+    rank of the `geometric` ones where it is known."""
 
     constraints: int
     actuation: int
     lengths: tuple[float, ...] = ()
+    geometric: int | None = None
 
 
 @dataclass(frozen=True)

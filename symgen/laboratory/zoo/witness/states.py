@@ -116,7 +116,8 @@ class Walker:
         lengths = np.max([self.lengths(at) for at in values], axis=0, initial=0.0) if values else ()
         apart = [(self._apart(at), self._driven(at)) for at in values]
         rank = [max((int((both[of] > SAME).sum()) for both in apart), default=0) for of in (0, 1)]
-        ranks = GenericRanks(rank[0], rank[1], tuple(map(float, lengths)))
+        geometric = max((self._geometric_rank(at) for at in values), default=0)
+        ranks = GenericRanks(rank[0], rank[1], tuple(map(float, lengths)), geometric)
         least = [[_value(one, of) for one, of in zip(both, rank, strict=True)] for both in apart]
         enough = np.minimum(REGULAR, OF_BEST * np.max(least, axis=0, initial=0.0))
         regular = [q for q, at in zip(points, least, strict=True) if (at > enough).all()]
@@ -256,19 +257,21 @@ class Walker:
             q = q - np.linalg.lstsq(steep, residual / lengths, rcond=SAME)[0]
         return q if best < CLOSED else None
 
-    def refined(self, q: Any, parameters: Mapping[str, float]) -> Any:
+    def refined(self, q: Any, parameters: Mapping[str, float], rank: int | None = None) -> Any:
         """The float nearest to a configuration that satisfies the rows to 30 digits; None where that is another one, or
         none is reached.
 
-        Where rows depend on each other nothing is defined off V but by rounding.  Where one of them all but vanishes,
-        rounding passes for a direction of it, and the steps lead away.
+        Where rows depend on each other nothing is defined off V but by rounding.  Where a direction of them is all but
+        lost, its rows do not show what `rank` they have elsewhere on V, and without a step along it what comes out is
+        beside V by as much as the way to where it is lost.
         """
         geometric = sum(row.geometric for row in self._system.rows)
         if not geometric:
             return q
         number = self._balls.number
         names = self._system.coordinates
-        rank = rank_of(normalized(np.array(self.numbers(q, parameters).rows[:geometric])), SAME)
+        if rank is None:
+            rank = self._geometric_rank(self.numbers(q, parameters))
         with precision():
             fixed = {name: number(Fraction(value)) for name, value in parameters.items()}
             fixed |= dict.fromkeys(self._system.rate_names, number(Fraction(0)))
@@ -286,6 +289,11 @@ class Walker:
         # what is less than these digits is what steps leave of a root at 0
         nearest[np.abs(nearest) < ROOT_AT_ZERO * np.abs(nearest).max(initial=0.0)] = 0.0
         return nearest if np.abs(nearest - q).max(initial=0.0) < ELSEWHERE else None
+
+    def _geometric_rank(self, at: EquationValues) -> int:
+        """The rank of the rows of loops."""
+        geometric = sum(row.geometric for row in self._system.rows)
+        return rank_of(normalized(np.array(at.rows[:geometric], dtype=float).reshape(geometric, at.n)), SAME)
 
     def _free(self, q: Any, parameters: Mapping[str, float]) -> Any:
         at = self.numbers(q, parameters)

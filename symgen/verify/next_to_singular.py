@@ -1,0 +1,130 @@
+"""How near to a drop of rank a kernel holds what status 0 says, where a threshold leaves more room than it has digits.
+
+Floats are dense at 0 alone.  Where rows or inputs lose rank in a configuration whose coordinates are 0, a state may be
+nearer to that than coordinates are to their own rounding elsewhere, rounding moves the result by next to nothing, and
+digits that a kernel loses count.  States are led there; where a kernel that holds everywhere else is beyond what is
+allowed, its thresholds are raised until it has a status.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+
+import numpy as np
+
+from symgen.ir.kernel import UNIT_ROUNDOFF, Kernel, Program, Scalar
+from symgen.ir.raised import with_raised_thresholds
+from symgen.ir.wide import paired
+from symgen.ir.wide_functions import works_with_pairs
+from symgen.model.quantities import MAIN
+from symgen.runtime.activity import working
+from symgen.verify.expected import Expected
+from symgen.verify.interpreted import outcomes
+from symgen.verify.lane_arithmetic import Lanes
+from symgen.verify.many_states import run_lanes
+from symgen.verify.reference.reference import ReferenceValueError, State
+from symgen.verify.sampling.lanes import RoundingErrors
+from symgen.verify.sampling.nearby import Nearby, Surroundings
+from symgen.verify.sampling.settling import Settling
+from symgen.verify.sampling.states import rounded
+from symgen.verify.single_precision import distances, lost_in_float32
+from symgen.verify.tolerance import FACTOR, is_beyond
+
+# States that are led to a drop of rank, of which those with a coordinate near 0 go on, and how far measures of these,
+# which are squares, may be below the least of the verification: 1e-12 of the way is left.
+LED, NEAREST = 256, 1e-24
+# Rounding errors above so many units are judged, the furthest from a drop of rank first, so many at most; of those that
+# are beyond what is allowed so many show how far a threshold has to go.
+DOUBTFUL, JUDGED, SHOWING = FACTOR / 2, 24, 4
+# Decades by which thresholds are raised at a time and at most, and how many more to keep a distance.
+STEP, MOST_DECADES, MARGIN = 2, 24, 2
+
+
+class NextToSingular:
+    """Those states of one verification."""
+
+    def __init__(self, expected: Expected) -> None:
+        self._expected = expected
+
+    def decades(self, kernels: Mapping[Scalar, Kernel], programs: Mapping[Scalar, Program]) -> dict[Scalar, int]:
+        """By how many decades the thresholds of the kernels of a quantity are to be raised, by scalar type."""
+        made = {}
+        with working("next to singular states"):
+            for scalar, kernel in kernels.items():
+                # pairs of numbers have digits enough
+                if kernel.name in MAIN and not works_with_pairs(kernel) and self._states:
+                    made[scalar] = self._decades(kernel, programs[scalar])
+        return {scalar: decades for scalar, decades in made.items() if decades}
+
+    def _decades(self, kernel: Kernel, program: Program) -> int:
+        scalar, sincos = program.scalar, program.sincos
+        lost = list(self._lost(kernel, program))
+        regular = [sample.state for sample in self._expected.samples(scalar)]
+        before = [one.status for one in outcomes(kernel, sincos, scalar, regular)]
+        for decades in range(STEP, MOST_DECADES if lost else 0, STEP):
+            if not any(one.valid for one in outcomes(with_raised_thresholds(kernel, decades), sincos, scalar, lost)):
+                raised = with_raised_thresholds(kernel, decades + MARGIN)
+                after = [one.status for one in outcomes(raised, sincos, scalar, regular)]
+                return decades + MARGIN if after == before else 0
+        return 0
+
+    def _lost(self, kernel: Kernel, program: Program) -> Iterator[State]:
+        """States of status 0 at which the reference finds more lost than is allowed, the furthest first."""
+        scalar, states = program.scalar, self._states
+        doubtful = np.flatnonzero(self._units(kernel, scalar) > DOUBTFUL)
+        order = doubtful[np.argsort(-self._measures[doubtful], kind="stable")][:JUDGED]
+        showing = 0
+        for place in order.tolist():
+            sample = self._settling.sample(states.state(place), bool(states.admissible[place]), kernel.name)
+            if sample is None:
+                continue
+            state = rounded(sample, scalar).state
+            (made,) = outcomes(kernel, program.sincos, scalar, [state])
+            if made.valid and self._is_beyond(kernel.name, scalar, state, made.entries):
+                yield state
+                showing += 1
+            if showing == SHOWING:
+                return
+
+    def _is_beyond(self, quantity: str, scalar: Scalar, state: State, entries: tuple[float, ...]) -> bool:
+        try:
+            return is_beyond(self._expected.reference, state, quantity, scalar, "next to singular", entries, FACTOR)
+        except ReferenceValueError:
+            return False
+
+    def _units(self, kernel: Kernel, scalar: Scalar) -> Lanes:
+        """What a kernel loses, in units of d + eps |y|, measured beside the same operations in more digits."""
+        given = self._states.parts
+        unit = RoundingErrors(kernel).with_units(given, self._tangents)[1] * float(UNIT_ROUNDOFF[scalar])
+        with np.errstate(all="ignore"):
+            return np.nan_to_num(self._off(kernel, scalar, given) / unit, posinf=0.0)
+
+    @staticmethod
+    def _off(kernel: Kernel, scalar: Scalar, given: Mapping[str, Lanes]) -> Lanes:
+        if scalar == "float32":
+            return lost_in_float32(kernel, given)
+        refused, y = run_lanes(kernel, None, scalar, given)
+        unknown, z = run_lanes(paired(kernel, scalar), None, scalar, given)
+        return np.where(refused + unknown == 0, distances(y, z), 0.0)
+
+    @cached_property
+    def _around(self) -> Surroundings:
+        return Surroundings(self._expected.reference, self._expected.drawn, self._expected.modes)
+
+    @cached_property
+    def _settling(self) -> Settling:
+        return Settling(self._expected.reference, self._expected.drawn, NEAREST)
+
+    @cached_property
+    def _states(self) -> Nearby:
+        return self._around.next_to_zero(self._around.towards(LED, self._settling.measures))
+
+    @cached_property
+    def _measures(self) -> Lanes:
+        return self._around.measures(self._states, together=True).min(axis=1)
+
+    @cached_property
+    def _tangents(self) -> Lanes | None:
+        reference = self._expected.reference
+        return self._around.tangents(self._states) if reference.ranks.constraints < reference.system.r else None

@@ -1,0 +1,143 @@
+"""States nearer to a drop of rank than coordinates are to their own rounding elsewhere: beside one at 0."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+
+import numpy as np
+
+from symgen.generation.draft import Draft, draft_of
+from symgen.generation.results import Options
+from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Statement, Status
+from symgen.ir.raised import with_raised_thresholds
+from symgen.laboratory.zoo.witness.witness import Witness
+from symgen.model.load import load_text
+from symgen.verify.expected import Expected
+from symgen.verify.interpreted import outcomes
+from symgen.verify.next_to_singular import NextToSingular
+from symgen.verify.reference.reference import State
+from symgen.verify.tolerance import FACTOR, expectations
+
+# Two legs that fold in planes at right angles carry a table straight up: flat, at 0, two directions are lost at once.
+LIFT = """\
+model: lift
+parameters: {l: {value: 0.23}, d: {value: 0.44}}
+gravity: [0, 0, -9.81]
+frames:
+  end: {parent: knee_1, translation: [0, 0, l]}
+  dock: {parent: table, translation: ["-d", d, 0]}
+joints:
+  foot_0: {type: revolute, axis: x, at: [0, "-d", 0], coordinate: p_0}
+  knee_0: {type: revolute, axis: x, parent: foot_0, at: [0, 0, l], coordinate: k_0}
+  table: {type: revolute, axis: x, parent: knee_0, at: [0, 0, l], coordinate: e}
+  foot_1: {type: revolute, axis: y, at: ["-d", 0, 0], coordinate: p_1}
+  knee_1: {type: revolute, axis: y, parent: foot_1, at: [0, 0, l], coordinate: k_1}
+bodies:
+  foot_0: {mass: 0.58, com: [0, 0, l/2], inertia: {xx: 0.02, yy: 0.02, zz: 0.003}}
+  knee_0: {mass: 5.1, com: [0, 0, l/2], inertia: {xx: 0.02, yy: 0.02, zz: 0.003}}
+  table: {mass: 3, com: [0, d, 0], inertia: {xx: 0.2, yy: 0.2, zz: 0.3}}
+  foot_1: {mass: 4, com: [0, 0, l/2], inertia: {xx: 0.02, yy: 0.02, zz: 0.003}}
+  knee_1: {mass: 1.4, com: [0, 0, l/2], inertia: {xx: 0.02, yy: 0.02, zz: 0.003}}
+loops:
+  hinge: {type: revolute, between: [end, dock], axis: y}
+inputs:
+  lift: {joint: k_0}
+configuration: {p_0: 0.49, k_0: -0.98, e: 0.49, p_1: 0.49, k_1: -0.98}
+"""
+# What is lost is lost twice, once it is refined: 1e-4 of it at 1e-12.
+METHOD = {"forward_dynamics": "schur_qr_refined"}
+
+
+@cache
+def lift() -> tuple[Draft, Expected]:
+    model = load_text(LIFT, "lift.yaml")
+    expected = Expected(model, ["forward_dynamics"], 16, lambda _: None)
+    expected.values("float64")
+    return draft_of(model, ["forward_dynamics"], Options(methods=METHOD, scalars=("float64",))), expected
+
+
+def flat(share: float) -> State:
+    """All but flat, and moving along."""
+    pose, rate = (1.0, -2.0, 1.0, 1.0, -2.0), 0.25
+    q, qd = (tuple(size * x for x in pose) for size in (share, rate))
+    # what is left of the rates of a table on two legs that rise alike
+    return State(q, (*qd[:4], qd[4] * (1 - 1e-5)), (0.0,) * 5, (3.0,), (0.23, 0.44), ())
+
+
+def units(kernel: Kernel, state: State) -> float | Status:
+    draft, expected = lift()
+    (made,) = outcomes(kernel, draft.programs["float64"].sincos, "float64", [state])
+    if not made.valid:
+        return Status(made.status)
+    known = expectations(expected.reference, state, [kernel.name], "float64", "flat")[kernel.name]
+    return known.in_units(known.distance(made.entries))
+
+
+def test_a_kernel_that_loses_digits_next_to_a_drop_has_a_status_there() -> None:
+    """Further away, where the other states of a verification are, nothing changes."""
+    draft, expected = lift()
+    kernels = draft.kernels("forward_dynamics")
+    decades = NextToSingular(expected).decades(kernels, draft.programs)
+    raised = with_raised_thresholds(kernels["float64"], decades["float64"])
+    before, after = ([units(one, flat(x)) for x in (1e-12, 1e-6, 1e-2)] for one in (kernels["float64"], raised))
+    assert isinstance(before[0], float)
+    assert before[0] > FACTOR
+    assert after[0] is Status.CONSTRAINT_RANK
+    assert after[1:] == before[1:]
+    assert all(isinstance(one, float) and one < FACTOR for one in after[1:])
+
+
+def test_kernels_with_twice_the_digits_and_other_quantities_keep_their_thresholds() -> None:
+    draft, expected = lift()
+    (kernel,) = draft.kernels("forward_dynamics").values()
+    taken = draft.taken("forward_dynamics")
+    wide = replace(taken, choice=replace(taken.choice, wide=("float64",)))
+    assert NextToSingular(expected).decades(draft.kernels_along(wide, ("float64",)), draft.programs) == {}
+    other = replace(kernel, name="nullspace_projector")
+    assert NextToSingular(expected).decades({"float64": other}, draft.programs) == {}
+
+
+def test_the_unit_of_error_is_known_next_to_a_drop() -> None:
+    """With too few digits what inputs do to a result would drown in what rounding does to the reference."""
+    _, expected = lift()
+    made = [
+        expectations(expected.reference, flat(share), ["forward_dynamics"], "float64", "flat")["forward_dynamics"]
+        for share in (1e-12, 1e-9)
+    ]
+    next_to, beside = (one.unit / one.size for one in made)
+    assert next_to < 3 * beside < 1e-10
+
+
+def test_thresholds_of_ranks_alone_are_raised() -> None:
+    """Be they numbers or products, of causes too."""
+    value, scale, number = Local("value"), Local("scale"), Literal(Fraction(1, 8))
+    cause = Block((), (Check(Status.CONSTRAINT_RANK, value, scale),))
+    checks = (
+        Check(Status.ACTUATION_RANK, value, number, first=cause),
+        Check(Status.CONSTRAINT_RANK, value, scale),
+        Check(Status.CONSTRAINT_RANK, number, scale),
+        Check(Status.MASS_RANK, value, scale),
+    )
+    named = Block((Statement(("raised_1",), "mul", (value, number)),), ())
+    kernel = Kernel("k", (), (Load("value", "q", 0), Load("scale", "q", 1)), (named, Block((), checks)), (value,), (1,))
+    _, made = with_raised_thresholds(kernel, 3).blocks
+    first, second = (one.all_statements() for one in (made.checks[0].first, replace(made, checks=())) if one)
+    assert [*first] == [Statement(("raised_2",), "mul", (scale, Literal(Fraction(1000))))]
+    assert [*second] == [Statement(("raised_3",), "mul", (scale, Literal(Fraction(1000))))]
+    limits = [check.limit for check in made.checks]
+    assert limits == [Literal(Fraction(125)), Local("raised_3"), Local("raised_3"), scale]
+    assert with_raised_thresholds(kernel, 0) is kernel
+
+
+def test_sweeps_meet_states_on_the_constraints_there() -> None:
+    """The rows that are left at 1e-12 would let either leg go its own way: the rank that they have elsewhere counts."""
+    witness = Witness(LIFT)
+    walker, defaults = witness.walker(), witness.defaults()
+    _, ranks = walker.states(defaults, 3)
+    assert ranks.geometric == 4
+    beside = np.array([1.32e-12, -2.64e-12, 1.32e-12, 0.94e-12, -1.88e-12])
+    on = walker.refined(beside, defaults, ranks.geometric)
+    assert np.allclose(on, on[0] * np.array([1, -2, 1, 1, -2]), rtol=1e-14, atol=0)
+    assert not np.allclose(*walker.refined(beside, defaults)[[0, 3]], rtol=0.1, atol=0)
