@@ -31,8 +31,7 @@ FAR_STARTS, NEAR_STARTS, MODE_STARTS = 32, 448, 64
 NUMBERS_HELD = 4_000_000
 # Coordinates that are kept of configurations with a parameter far away, and states of each that are kept in any case.
 MOST_KEPT, LEAST_KEPT = 8_000_000, 8
-# Rows and inputs this far from a drop of rank are no reason for a status: parameters are.  A tenth of what sweeps take
-# for one, whose pivots are larger than singular values.
+# Rows and inputs this far from a drop of rank are no reason for a status: parameters are.
 CLEAR = 1e-5
 # Times the steps of Newton's method from a state to where its loops close with a parameter far away.
 RENEWED = 5
