@@ -79,11 +79,14 @@ class FarErrors:
         return {scalar: np.where(masses, units, 0.0) for scalar, units in by_scalar.items()}
 
     def _of_pairs(self, far: Far) -> dict[Scalar, Lanes]:
-        """In float64 their noise; in float32 what is lost on plain numbers, less the digits that pairs gain."""
+        """In float64 their noise; in float32 what plain numbers lose, less the digits of pairs if these are used."""
         by_scalar: dict[Scalar, Lanes] = {"float64": np.maximum(self._noise(far), self._refusals("float64", far))}
         if self._single is not None:
             own, unit = self._estimates.with_units(far.given)
-            by_scalar["float32"] = np.maximum(self._refusals("float32", far), own / unit * 2.0**-GAINED)
+            if works_with_pairs(self._single):
+                by_scalar["float32"] = np.maximum(self._refusals("float32", far), own / unit * 2.0**-GAINED)
+            else:
+                by_scalar["float32"] = self._in_float32(self._single, far, own / unit, unit)
         return by_scalar
 
     def _estimated_and_measured(self, far: Far) -> dict[Scalar, Lanes]:
@@ -93,11 +96,15 @@ class FarErrors:
         estimated[refused] = self._refusals("float64", far.only(refused))
         by_scalar: dict[Scalar, Lanes] = {"float64": np.maximum(estimated, self._noise(far))}
         if self._single is not None:
-            off, size = self._measured(self._single, far), float(UNIT_ROUNDOFF["float32"]) * unit
-            # a unit is infinite where the kernel of float64 refuses, or where squares of slopes are too large for it
-            measured = np.divide(off, size, out=np.where(np.isfinite(off), 0.0, off), where=np.isfinite(size))
-            by_scalar["float32"] = measured if works_with_pairs(self._single) else np.maximum(measured, estimated)
+            by_scalar["float32"] = self._in_float32(self._single, far, estimated, unit)
         return by_scalar
+
+    def _in_float32(self, kernel: Kernel, far: Far, estimated: Lanes, unit: Lanes) -> Lanes:
+        """What is measured in that type, and of plain numbers what is estimated."""
+        off, size = self._measured(kernel, far), float(UNIT_ROUNDOFF["float32"]) * unit
+        # a unit is infinite where the kernel of float64 refuses, or where squares of slopes are too large for it
+        measured = np.divide(off, size, out=np.where(np.isfinite(off), 0.0, off), where=np.isfinite(size))
+        return measured if works_with_pairs(kernel) else np.maximum(measured, estimated)
 
     def _noise(self, far: Far) -> Lanes:
         return noise_in_units(self._kernels["float64"], self._programs["float64"].sincos, far.given)

@@ -203,6 +203,23 @@ def test_pairs_of_float32_are_bounded_by_what_plain_numbers_lose(expected: Expec
     assert 1e2 < bound.high < 1e5
 
 
+def test_plain_numbers_of_float32_beside_pairs_of_float64_are_bounded(expected: Expected) -> None:
+    """One type alone may need twice the digits: (c d + m a) - m a in plain numbers loses a digit by each power of m."""
+    plain = straight(
+        Statement(("ma",), "mul", (Local("m"), Local("a"))),
+        Statement(("cd",), "mul", (Local("c"), Local("d"))),
+        Statement(("sum",), "add", (Local("cd"), Local("ma"))),
+        Statement(("y",), "sub", (Local("sum"), Local("ma"))),
+    )
+    kernels: dict[Scalar, Kernel] = {"float64": widened(plain, "float64"), "float32": plain}
+    programs = {scalar: Program(scalar, None, (kernels[scalar],)) for scalar in SCALARS}
+    bounds = FarParameters(expected).bounds(kernels, programs, plain)
+    assert bounds["float64"] == ()
+    (bound,) = (one for one in bounds["float32"] if one.parameter == MASS)
+    assert bound.high is not None
+    assert bound.high < 1e2
+
+
 def test_what_loses_nothing_has_no_bound(expected: Expected) -> None:
     kernel = straight(
         Statement(("cm",), "mul", (Local("c"), Local("m"))), Statement(("y",), "div", (Local("cm"), Local("d")))

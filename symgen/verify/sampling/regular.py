@@ -11,7 +11,7 @@ from __future__ import annotations
 import random
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, isfinite, pi, sqrt
 from typing import Any
 
@@ -22,7 +22,7 @@ from symgen.verify.reference.manifold import exceeds, starts
 from symgen.verify.reference.parameter_values import ParameterValues, default_parameters
 from symgen.verify.reference.parts import Part
 from symgen.verify.reference.reference import BeyondLimitsError, LocksError, Reference, ReferenceValueError, State
-from symgen.verify.sampling.plain_values import SAMPLING_BITS, floats, in_floats, measured, settled
+from symgen.verify.sampling.plain_values import SAMPLING_BITS, floats, in_floats, measured, settled, values_at
 
 # Regular states that a verification needs.
 FEWEST_STATES = 8
@@ -30,8 +30,11 @@ FEWEST_STATES = 8
 REGULAR_SHARE = 1e-3
 # Of a coordinate, by which every fourth state is moved off V at most.
 DRIFT = 1e-3
-# How far angles may lie outside of their ranges in states.
-TURNS = 2
+# How far angles may lie outside of their ranges in states, and how many times as far out as the ranges and the
+# configurations that are known all others may.
+TURNS, FAR_OUT = 2, 10
+# Of limits: the share of the way between them in which inputs are drawn, where those of drawn motions lie beyond.
+BETWEEN_LIMITS = 0.8
 # Configurations that tell how large measures and rows usually are.
 MEASURED_POINTS = 8
 # Steps along V, in widths of the ranges.
@@ -44,7 +47,7 @@ CYCLE, MODE, DEFAULTS = 5, 2, (2, 3)
 LOOP_RESTARTS = 12
 # Where of the first starts less than a share leads to regular states in the ranges, steps along V look for the others.
 PROBES, POOR = 40, 8
-CLOSED, BRANCH, TURNED = "do not close", "lie on other branches", "lie turns outside of the ranges"
+CLOSED, BRANCH, AWAY = "do not close", "lie on other branches", "lie far outside of the ranges"
 VALUE, SINGULAR, BEYOND = "have no value", "are singular", "need inputs beyond their limits"
 LOCKED = "lock by friction"
 
@@ -200,8 +203,8 @@ class RegularStateSearch:
         if exceeds(self._system, reference.ranks, q, exact, self._literals):
             self._ends[BRANCH] += 1
             return None
-        if away := self._turned_away(q):
-            self._ends[TURNED] += 1
+        if away := self._far_away(q):
+            self._ends[AWAY] += 1
             self._wants(away)
             return None
         outside = self._outside(q)
@@ -312,7 +315,29 @@ class RegularStateSearch:
             values = self._looked_at(state, needed)
             if values is not None:
                 return Regular(state, shares, index % 2 == 0, values)
+            driven = self._driven_within_limits(state, shares)
+            values = None if driven is None else self._looked_at(driven, needed)
+            if driven is not None and values is not None:
+                return Regular(driven, shares, True, values)
         return None
+
+    def _driven_within_limits(self, state: State, shares: Sequence[float]) -> State | None:
+        """The motion that inputs between their limits make, where few others are within these; None without limits."""
+        model = self._reference.model
+        if not model.keeps_limits or model.allocation is None:
+            return None
+        values = dict(zip((p.name for p in model.parameters), state.parameters, strict=True))
+        by_name = {item.name: share for item, share in zip(model.inputs, shares, strict=True)}
+        for limit in model.allocation.limits:
+            low, high = values[limit.lower], values[limit.upper]
+            by_name[limit.input] = (low + high) / 2 + BETWEEN_LIMITS * by_name[limit.input] * (high - low) / 2
+        try:
+            (rates,) = values_at(self._reference, state, ["admissible_velocity"]).values()
+            state = replace(state, qd=rates, u=tuple(by_name.values()))
+            (accelerations,) = values_at(self._reference, state, ["forward_dynamics"]).values()
+        except ReferenceValueError:
+            return None
+        return replace(state, qdd=accelerations, u=(0.0,) * model.m) if all(map(isfinite, accelerations)) else None
 
     def _looked_at(self, state: State, needed: Sequence[str]) -> dict[str, tuple[float, ...]] | None:
         """What is needed of a state; None where it is not regular, which is counted."""
@@ -357,13 +382,18 @@ class RegularStateSearch:
                 outside.append(j)
         return outside
 
-    def _turned_away(self, q: Sequence[Any]) -> list[int]:
-        """The angles turns outside of their ranges, where one step after another leads and nothing new is met."""
-        return [
-            j
-            for j, (x, c) in enumerate(zip(q, self._reference.model.coordinates, strict=True))
-            if c.is_angle and not float(c.range[0]) - TURNS * 2 * pi <= x <= float(c.range[1]) + TURNS * 2 * pi
-        ]
+    def _far_away(self, q: Sequence[Any]) -> list[int]:
+        """The angles turns outside of their ranges, where one step after another leads and nothing new is met, and
+        other coordinates that are far out, where one stands in a sine and elsewhere."""
+        away = []
+        places = () if self._known is None else self._known.places
+        for j, (x, c) in enumerate(zip(q, self._reference.model.coordinates, strict=True)):
+            low, high = map(float, c.range)
+            size = max(abs(low), abs(high), *(abs(float(place.q[j])) for place in places))
+            out = TURNS * 2 * pi if c.is_angle else FAR_OUT * size
+            if not low - out <= x <= high + out:
+                away.append(j)
+        return away
 
 
 def _at_rest(reference: Reference, q: Sequence[float], parameters: Sequence[float]) -> State:

@@ -20,6 +20,8 @@ STEPS = 30
 # steps of refinement at most, and the last of them: it leaves 30 digits of what is 1e-9 away from a singular pose
 REFINEMENTS, REFINED = 12, 1e-20
 CLOSED = 1e-12
+# what is left of rows on V, in lengths of these
+ON_IT = 1e-15
 SAME = 1e-8
 # of the largest coordinate: what is less after refinement to 30 digits is 0
 ROOT_AT_ZERO = 1e-30
@@ -285,10 +287,22 @@ class Walker:
                     break
             else:
                 return None
+            if not self._is_on(exact, fixed, geometric):
+                return None
             nearest = np.array([float(x) for x in exact])
         # what is less than these digits is what steps leave of a root at 0
         nearest[np.abs(nearest) < ROOT_AT_ZERO * np.abs(nearest).max(initial=0.0)] = 0.0
         return nearest if np.abs(nearest - q).max(initial=0.0) < ELSEWHERE else None
+
+    def _is_on(self, exact: Sequence[Any], fixed: Mapping[str, Any], geometric: int) -> bool:
+        """Whether the rows are satisfied to the last digits of lengths in a file.
+
+        Next to singular poses the least of what they leave need not be 0.
+        """
+        at = self._evaluate({**fixed, **dict(zip(self._system.coordinates, exact, strict=True))}, self._balls)
+        lengths = (max(abs(float(x)) for x in row) for row in at.rows[:geometric])
+        gaps = ((abs(float(x)), length) for x, length in zip(at.residual, lengths, strict=True))
+        return all(gap <= ON_IT * length or gap < REFINED**2 for gap, length in gaps)
 
     def _geometric_rank(self, at: EquationValues) -> int:
         """The rank of the rows of loops."""
