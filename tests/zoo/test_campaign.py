@@ -12,7 +12,7 @@ from symgen.laboratory.zoo.campaign import MOST_SECONDS, Campaign, JudgedDraw, j
 from symgen.laboratory.zoo.cases import case_of, read_case
 from symgen.laboratory.zoo.draws.describe import Description, Terms, read_description, summands
 from symgen.laboratory.zoo.draws.families import FAMILIES, draw
-from symgen.laboratory.zoo.records import DrawRecord, read_records, summary, write_record
+from symgen.laboratory.zoo.records import DrawRecord, methods_of, read_records, summary, write_record
 from symgen.laboratory.zoo.refusals import UNREPORTED
 from symgen.laboratory.zoo.run import CommandRun
 from symgen.laboratory.zoo.verdict import FAILED, REFUSED, VERIFIED, DrawVerdict
@@ -49,6 +49,22 @@ def test_chunks_are_summed_up(tmp_path: Path) -> None:
     assert "2 draws" in text
     assert "failed" not in text
     assert "most CPU time: 4.0 s (1:1 bennett)" in text
+
+
+def test_methods_are_counted(tmp_path: Path) -> None:
+    derivation = {
+        "kernels": {
+            "inverse_dynamics": {"way": "minor"},
+            "forward_dynamics": {"way": "householder", "form": "schur_qr"},
+            "energy": {"way": "minors"},
+        }
+    }
+    for index in range(2):
+        known = methods_of(derivation if index else {"kernels": {"inverse_dynamics": {"way": "minor"}}})
+        write_record(tmp_path / "a", DrawRecord(1, index, "disc", VERIFIED, "", "", 2.0, 100, methods=known))
+    text = summary(read_records([tmp_path / "a"]))
+    assert "  inverse_dynamics: minor 2\n  forward_dynamics: schur_qr 1\n" in text
+    assert "energy" not in text
 
 
 def test_the_sum_of_failures_is_a_failure(tmp_path: Path, monkeypatch, capsys) -> None:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import islice
 from multiprocessing import get_context
 from pathlib import Path
@@ -16,7 +17,7 @@ from typing import TypeVar
 from symgen.laboratory.zoo.cases import case_of
 from symgen.laboratory.zoo.draws.describe import Description
 from symgen.laboratory.zoo.draws.families import draw
-from symgen.laboratory.zoo.records import DrawRecord
+from symgen.laboratory.zoo.records import DrawRecord, methods_of
 from symgen.laboratory.zoo.refusals import UNREPORTED, judged
 from symgen.laboratory.zoo.run import run_command
 from symgen.laboratory.zoo.shrink import shrink
@@ -56,12 +57,14 @@ def write(description: Description, model: Path) -> None:
 
 @dataclass(frozen=True)
 class JudgedDraw:
-    """How a draw ended, CPU seconds and megabytes of the command, and what was compared, if anything was."""
+    """How a draw ended, CPU seconds and megabytes of the command, what was compared, if anything was, and which
+    methods compute what."""
 
     verdict: DrawVerdict
     cpu: float
     megabytes: float
     compared: Coverage | None = None
+    methods: Mapping[str, str] = field(default_factory=dict)
 
 
 def judge(description: Description, model: Path) -> JudgedDraw:
@@ -74,7 +77,9 @@ def judge(description: Description, model: Path) -> JudgedDraw:
     if not verdict.failed and verdict.ending != REFUSED:
         verdict, text, compared = _witnessed(description, folder, verdict)
         (folder / "stderr").write_text(text + run.err, encoding="utf-8")
-    return JudgedDraw(verdict, run.cpu, run.megabytes, compared)
+    derivation = folder / str(description.blocks["model"]) / "derivation.json"
+    methods = methods_of(json.loads(derivation.read_bytes())) if derivation.exists() else {}
+    return JudgedDraw(verdict, run.cpu, run.megabytes, compared, methods)
 
 
 def _witnessed(
@@ -114,6 +119,7 @@ def one_draw(campaign: Campaign, index: int) -> tuple[DrawRecord, str]:
     record = DrawRecord(
         campaign.seed, index, description.family, verdict.ending, verdict.kind, verdict.signature,
         round(ended.cpu, 1), round(ended.megabytes), str(model) if verdict.failed else "", ended.compared,
+        ended.methods,
     )  # fmt: skip
     line = f"{record.ending} {record.kind} {record.signature} ({record.cpu} s, {record.megabytes} MB)"
     if ended.compared is not None and ended.compared.lack:

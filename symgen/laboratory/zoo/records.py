@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterable, Iterator
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,12 +16,18 @@ from symgen.laboratory.zoo.witness.witness import STATES
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
+# quantities whose methods are counted
+CHOSEN = (
+    "inverse_dynamics", "forward_dynamics", "multipliers", "nullspace_projector", "weighted_pseudoinverse",
+    "weighted_nullspace_projector",
+)  # fmt: skip
 SYMBOLS = {"inverse_dynamics": "u", "forward_dynamics": "q̈", "multipliers": "λ"}
 
 
 @dataclass(frozen=True)
 class DrawRecord:
-    """One draw: where it comes from, how it ended, what it took, what of it was compared (None: nothing was)."""
+    """One draw: where it comes from, how it ended, what it took, what of it was compared (None: nothing was), and by
+    which methods it computes what."""
 
     seed: int
     index: int
@@ -33,6 +39,7 @@ class DrawRecord:
     megabytes: float
     file: str = ""
     compared: Coverage | None = None
+    methods: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def failed(self) -> bool:
@@ -73,12 +80,26 @@ def summary(records: list[DrawRecord]) -> str:
     failures = Counter((record.kind, record.signature) for record in records if record.failed)
     for (kind, signature), count in failures.most_common():
         lines.append(f"  {count} x {kind}: {signature}")
-    lines += [f"  {line}" for line in _compared(records)]
+    lines += [f"  {line}" for line in (*_compared(records), *_methods(records))]
     slowest = max(records, key=lambda record: record.cpu)
     largest = max(records, key=lambda record: record.megabytes)
     lines.append(f"  most CPU time: {slowest.cpu} s ({slowest.seed}:{slowest.index} {slowest.family})")
     lines.append(f"  most memory: {largest.megabytes} MB ({largest.seed}:{largest.index} {largest.family})")
     return "\n".join(lines)
+
+
+def methods_of(derivation: Mapping[str, Any]) -> dict[str, str]:
+    """By quantity, the method that its derivation.json names."""
+    kernels = derivation.get("kernels", {})
+    return {name: kernels[name].get("form", kernels[name]["way"]) for name in CHOSEN if name in kernels}
+
+
+def _methods(records: list[DrawRecord]) -> Iterator[str]:
+    """How many draws take which method of a quantity."""
+    for name in CHOSEN:
+        counts = Counter(record.methods[name] for record in records if name in record.methods)
+        if counts:
+            yield f"{name}: {', '.join(f'{method} {count}' for method, count in counts.most_common())}"
 
 
 def _compared(records: list[DrawRecord]) -> Iterator[str]:
