@@ -18,7 +18,7 @@ from symgen.laboratory.zoo.campaign import Campaign
 from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.draws.describe import read_description
 from symgen.laboratory.zoo.sweep_campaign import one_sweep, record_of, table, write_violations
-from symgen.laboratory.zoo.sweeps import ANSWERED, BEYOND, UNEXPLAINED, LedState, compared, sweep
+from symgen.laboratory.zoo.sweeps import ANSWERED, BEYOND, UNEXPLAINED, UNKNOWN, LedState, compared, sweep
 from symgen.laboratory.zoo.witness.generated import Answer, Target
 from symgen.laboratory.zoo.witness.kkt import GenericRanks
 from symgen.laboratory.zoo.witness.results import JudgedResult
@@ -169,6 +169,18 @@ def test_a_status_at_a_clear_state_is_counted(folder: Path, monkeypatch: pytest.
     tally = swept(folder, monkeypatch, lambda at, u: Answer(5 * (at.parameters[0] < 1e-5), (u,)))
     assert tally.of(UNEXPLAINED) == tally.of("mass rank") == 4
     assert "mass rank although clear" in tally.violations[0].text
+
+
+def test_where_the_truth_is_singular_there_is_none(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Many digits do not tell every state from a drop of rank: it is counted, and ends no sweep."""
+
+    def lost(*_: object) -> None:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(Witness, "_truth", lost)
+    tally = swept(folder, monkeypatch, lambda _, u: Answer(0, (u,)))
+    assert tally.of(UNKNOWN) > 0
+    assert tally.of(UNKNOWN) == sum(tally.counts.values())
 
 
 def test_a_status_beside_a_singular_set_is_not(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -227,6 +227,8 @@ class Witness:
                 # seven digits may not tell what is all but within limits from what is not
                 wrong = answer.status == 0 and scalar == "float64"
                 return JudgedResult(answer.status, math.inf if wrong else 0.0, math.inf if wrong else 0.0, 0.0, False)
+            except ZeroDivisionError:  # so near to a drop of rank that these digits do not tell it from one
+                return None
             if truth is None:
                 return None
             answer = target.call(quantity, self._at_runtime(given), len(truth.value))
@@ -297,10 +299,10 @@ class Witness:
     def _known(
         self, quantity: str, state: FloatState, ranks: GenericRanks, moved: tuple[Dice, float] | None = None
     ) -> Truth | None:
-        """The same, None where no inputs within their limits produce the motion."""
+        """The same, None where no inputs within their limits produce the motion or a rank is lost."""
         try:
             return self._truth(quantity, state, ranks, moved)
-        except NoInputsError:
+        except (NoInputsError, ZeroDivisionError):
             return None
 
     def _truth(
