@@ -45,8 +45,8 @@ HARDLY_ANY_INPUT = (4.0, 9.0)
 # How often a state is led on along a line that is drawn, how far that goes at most in shares of ranges, how much of the
 # way is left, and the steps that show the slope, shares of that.
 LED_STEPS, LONGEST_LED, WAY_LEFT, PROBED = 8, 0.4, 0.3, 1e-2
-# Of its range: a coordinate that is so near to 0 may be next to it as well, by these powers of ten.
-SMALL, NEXT_TO_ZERO = 1e-2, (1.0, 11.0)
+# Of its range: a coordinate that is so near to 0 may be next to it as well, by so many powers of ten.
+SMALL, NEXT_TO_ZERO = 1e-2, 11
 # In how many samples that is looked at, and how large these forces are beside inputs.
 SAMPLES_LOOKED_AT, LEAST_DRIVE = 8, 0.1
 
@@ -193,7 +193,7 @@ class Surroundings:
         return self._drawn_towards(count, least, random.Random("towards"), None)
 
     def next_to_zero(self, states: Nearby) -> Nearby:
-        """Where a coordinate of these states is small, one that is nearer to 0 by up to eleven powers of ten.
+        """Where a coordinate of these states is small, some that are nearer to 0, one in each of eleven powers of ten.
 
         Floats are dense at 0 alone: if rows or inputs lose rank there, a state may be nearer to that than any other
         coordinate is to its own rounding.
@@ -201,8 +201,9 @@ class Surroundings:
         dice = random.Random("next to zero")
         q = states.parts["q"]
         small = (np.abs(q) < SMALL * self._widths) & (q != 0)
-        states, small = states.only(small.any(axis=1)), small[small.any(axis=1)]
-        share = np.array([10.0 ** -dice.uniform(*NEXT_TO_ZERO) for _ in range(len(states))])
+        places = np.flatnonzero(small.any(axis=1)).repeat(NEXT_TO_ZERO)
+        states, small = states.only(places), small[places]
+        share = np.array([10.0 ** -(1 + k % NEXT_TO_ZERO + dice.random()) for k in range(len(places))])
         q = np.where(small, states.parts["q"] * share[:, None], states.parts["q"])
         with np.errstate(all="ignore"):
             q, shut = self._loops.newton(q, states.parts["p"])

@@ -20,8 +20,8 @@ STEPS = 30
 # steps of refinement at most, and the last of them: it leaves 30 digits of what is 1e-9 away from a singular pose
 REFINEMENTS, REFINED = 12, 1e-20
 CLOSED = 1e-12
-# what is left of rows on V, in lengths of these
-ON_IT = 1e-15
+# what is left of rows on V, in lengths of these, and what is no length of a row
+ON_IT, NO_LENGTH = 1e-15, 1e-14
 SAME = 1e-8
 # of the largest coordinate: what is less after refinement to 30 digits is 0
 ROOT_AT_ZERO = 1e-30
@@ -302,7 +302,7 @@ class Walker:
         at = self._evaluate({**fixed, **dict(zip(self._system.coordinates, exact, strict=True))}, self._balls)
         lengths = (max(abs(float(x)) for x in row) for row in at.rows[:geometric])
         gaps = ((abs(float(x)), length) for x, length in zip(at.residual, lengths, strict=True))
-        return all(gap <= ON_IT * length or gap < REFINED**2 for gap, length in gaps)
+        return all(gap <= ON_IT * length or length < NO_LENGTH for gap, length in gaps)
 
     def _geometric_rank(self, at: EquationValues) -> int:
         """The rank of the rows of loops."""
