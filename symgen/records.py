@@ -1,7 +1,7 @@
 """Frozen dataclasses at a third of the price: `dataclass` of the standard library compiles seven functions a class.
 
 There are more than a hundred such classes between a model file and C: with the standard library's the cold start of
-`front_car` with u only takes a quarter more.  Here only `__init__` is compiled, the other methods are shared.  Fields,
+`front_car` with u only takes a tenth more.  Here only `__init__` is compiled, the other methods are shared.  Fields,
 defaults, `replace`, `asdict`, matching, comparison and pickling are as usual.
 """
 

@@ -99,7 +99,7 @@ def _width(terminal: TextIO) -> int:
 
 
 def summary_table(name: str, summary: Summary, width: int | None = None) -> str:
-    """Sizes, largest errors, operations by quantity, and what the scene does not need; in so many columns if given."""
+    """Sizes, largest errors, operations by quantity, and what the system does not need; in so many columns if given."""
     sizes = f"n = {summary.n}, r = {summary.r}, δ = {summary.delta}, m = {summary.m}"
     sections = [f"{name}   {sizes}"]
     if summary.operations:

@@ -6,6 +6,7 @@ import ast
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 PACKAGE = Path(__file__).parent.parent / "symgen"
@@ -22,7 +23,12 @@ class NamedNumbers:
     explained: bool
 
 
-def named_numbers(package: Path) -> Iterator[NamedNumbers]:
+@cache
+def named_numbers(package: Path) -> tuple[NamedNumbers, ...]:
+    return tuple(_named_numbers(package))
+
+
+def _named_numbers(package: Path) -> Iterator[NamedNumbers]:
     for path in sorted(package.rglob("*.py")):
         if LABORATORY in path.relative_to(package).parts:
             continue

@@ -3,28 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from fractions import Fraction
 
 from symgen.diagnostics import SymgenBug
 from symgen.model.expressions.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
+from symgen.model.expressions.walk import FUNCTIONS
 from symgen.model.model import Model
-
-_FUNCTIONS: dict[str, Callable[..., float]] = {
-    "sin": math.sin,
-    "cos": math.cos,
-    "tan": math.tan,
-    "asin": math.asin,
-    "acos": math.acos,
-    "atan": math.atan,
-    "atan2": math.atan2,
-    "sqrt": math.sqrt,
-    "exp": math.exp,
-    "log": math.log,
-    "sinh": math.sinh,
-    "cosh": math.cosh,
-    "tanh": math.tanh,
-}
 
 
 def default_values(model: Model) -> dict[str, Fraction]:
@@ -57,7 +42,7 @@ def _value(expression: Expression, known: Mapping[str, Fraction]) -> Fraction:
         case Power(base, exponent):
             return _power(_value(base, known), exponent)
         case Call(function, arguments):
-            return Fraction(_FUNCTIONS[function](*(float(_value(argument, known)) for argument in arguments)))
+            return Fraction(FUNCTIONS[function](*(float(_value(argument, known)) for argument in arguments)))
 
 
 def _binary(operator: str, left: Fraction, right: Fraction) -> Fraction:

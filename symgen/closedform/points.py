@@ -16,6 +16,7 @@ from sympy.polys.rings import PolyElement
 
 from symgen.closedform.algebra.quotient import Matrix, Quotient
 from symgen.closedform.mechanics import ExactSystem
+from symgen.model.configurations.dense import pivots
 from symgen.model.expressions.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
 from symgen.model.model import Model
 from symgen.validity.descent import Evaluated, zero_beside
@@ -233,18 +234,6 @@ def _scaled(rows: list[list[flint.arb]], units: Sequence[int]) -> list[list[flin
 
 
 def rank(matrix: Sequence[Sequence[mpf]]) -> int:
-    """The numerical rank by elimination with complete pivoting."""
-    rows = [list(row) for row in matrix]
-    scale = max((abs(x) for row in rows for x in row), default=mpf(0))
-    count = 0
-    columns = list(range(len(rows[0]))) if rows else []
-    while rows and columns:
-        i, j = max(((i, j) for i in range(len(rows)) for j in columns), key=lambda at: abs(rows[at[0]][at[1]]))
-        pivot = rows[i][j]
-        if abs(pivot) <= RANK_THRESHOLD * scale:
-            break
-        head = rows.pop(i)
-        rows = [[a - row[j] / pivot * b for a, b in zip(row, head, strict=True)] if row[j] else row for row in rows]
-        columns.remove(j)
-        count += 1
-    return count
+    """The numerical rank by elimination, beside the largest entry: a row that vanishes on V has no size of its own."""
+    scale = max((abs(x) for row in matrix for x in row), default=mpf(0))
+    return pivots([list(row) for row in matrix], RANK_THRESHOLD * scale)

@@ -8,7 +8,7 @@ from symgen.generation.draft import Draft
 from symgen.generation.results import Options
 from symgen.ir.wide_functions import works_with_pairs
 from symgen.methods.forward_dynamics.motions import BY_FRAMES
-from symgen.methods.method import MOTIONS
+from symgen.model.quantities import MOTIONS
 from symgen.quantities.candidates import ARTICULATED
 
 # Operations of q_ddot or of lambda beyond which a notice tells why it is long.

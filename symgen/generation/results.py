@@ -77,7 +77,7 @@ class LargestError:
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """The table at the end of a run: sizes, what the scene does not need and why, operations, largest errors."""
+    """The table at the end of a run: sizes, what the system does not need and why, operations, largest errors."""
 
     n: int
     r: int

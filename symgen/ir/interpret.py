@@ -159,14 +159,3 @@ class Interpreter:
         for statement in function.statements:
             self._statement(statement, values)
         return tuple(values[name] for name in function.results)
-
-
-def interpret(
-    kernel: Kernel,
-    sincos: Function | None,
-    arguments: Mapping[str, Sequence[float]],
-    parameters: Sequence[float],
-    scalar: Scalar = "float64",
-) -> tuple[Status, list[float]]:
-    """Run one kernel once; see `Interpreter` for many."""
-    return Interpreter(sincos, scalar).run(kernel, arguments, parameters)

@@ -1,4 +1,4 @@
-"""What a scene does not need: decisions with their reasons, for the command line, the report and derivation.json."""
+"""What a system does not need: decisions with their reasons, for the command line, the report and derivation.json."""
 
 from __future__ import annotations
 

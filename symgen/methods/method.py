@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from symgen.methods.workspace import Workspace
 
 INPUTS = "inverse_dynamics"
-MOTIONS = ("forward_dynamics", "multipliers")
 
 
 @dataclass(frozen=True, slots=True)

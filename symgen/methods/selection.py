@@ -18,12 +18,13 @@ from symgen.methods.admission import FAILS, Validity
 from symgen.methods.driven_blocks import where_inputs_act
 from symgen.methods.forward_dynamics.minor_motion import CANCELLATION_WORTH
 from symgen.methods.graphs import derived_on
-from symgen.methods.method import INPUTS, MOTIONS, Candidate, solved_for_u
+from symgen.methods.method import INPUTS, Candidate, solved_for_u
 from symgen.methods.quantity import Quantity
 from symgen.methods.system import MethodInput
 from symgen.methods.table import METHODS, Use, method, methods
 from symgen.methods.workspace import Workspace
 from symgen.model.model import Model
+from symgen.model.quantities import MOTIONS
 from symgen.records import dataclass
 from symgen.symbolic.scalar import Scalar
 

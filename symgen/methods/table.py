@@ -11,6 +11,7 @@ from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from symgen.model.quantities import MAIN, MOTIONS
 from symgen.records import dataclass
 
 if TYPE_CHECKING:
@@ -57,7 +58,7 @@ def _method(
     return MethodRow(name, quantities, partial(_load, place, implementation), use)
 
 
-_U, _MOTION, _PROJECTOR = ("inverse_dynamics",), ("forward_dynamics", "multipliers"), ("nullspace_projector",)
+_U, _PROJECTOR = ("inverse_dynamics",), ("nullspace_projector",)
 _GIVEN_PLACES = ("configuration_from_measured", "configuration_from_task")
 _GIVEN_MOTIONS = (
     "velocity_from_measured", "acceleration_from_measured", "velocity_from_task", "acceleration_from_task",
@@ -75,16 +76,16 @@ METHODS: tuple[MethodRow, ...] = (
     _method("printed_fixed", _U, "comparisons.printed", "PRINTED_FIXED", Use.COMPARISON),
     _method("weighted", _U, "comparisons.weighted", "WEIGHTED", Use.COMPARISON),
     _method("kkt", _U, "comparisons.weighted", "KKT", Use.COMPARISON),
-    _method("minor", _MOTION, "forward_dynamics.along_spaces", "MINOR"),
-    _method("schur_qr", _MOTION, "forward_dynamics.along_spaces", "SCHUR_QR"),
-    _method("nullspace", _MOTION, "forward_dynamics.along_spaces", "NULLSPACE"),
-    _method("shifted", _MOTION, "forward_dynamics.shifted", "SHIFTED", Use.LAST),
-    _method("kkt", _MOTION, "comparisons.motions", "KKT", Use.LAST),
-    _method("partitioned", _MOTION, "forward_dynamics.partitioned", "PARTITIONED"),
-    _method("articulated", _MOTION, "forward_dynamics.articulated", "ARTICULATED"),
-    _method("schur_qr_refined", _MOTION, "forward_dynamics.along_spaces", "SCHUR_QR_REFINED", Use.SPARE),
-    _method("articulated_refined", _MOTION, "forward_dynamics.articulated", "BY_COLUMNS", Use.SPARE),
-    _method("articulated_by_bodies", _MOTION, "forward_dynamics.articulated", "BY_BODIES", Use.SPARE),
+    _method("minor", MOTIONS, "forward_dynamics.along_spaces", "MINOR"),
+    _method("schur_qr", MOTIONS, "forward_dynamics.along_spaces", "SCHUR_QR"),
+    _method("nullspace", MOTIONS, "forward_dynamics.along_spaces", "NULLSPACE"),
+    _method("shifted", MOTIONS, "forward_dynamics.shifted", "SHIFTED", Use.LAST),
+    _method("kkt", MOTIONS, "comparisons.motions", "KKT", Use.LAST),
+    _method("partitioned", MOTIONS, "forward_dynamics.partitioned", "PARTITIONED"),
+    _method("articulated", MOTIONS, "forward_dynamics.articulated", "ARTICULATED"),
+    _method("schur_qr_refined", MOTIONS, "forward_dynamics.along_spaces", "SCHUR_QR_REFINED", Use.SPARE),
+    _method("articulated_refined", MOTIONS, "forward_dynamics.articulated", "BY_COLUMNS", Use.SPARE),
+    _method("articulated_by_bodies", MOTIONS, "forward_dynamics.articulated", "BY_BODIES", Use.SPARE),
     _method("minor", _PROJECTOR, "projector", "MINOR", Use.ASKED),
     _method("householder", _PROJECTOR, "projector", "HOUSEHOLDER", Use.ASKED),
     _method("closed", _GIVEN_PLACES, "given.closed", "CLOSED"),
@@ -94,7 +95,7 @@ METHODS: tuple[MethodRow, ...] = (
     _method("articulated", _WEIGHTED, "forward_dynamics.weighted_projection", "ARTICULATED", Use.SPARE),
 )
 # `--form` takes the methods of these by name.
-NAMED = (*_U, *_MOTION, *_PROJECTOR)
+NAMED = (*MAIN, *_PROJECTOR)
 
 
 def methods(quantity: str, most: Use = Use.COMPARISON) -> tuple[MethodRow, ...]:

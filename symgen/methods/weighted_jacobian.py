@@ -10,10 +10,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 from symgen.methods.admission import ByTheorem
-from symgen.methods.method import INPUTS, MOTIONS, Candidate, Method
+from symgen.methods.method import INPUTS, Candidate, Method
 from symgen.methods.table import Use, methods
 from symgen.methods.workspace import Workspace
-from symgen.model.quantities import DIRECTION, ROWS, FurtherName
+from symgen.model.quantities import DIRECTION, MOTIONS, ROWS, FurtherName
 from symgen.records import dataclass
 from symgen.symbolic.calculus import derivative_along, jacobian
 from symgen.symbolic.matrix import dot

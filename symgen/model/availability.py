@@ -9,6 +9,7 @@ from symgen.model.quantities import (
     FRICTION,
     LIMITED,
     MEASURED_PLACES,
+    MOTIONS,
     OF_INPUTS,
     PARTITION,
     TASK,
@@ -20,8 +21,6 @@ from symgen.model.quantities import (
 
 # What would hold friction of reactions, and is made without it only.
 WITHOUT_FRICTION = frozenset({"actuator_bias"})
-# What is made with it where it does not lock everywhere.
-MOTIONS = frozenset({"forward_dynamics", "multipliers"})
 
 
 def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actuation: int | None = None) -> str | None:

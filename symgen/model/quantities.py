@@ -193,3 +193,5 @@ QUANTITIES: tuple[QuantityRow, ...] = (
 ROWS = {quantity.name: quantity for quantity in QUANTITIES}
 MAIN = tuple(quantity.name for quantity in QUANTITIES if quantity.main)
 """u, q̈ and λ, which take methods of their own and have kernels for many states."""
+MOTIONS = MAIN[1:]
+"""q̈ and λ, which follow from inputs: methods make them together."""

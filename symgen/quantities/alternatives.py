@@ -11,12 +11,12 @@ from dataclasses import replace
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
 from symgen.methods.graphs import derived_on, forget_others
-from symgen.methods.method import MOTIONS
 from symgen.methods.quantity import Quantity, scalars
 from symgen.methods.selection import MethodChoice, Methods
 from symgen.methods.spaces import SPACES
 from symgen.methods.table import Use, methods
 from symgen.model.model import Model
+from symgen.model.quantities import MOTIONS
 from symgen.quantities.catalogue import BY_NAME, derive
 from symgen.quantities.finish import complete, with_groups
 from symgen.quantities.row_units import in_ordinary_units

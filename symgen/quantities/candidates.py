@@ -18,7 +18,7 @@ from symgen.methods.forward_dynamics.minor_motion import CANCELLATION_WORTH, LAR
 from symgen.methods.forward_dynamics.motion import Motion
 from symgen.methods.forward_dynamics.motions import BY_FRAMES, cost_factor, motions_alone, motions_along
 from symgen.methods.graphs import derived_on, moved
-from symgen.methods.method import INPUTS, MOTIONS, Candidate
+from symgen.methods.method import INPUTS, Candidate
 from symgen.methods.quantity import scalars
 from symgen.methods.selection import FACTORING_LIMIT, Methods, cheapest, select
 from symgen.methods.spaces import derivations
@@ -26,7 +26,7 @@ from symgen.methods.system import MethodInput
 from symgen.methods.table import Use
 from symgen.methods.table import methods as methods_of
 from symgen.model.model import Model
-from symgen.model.quantities import DIRECTION, PARTITION, TASK_OPEN, TASK_RATES, WEIGHT_ARGUMENTS
+from symgen.model.quantities import DIRECTION, MOTIONS, PARTITION, TASK_OPEN, TASK_RATES, WEIGHT_ARGUMENTS
 from symgen.quantities.catalogue import BY_NAME, CatalogueEntry, by_blocks, derive, derived_from, sizes
 from symgen.quantities.everything import WorkBudget
 from symgen.runtime.activity import working

@@ -6,10 +6,11 @@ from dataclasses import replace
 
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
-from symgen.methods.method import INPUTS, MOTIONS
+from symgen.methods.method import INPUTS
 from symgen.methods.quantity import Quantity, is_fixed, scalars
 from symgen.model.model import Model
 from symgen.model.open_task import left_open, norm_of_motions
+from symgen.model.quantities import MOTIONS
 from symgen.quantities.excess import with_test_of_excess
 from symgen.quantities.moving_axes import in_moving_axes
 from symgen.quantities.row_units import in_units_of_the_file

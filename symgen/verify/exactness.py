@@ -19,6 +19,7 @@ from flint import arb
 from symgen.ir.kernel import UNIT_ROUNDOFF, Kernel, Literal, Operand, Statement
 from symgen.ir.wide_functions import is_wide, plain_operation
 from symgen.model.model import Model
+from symgen.model.quantities import MAIN
 from symgen.verify.expected import Expected
 from symgen.verify.given import entry, parts_of
 from symgen.verify.reference.arithmetic.tape import ball, precision
@@ -39,7 +40,7 @@ SAME, SAME_ROUNDED = 2.0**-80, 2.0**-20
 # of a result.
 LEFT_BY_STEPS = 2.0**-48
 # What friction of reactions enters.
-ROUGH = frozenset({"inverse_dynamics", "friction_residual", "forward_dynamics", "multipliers"})
+ROUGH = frozenset({*MAIN, "friction_residual"})
 # States of a verification that are looked at, beside the worst.
 EXACT_STATES = 8
 

@@ -38,7 +38,7 @@ LED, NEAREST = 256, 1e-24
 # are beyond what is allowed so many show how far a threshold has to go.
 DOUBTFUL, JUDGED, SHOWING = FACTOR / 2, 24, 4
 # Decades by which thresholds are raised at a time and at most, and how many more to keep a distance.
-STEP, MOST_DECADES, MARGIN = 2, 24, 2
+DECADES_RAISED, MOST_DECADES, MARGIN = 2, 24, 2
 
 
 class NextToSingular:
@@ -62,7 +62,7 @@ class NextToSingular:
         lost = list(self._lost(kernel, program))
         regular = [sample.state for sample in self._expected.samples(scalar)]
         before = [one.status for one in outcomes(kernel, sincos, scalar, regular)]
-        for decades in range(STEP, MOST_DECADES if lost else 0, STEP):
+        for decades in range(DECADES_RAISED, MOST_DECADES if lost else 0, DECADES_RAISED):
             if not any(one.valid for one in outcomes(with_raised_thresholds(kernel, decades), sincos, scalar, lost)):
                 raised = with_raised_thresholds(kernel, decades + MARGIN)
                 after = [one.status for one in outcomes(raised, sincos, scalar, regular)]

@@ -35,6 +35,7 @@ PERTURBATIONS = 8
 # Binary digits of states that are moved, and of what they make of results; next to singular states this leaves none,
 # and more are taken where results are not known to a share of eps.
 PERTURBED_BITS, MOST_PERTURBED = 160, 640
+# A result is known where its radius is below this share of eps of its size; else more digits are taken.
 KNOWN = 1 / 16
 # Binary digits of a distance: only its size counts.
 DISTANCE_BITS = 64

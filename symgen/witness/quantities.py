@@ -7,7 +7,7 @@ import casadi
 from symgen.model.availability import WITHOUT_FRICTION, lacking
 from symgen.model.configurations.assembly import ConfigurationRanks
 from symgen.model.model import Model
-from symgen.model.quantities import ROWS
+from symgen.model.quantities import MAIN, ROWS
 from symgen.witness.allocation import allocated, utilisation
 from symgen.witness.given import quantities_of_given
 from symgen.witness.lagrange import Lagrange, along
@@ -67,7 +67,7 @@ def derive(model: Model, s: Lagrange, ranks: ConfigurationRanks) -> dict[str, ca
     if model.allocation is not None and lacking(ROWS["utilisation"], model) is None:
         quantities["utilisation"] = utilisation(model, model.allocation, s, N, ranks.actuation)
     if model.rough:  # u and what follows from it hold friction of reactions, which is a fixed point
-        for name in ("inverse_dynamics", "forward_dynamics", "multipliers", *WITHOUT_FRICTION):
+        for name in (*MAIN, *WITHOUT_FRICTION):
             quantities.pop(name, None)
     elif ranks.constraints == model.r and ranks.actuation == min(model.m, model.n - ranks.constraints):
         quantities["inverse_dynamics_jacobian"] = casadi.jacobian(u, casadi.vertcat(s.q, s.qd, s.qdd))

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from symgen.lowering.schedule import schedule
-from symgen.methods.method import MOTIONS
 from symgen.model.load import load_text
+from symgen.model.quantities import MOTIONS
 from symgen.quantities.select import derive_quantities
 from symgen.verify.sampling.lanes import RoundingErrors
 

@@ -15,9 +15,10 @@ from symgen.generation.draft import Draft, draft_of
 from symgen.generation.results import Options
 from symgen.mechanics.genericity import genericity
 from symgen.mechanics.system import System
-from symgen.methods.method import MOTIONS, Candidate
+from symgen.methods.method import Candidate
 from symgen.methods.selection import Methods
 from symgen.model.load import load_text
+from symgen.model.quantities import MOTIONS
 from symgen.validity.definiteness import definite_beside_rows, indefinite_model
 from symgen.verify.interpreted import outcomes
 from symgen.verify.reference.reference import Reference, State

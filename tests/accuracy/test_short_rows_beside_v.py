@@ -8,8 +8,8 @@ import pytest
 
 from symgen.ir.kernel import Scalar
 from symgen.lowering.schedule import schedule
-from symgen.methods.method import MOTIONS
 from symgen.model.load import load_text
+from symgen.model.quantities import MOTIONS
 from symgen.quantities.select import derive_quantities
 from symgen.verify.interpreted import outcomes
 from symgen.verify.reference.reference import Reference, State

@@ -13,8 +13,8 @@ from symgen.lowering.schedule import schedule
 from symgen.methods.forward_dynamics.absolute import in_absolute_angles
 from symgen.methods.forward_dynamics.columns_apart import apart
 from symgen.methods.forward_dynamics.motion import Motion, Problem
-from symgen.methods.method import MOTIONS
 from symgen.model.load import load_text
+from symgen.model.quantities import MOTIONS
 from symgen.quantities.select import derive_quantities
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.matrix import flatten

@@ -16,7 +16,7 @@ import shipped
 from symgen.backends.c.given_sines import emit_c_sc
 from symgen.backends.c.plain import emit_c
 from symgen.backends.c.prepared import emit_c_prepared
-from symgen.ir.interpret import interpret
+from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Kernel, Program, Status
 from symgen.ir.library_trig import with_library_trig
 from symgen.ir.order import REGISTERS, waits
@@ -91,7 +91,7 @@ def test_c_tells_the_causes_as_the_kernel_does(tool: Callable[[str], str], tmp_p
         array = ctypes.c_double * model.n
         code = library.delta_inverse_dynamics(array(*q), array(*zeros), array(*zeros), ctypes.byref(parameters), u)
         arguments = {"q": q, "qd": zeros, "qdd": zeros}
-        interpreted, _ = interpret(made.kernels[0], None, arguments, [numbers[p.name] for p in model.parameters])
+        interpreted, _ = Interpreter(None).run(made.kernels[0], arguments, [numbers[p.name] for p in model.parameters])
         assert code == int(interpreted) == int(status)
 
 

@@ -1,4 +1,4 @@
-"""The worth of what a scene does not need: counted, never negative where a finding is certain, told in a table."""
+"""The worth of what a system does not need: counted, never negative where a finding is certain, told in a table."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ import shipped
 from linkages import cranks_on_one_coupler, on_two_bases, row_of_four_bars
 
 from symgen.diagnostics import ModelError
-from symgen.ir.interpret import interpret
+from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Status
 from symgen.lowering.schedule import schedule
 from symgen.mechanics.genericity import genericity
@@ -32,7 +32,7 @@ def inverse(model: Model, q: Sequence[float]) -> tuple[Status, tuple[float, ...]
     program = schedule(derived.mechanics, derived.quantities, ("float64",))["float64"]
     numbers = [float(p.value.value) for p in model.parameters]  # type: ignore[union-attr]
     zeros = [0.0] * model.n
-    status, u = interpret(program.kernels[0], program.sincos, {"q": q, "qd": zeros, "qdd": zeros}, numbers)
+    status, u = Interpreter(program.sincos).run(program.kernels[0], {"q": q, "qd": zeros, "qdd": zeros}, numbers)
     return status, tuple(u)
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from symgen.ir.interpret import interpret
+from symgen.ir.interpret import Interpreter
 from symgen.lowering.schedule import schedule
 from symgen.model.load import load_text
 from symgen.quantities.select import derive_quantities
@@ -319,7 +319,7 @@ def compared(tree: Tree) -> None:
     assert {kernel.name for kernel in program.kernels} >= {*QUANTITIES} - {"nullspace_projector"}
     given = {"q": tree.q, "qd": tree.qd, "qdd": [0.0] * model.n, "u": tree.u}
     for kernel in program.kernels:
-        status, entries = interpret(kernel, program.sincos, given, [TILT])
+        status, entries = Interpreter(program.sincos).run(kernel, given, [TILT])
         assert not status, kernel.name
         value = np.array(entries).reshape(kernel.shape)
         if kernel.name == "coriolis_matrix":

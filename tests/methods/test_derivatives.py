@@ -151,24 +151,6 @@ def test_gradients_are_weighted_rows_of_jacobians(name: str) -> None:
             same_values(gradient, products, by_name[gradient].outputs)
 
 
-@pytest.mark.parametrize("name", ["rapkm_2rrr_rr", "front_car", "rolling_disc", "delta", "double_pendulum"])
-def test_products_with_second_derivatives_are_differences_of_gradients(name: str) -> None:
-    names = ("inverse_dynamics_gradient", "inverse_dynamics_hessian_product")
-    selection = derive_quantities(shipped.model(name), names)
-    dice, mechanics = random.Random(name), selection.mechanics
-    w, v = mechanics.further("w_u", "v_x")
-    place = {str(node.payload): dice.uniform(0.3, 1.1) for node in (*mechanics.motion, *w, *v)}
-    product, step = values(selection, place)[names[1]], 1e-5
-    ends = []
-    for sign in (1, -1):
-        moved = {str(x.payload): place[str(x.payload)] + sign * step * place[str(d.payload)]
-                 for x, d in zip(mechanics.motion, v, strict=True)}  # fmt: skip
-        ends.append(values(selection, place | moved)[names[0]])
-    difference = (ends[0] - ends[1]) / (2 * step)
-    assert product.shape == (3 * shipped.model(name).n,)
-    assert product == pytest.approx(difference, rel=1e-6, abs=1e-7 * np.abs(product).max())
-
-
 def test_second_derivatives_of_a_pendulum_by_hand(tmp_path: Path) -> None:
     name = "inverse_dynamics_hessian_product"
     model = loaded(tmp_path, PENDULUM.replace("OUTPUTS", f"[{name}]").replace("FLAG", "false"))

@@ -15,13 +15,15 @@ from symgen.linear_algebra.exterior import small_family
 from symgen.linear_algebra.null_spaces import has_few_minors
 from symgen.mechanics.genericity import Genericity, genericity
 from symgen.mechanics.system import System
+from symgen.methods import selection
 from symgen.methods.comparisons.printed import printed_candidate
 from symgen.methods.derivation import Derivation
 from symgen.methods.inverse_dynamics.nullspace import MOST_BASES, nullspace_candidate
-from symgen.methods.method import Candidate
+from symgen.methods.method import INPUTS, Candidate
 from symgen.methods.selection import Methods
 from symgen.methods.spaces import along_minors
 from symgen.methods.system import MethodInput
+from symgen.methods.table import Use, methods
 from symgen.methods.workspace import Workspace
 from symgen.model.load import load_text
 from symgen.symbolic.evaluate import Evaluator
@@ -126,7 +128,14 @@ def test_as_many_bases_are_tried(nth: int) -> None:
 
 def test_methods_of_long_systems_are_not_derived_to_say_where_they_fail(monkeypatch: pytest.MonkeyPatch) -> None:
     short = shipped.model("rapkm_2rrr_rr")
-    assert [name for name, _ in Methods(short, genericity(System(short))).failing()] == ["nullspace"]
+    examined = Methods(short, genericity(System(short)))
+    assert [name for name, _ in examined.failing()] == ["nullspace"]
+    counted = MethodInput.fresh(short, genericity(System(short)))
+    least = min(bound for row in methods(INPUTS, Use.CHOSEN) if (bound := row.load().least_cost(counted)))
+    for most, names in ((least, ["nullspace"]), (least - 1, [])):
+        monkeypatch.setattr(selection, "LONGEST_EXAMINED", most)
+        assert [name for name, _ in examined.failing()] == names
+    monkeypatch.undo()
     derived: list[str] = []
     monkeypatch.setattr(Methods, "candidate", lambda _, quantity, name: derived.append(f"{quantity} by {name}"))
     long = shipped.model("chain16")

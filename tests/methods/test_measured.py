@@ -7,9 +7,11 @@ import re
 import sys
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
+from mpmath import mp
 from numpy.typing import NDArray
 
 from symgen.backends.about import statuses_of
@@ -156,15 +158,19 @@ def test_of_too_many_encoders_the_nearest_configuration_is_taken(tmp_path: Path)
     configuration = module.configuration_from_measured(readings, near)
     assert np.abs(configuration - closed_by_hand(configuration[0])).max() < 1e-14
 
-    def away(crank: Array) -> Array:
-        return np.sum((closed_by_hand(crank)[..., [2, 0]] - readings) ** 2, axis=-1)
+    def away(crank: Any) -> Any:
+        """What `closed_by_hand` has, at fifty digits."""
+        x, y = L0 - L1 * mp.cos(crank), -L1 * mp.sin(crank)
+        length = mp.hypot(x, y)
+        b = mp.atan2(y, x) + mp.acos((length**2 + L2**2 - L3**2) / (2 * length * L2))
+        c = mp.atan2(L1 * mp.sin(crank) + L2 * mp.sin(b), L1 * mp.cos(crank) + L2 * mp.cos(b) - L0)
+        return (c - readings[0]) ** 2 + (crank - readings[1]) ** 2
 
     # the slope of the distance along the motion vanishes
-    step = 1e-4
-    slope = (away(configuration[0] + step) - away(configuration[0] - step)) / (2 * step)
-    bend = (away(configuration[0] + step) + away(configuration[0] - step) - 2 * away(configuration[0])) / step**2
+    with mp.workdps(50):
+        slope, bend = mp.diff(away, configuration[0]), mp.diff(away, configuration[0], 2)
     assert bend > 0
-    assert abs(slope / bend) < 1e-9
+    assert abs(slope / bend) < 1e-14
     assert away(configuration[0]) < away(near[0])
 
 

@@ -16,10 +16,11 @@ from symgen.methods.forward_dynamics.along_spaces import nullspace
 from symgen.methods.forward_dynamics.articulated import articulated
 from symgen.methods.forward_dynamics.held_lengths import completed_multipliers
 from symgen.methods.forward_dynamics.motion import Problem
-from symgen.methods.method import MOTIONS, Candidate
+from symgen.methods.method import Candidate
 from symgen.methods.selection import Methods
 from symgen.model.load import load_text
 from symgen.model.model import Model
+from symgen.model.quantities import MOTIONS
 from symgen.quantities.select import derive_quantities
 from symgen.symbolic.calculus import derivative_along
 from symgen.symbolic.evaluate import Evaluator

@@ -12,10 +12,11 @@ from symgen.lowering.schedule import schedule
 from symgen.mechanics.genericity import genericity, parameter_values
 from symgen.mechanics.system import System
 from symgen.methods.forward_dynamics.motions import BY_FRAMES
-from symgen.methods.method import MOTIONS, Candidate
+from symgen.methods.method import Candidate
 from symgen.methods.selection import Methods
 from symgen.model.load import load_text
 from symgen.model.model import Model
+from symgen.model.quantities import MOTIONS
 from symgen.quantities.alternatives import Alternatives
 from symgen.symbolic.evaluate import Evaluator
 from symgen.verify.expected import Expected

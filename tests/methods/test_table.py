@@ -13,12 +13,13 @@ from symgen.methods.admission import FAILS, OfInputs
 from symgen.methods.derivation import Derivation
 from symgen.methods.forward_dynamics.motion import Motion
 from symgen.methods.forward_dynamics.motions import AlongNullSpace
-from symgen.methods.method import INPUTS, MOTIONS, Candidate, Method, solved_for_u
+from symgen.methods.method import INPUTS, Candidate, Method, solved_for_u
 from symgen.methods.selection import Methods
 from symgen.methods.table import METHODS, NAMED, MethodRow, Use
 from symgen.methods.workspace import Workspace
 from symgen.model.load import load_text
 from symgen.model.model import Model
+from symgen.model.quantities import MOTIONS
 from symgen.quantities.alternatives import Alternatives
 from symgen.quantities.select import Selection, derive_quantities
 from symgen.symbolic.evaluate import Evaluator

@@ -23,19 +23,24 @@ PAGE = shipped.ROOT / "docs" / "casadi.md"
 NODES, DURATION = 41, 0.5
 
 
+def equations_by_casadi() -> tuple[dict[str, Any], list[float]]:
+    """u(q, qd, qdd, p) by (27) with (28) and g(q, p), which know nothing of the generated code; the parameters p."""
+    model = shipped.model("rapkm_2rrr_rr")
+    s = differentiate(model)
+    usual = default_values(model.parameters)
+    u = casadi.Function("u", [s.q, s.qd, s.qdd, s.p], [inverse_dynamics(model, s)])
+    return {"u": u, "g": casadi.Function("g", [s.q, s.p], [s.residual])}, [usual[one.name] for one in model.parameters]
+
+
 def optimum_by_casadi(first: Any, last: Any, start: Any) -> Any:
     """The nodes (41 x 6) of least sum of squared inputs between two configurations, from (27) with (28) in CasADi.
 
     It knows nothing of the generated code; IPOPT has exact Hessians of it.
     """
-    model = shipped.model("rapkm_2rrr_rr")
-    s = differentiate(model)
-    usual = default_values(model.parameters)
-    p = [usual[one.name] for one in model.parameters]
-    u = casadi.Function("u", [s.q, s.qd, s.qdd, s.p], [inverse_dynamics(model, s)])
-    g = casadi.Function("g", [s.q, s.p], [s.residual])
+    equations, p = equations_by_casadi()
+    u, g, n = equations["u"], equations["g"], 6
     step = DURATION / (NODES - 1)
-    q = [casadi.SX.sym(f"q_{k}", model.n) for k in range(NODES)]
+    q = [casadi.SX.sym(f"q_{k}", n) for k in range(NODES)]
     padded = [q[1], *q, q[-2]]
     cost, loops = casadi.SX(0), [q[0] - first, q[-1] - last]
     for k, (before, here, after) in enumerate(zip(padded, q, padded[2:], strict=False)):
@@ -48,7 +53,7 @@ def optimum_by_casadi(first: Any, last: Any, start: Any) -> Any:
     solver = casadi.nlpsol("solver", "ipopt", problem, options)
     optimum = solver(x0=start.ravel(), lbg=0, ubg=0)
     assert solver.stats()["success"]
-    return optimum["x"].full().reshape(NODES, model.n)
+    return optimum["x"].full().reshape(NODES, n)
 
 
 @pytest.fixture
@@ -90,19 +95,20 @@ def test_an_optimum_through_a_singularity_of_minimal_coordinates(
 @pytest.mark.campaign
 @pytest.mark.slow
 @pytest.mark.toolchain
-def test_jacobians_of_an_external_function_are_those_of_its_values(
+def test_an_external_function_and_its_jacobian_are_those_of_equations_that_casadi_differentiates(
     tmp_path: Path, page_run: Callable[[str], str]
 ) -> None:
-    """What CasADi makes of `jac_u` and `jac_g` against differences of `u` and `g`."""
+    """`u`, `g`, `jac_u` and `jac_g` against (27) with (28) and the residual, and CasADi's derivatives of these."""
     page_run("sh")
     library = str(tmp_path / "rapkm_external.so")
+    equations, p = equations_by_casadi()
     for name, count in (("u", 3), ("g", 1)):
-        function = casadi.external(name, library)
-        x = casadi.MX.sym("x", 6 * count)
-        value = function(*casadi.vertsplit(x, 6))
-        both = casadi.Function("both", [x], [value, casadi.jacobian(value, x)])
+        external = casadi.external(name, library)
+        made = []
+        for function, further in ((external, ()), (equations[name], (p,))):
+            x = casadi.MX.sym("x", 6 * count)
+            value = function(*casadi.vertsplit(x, 6), *further)
+            made.append(casadi.Function("both", [x], [value, casadi.jacobian(value, x)]))
         place = np.random.default_rng(5).uniform(0.3, 1.2, 6 * count)
-        slopes, step = both(place)[1].full(), 1e-5
-        for k, axis in enumerate(np.eye(6 * count)):
-            difference = (both(place + step * axis)[0] - both(place - step * axis)[0]).full()[:, 0] / (2 * step)
-            assert slopes[:, k] == pytest.approx(difference, rel=1e-6, abs=1e-7)
+        for ours, theirs in zip(made[0](place), made[1](place), strict=True):
+            assert ours.full() == pytest.approx(theirs.full(), rel=1e-11, abs=1e-12)

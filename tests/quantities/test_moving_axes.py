@@ -11,13 +11,13 @@ import pytest
 from symgen.mechanics.system import System
 from symgen.methods.quantity import Quantity, scalars
 from symgen.model.load import load_model
+from symgen.model.quantities import MOTIONS
 from symgen.quantities import moving_axes
 from symgen.quantities.moving_axes import in_moving_axes
 from symgen.quantities.select import Selection, derive_quantities
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.traverse import cost, reached
 
-MOTION = ("forward_dynamics", "multipliers")
 # A tractor with a blade on an arm that swings sideways.
 TRACTOR = """
 model: tractor
@@ -46,7 +46,7 @@ LEVEL, UPHILL = (TRACTOR.replace("POTENTIAL", potential) for potential in ("0", 
 def _selection(folder: Path, text: str) -> Selection:
     path = folder / "tractor.yaml"
     path.write_text(text, encoding="utf-8")
-    return derive_quantities(load_model(path), MOTION)
+    return derive_quantities(load_model(path), MOTIONS)
 
 
 def _both(folder: Path, text: str, monkeypatch: pytest.MonkeyPatch) -> list[tuple[Quantity, Quantity]]:

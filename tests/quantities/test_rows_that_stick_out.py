@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from symgen.ir.interpret import interpret
+from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Status
 from symgen.lowering.schedule import schedule
 from symgen.mechanics.genericity import genericity
@@ -52,7 +52,7 @@ def test_they_stick_out_by_a_hundredth_of_their_length_and_no_more(
     program = schedule(derived.mechanics, derived.quantities, ("float64",))["float64"]
     gap = length * share / math.sqrt(1 - share**2)
     state = {"q": [0.3 + gap, 0.3, 0.5], "qd": [0.0] * 3, "qdd": [0.0] * 3}
-    status, u = interpret(program.kernels[0], program.sincos, state, [])
+    status, u = Interpreter(program.sincos).run(program.kernels[0], state, [])
     assert status == (Status.OK if passes else lost)
     if passes:
         assert sum(u) == pytest.approx(2 if text is ROWS else 3, rel=1e-3)

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 
 import pytest
 
+from symgen.linear_algebra.constant_rows import MOST_PIVOTS_TRIED, ConstantRows
+from symgen.linear_algebra.sparser_rows import MOST_ROWS_COMBINED, SparserRows
 from symgen.mechanics.genericity import genericity
+from symgen.mechanics.structure import MOST_ENTRIES, analyse
 from symgen.mechanics.system import System
 from symgen.model.load import load_text
 from symgen.runtime.effort import done
@@ -17,7 +21,7 @@ from symgen.symbolic.polynomials.polynomial import MOST_EXPANDED_TERMS, Multipli
 from symgen.symbolic.products import MOST_FACTORS
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.validity.driven import MOST_LISTED_MINORS, driven_minors
-from symgen.validity.search import ZeroSearch
+from symgen.validity.search import MOST_DRIVEN_SQUARES, PreciseEvaluator, ZeroSearch
 
 
 def symbols(graph: Graph, letter: str, count: int) -> list[Scalar]:
@@ -85,6 +89,61 @@ def test_many_minors_are_not_listed(monkeypatch: pytest.MonkeyPatch) -> None:
     assert driven_minors(graph, rows, inputs, n) is not None
     monkeypatch.setattr("symgen.validity.driven.MOST_LISTED_MINORS", 19)
     assert driven_minors(graph, rows, inputs, n) is None
+
+
+@pytest.mark.parametrize("more", [0, 1])
+def test_a_row_of_numbers_is_solved_for_one_of_its_first_unknowns(more: int) -> None:
+    """The unknown that costs nothing is the last that is tried, or the next one."""
+    graph = Graph()
+    best = MOST_PIVOTS_TRIED - 1 + more
+    unknowns = symbols(graph, "x", MOST_PIVOTS_TRIED + 2)
+    other = tuple(graph.zero if k == best else y for k, y in enumerate(symbols(graph, "y", len(unknowns))))
+    rows = ConstantRows((tuple(graph.one for _ in unknowns), other))
+    assert (unknowns[best] in rows.kept(unknowns)) is bool(more)
+
+
+@pytest.mark.parametrize("more", [0, 1])
+def test_many_rows_are_not_combined(more: int) -> None:
+    graph = Graph()
+    size = MOST_ROWS_COMBINED + more
+    diagonal = [[x if i == j else graph.zero for j in range(size)] for i, x in enumerate(symbols(graph, "x", size))]
+    diagonal[1][0] = diagonal[0][0]
+    matrix = tuple(map(tuple, diagonal))
+    assert (SparserRows(matrix).matrix == matrix) is bool(more)
+
+
+@pytest.mark.parametrize("n", [13, 14])
+def test_a_long_mass_matrix_is_not_looked_through(n: int) -> None:
+    coordinates = ", ".join(f"q{k}: {{}}" for k in range(n))
+    energy = " + ".join(f"q{k}_dot**2" for k in range(n))
+    text = f"model: masses\ncoordinates: {{{coordinates}}}\nkinetic_energy: {energy}\n"
+    mechanics = System(load_text(f"{text}inputs: {{u: {{acts_on: {{q0: 1}}}}}}\n", "masses.yaml"))
+    why = {decision.what: decision.why for decision in analyse(mechanics, genericity(mechanics)).decisions}
+    short = n * (n + 1) // 2 <= MOST_ENTRIES
+    assert short is (n == 13)
+    assert (f"{n * (n - 1) // 2} of {n * (n - 1) // 2} couplings in G" in why) is short
+    cause = "the mass matrix is constant, so C = 0" if short else "the quadratic velocity terms cancel, so C q_dot = 0"
+    assert why["Coriolis forces"] == cause
+
+
+@pytest.mark.parametrize("more", [0, 1])
+def test_squares_are_driven_one_by_one_up_to_a_number(more: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    count = MOST_DRIVEN_SQUARES + more
+    coordinates = ", ".join(f"q{k}: {{unit: rad}}" for k in range(count))
+    energy = " + ".join(f"q{k}_dot**2" for k in range(count))
+    text = f"model: turning\ncoordinates: {{{coordinates}}}\nkinetic_energy: {energy}\n"
+    mechanics = System(load_text(f"{text}inputs: {{u: {{acts_on: {{q0: 1}}}}}}\n", "turning.yaml"))
+    graph, driven = mechanics.graph, []
+
+    def evaluator(scalars: Sequence[Scalar]) -> PreciseEvaluator:
+        driven.append(len(scalars))
+        return PreciseEvaluator(scalars)
+
+    search = ZeroSearch(mechanics, genericity(mechanics))
+    monkeypatch.setattr("symgen.validity.search.PreciseEvaluator", evaluator)
+    sines = [graph.trig("sin", graph.symbol(f"q{k}")) for k in range(count)]
+    assert search.zero_of(graph.sum(sine * sine for sine in sines)) is not None
+    assert driven[-1] == (1 if more else count)
 
 
 @pytest.mark.parametrize(("count", "most"), [(12, 30_000), (24, 100_000)])

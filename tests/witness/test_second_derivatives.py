@@ -17,7 +17,7 @@ from symgen.witness.casadi_derivation import witness_functions
 PRODUCT = "inverse_dynamics_hessian_product"
 
 
-@pytest.mark.parametrize("name", ["rapkm_2rrr_rr", "front_car", "double_pendulum"])
+@pytest.mark.parametrize("name", ["rapkm_2rrr_rr", "front_car", "rolling_disc", "delta", "double_pendulum"])
 def test_three_ways_to_second_derivatives_agree(name: str) -> None:
     model = shipped.model(name)
     selection = derive_quantities(model, (PRODUCT,))

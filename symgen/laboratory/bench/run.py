@@ -31,7 +31,6 @@ from symgen.verify.reference.reference import Reference
 from symgen.verify.sampling.states import Sample
 
 SCALARS: tuple[Scalar, ...] = ("float64", "float32")
-USUAL_STATES = 1000
 OTHER_STATES = 250  # of all but inverse dynamics
 COUNTED_STATES = 64
 # Measured beside what the equations of motion are solved for: one state at a time, in C.

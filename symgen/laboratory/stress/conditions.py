@@ -9,11 +9,11 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
+from symgen.model.quantities import MOTIONS
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 
 BITS = 256
 GRADED = 1e-2
-MASSIVE = ("forward_dynamics", "multipliers")  # what the condition of G matters for
 Measures: TypeAlias = tuple[float, float]
 
 
@@ -72,7 +72,7 @@ class Conditions:
 
     def _of_masses(self, state: State, name: str) -> float:
         """κ(G), to which the loss of q̈ and λ is compared."""
-        if name not in MASSIVE:
+        if name not in MOTIONS:
             return 1.0
         values = np.linalg.eigvalsh(self.matrix("mass_matrix", state))
         smallest, largest = float(values[0]), float(values[-1])

@@ -21,7 +21,6 @@ from symgen.runtime import processes
 from symgen.runtime.processes import ToolError
 from symgen.verify.reference.reference import Reference
 
-STEPS = 1_000_000
 STEPS_PER_LAP = 10_000
 NODES = 1001
 RECORDS = 200

@@ -12,11 +12,13 @@ import numpy as np
 
 from symgen.generation.runnable import PIECES, STRESSED, RunnableKernels, rounded_state
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar, Status
-from symgen.laboratory.stress.conditions import MASSIVE, Conditions, Measures
+from symgen.laboratory.stress.conditions import Conditions, Measures
 from symgen.laboratory.stress.families import Family
 from symgen.laboratory.stress.formulas import Data, partitioned, projected, switched
 from symgen.laboratory.stress.method_kernels import LABELS, MethodKernels
 from symgen.laboratory.stress.series import FIXED, PARTITION, SWITCHING, SYMGEN, Error, Series
+from symgen.laboratory.stress.statuses.rule import ANGLE_LIMITS
+from symgen.model.quantities import MOTIONS
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.running.compile import Outcome
 from symgen.verify.tolerance import FACTOR, Expectation, expectations
@@ -24,7 +26,6 @@ from symgen.verify.tolerance import FACTOR, Expectation, expectations
 DEEPEST: dict[Scalar, int] = {"float64": 24, "float32": 12}  # half decades below 1
 BELOW = (1e-14, 1e-16, 1e-18, 1e-24, 0.0)  # where statuses are tested as well
 PAPER_KINDS = ("parameter", "input", "constraint", "large angles", "mass ratios")
-ANGLE_LIMITS: dict[Scalar, float] = {"float64": 1e5, "float32": 100.0}
 RANKS = (Status.CONSTRAINT_RANK, Status.ACTUATION_RANK)  # what the measures of singularity speak of
 
 
@@ -133,7 +134,7 @@ class Sweeper:
         """Why errors beyond the tolerance are to be expected, or nothing."""
         if family.kind != "mass ratios" and all(e.normwise for e in one.errors if not e.units <= FACTOR):
             return "within eps times the condition of B" + (
-                " and FᵀM" if one.quantity == "inverse_dynamics" else " and G" if one.quantity in MASSIVE else ""
+                " and FᵀM" if one.quantity == "inverse_dynamics" else " and G" if one.quantity in MOTIONS else ""
             )
         if family.kind == "constraint" and self._reference.ranks.constraints < self._reference.system.r:
             return "where rows depend on each other, what a result is beside V is a matter of definition"

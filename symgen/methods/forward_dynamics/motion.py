@@ -9,7 +9,7 @@ from functools import cached_property
 
 from symgen.linear_algebra.guards import Guard
 from symgen.mechanics.system import System
-from symgen.methods.method import MOTIONS
+from symgen.model.quantities import MOTIONS
 from symgen.records import dataclass
 from symgen.symbolic.angles.sharing import share_angles
 from symgen.symbolic.identity import same_values

@@ -20,12 +20,13 @@ from symgen.methods.admission import DECIMALS, ByTheorem, Singular, Validity
 from symgen.methods.derivation import Derivation
 from symgen.methods.forward_dynamics.motion import Motion
 from symgen.methods.graphs import forget_others
-from symgen.methods.method import MOTIONS, Candidate
+from symgen.methods.method import Candidate
 from symgen.methods.quantity import resting_on
 from symgen.methods.spaces import along_minors, along_reflections
 from symgen.methods.system import MethodInput
 from symgen.methods.table import Use, methods
 from symgen.methods.workspace import Workspace
+from symgen.model.quantities import MOTIONS
 from symgen.records import dataclass
 from symgen.runtime.effort import TooLongError, at_most, worth_trying
 from symgen.validity.definiteness import Indefinite, indefinite

@@ -12,7 +12,6 @@ from symgen.model.file.source import MappingNode, Node, SequenceNode
 from symgen.model.model import Matrix, Published, PublishedEquations, PublishedMatrix, PublishedSingularSet
 from symgen.model.quantities import QUANTITIES
 
-Symbols: TypeAlias = tuple[tuple[str, Expression], ...]
 Equations: TypeAlias = tuple[tuple[Expression, Expression], ...]
 
 

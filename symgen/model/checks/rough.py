@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from symgen.diagnostics import Mistake, Notice
-from symgen.model.availability import MOTIONS
 from symgen.model.configurations.algebra import NotPolynomialError
 from symgen.model.configurations.assembly import Assembly
 from symgen.model.configurations.dense import RELATIVE
@@ -13,6 +12,7 @@ from symgen.model.configurations.friction_steps import LOCKING_SHARE, FrictionSt
 from symgen.model.configurations.mechanics import NumericSystem
 from symgen.model.expressions.names import counted
 from symgen.model.model import Model, RoughPlace
+from symgen.model.quantities import MOTIONS
 
 
 def check_rough(model: Model, assembly: Assembly) -> Iterator[Mistake]:

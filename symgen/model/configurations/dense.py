@@ -12,17 +12,23 @@ Rows: TypeAlias = list[list[float]]
 RELATIVE = 1e-9
 
 def rank(rows: Rows, relative: float = RELATIVE) -> int:
-    """The rank by elimination with complete pivoting, of the rows scaled to norm one."""
-    work = _unit_rows(rows)
+    """The rank by elimination, of the rows scaled to norm one."""
+    return pivots(_unit_rows(rows), relative)
+
+
+def pivots(work: Rows, least: float) -> int:
+    """How many pivots are larger than `least`, by elimination with complete pivoting, which overwrites the rows."""
     pivot_count = 0
     columns = list(range(len(work[0]))) if work else []
     while work and columns:
         size, pivot_row, pivot_column = max((abs(row[c]), i, c) for i, row in enumerate(work) for c in columns)
-        if size <= relative:
+        if size <= least:
             break
         pivot = work.pop(pivot_row)
         columns.remove(pivot_column)
         for row in work:
+            if not row[pivot_column]:
+                continue
             factor = row[pivot_column] / pivot[pivot_column]
             for column in columns:
                 row[column] -= factor * pivot[column]

@@ -6,6 +6,7 @@ from symgen.model.blocks.joint_forms import JOINTS
 from symgen.model.blocks.loops import LOOPS
 from symgen.model.file.shape import (
     Either,
+    EitherRecord,
     ExpressionShape,
     JsonSchema,
     Key,
@@ -13,7 +14,6 @@ from symgen.model.file.shape import (
     RecordShape,
     TableShape,
     Text,
-    Variants,
     Word,
     json_schema_of,
 )
@@ -199,7 +199,7 @@ _POINT = RecordShape(
         _DESCRIPTION,
     ),
 )
-_PUBLISHED = Variants(
+_PUBLISHED = EitherRecord(
     (
         (
             "singular_set",

@@ -77,13 +77,13 @@ class Either:
 
 
 @dataclass(frozen=True, slots=True)
-class Variants:
+class EitherRecord:
     """One of several records, told apart by the key that only it has; the last where none is there."""
 
     records: tuple[tuple[str, RecordShape], ...]
 
 
-Shape: TypeAlias = Text | ExpressionShape | Word | Listing | TableShape | RecordShape | Either | Variants
+Shape: TypeAlias = Text | ExpressionShape | Word | Listing | TableShape | RecordShape | Either | EitherRecord
 
 
 def check_shape(shape: Shape, node: Node, what: str) -> Iterator[Mistake]:
@@ -115,7 +115,7 @@ def check_shape(shape: Shape, node: Node, what: str) -> Iterator[Mistake]:
                 yield _wrong_kind(shape, node, what)
             else:
                 yield from check_shape(fitting, node, what)
-        case Variants(records=records):
+        case EitherRecord(records=records):
             key_present = (record for key, record in records if isinstance(node, MappingNode) and node.get(key))
             yield from check_shape(next(key_present, records[-1][1]), node, what)
 
@@ -151,7 +151,7 @@ def json_schema_of(shape: Shape) -> JsonSchema:
             }
         case Either(shapes=shapes):
             return {"anyOf": [json_schema_of(one) for one in shapes]}
-        case Variants(records=records):
+        case EitherRecord(records=records):
             return {"anyOf": [json_schema_of(record) for _, record in records]}
 
 
@@ -244,7 +244,7 @@ def _due(shape: Shape) -> str:
             return f"write a mapping with the keys {', '.join(field.key for field in fields)}"
         case Either(shapes=shapes):
             return "; or ".join(_due(one) for one in shapes)
-        case Variants(records=records):
+        case EitherRecord(records=records):
             return _due(records[-1][1])
 
 

@@ -32,7 +32,6 @@ from symgen.report.mathematics.setting import call, power, product
 Key: TypeAlias = tuple[Any, ...]
 Order: TypeAlias = Mapping[str, tuple[int, int]]
 PARAMETER, COORDINATE, RATE, ACCELERATION, GROUP, FUNCTION = range(6)
-ONE = Numeral("1")
 
 
 class SympyLayout:

@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from symgen.model.quantities import MOTIONS
 from symgen.verify.reference.reference import Reference
 
 # What divides by masses.
-DIVIDED_BY_MASSES = frozenset(
-    {"forward_dynamics", "multipliers", "weighted_pseudoinverse", "weighted_nullspace_projector"}
-)
+DIVIDED_BY_MASSES = frozenset({*MOTIONS, "weighted_pseudoinverse", "weighted_nullspace_projector"})
 # What the least inertia is made of.
 NEEDED = ("mass_matrix", "nullspace_projector")
 # Of the largest share that is met.  Where a direction loses its mass, the share vanishes with the square of the

@@ -12,7 +12,7 @@ from symgen.laboratory.bench.peers.engines.engine import Engine, Symbol
 from symgen.laboratory.bench.peers.formulas.mechanics import PeerSystem
 from symgen.laboratory.bench.peers.formulas.recursion import is_recursive
 from symgen.model.model import Model
-from symgen.model.quantities import ROWS
+from symgen.model.quantities import MAIN, ROWS
 from symgen.witness.lagrange import Lagrange, differentiate
 
 Build: TypeAlias = Callable[[Engine, PeerSystem], list[Symbol]]
@@ -37,7 +37,7 @@ class Peers:
 def peers(model: Model, task: Task, states: Any) -> Peers:
     """Peers for full-rank B; `states` (k, 2 n + third + P) are what an expert would look at to choose coordinates."""
     s = differentiate(model)
-    if task.quantity not in ("inverse_dynamics", "forward_dynamics", "multipliers"):
+    if task.quantity not in MAIN:
         return _of_matrix(model, s, states, task)
     if task.quantity != "inverse_dynamics":
         candidates, left_out = _motions(model, s, states, task)

@@ -1,1 +1,1 @@
-"""What passes, constants and what scenes do not need are worth, counted."""
+"""What passes, constants and what systems do not need are worth, counted."""

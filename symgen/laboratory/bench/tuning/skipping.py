@@ -1,4 +1,4 @@
-"""What each thing that a scene does not need is worth: operations of u with one of them kept at a time.
+"""What each thing that a system does not need is worth: operations of u with one of them kept at a time.
 
 Measured on the minor method, which every model has; "kept" means that a number the structure analysis knows is treated
 as if it came at run time.  The weight of operations is that of the choice of methods (`symgen.symbolic.traverse.Cost`).
@@ -253,7 +253,7 @@ def table_line(cells: Sequence[object]) -> str:
 
 
 _PAGE = """\
-# What a scene does not need, in operations
+# What a system does not need, in operations
 
 The structure analysis finds what a system does not need, and says why (`symgen MODEL.yaml`, the report,
 `derivation.json`). This table says what each finding is worth for the inverse dynamics: weighted operations with one of

@@ -24,6 +24,7 @@ from symgen.verify.tolerance import FACTOR, Expectation, expectations
 MORE_DRAWS = 7
 # A measure below this many n eps (squared for squares of volumes) is a reason for a status.
 SMALL = 1e3
+# Beyond half of these sums of angles may leave the range of sine and cosine.
 ANGLE_LIMITS: dict[Scalar, float] = {"float64": 1e5, "float32": 100.0}
 RANGES: dict[Scalar, tuple[float, float]] = {"float64": (2.0**-1022, 2.0**1023), "float32": (2.0**-126, 2.0**127)}
 

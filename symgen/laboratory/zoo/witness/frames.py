@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from typing import Any
 
 from symgen.laboratory.zoo.witness.expressions import NotReadError
@@ -13,7 +12,6 @@ from symgen.laboratory.zoo.witness.tape import Node, NodeTape
 Vector = tuple[Node, Node, Node]
 Matrix = tuple[Vector, Vector, Vector]
 Read = Callable[[str], Node]
-TWO = Fraction(2)
 # no name of a file has a space in it
 BASE = " base"
 
