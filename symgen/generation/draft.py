@@ -58,7 +58,10 @@ class Draft:
         made = {}
         for scalar, program in self.programs.items():
             bounds, decades = self.bounds.get(scalar, {}), self.raised.get(scalar, {})
-            raised = (with_raised_thresholds(kernel, decades.get(kernel.name, 0)) for kernel in program.kernels)
+            raised = (
+                with_raised_thresholds(kernel, scalar, decades[kernel.name]) if kernel.name in decades else kernel
+                for kernel in program.kernels
+            )
             kernels = (bounded(kernel, bounds.get(kernel.name, ()), names, positive) for kernel in raised)
             made[scalar] = replace(program, kernels=tuple(kernels))
         return made

@@ -99,7 +99,7 @@ def _record(content: Mapping[str, Any]) -> _VerificationRecord:
             for scalar in UNIT_ROUNDOFF
         },
         {
-            scalar: {name: int(one.get(RAISED, {}).get(scalar, 0)) for name, one in kernels}
+            scalar: {name: int(one[RAISED][scalar]) for name, one in kernels if scalar in one.get(RAISED, {})}
             for scalar in UNIT_ROUNDOFF
         },
     )
@@ -125,7 +125,7 @@ def _with_record(draft: Draft, record: _VerificationRecord, asked: Container[str
         for scalar, every in record.bounds.items()
     }
     raised = {
-        scalar: {name: decades for name, decades in every.items() if decades and name in present and name not in asked}
+        scalar: {name: decades for name, decades in every.items() if name in present and name not in asked}
         for scalar, every in record.raised.items()
     }
     draft = replace(draft, bounds=bounds, raised=raised)

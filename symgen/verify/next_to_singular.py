@@ -48,26 +48,31 @@ class NextToSingular:
         self._expected = expected
 
     def decades(self, kernels: Mapping[Scalar, Kernel], programs: Mapping[Scalar, Program]) -> dict[Scalar, int]:
-        """By how many decades the thresholds of the kernels of a quantity are to be raised, by scalar type."""
+        """By how many decades the thresholds of the kernels of a quantity are to be raised, by scalar type.
+
+        By none at all where a number that is too small to have digits is all there is to be refused.
+        """
         made = {}
         with working("next to singular states"):
             for scalar, kernel in kernels.items():
                 # pairs of numbers have digits enough
                 if kernel.name in MAIN and not works_with_pairs(kernel) and self._states:
                     made[scalar] = self._decades(kernel, programs[scalar])
-        return {scalar: decades for scalar, decades in made.items() if decades}
+        return {scalar: decades for scalar, decades in made.items() if decades is not None}
 
-    def _decades(self, kernel: Kernel, program: Program) -> int:
+    def _decades(self, kernel: Kernel, program: Program) -> int | None:
         scalar, sincos = program.scalar, program.sincos
         lost = list(self._lost(kernel, program))
         regular = [sample.state for sample in self._expected.samples(scalar)]
         before = [one.status for one in outcomes(kernel, sincos, scalar, regular)]
-        for decades in range(DECADES_RAISED, MOST_DECADES if lost else 0, DECADES_RAISED):
-            if not any(one.valid for one in outcomes(with_raised_thresholds(kernel, decades), sincos, scalar, lost)):
-                raised = with_raised_thresholds(kernel, decades + MARGIN)
+        for decades in range(0, MOST_DECADES if lost else 0, DECADES_RAISED):
+            raised = with_raised_thresholds(kernel, scalar, decades)
+            if not any(one.valid for one in outcomes(raised, sincos, scalar, lost)):
+                more = decades + MARGIN if decades else 0
+                raised = with_raised_thresholds(kernel, scalar, more)
                 after = [one.status for one in outcomes(raised, sincos, scalar, regular)]
-                return decades + MARGIN if after == before else 0
-        return 0
+                return more if after == before else None
+        return None
 
     def _lost(self, kernel: Kernel, program: Program) -> Iterator[State]:
         """States of status 0 at which the reference finds more lost than is allowed, the furthest first."""

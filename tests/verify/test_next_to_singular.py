@@ -18,6 +18,7 @@ from symgen.verify.expected import Expected
 from symgen.verify.interpreted import outcomes
 from symgen.verify.next_to_singular import NextToSingular
 from symgen.verify.reference.reference import State
+from symgen.verify.sampling.states import in_scalar
 from symgen.verify.tolerance import FACTOR, expectations
 
 # Two legs that fold in planes at right angles carry a table straight up: flat, at 0, two directions are lost at once.
@@ -45,6 +46,34 @@ loops:
 inputs:
   lift: {joint: k_0}
 configuration: {p_0: 0.49, k_0: -0.98, e: 0.49, p_1: 0.49, k_1: -0.98}
+"""
+# Three cranks and two bars, which lie in a line at 0: minors of rows are products of four sines there.
+CRANKS = """\
+model: cranks
+parameters: {l: {value: 0.16}, d: {value: 0.25}, m: {value: 4.3}}
+gravity: [0, -9.81, 0]
+joints:
+  crank_0: {type: revolute, axis: z, at: [0, 0, 0], coordinate: a_0}
+  crank_1: {type: revolute, axis: z, at: [d, 0, 0], coordinate: a_1}
+  crank_2: {type: revolute, axis: z, at: [2*d, 0, 0], coordinate: a_2}
+  bar_0: {type: revolute, axis: z, parent: crank_0, at: [l, 0, 0], coordinate: b_0}
+  bar_1: {type: revolute, axis: z, parent: crank_1, at: [l, 0, 0], coordinate: b_1}
+bodies:
+  crank_0: {mass: m, com: [l/2, 0, 0], inertia: {zz: 0.02}}
+  crank_1: {mass: m, com: [l/2, 0, 0], inertia: {zz: 0.02}}
+  crank_2: {mass: m, com: [l/2, 0, 0], inertia: {zz: 0.02}}
+  bar_0: {mass: m, com: [d/2, 0, 0], inertia: {zz: 0.05}}
+  bar_1: {mass: m, com: [d/2, 0, 0], inertia: {zz: 0.05}}
+points:
+  tip_1: {frame: crank_1, at: [l, 0, 0]}
+  end_0: {frame: bar_0, at: [d, 0, 0]}
+  tip_2: {frame: crank_2, at: [l, 0, 0]}
+  end_1: {frame: bar_1, at: [d, 0, 0]}
+loops:
+  pin_1: {type: point, between: [end_0, tip_1]}
+  pin_2: {type: point, between: [end_1, tip_2]}
+inputs: {u_1: {joint: a_1}, u_2: {joint: a_2}}
+configuration: {a_0: -0.85, a_1: -0.85, a_2: -0.85, b_0: 0.85, b_1: 0.85}
 """
 # What is lost is lost twice, once it is refined: 1e-4 of it at 1e-12.
 METHOD = {"forward_dynamics": "schur_qr_refined"}
@@ -80,13 +109,36 @@ def test_a_kernel_that_loses_digits_next_to_a_drop_has_a_status_there() -> None:
     draft, expected = lift()
     kernels = draft.kernels("forward_dynamics")
     decades = NextToSingular(expected).decades(kernels, draft.programs)
-    raised = with_raised_thresholds(kernels["float64"], decades["float64"])
+    raised = with_raised_thresholds(kernels["float64"], "float64", decades["float64"])
     before, after = ([units(one, flat(x)) for x in (1e-12, 1e-6, 1e-2)] for one in (kernels["float64"], raised))
     assert isinstance(before[0], float)
     assert before[0] > FACTOR
     assert after[0] is Status.CONSTRAINT_RANK
     assert after[1:] == before[1:]
     assert all(isinstance(one, float) and one < FACTOR for one in after[1:])
+
+
+def test_a_number_too_small_to_have_digits_is_a_status() -> None:
+    """Beside what it is made of it is as large as ever: 1e-43 of float32, of which two bits are left."""
+    name = "inverse_dynamics"
+    model = load_text(CRANKS, "cranks.yaml")
+    expected = Expected(model, [name], 16, lambda _: None)
+    for scalar in ("float64", "float32"):
+        expected.values(scalar)
+    draft = draft_of(model, [name], Options(methods={name: "minor"}))
+    kernels = draft.kernels(name)
+    assert NextToSingular(expected).decades(kernels, draft.programs) == {"float32": 0}
+    q, qd, qdd = (tuple(size * x for x in (1, 1, 1, -1, -1)) for size in (-3.7e-10, 1.0, 0.5))
+    state = in_scalar(State(q, qd, qdd, (0.0, 0.0), (0.16, 0.25, 4.3), ()), "float32")
+    known = expectations(expected.reference, state, [name], "float32", "small")[name]
+    sines = draft.programs["float32"].sincos
+    made, raised = (
+        outcomes(kernel, sines, "float32", [state])[0]
+        for kernel in (kernels["float32"], with_raised_thresholds(kernels["float32"], "float32", 0))
+    )
+    assert made.valid
+    assert known.in_units(known.distance(made.entries)) > FACTOR
+    assert raised.status in (Status.ACTUATION_RANK, Status.CONSTRAINT_RANK)
 
 
 def test_kernels_with_twice_the_digits_and_other_quantities_keep_their_thresholds() -> None:
@@ -122,13 +174,16 @@ def test_thresholds_of_ranks_alone_are_raised() -> None:
     )
     named = Block((Statement(("raised_1",), "mul", (value, number)),), ())
     kernel = Kernel("k", (), (Load("value", "q", 0), Load("scale", "q", 1)), (named, Block((), checks)), (value,), (1,))
-    _, made = with_raised_thresholds(kernel, 3).blocks
+    _, made = with_raised_thresholds(kernel, "float32", 3).blocks
     first, second = (one.all_statements() for one in (made.checks[0].first, replace(made, checks=())) if one)
     assert [*first] == [Statement(("raised_2",), "mul", (scale, Literal(Fraction(1000))))]
     assert [*second] == [Statement(("raised_3",), "mul", (scale, Literal(Fraction(1000))))]
+    least = Literal(Fraction(1, 2**102))
     limits = [check.limit for check in made.checks]
-    assert limits == [Literal(Fraction(125)), Local("raised_3"), Local("raised_3"), scale]
-    assert with_raised_thresholds(kernel, 0) is kernel
+    assert limits == [Literal(Fraction(125)), least, Local("raised_3"), least, Local("raised_3"), least, scale]
+    assert made.checks[1] == replace(made.checks[0], limit=least)
+    _, made = with_raised_thresholds(kernel, "float32", 0).blocks
+    assert [check.limit for check in made.checks] == [number, least, scale, least, scale, least, scale]
 
 
 def test_sweeps_meet_states_on_the_constraints_there() -> None:

@@ -112,6 +112,10 @@ class Surroundings:
         met = [parts["q"], self._modes]
         self._low = np.minimum(low, np.concatenate(met).min(axis=0, initial=np.inf))
         self._high = np.maximum(high, np.concatenate(met).max(axis=0, initial=-np.inf))
+        stated = np.array([c.has_range for c in coordinates])
+        angles = np.array([c.is_angle for c in coordinates])
+        # how far out of the ranges of the file they are led to singular sets: a kernel has to answer there, too
+        self._beyond = np.where(stated, np.where(angles, np.pi, self._widths), 0.0)
         self._rates = np.array([float(c.rate_range[1]) for c in coordinates])
         self._accelerations = np.array([float(c.acceleration_range[1]) for c in coordinates])
         self._inputs = np.abs(parts["u"]).max(axis=1, initial=1.0)[:, None]
@@ -234,7 +238,7 @@ class Surroundings:
             made = measures(self._parts, self._matrices(q, p), together=True)
             if masses is not None:
                 made = np.concatenate((made, masses.shares(q, p)[:, None]), axis=1)
-            inside = ((q >= self._low) & (q <= self._high)).all(axis=1)
+            inside = ((q >= self._low - self._beyond) & (q <= self._high + self._beyond)).all(axis=1)
             good = shut.all(axis=1) & inside & (made >= low).all(axis=1)
             return q, np.where(good, np.sqrt(made[lanes, which]), np.nan)
 
