@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import os
 import shutil
+import sys
 import tomllib
 from collections.abc import Callable, Generator
 from functools import cache
@@ -13,32 +14,47 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from symgen.runtime import garbage
+
 # The same examples in every run: what is new and random is drawn by `make zoo` and `make fuzz`.
 settings.register_profile("same examples", derandomize=True)
 settings.load_profile("same examples")
 
 TESTS = Path(__file__).parent
-# Objects that nobody may hold any more, 200 MB of them; commands let go of fewer, but each time all that is cached by
-# the tests before is looked through as well.
-MUCH = 2_000_000
+# Blocks of memory that nobody may hold any more, 200 MB of them.
+MUCH = 2_500_000
 # Seconds of a processor that a test without the mark `slow` may take, some times what it takes: machines differ.
 QUICK = 5.0
 
 
+class _Kept:
+    """How many blocks of memory the last look for cycles has left in use."""
+
+    blocks = 0
+
+
 def pytest_configure() -> None:
-    """Without the collector of cycles, as commands run: looking for them all the time takes a third of the tests."""
+    """Without the collector of cycles, as commands run: looking for them all the time takes a third of the tests.
+
+    A run that is through its trials looks once more through all that was kept before.  Here that is what all tests
+    before hold as well, and took longer than what it is after; here only what is new is looked through.
+    """
     gc.disable()
+    garbage.let_go_of_all = garbage.let_go_and_keep
 
 
 def pytest_collection_finish() -> None:
     """Nobody looks again through the modules."""
     gc.freeze()
+    _Kept.blocks = sys.getallocatedblocks()
 
 
 def pytest_runtest_teardown() -> None:
-    """What tests leave behind goes once it is much."""
-    if gc.get_count()[0] > MUCH:
+    """What tests leave behind goes once it is much; nobody looks again through what they cache."""
+    if sys.getallocatedblocks() > _Kept.blocks + MUCH:
         gc.collect()
+        gc.freeze()
+        _Kept.blocks = sys.getallocatedblocks()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
