@@ -112,10 +112,9 @@ class Surroundings:
         met = [parts["q"], self._modes]
         self._low = np.minimum(low, np.concatenate(met).min(axis=0, initial=np.inf))
         self._high = np.maximum(high, np.concatenate(met).max(axis=0, initial=-np.inf))
-        stated = np.array([c.has_range for c in coordinates])
+        self._stated = np.array([c.has_range for c in coordinates], dtype=bool)
         angles = np.array([c.is_angle for c in coordinates])
-        # how far out of the ranges of the file they are led to singular sets: a kernel has to answer there, too
-        self._beyond = np.where(stated, np.where(angles, np.pi, self._widths), 0.0)
+        self._beyond = np.where(self._stated, np.where(angles, np.pi, self._widths), 0.0)
         self._rates = np.array([float(c.rate_range[1]) for c in coordinates])
         self._accelerations = np.array([float(c.acceleration_range[1]) for c in coordinates])
         self._inputs = np.abs(parts["u"]).max(axis=1, initial=1.0)[:, None]
@@ -196,6 +195,14 @@ class Surroundings:
         """So many nearer and nearer to where rows, or inputs, lose rank, as far as measures stay above the least."""
         return self._drawn_towards(count, least, random.Random("towards"), None)
 
+    def out_of_ranges(self, count: int, least: Sequence[float]) -> Nearby:
+        """The same out of the ranges of the file, half a turn or a width of these away: kernels answer there, too."""
+        if not self._stated.any():
+            return self.samples.only(slice(0))
+        led = self._drawn_towards(count, least, random.Random("out of ranges"), None, self._beyond)
+        q = led.parts["q"]
+        return led.only((((q < self._low) | (q > self._high)) & self._stated).any(axis=1))
+
     def next_to_zero(self, states: Nearby) -> Nearby:
         """Where a coordinate of these states is small, some that are nearer to 0, one in each of eleven powers of ten.
 
@@ -225,7 +232,12 @@ class Surroundings:
         return self._drawn_towards(count, [*least, low], random.Random("towards no mass"), masses)
 
     def _drawn_towards(
-        self, count: int, least: Sequence[float], dice: random.Random, masses: MassesInLanes | None
+        self,
+        count: int,
+        least: Sequence[float],
+        dice: random.Random,
+        masses: MassesInLanes | None,
+        beyond: Lanes | float = 0.0,
     ) -> Nearby:
         start = self.drawn(count)
         lanes = np.arange(len(start))
@@ -238,7 +250,7 @@ class Surroundings:
             made = measures(self._parts, self._matrices(q, p), together=True)
             if masses is not None:
                 made = np.concatenate((made, masses.shares(q, p)[:, None]), axis=1)
-            inside = ((q >= self._low - self._beyond) & (q <= self._high + self._beyond)).all(axis=1)
+            inside = ((q >= self._low - beyond) & (q <= self._high + beyond)).all(axis=1)
             good = shut.all(axis=1) & inside & (made >= low).all(axis=1)
             return q, np.where(good, np.sqrt(made[lanes, which]), np.nan)
 

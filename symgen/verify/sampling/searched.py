@@ -50,6 +50,8 @@ DOUBTFUL = FACTOR / 2
 NEARER = 1e-6
 # How many are judged, and how many are brought onto V at most: not all that lie near come to a regular state.
 JUDGED, SETTLED = 8, 32
+# Of the width of a range: what is out of it.
+OUT = 0.01
 # How many more are, of those at which float32 is measured to lose most.
 MEASURED = 4
 
@@ -82,6 +84,9 @@ class WorstStateSearch:
         with working("estimates beside samples"):
             errors = RoundingErrors(kernel)
             self._add(kernel, errors, self._estimated(kernel, errors))
+            if kernel.name in MAIN and len(self._out_of_ranges):
+                least = self._settling(kernel.name).measures
+                self._add(kernel, errors, self._units(errors, self._out_of_ranges, least, together=True))
 
     def _add(self, kernel: Kernel, errors: RoundingErrors, made: _Estimates) -> None:
         samples = self._brought(kernel, made.states, made.units, SETTLED)
@@ -118,14 +123,26 @@ class WorstStateSearch:
     def largest(self, kernel: Kernel, sincos: Function | None, scalar: Scalar) -> float:
         """The largest error with status 0, in units of d + eps |y*|, at the states that were found for its quantity.
 
-        They are those of every method that was looked at.
+        They are those of every method that was looked at.  Out of the ranges of the file what is allowed is enough, and
+        no margin is asked for.
         """
         states = [rounded(sample, scalar).state for sample in self._states[kernel.name]]
         worst = 0.0
         for place, made in enumerate(outcomes(kernel, sincos, scalar, states)):
             if made.valid and (expected := self._expectation(kernel.name, place, scalar)) is not None:
-                worst = max(worst, expected.in_units(expected.distance(made.entries)))
+                units = expected.in_units(expected.distance(made.entries))
+                if units > FACTOR or self._is_in_ranges([float(x) for x in states[place].q]):
+                    worst = max(worst, units)
         return worst
+
+    def _is_in_ranges(self, q: Sequence[float]) -> bool:
+        """Whether the ranges that the file states hold coordinates, but for a hundredth of their width."""
+        return all(
+            low - OUT * (high - low) <= x <= high + OUT * (high - low)
+            for x, c in zip(q, self._expected.reference.model.coordinates, strict=True)
+            for low, high in [(float(c.range[0]), float(c.range[1]))]
+            if c.has_range
+        )
 
     def _expectation(self, quantity: str, place: int, scalar: Scalar) -> Expectation | None:
         """None where there is no value once the state is rounded."""
@@ -190,6 +207,11 @@ class WorstStateSearch:
         """These and others that are led towards a drop of rank."""
         _, nearest = self._settlings
         return joined(self._drawn, self._surroundings.towards(self._affordable(TOWARDS), nearest.measures))
+
+    @cached_property
+    def _out_of_ranges(self) -> Nearby:
+        _, nearest = self._settlings
+        return self._surroundings.out_of_ranges(self._affordable(TOWARDS), nearest.measures)
 
     @cached_property
     def _all_but_massless(self) -> Nearby:
