@@ -2987,6 +2987,9 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse_f(const float q[6], co
     if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    if (RAPKM_2RRR_RR_RARELY_F(!(53.0f >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float l_2 = p->l_2;
     if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -4758,6 +4761,9 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_control_matrix_f(const float q[6], const rapk
 rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_matrix_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float M_tilde[18]) {
     const float l_1 = p->l_1;
     if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    if (RAPKM_2RRR_RR_RARELY_F(!(53.0f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;
@@ -15030,6 +15036,9 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_measured_f(const float q_m
 rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_measured_f(const float q[6], const float qd_m[3], const rapkm_2rrr_rr_params_f *p, float qd_found[6]) {
     const float l_1 = p->l_1;
     if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    if (RAPKM_2RRR_RR_RARELY_F(!(53.0f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;

@@ -72,11 +72,11 @@
  *   constraint_pseudoinverse 0.015 <= l_1
  *   nullspace_projector 0.015 <= l_1, l_2 <= 3
  *   nullspace_projector_dot 0.015 <= l_1
- *   weighted_pseudoinverse 0.015 <= l_1, l_2 <= 3, 0.0051 <= m_1, m_2 <= 10
+ *   weighted_pseudoinverse 0.015 <= l_1 <= 53, l_2 <= 3, 0.0051 <= m_1, m_2 <= 10
  *   weighted_pseudoinverse 1.1e-05 <= J_1, 1.1e-05 <= J_2 <= 0.1, 1.1e-05 <= J_motor, |m_payload| <= 1700
  *   weighted_nullspace_projector 0.015 <= l_1 <= 3, l_2 <= 3, m_2 <= 10, J_2 <= 3.1
  *   weighted_nullspace_projector |m_payload| <= 10
- *   projected_control_matrix 0.015 <= l_1, l_2 <= 30
+ *   projected_control_matrix 0.015 <= l_1 <= 53, l_2 <= 30
  *   projected_control_pseudoinverse 0.015 <= l_1 <= 3, l_2 <= 16
  *   orthogonal_complement 3.5e-06 <= x_2
  *   projected_mass_matrix 0.015 <= l_1, |m_payload| <= 560
@@ -88,7 +88,7 @@
  *   admissible_acceleration 0.015 <= l_1 <= 3
  *   projected_configuration l_1 <= 3, l_2 <= 3, |y_1| <= 1
  *   configuration_from_measured l_1 <= 3, l_2 <= 3
- *   velocity_from_measured 0.015 <= l_1, l_2 <= 3
+ *   velocity_from_measured 0.015 <= l_1 <= 53, l_2 <= 3
  *   acceleration_from_measured 0.015 <= l_1 <= 3
  *   configuration_from_task l_1 <= 3000, l_2 <= 5300
  *   acceleration_from_task l_2 <= 3
