@@ -25,7 +25,7 @@ from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.many_states import run_lanes
 from symgen.verify.reference.reference import ReferenceValueError, State
 from symgen.verify.sampling.lanes import RoundingErrors
-from symgen.verify.sampling.nearby import Nearby, Surroundings
+from symgen.verify.sampling.nearby import Nearby, Surroundings, joined
 from symgen.verify.sampling.settling import Settling
 from symgen.verify.sampling.states import rounded
 from symgen.verify.single_precision import distances, lost_in_float32
@@ -34,6 +34,8 @@ from symgen.verify.tolerance import FACTOR, is_beyond
 # States that are led to a drop of rank, of which those with a coordinate near 0 go on, and how far measures of these,
 # which are squares, may be below the least of the verification: 1e-12 of the way is left.
 LED, NEAREST = 256, 1e-24
+# States with small coordinates, where rows may vanish that keep their directions.
+AROUND_ZERO = 32
 # Rounding errors above so many units are judged, the furthest from a drop of rank first, so many at most; of those that
 # are beyond what is allowed so many show how far a threshold has to go.
 DOUBTFUL, JUDGED, SHOWING = FACTOR / 2, 24, 4
@@ -123,7 +125,8 @@ class NextToSingular:
 
     @cached_property
     def _states(self) -> Nearby:
-        return self._around.next_to_zero(self._around.towards(LED, self._settling.measures))
+        led = self._around.towards(LED, self._settling.measures)
+        return self._around.next_to_zero(joined(led, self._around.around_zero(AROUND_ZERO)))
 
     @cached_property
     def _measures(self) -> Lanes:

@@ -18,6 +18,7 @@ from symgen.verify.expected import Expected
 from symgen.verify.interpreted import outcomes
 from symgen.verify.next_to_singular import NextToSingular
 from symgen.verify.reference.reference import State
+from symgen.verify.sampling.nearby import Surroundings
 from symgen.verify.sampling.states import in_scalar
 from symgen.verify.tolerance import FACTOR, expectations
 
@@ -139,6 +140,17 @@ def test_a_number_too_small_to_have_digits_is_a_status() -> None:
     assert made.valid
     assert known.in_units(known.distance(made.entries)) > FACTOR
     assert raised.status in (Status.ACTUATION_RANK, Status.CONSTRAINT_RANK)
+
+
+def test_configurations_around_0_are_met_where_no_direction_is_lost() -> None:
+    """Rows that vanish keep their directions: nothing leads there, but all of V that is near 0 is looked at."""
+    model = load_text(CRANKS, "cranks.yaml")
+    expected = Expected(model, ["inverse_dynamics"], 16, lambda _: None)
+    q = Surroundings(expected.reference, expected.drawn, expected.modes).around_zero(32).parts["q"]
+    assert len(q) > 4
+    assert 0 < np.abs(q).max() < 0.1
+    # each crank stands like the first one, or its bar crosses
+    assert np.abs(np.sin(q[:, 0]) - np.sin(q[:, 1]) + 0.25 / 0.16 * np.sin(q[:, 0] + q[:, 3])).max() < 1e-9
 
 
 def test_kernels_with_twice_the_digits_and_other_quantities_keep_their_thresholds() -> None:

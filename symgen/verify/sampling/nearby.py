@@ -203,6 +203,16 @@ class Surroundings:
         q = led.parts["q"]
         return led.only((((q < self._low) | (q > self._high)) & self._stated).any(axis=1))
 
+    def around_zero(self, count: int) -> Nearby:
+        """So many on V where all coordinates are small; none where it leads elsewhere."""
+        start = self.drawn(count)
+        with np.errstate(all="ignore"):
+            q, shut = self._loops.newton(
+                SMALL * self._widths * _shifts(random.Random("zero"), start.parts["q"]), start.parts["p"]
+            )
+        small = shut.all(axis=1) & (np.abs(q) < SMALL * self._widths).all(axis=1)
+        return Nearby({**start.parts, "q": q}, start.admissible, start.origins).only(small)
+
     def next_to_zero(self, states: Nearby) -> Nearby:
         """Where a coordinate of these states is small, some that are nearer to 0, one in each of eleven powers of ten.
 
