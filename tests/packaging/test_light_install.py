@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import subprocess
 import sysconfig
@@ -13,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from symgen.generation.packages import EXTRA_OF, to_install
+from symgen.output.manifest import CHECKSUMS
 
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
@@ -45,12 +47,14 @@ def run(light: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_the_main_way_needs_no_more(light: Path, tmp_path: Path) -> None:
-    made = run(light, "-m", "symgen", str(ROOT / "models/front_car.yaml"), "--out", str(tmp_path))
+    made = run(light, "-m", "symgen", str(ROOT / "models/skate.yaml"), "--out", str(tmp_path))
     assert made.returncode == 0, made.stderr
     assert "notice: the report is left out: it needs sympy and typst, which are not installed: pip" in made.stderr
-    source = Path("front_car", "c", "front_car.c")
-    assert (tmp_path / source).read_bytes() == (ROOT / "generated" / source).read_bytes()
-    assert not (tmp_path / "front_car" / "report").exists()
+    recorded = (ROOT / "generated/skate" / CHECKSUMS).read_text(encoding="utf-8").splitlines()
+    sources = [path for folder in ("c", "python") for path in sorted((tmp_path / "skate" / folder).iterdir())]
+    sums = [f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.parent.name}/{path.name}" for path in sources]
+    assert sums == [line for line in recorded if line.split()[1].startswith(("c/", "python/"))]
+    assert not (tmp_path / "skate" / "report").exists()
 
 
 def test_what_is_asked_for_says_what_it_needs(light: Path, tmp_path: Path) -> None:

@@ -204,11 +204,14 @@ SIDE_BY_SIDE = words(
 
 
 @pytest.fixture(scope="module")
-def neighbours(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def neighbours(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Models side by side, with all quantities in the campaign of tests; their files are called the same with one."""
+    outputs = "all" if request.config.getoption("markexpr") == "campaign" else "[inverse_dynamics]"
     folder = tmp_path_factory.mktemp("neighbours")
     for name in SIDE_BY_SIDE:
-        text = places_text(name, words("alpha beta gain share lift push"))
-        made(folder, text + "constraints:\n  geometric: {row: sin(alpha) - beta}\noutputs: all\n", name, "package")
+        row = "constraints:\n  geometric: {row: sin(alpha) - beta}\n"
+        text = places_text(name, words("alpha beta gain share lift push")) + row
+        made(folder, f"{text}outputs: {outputs}\n", name, "package")
     return folder
 
 

@@ -18,7 +18,7 @@ from symgen.symbolic.identity import every_identity_evaluated
 
 SEED = 20
 # By energies, by bodies, with a loop; the others are members of the campaign of tests.
-FEW = ("disc", "tree_bodies", "bennett")
+FEW = ("disc", "tree_bodies", "sarrus")
 
 
 def _first(family: str, folder: Path) -> Model:
