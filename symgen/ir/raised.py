@@ -8,13 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
+from itertools import count
 
 from symgen.ir.kernel import UNIT_ROUNDOFF, Block, Kernel, Literal, Local, Operand, Scalar, Statement, Status
 
 # Of rows, and of inputs along what these leave free.
 RANKS = frozenset({Status.CONSTRAINT_RANK, Status.ACTUATION_RANK})
-
-
 # The least normal number of each type.
 LEAST_NORMAL: dict[Scalar, Fraction] = {"float64": Fraction(1, 2**1022), "float32": Fraction(1, 2**126)}
 
@@ -27,7 +26,7 @@ def with_raised_thresholds(kernel: Kernel, scalar: Scalar, decades: int) -> Kern
     taken = {load.local for load in kernel.loads}
     for block in kernel.blocks:
         taken.update(target for statement in block.all_statements() for target in statement.targets)
-    names = (name for k in range(1, 2 + len(taken)) if (name := f"raised_{k}") not in taken)
+    names = (name for k in count(1) if (name := f"raised_{k}") not in taken)
     factor, least = Literal(Fraction(10) ** decades), Literal(LEAST_NORMAL[scalar] / UNIT_ROUNDOFF[scalar])
     return replace(kernel, blocks=tuple(_raised(block, factor, least, names) for block in kernel.blocks))
 

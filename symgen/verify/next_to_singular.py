@@ -26,6 +26,7 @@ from symgen.verify.many_states import run_lanes
 from symgen.verify.reference.reference import ReferenceValueError, State
 from symgen.verify.sampling.lanes import RoundingErrors
 from symgen.verify.sampling.nearby import Nearby, Surroundings, joined
+from symgen.verify.sampling.searched import NUMBERS
 from symgen.verify.sampling.settling import Settling
 from symgen.verify.sampling.states import rounded
 from symgen.verify.single_precision import distances, lost_in_float32
@@ -39,6 +40,8 @@ AROUND_ZERO = 32
 # Rounding errors above so many units are judged, the furthest from a drop of rank first, so many at most; of those that
 # are beyond what is allowed so many show how far a threshold has to go.
 DOUBTFUL, JUDGED, SHOWING = FACTOR / 2, 24, 4
+# Statements of the longest kernels that are looked at: in pairs these are twenty times as many.
+LONGEST_PAIRED = 4_000
 # Decades by which thresholds are raised at a time and at most, and how many more to keep a distance.
 DECADES_RAISED, MOST_DECADES, MARGIN = 2, 24, 2
 
@@ -58,7 +61,9 @@ class NextToSingular:
         with working("next to singular states"):
             for scalar, kernel in kernels.items():
                 # pairs of numbers have digits enough
-                if kernel.name in MAIN and not works_with_pairs(kernel) and self._states:
+                if kernel.name not in MAIN or works_with_pairs(kernel) or len(kernel.statements) > LONGEST_PAIRED:
+                    continue
+                if len(self._states):
                     made[scalar] = self._decades(kernel, programs[scalar])
         return {scalar: decades for scalar, decades in made.items() if decades is not None}
 
@@ -79,7 +84,10 @@ class NextToSingular:
     def _lost(self, kernel: Kernel, program: Program) -> Iterator[State]:
         """States of status 0 at which the reference finds more lost than is allowed, the furthest first."""
         scalar, states = program.scalar, self._states
-        doubtful = np.flatnonzero(self._units(kernel, scalar) > DOUBTFUL)
+        # of long kernels fewer states are looked at
+        count = min(len(states), NUMBERS // (len(kernel.statements) + 1))
+        places = np.linspace(0, len(states), count, endpoint=False).astype(int)
+        doubtful = places[self._units(kernel, scalar, states.only(places)) > DOUBTFUL]
         order = doubtful[np.argsort(-self._measures[doubtful], kind="stable")][:JUDGED]
         showing = 0
         for place in order.tolist():
@@ -100,20 +108,17 @@ class NextToSingular:
         except ReferenceValueError:
             return False
 
-    def _units(self, kernel: Kernel, scalar: Scalar) -> Lanes:
+    def _units(self, kernel: Kernel, scalar: Scalar, states: Nearby) -> Lanes:
         """What a kernel loses, in units of d + eps |y|, measured beside the same operations in more digits."""
-        given = self._states.parts
-        unit = RoundingErrors(kernel).with_units(given, self._tangents)[1] * float(UNIT_ROUNDOFF[scalar])
-        with np.errstate(all="ignore"):
-            return np.nan_to_num(self._off(kernel, scalar, given) / unit, posinf=0.0)
-
-    @staticmethod
-    def _off(kernel: Kernel, scalar: Scalar, given: Mapping[str, Lanes]) -> Lanes:
-        if scalar == "float32":
-            return lost_in_float32(kernel, given)
-        refused, y = run_lanes(kernel, None, scalar, given)
-        unknown, z = run_lanes(paired(kernel, scalar), None, scalar, given)
-        return np.where(refused + unknown == 0, distances(y, z), 0.0)
+        precise = paired(kernel, scalar) if scalar == "float64" else kernel
+        errors, held = RoundingErrors(kernel), max(1, NUMBERS // (len(precise.statements) + 1))
+        units = []
+        for start in range(0, len(states), held):
+            part = states.only(slice(start, start + held))
+            unit = errors.with_units(part.parts, self._tangents(part))[1] * float(UNIT_ROUNDOFF[scalar])
+            with np.errstate(all="ignore"):
+                units.append(np.nan_to_num(_off(kernel, precise, scalar, part.parts) / unit, posinf=0.0))
+        return np.concatenate(units)
 
     @cached_property
     def _around(self) -> Surroundings:
@@ -125,14 +130,24 @@ class NextToSingular:
 
     @cached_property
     def _states(self) -> Nearby:
-        led = self._around.towards(LED, self._settling.measures)
-        return self._around.next_to_zero(joined(led, self._around.around_zero(AROUND_ZERO)))
+        led = self._around.towards(self._around.affordable(LED), self._settling.measures)
+        states = self._around.next_to_zero(joined(led, self._around.around_zero(self._around.affordable(AROUND_ZERO))))
+        count = self._around.affordable(len(states))
+        return states.only(np.linspace(0, len(states), count, endpoint=False).astype(int))
 
     @cached_property
     def _measures(self) -> Lanes:
         return self._around.measures(self._states, together=True).min(axis=1)
 
-    @cached_property
-    def _tangents(self) -> Lanes | None:
+    def _tangents(self, states: Nearby) -> Lanes | None:
         reference = self._expected.reference
-        return self._around.tangents(self._states) if reference.ranks.constraints < reference.system.r else None
+        return self._around.tangents(states) if reference.ranks.constraints < reference.system.r else None
+
+
+def _off(kernel: Kernel, precise: Kernel, scalar: Scalar, given: Mapping[str, Lanes]) -> Lanes:
+    """How far results are off, beside float64 or beside pairs of numbers."""
+    if scalar == "float32":
+        return lost_in_float32(kernel, given)
+    refused, y = run_lanes(kernel, None, scalar, given)
+    unknown, z = run_lanes(precise, None, scalar, given)
+    return np.where(refused + unknown == 0, distances(y, z), 0.0)

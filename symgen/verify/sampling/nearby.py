@@ -32,6 +32,8 @@ REACH = 0.2
 # Shares of ranges that states move by, a step further from where they are.
 FURTHER = 0.05
 QUARTER = np.pi / 2
+# Of each kind fewer states where decompositions of large parts take longest: the cube of their coordinates counts.
+CUBES, FEWEST = 200_000_000, 8
 # Powers of ten: how far an angle is from a multiple of a quarter turn.
 OFF = (1.0, 5.0)
 # Powers of ten by which inputs of half of the states are smaller than those of samples, where weights or springs drive
@@ -120,6 +122,11 @@ class Surroundings:
         self._inputs = np.abs(parts["u"]).max(axis=1, initial=1.0)[:, None]
         looked_at = samples[:SAMPLES_LOOKED_AT]
         self._driven_by_itself = any(_driven_by_itself(reference, sample.state) for sample in looked_at)
+
+    def affordable(self, count: int) -> int:
+        """So many states, or as many as large parts leave time for."""
+        cubes = sum(len(part.coordinates) ** 3 for part in self._system.parts)
+        return min(count, max(FEWEST, CUBES // cubes))
 
     def drawn(self, count: int) -> Nearby:
         """About so many: a step off each sample in turn, with other rates, accelerations and inputs."""

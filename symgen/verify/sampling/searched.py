@@ -38,8 +38,6 @@ from symgen.verify.tolerance import FACTOR, Expectation, expectations
 DRAWN, ALIGNED, IN_MODES, RESTING, FURTHER_OUT, TOWARDS, HARDLY_DRIVEN = 512, 256, 256, 128, 256, 256, 64
 # Numbers that are held at a time; of long kernels fewer states are looked at together.
 NUMBERS = 4_000_000
-# Of each kind also fewer where decompositions of large parts would take longest: the cube of their coordinates counts.
-CUBES, FEWEST = 200_000_000, 8
 # Of the worst of them, how many go further, in how many directions, and how often.
 KEPT, DIRECTIONS, STEPS_FURTHER = 32, 8, 3
 # Units; what is estimated counts every rounding with all that it may do, and d for less than it is.
@@ -221,10 +219,7 @@ class WorstStateSearch:
         return self._surroundings.towards_no_mass(count, nearest.measures, NEARER * REGULAR_INERTIA)
 
     def _affordable(self, count: int) -> int:
-        """So many states, or as many as large parts leave time for."""
-        system = self._expected.reference.system
-        cubes = sum(len(part.coordinates) ** 3 for part in system.parts)
-        return min(count, max(FEWEST, CUBES // cubes))
+        return self._surroundings.affordable(count)
 
     def _settling(self, quantity: str) -> Settling:
         return self._settlings[quantity in MAIN]
