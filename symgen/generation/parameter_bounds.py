@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from symgen.generation.draft import Draft
+from symgen.generation.once_per_kernel import OncePerKernel
 from symgen.ir.bounded import Bound
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.verify.expected import Expected
@@ -17,20 +19,17 @@ class ParameterBounds:
     WHAT = "how far parameters may be"
 
     def __init__(self, expected: Expected) -> None:
-        self._far = FarParameters(expected)
-        self._known: dict[str, tuple[dict[Scalar, Kernel], dict[Scalar, tuple[Bound, ...]]]] = {}
+        far = FarParameters(expected)
+
+        def look(draft: Draft, name: str, kernels: Mapping[Scalar, Kernel]) -> dict[Scalar, tuple[Bound, ...]]:
+            made = far.bounds(kernels, draft.programs, _plain(draft, name))
+            return {scalar: bounds for scalar, bounds in made.items() if bounds}
+
+        self._known = OncePerKernel[tuple[Bound, ...]](look)
 
     def of(self, draft: Draft) -> Draft:
         """The draft with the bounds of its kernels."""
-        by_scalar: dict[Scalar, dict[str, tuple[Bound, ...]]] = {scalar: {} for scalar in draft.programs}
-        for name in (kernel.name for kernel in draft.program.kernels):
-            kernels, known = draft.kernels(name), self._known.get(name)
-            if known is None or any(kernel is not known[0].get(scalar) for scalar, kernel in kernels.items()):
-                known = self._known[name] = kernels, self._far.bounds(kernels, draft.programs, _plain(draft, name))
-            for scalar in kernels:
-                if bounds := known[1].get(scalar):
-                    by_scalar[scalar][name] = bounds
-        return replace(draft, bounds=by_scalar)
+        return replace(draft, bounds=self._known.of(draft, (kernel.name for kernel in draft.program.kernels)))
 
 
 def _plain(draft: Draft, quantity: str) -> Kernel | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import cached_property
 from typing import TypeAlias
 
 from symgen.ir.kernel import Scalar
@@ -11,6 +12,7 @@ from symgen.model.model import Model
 from symgen.runtime.activity import each, working
 from symgen.verify.reference.reference import Reference, ReferenceValueError
 from symgen.verify.sampling.modes import modes
+from symgen.verify.sampling.nearby import Surroundings
 from symgen.verify.sampling.regular import FEWEST_STATES
 from symgen.verify.sampling.states import (
     USUAL_STATES,
@@ -44,6 +46,11 @@ class Expected:
         self.drawn = sample_states(self.reference, quantities, count, modes=self.modes)
         self._samples: dict[Scalar, tuple[Sample, ...]] = {}
         self._values: dict[Scalar, list[dict[str, Expectation]]] = {}
+
+    @cached_property
+    def surroundings(self) -> Surroundings:
+        """What lies near the states."""
+        return Surroundings(self.reference, self.drawn, self.modes)
 
     @property
     def scalars(self) -> tuple[Scalar, ...]:

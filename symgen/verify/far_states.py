@@ -12,8 +12,8 @@ from symgen.verify.expected import Expected
 from symgen.verify.far_errors import Far, joined
 from symgen.verify.lane_arithmetic import Lanes
 from symgen.verify.sampling.loops_in_lanes import CLOSED_IN_LANES, LoopsInLanes
-from symgen.verify.sampling.nearby import Surroundings, of_samples
 from symgen.verify.sampling.nearby import joined as joined_states
+from symgen.verify.sampling.nearby import of_samples
 from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, ranked_parts
 from symgen.verify.sampling.rates_in_lanes import RatesInLanes
 from symgen.verify.sampling.task_ahead import TaskInLanes
@@ -47,7 +47,7 @@ class FarStates:
         self._system, self._drawn = expected.reference.system, expected.drawn
         literals = [float(x) for x in expected.reference.literals()]
         self._loops, self._task = LoopsInLanes(self._system, literals), TaskInLanes(self._system, literals)
-        self._near = Surroundings(expected.reference, self._drawn, expected.modes)
+        self._near = expected.surroundings
         self._parts = ranked_parts(self._system, expected.reference.ranks)
         self._rates = RatesInLanes(self._system, self._parts, self._loops)
 

@@ -120,9 +120,9 @@ class NextToSingular:
                 units.append(np.nan_to_num(_off(kernel, precise, scalar, part.parts) / unit, posinf=0.0))
         return np.concatenate(units)
 
-    @cached_property
+    @property
     def _around(self) -> Surroundings:
-        return Surroundings(self._expected.reference, self._expected.drawn, self._expected.modes)
+        return self._expected.surroundings
 
     @cached_property
     def _settling(self) -> Settling:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -11,6 +12,8 @@ from symgen.verify.lane_arithmetic import Lanes
 
 # How far lengths without a range reach, in the ranges taken for granted.
 LENGTH_REACH = 3.2
+# Of the width of a range: nearer than that a coordinate is still in it.
+SLACK = 0.01
 
 
 def unstated_lengths(coordinates: Sequence[Coordinate]) -> Lanes:
@@ -23,3 +26,14 @@ def reachable(coordinates: Sequence[Coordinate]) -> tuple[Lanes, Lanes]:
     times = np.where(unstated_lengths(coordinates), LENGTH_REACH, 1.0)
     low, high = (np.array([float(c.range[side]) for c in coordinates]) for side in (0, 1))
     return low * times, high * times
+
+
+def out_of_range(coordinates: Sequence[Coordinate], q: Sequence[Any]) -> list[int]:
+    """The places of coordinates out of their ranges, be these stated or taken for granted."""
+    outside = []
+    for place, (x, coordinate) in enumerate(zip(q, coordinates, strict=True)):
+        low, high = map(float, coordinate.range)
+        slack = SLACK * (high - low)
+        if not low - slack <= x <= high + slack:
+            outside.append(place)
+    return outside

@@ -11,7 +11,8 @@ from __future__ import annotations
 import random
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from contextlib import suppress
+from dataclasses import dataclass
 from math import inf, isfinite, pi, sqrt
 from typing import Any
 
@@ -22,7 +23,9 @@ from symgen.verify.reference.manifold import exceeds, starts
 from symgen.verify.reference.parameter_values import ParameterValues, default_parameters
 from symgen.verify.reference.parts import Part
 from symgen.verify.reference.reference import BeyondLimitsError, LocksError, Reference, ReferenceValueError, State
-from symgen.verify.sampling.plain_values import SAMPLING_BITS, floats, in_floats, measured, settled, values_at
+from symgen.verify.sampling.plain_values import SAMPLING_BITS, floats, in_floats, measured, settled
+from symgen.verify.sampling.reach import out_of_range
+from symgen.verify.sampling.within_limits import driven_within_limits
 
 # Regular states that a verification needs.
 FEWEST_STATES = 8
@@ -33,8 +36,6 @@ DRIFT = 1e-3
 # How far angles may lie outside of their ranges in states, and how many times as far out as the ranges and the
 # configurations that are known all others may.
 TURNS, FAR_OUT = 2, 10
-# Of limits: the share of the way between them in which inputs are drawn, where those of drawn motions lie beyond.
-BETWEEN_LIMITS = 0.8
 # Configurations that tell how large measures and rows usually are.
 MEASURED_POINTS = 8
 # Steps along V, in widths of the ranges.
@@ -207,7 +208,7 @@ class RegularStateSearch:
             self._ends[AWAY] += 1
             self._wants(away)
             return None
-        outside = self._outside(q)
+        outside = out_of_range(reference.model.coordinates, q)
         if outside and again:
             self._wants(outside)
             return None
@@ -312,43 +313,38 @@ class RegularStateSearch:
                 places.insert(0, moved)
         for place in places:  # on V where a thousandth of the coordinates is more than a small mechanism moves
             state = State(tuple(place), rates, accelerations, (0.0,) * model.m, tuple(parameters))
-            values = self._looked_at(state, needed)
-            if values is not None:
-                return Regular(state, shares, index % 2 == 0, values)
-            driven = self._driven_within_limits(state, shares)
-            values = None if driven is None else self._looked_at(driven, needed)
-            if driven is not None and values is not None:
-                return Regular(driven, shares, True, values)
+            if (reached := self._in_motion(state, shares, needed)) is not None:
+                state, values, driven = reached
+                return Regular(state, shares, driven or index % 2 == 0, values)
         return None
 
-    def _driven_within_limits(self, state: State, shares: Sequence[float]) -> State | None:
-        """The motion that inputs between their limits make, where few others are within these; None without limits."""
-        model = self._reference.model
-        if not model.keeps_limits or model.allocation is None:
-            return None
-        values = dict(zip((p.name for p in model.parameters), state.parameters, strict=True))
-        by_name = {item.name: share for item, share in zip(model.inputs, shares, strict=True)}
-        for limit in model.allocation.limits:
-            low, high = values[limit.lower], values[limit.upper]
-            by_name[limit.input] = (low + high) / 2 + BETWEEN_LIMITS * by_name[limit.input] * (high - low) / 2
-        try:
-            (rates,) = values_at(self._reference, state, ["admissible_velocity"]).values()
-            state = replace(state, qd=rates, u=tuple(by_name.values()))
-            (accelerations,) = values_at(self._reference, state, ["forward_dynamics"]).values()
-        except ReferenceValueError:
-            return None
-        return replace(state, qdd=accelerations, u=(0.0,) * model.m) if all(map(isfinite, accelerations)) else None
+    def _in_motion(
+        self, state: State, shares: Sequence[float], needed: Sequence[str]
+    ) -> tuple[State, dict[str, tuple[float, ...]], bool] | None:
+        """A state with what is needed of it; where its motion takes inputs beyond their limits, a motion that inputs
+        within these make, and that it is one."""
+        with suppress(BeyondLimitsError):
+            values = self._looked_at(state, needed)
+            return None if values is None else (state, values, False)
+        self._ends[BEYOND] += 1
+        driven = driven_within_limits(self._reference, state, shares)
+        with suppress(BeyondLimitsError):
+            values = None if driven is None else self._looked_at(driven, needed)
+            return None if driven is None or values is None else (driven, values, True)
+        return None
 
     def _looked_at(self, state: State, needed: Sequence[str]) -> dict[str, tuple[float, ...]] | None:
-        """What is needed of a state; None where it is not regular, which is counted."""
+        """What is needed of a state; None where it is not regular, which is counted.
+
+        Raises BeyondLimitsError where no inputs within their limits make the motion.
+        """
         model = self._reference.model
         try:
             matrices, measures = self._reference.measured(
                 state, ("singularity", "constraint_jacobian", *needed), SAMPLING_BITS
             )
-        except BeyondLimitsError:
-            self._ends[BEYOND] += 1
-            return None
+        except BeyondLimitsError:  # told apart from what has no value
+            raise
         except LocksError:
             self._ends[LOCKED] += 1
             return None
@@ -371,16 +367,6 @@ class RegularStateSearch:
                     self._wanting.update(part.coordinates)
             return None
         return values
-
-    def _outside(self, q: Sequence[Any]) -> list[int]:
-        """The coordinates out of their ranges, by more than a hundredth of their width."""
-        outside = []
-        for j, (x, coordinate) in enumerate(zip(q, self._reference.model.coordinates, strict=True)):
-            low, high = map(float, coordinate.range)
-            slack = 0.01 * (high - low)
-            if not low - slack <= x <= high + slack:
-                outside.append(j)
-        return outside
 
     def _far_away(self, q: Sequence[Any]) -> list[int]:
         """The angles turns outside of their ranges, where one step after another leads and nothing new is met, and

@@ -29,6 +29,7 @@ from symgen.verify.running.compile import Outcome
 from symgen.verify.sampling.inertias import DIVIDED_BY_MASSES, REGULAR_INERTIA
 from symgen.verify.sampling.lanes import RoundingErrors
 from symgen.verify.sampling.nearby import Nearby, Surroundings, joined, of_samples
+from symgen.verify.sampling.reach import out_of_range
 from symgen.verify.sampling.settling import Settling
 from symgen.verify.sampling.states import Sample, rounded
 from symgen.verify.single_precision import lost_in_float32
@@ -48,8 +49,6 @@ DOUBTFUL = FACTOR / 2
 NEARER = 1e-6
 # How many are judged, and how many are brought onto V at most: not all that lie near come to a regular state.
 JUDGED, SETTLED = 8, 32
-# Of the width of a range: what is out of it.
-OUT = 0.01
 # How many more are, of those at which float32 is measured to lose most.
 MEASURED = 4
 
@@ -134,13 +133,9 @@ class WorstStateSearch:
         return worst
 
     def _is_in_ranges(self, q: Sequence[float]) -> bool:
-        """Whether the ranges that the file states hold coordinates, but for a hundredth of their width."""
-        return all(
-            low - OUT * (high - low) <= x <= high + OUT * (high - low)
-            for x, c in zip(q, self._expected.reference.model.coordinates, strict=True)
-            for low, high in [(float(c.range[0]), float(c.range[1]))]
-            if c.has_range
-        )
+        """Whether the ranges that the file states hold all coordinates."""
+        coordinates = self._expected.reference.model.coordinates
+        return not any(coordinates[place].has_range for place in out_of_range(coordinates, q))
 
     def _expectation(self, quantity: str, place: int, scalar: Scalar) -> Expectation | None:
         """None where there is no value once the state is rounded."""
@@ -185,10 +180,9 @@ class WorstStateSearch:
         regular = (self._surroundings.measures(states, together) >= least).all(axis=1)
         return _Estimates(states, np.where(regular, own / unit, 0.0), unit, regular)
 
-    @cached_property
+    @property
     def _surroundings(self) -> Surroundings:
-        expected = self._expected
-        return Surroundings(expected.reference, expected.drawn, expected.modes)
+        return self._expected.surroundings
 
     @cached_property
     def _drawn(self) -> Nearby:

@@ -10,10 +10,11 @@ import numpy as np
 
 from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.witness.fields import Floats
+from symgen.laboratory.zoo.witness.float_rows import normalized, null_space, rank_of
 from symgen.laboratory.zoo.witness.kkt import EquationEvaluator, EquationValues
 from symgen.laboratory.zoo.witness.mechanics import equations
 from symgen.laboratory.zoo.witness.reader import SystemReader
-from symgen.laboratory.zoo.witness.states import Walker, normalized, null_space, rank_of
+from symgen.laboratory.zoo.witness.states import Walker
 from symgen.laboratory.zoo.witness.tape import NodeProgram
 
 # what rounding leaves at a start that was measured in floats

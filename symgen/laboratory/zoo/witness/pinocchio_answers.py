@@ -13,11 +13,12 @@ import numpy as np
 
 from symgen.laboratory.zoo.witness.allocation import directed, is_directed, preloads
 from symgen.laboratory.zoo.witness.fields import Floats
+from symgen.laboratory.zoo.witness.float_rows import null_space
 from symgen.laboratory.zoo.witness.kkt import EquationEvaluator, EquationValues, GenericRanks
 from symgen.laboratory.zoo.witness.mechanics import equations
 from symgen.laboratory.zoo.witness.pinocchio_trees import PinocchioTree
 from symgen.laboratory.zoo.witness.reader import SystemReader
-from symgen.laboratory.zoo.witness.states import FloatState, null_space
+from symgen.laboratory.zoo.witness.states import FloatState
 from symgen.laboratory.zoo.witness.tape import NodeProgram
 
 WITHOUT = ("bodies", "gravity")

@@ -12,6 +12,7 @@ import numpy as np
 
 from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.witness.fields import Balls, Floats, precision
+from symgen.laboratory.zoo.witness.float_rows import SAME, normalized, null_space, rank_of
 from symgen.laboratory.zoo.witness.kkt import EquationEvaluator, EquationValues, GenericRanks, onto_rows
 from symgen.laboratory.zoo.witness.linear import NOTHING
 from symgen.laboratory.zoo.witness.reader import SystemReader
@@ -22,7 +23,6 @@ REFINEMENTS, REFINED = 12, 1e-20
 CLOSED = 1e-12
 # what is left of rows on V, in lengths of these, and what is no length of a row
 ON_IT, NO_LENGTH = 1e-15, 1e-14
-SAME = 1e-8
 # of the largest coordinate: what is less after refinement to 30 digits is 0
 ROOT_AT_ZERO = 1e-30
 # a closed configuration that is refined moves less
@@ -369,32 +369,6 @@ def _value(values: Any, count: int) -> float:
 
 def _is_nothing(ball: Any) -> bool:
     return bool(ball.is_finite() and ball.contains(0))
-
-
-def normalized(rows: Any) -> Any:
-    """Rows of length 1; those that vanish left out."""
-    lengths = np.linalg.norm(rows, axis=1)
-    return rows[lengths > NOTHING] / lengths[lengths > NOTHING, None]
-
-
-def null_space(at: EquationValues, rank: int | None = None) -> Any:
-    """Orthonormal columns that span the velocities which the constraints allow, of this rank where it is known."""
-    rows: Any = normalized(np.array(at.rows, dtype=float).reshape(-1, at.n))
-    if not rows.size:
-        return np.eye(at.n)
-    values, directions = np.linalg.svd(rows)[1:]
-    held = int((values > SAME * values.max()).sum()) if rank is None else rank
-    free = directions[held:].T
-    # a coordinate that cannot move stands still: float32 has no squares of what rounding leaves of its rate
-    return np.where(np.abs(free) > NOTHING, free, 0.0)
-
-
-def rank_of(rows: Any, threshold: float, absolute: bool = False) -> int:
-    """How many singular values are above the threshold, relative to the largest unless it is `absolute`."""
-    if not rows.size:
-        return 0
-    values = np.linalg.svd(rows, compute_uv=False)
-    return int((values > threshold * (1.0 if absolute else values.max())).sum())
 
 
 def rounded(values: Sequence[float], scalar: str) -> tuple[float, ...]:
