@@ -47,7 +47,7 @@ BOUND_DIGITS = 2
 TOGETHER_AWAY = 3
 # States at which that is looked at, fewer for long kernels.
 FAR_STATES = 8
-# Half of them are the worst of so many at these powers of ten, half of which are where float32 loses most far away.
+# Half of them are the worst of so many at these powers of ten, half of which are where most is lost far away.
 CHOSEN_AMONG, CHOSEN_AT = 16, (4, 9)
 # Numbers that are worked out for the powers of one kernel.
 MOST = 30_000_000
@@ -171,7 +171,7 @@ class _Bounds:
         if starts <= states:
             return {}
         steps = [(k, sign * power) for k in read for sign in SIDES for power in CHOSEN_AT]
-        far = self._far.states.led(steps, starts, self._off_in_float32(read, (starts + 1) // 2))
+        far = self._far.states.led(steps, starts, self._lossy_furthest(read, (starts + 1) // 2))
         by_scalar = self._units(far)
         # of each type in turn: in float32 next to all of them may be refused
         order = np.array([np.argsort(-units, kind="stable") for units in by_scalar.values()]).T.ravel()
@@ -180,26 +180,33 @@ class _Bounds:
             worst.setdefault((k, 1 if power > 0 else -1), {})[start] = None
         return {side: np.array([*of_side][: (states + 1) // 2]) for side, of_side in worst.items()}
 
-    def _off_in_float32(self, read: Sequence[int], states: int) -> dict[tuple[int, int], Lanes]:
-        """On each side of a parameter so many starts: float32 loses most there, with that one furthest away.
+    def _lossy_furthest(self, read: Sequence[int], states: int) -> dict[tuple[int, int], Lanes]:
+        """On each side of a parameter so many starts: most is lost there with that one furthest away, by either type.
 
-        A pivot that it leaves no digit of is met at one state in a hundred, and no estimate of the first order sees it.
-        States at which as much is lost where parameters are say nothing of these.
+        A pivot that float32 leaves no digit of is met at one state in a hundred, and no estimate of the first order
+        sees it; where float32 has no digit anywhere, it says nothing of float64.  States at which as much is lost where
+        parameters are say nothing of these.
         """
         starts = self._as_many(FAR_STARTS + NEAR_STARTS + MODE_STARTS, len(read))
         sides = [(k, sign) for k in read for sign in SIDES]
         held = max(1, NUMBERS_HELD // (self._size * starts))
         worst: dict[tuple[int, int], Lanes] = {}
-        as_given = self._far.states.shifted([(read[0], 1.0)], starts)
-        noise = noise_in_units(self._kernels["float64"], self._programs["float64"].sincos, as_given)
-        lossy = np.maximum(noise, units_in_float32(self._plain, self._programs, as_given)) > UNITS_LOST / 2
+        lossy = np.maximum(*self._losses(self._far.states.shifted([(read[0], 1.0)], starts))) > UNITS_LOST / 2
         for at in range(0, len(sides), held):
             part = sides[at : at + held]
             given = self._far.states.shifted([(k, 10.0 ** (sign * FURTHEST)) for k, sign in part], starts)
-            off = units_in_float32(self._plain, self._programs, given).reshape(len(part), -1)
-            off[:, lossy] = 0.0
-            worst |= zip(part, np.argsort(-off, axis=1, kind="stable")[:, :states], strict=True)
+            by_type = [units.reshape(len(part), -1) for units in self._losses(given)]
+            for units in by_type:
+                units[:, lossy] = 0.0
+            orders = np.stack([np.argsort(-units, axis=1, kind="stable") for units in by_type], axis=2)
+            in_turn = orders.reshape(len(part), -1).tolist()
+            worst |= {side: np.array([*dict.fromkeys(one)][:states]) for side, one in zip(part, in_turn, strict=True)}
         return worst
+
+    def _losses(self, given: Mapping[str, Lanes]) -> tuple[Lanes, Lanes]:
+        """What plain float32 is off, and the noise of float64."""
+        noise = noise_in_units(self._kernels["float64"], self._programs["float64"].sincos, given)
+        return units_in_float32(self._plain, self._programs, given), noise
 
     def _of(
         self, scalar: Scalar, read: Sequence[int], first: Mapping[tuple[int, int], float], lost: Far
@@ -232,7 +239,9 @@ class _Bounds:
         quantity = self._kernels[scalar].name
         # where the reference finds nothing lost, estimates do not count
         limit = last if last > JUDGED_UP_TO else last + QUARTER
-        powers = sorted((sign * power for which, power in steps if which == index and sign * power > 0), reverse=True)
+        # of both types there are steps, up to where either loses something
+        within = (sign * power for which, power in steps if which == index and 0 < sign * power <= last)
+        powers = sorted(within, reverse=True)
         # from outside: where nothing is lost nothing is further in
         for power in powers:
             worst = steps[index, sign * power]
