@@ -39,7 +39,7 @@ def complete(mechanics: System, generic: Genericity, derived: Quantity) -> Quant
     needless = is_fixed(outputs) and not (generic.locked and is_fixed(derived.outputs))
     derived = replace(derived, outputs=outputs, guards=() if needless else derived.guards)
     tested = with_test_of_excess(mechanics, generic, derived)
-    tested = in_units_of_the_file(mechanics.graph, mechanics.model, tested)
+    tested = in_units_of_the_file(mechanics, generic, tested)
     return _remarked(tested, generic, mechanics.model)
 
 

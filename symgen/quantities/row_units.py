@@ -3,7 +3,8 @@
 Systems are derived with rows times powers of 2, which change no digit; what depends on the units of rows is given in
 those of the file in the end: g and B as they are, B^+ and lambda the other way round.  Where rows depend on each other
 the smallest multipliers are meant, in the units of the file, so that these rows have one factor
-(`model/configurations/branches.py`).
+(`model/configurations/branches.py`).  Where one of them is next to nothing beside the others it keeps its own, without
+which it had no digits; then multipliers are made the smallest in the end.
 """
 
 from __future__ import annotations
@@ -13,10 +14,14 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TypeAlias
 
+from symgen.mechanics.genericity import Genericity
+from symgen.mechanics.system import System
 from symgen.methods.quantity import Quantity
 from symgen.model.expressions.expression import Binary, Number
 from symgen.model.model import Model
-from symgen.symbolic.scalar import Graph
+from symgen.quantities.constant_dependence import Numbers, numbers_of_dependent_rows, projector
+from symgen.symbolic.matrix import Matrix, matmul
+from symgen.symbolic.scalar import Graph, Scalar
 
 # Units are powers of this, so that nothing is rounded.
 UNIT_BASE = Fraction(2)
@@ -34,6 +39,13 @@ BACK: dict[str, Exponent] = {
     "multipliers": lambda units, entry, _: units[entry],
     "multipliers_jacobian": lambda units, entry, length: units[entry // length],
 }
+# by quantity that is the smallest where rows depend on each other: the rows of B are its columns, or its rows
+SMALLEST_ALONG_COLUMNS = {
+    "constraint_pseudoinverse": True,
+    "weighted_pseudoinverse": True,
+    "multipliers": False,
+    "multipliers_jacobian": False,
+}
 
 
 def in_ordinary_units(model: Model) -> Model:
@@ -49,12 +61,38 @@ def in_ordinary_units(model: Model) -> Model:
     return replace(model, constraints=rows, row_units=units)
 
 
-def in_units_of_the_file(graph: Graph, model: Model, derived: Quantity) -> Quantity:
+def in_units_of_the_file(mechanics: System, generic: Genericity, derived: Quantity) -> Quantity:
     """A quantity of such a model as it is for the rows of the file."""
+    graph, units = mechanics.graph, mechanics.model.row_units
     exponent = BACK.get(derived.name)
-    if exponent is None or not any(model.row_units):
+    if exponent is None or not any(units):
         return derived
     length = derived.shape[-1]
-    factors = [UNIT_BASE ** exponent(model.row_units, entry, length) for entry in range(len(derived.outputs))]
+    factors = [UNIT_BASE ** exponent(units, entry, length) for entry in range(len(derived.outputs))]
     outputs = tuple(graph.const(factor) * x for factor, x in zip(factors, derived.outputs, strict=True))
+    if derived.name in SMALLEST_ALONG_COLUMNS and (smallest := _smallest(mechanics, generic)):
+        outputs = _projected(graph, smallest, outputs, SMALLEST_ALONG_COLUMNS[derived.name])
     return replace(derived, outputs=outputs)
+
+
+def _smallest(mechanics: System, generic: Genericity) -> tuple[Numbers, ...]:
+    """The projector that leaves of multipliers the smallest; none where factors of dependent rows do not differ."""
+    units = mechanics.model.row_units
+    if generic.rank == generic.r:
+        return ()
+    basis = numbers_of_dependent_rows(mechanics.constraint_jacobian, [UNIT_BASE**unit for unit in units])
+    taking_part = [{unit for unit, x in zip(units, vector, strict=True) if x} for vector in basis]
+    if len(basis) != generic.r - generic.rank or all(len(of_vector) == 1 for of_vector in taking_part):
+        return ()
+    return projector(basis)
+
+
+def _projected(
+    graph: Graph, numbers: tuple[Numbers, ...], outputs: tuple[Scalar, ...], along_columns: bool
+) -> tuple[Scalar, ...]:
+    """These numbers times a matrix with a row for each row of B; with a column for each the other way round."""
+    length = len(numbers) if along_columns else len(outputs) // len(numbers)
+    rows: Matrix = tuple(outputs[start : start + length] for start in range(0, len(outputs), length))
+    weights: Matrix = tuple(tuple(map(graph.const, row)) for row in numbers)
+    made = matmul(graph, rows, weights, length) if along_columns else matmul(graph, weights, rows, length)
+    return tuple(entry for row in made for entry in row)

@@ -47,8 +47,11 @@ BOUND_DIGITS = 2
 TOGETHER_AWAY = 3
 # States at which that is looked at, fewer for long kernels.
 FAR_STATES = 8
-# Half of them are the worst of so many at these powers of ten, half of which are where most is lost far away.
-CHOSEN_AMONG, CHOSEN_AT = 16, (4, 9)
+# Half of them are the worst of so many at these powers of ten, of which two thirds are where either type loses most far
+# away.
+CHOSEN_AMONG, CHOSEN_AT = 24, (4, 9)
+# States at which quarters of a power are looked at: the worst far away are not the worst close by.
+CLOSER_STATES = 256
 # Numbers that are worked out for the powers of one kernel.
 MOST = 30_000_000
 # Units of an estimate that count as lost: other states than these lose twice as much, and more.
@@ -154,7 +157,8 @@ class _Bounds:
         }
         if not closer:
             return dict.fromkeys(first, ())
-        lost = self._lost(self._far.states.led(sorted(closer), states, chosen))
+        more = self._as_many(CLOSER_STATES, len(closer))
+        lost = self._lost(self._far.states.led(sorted(closer), max(states, more), chosen))
         return {scalar: tuple(self._of(scalar, read, first[scalar], far)) for scalar, far in lost.items()}
 
     def _as_many(self, states: int, steps: int) -> int:
@@ -171,7 +175,7 @@ class _Bounds:
         if starts <= states:
             return {}
         steps = [(k, sign * power) for k in read for sign in SIDES for power in CHOSEN_AT]
-        far = self._far.states.led(steps, starts, self._lossy_furthest(read, (starts + 1) // 2))
+        far = self._far.states.led(steps, starts, self._lossy_furthest(read, 2 * starts // 3))
         by_scalar = self._units(far)
         # of each type in turn: in float32 next to all of them may be refused
         order = np.array([np.argsort(-units, kind="stable") for units in by_scalar.values()]).T.ravel()

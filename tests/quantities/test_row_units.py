@@ -27,6 +27,7 @@ inputs:
 outputs: all
 configuration: {{a: 0.5, b: 0.2, c: 0.4, d: 0.1}}
 """
+REACH, HEIGHT = "l*cos(a) + 0.9*cos(b) - 1.2*cos(c)", "l*sin(a) + 0.9*sin(b) - 1.2*sin(c) - 0.05"
 INDEPENDENT = "height: {second}*(l*sin(a) + 0.9*sin(b) - 1.2*sin(c) - 0.05)"
 AT = {"a": 0.51, "b": 0.18, "c": 0.43, "d": 0.12, "a_dot": 0.3, "b_dot": -0.2, "c_dot": 0.7, "d_dot": 0.4}
 
@@ -87,3 +88,20 @@ def test_a_row_in_small_units_that_follows_from_ordinary_ones_leaves_these_as_th
     assert in_ordinary_units(model) is model
     multipliers = _values(model, "multipliers")
     assert multipliers[1] == pytest.approx(multipliers[0] * 1e-6, rel=1e-12)
+
+
+@pytest.mark.parametrize("quantity", ["multipliers", "constraint_pseudoinverse", "weighted_pseudoinverse"])
+def test_dependent_rows_of_which_one_is_next_to_nothing_have_the_smallest_multipliers(quantity: str) -> None:
+    """Such rows keep factors of their own, and the smallest multipliers are meant in the units of the file."""
+    rows = f"height: 1e-6*({HEIGHT})\n    again: 0.5*(1e6*({REACH})) + 1e-6*({HEIGHT})"
+    scaled = load_text(CRANE.format(first="1e6", second_row=rows, third="1"), "crane.yaml")
+    units = in_ordinary_units(scaled).row_units
+    assert units[0] == units[2] != units[1]
+    made, plain = _values(scaled, quantity), _values(_model("1", "1", "1"), quantity)
+    size = max(map(abs, made))
+    for start in range(len(made) // 4):
+        reach, height, again, roll = made[4 * start : 4 * start + 4]
+        # 0.5 times the first row and the second are the third
+        assert 0.5 * reach + height - again == pytest.approx(0.0, abs=1e-12 * size)
+        alone = [1e6 * (reach + 0.5 * again), 1e-6 * (height + again), roll]
+        assert alone == pytest.approx(plain[3 * start : 3 * start + 3], rel=1e-4)

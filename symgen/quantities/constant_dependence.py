@@ -1,0 +1,96 @@
+"""Rows that are sums of others with the same numbers everywhere, such as a row that is written down twice.
+
+The numbers y of y^T B = 0 are found in a prime field, at points where coordinates and parameters are residues, and
+read back as fractions: what holds of residues at random holds of the rows (Schwartz and Zippel).  Rows that depend on
+each other on the constraints alone have no such numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import TypeAlias
+
+from symgen.symbolic.angles.circle import FIELD
+from symgen.symbolic.exact import ExactValues
+from symgen.symbolic.matrix import Matrix
+
+Numbers: TypeAlias = tuple[Fraction, ...]
+
+# Points whose columns together say which numbers these are.
+POINTS = 3
+# Numerators and denominators are below this: a residue at random is next to never such a fraction.
+SHORT = 10**20
+
+
+def numbers_of_dependent_rows(rows: Matrix, factors: Sequence[Fraction]) -> tuple[Numbers, ...]:
+    """A basis of the numbers y with y^T B = 0, of rows that stand here times `factors`.
+
+    Empty where a point says nothing, or where the numbers are no short fractions.
+    """
+    prime = FIELD.prime
+    scales = [FIELD.number(1 / factor) or 0 for factor in factors]
+    equations: list[list[int]] = []
+    for seed in range(POINTS):
+        values = ExactValues(seed)([entry for row in rows for entry in row])
+        if any(not isinstance(value, int) for value in values):
+            return ()
+        columns = len(values) // len(rows)
+        whole = [value for value in values if isinstance(value, int)]
+        by_row = [whole[start : start + columns] for start in range(0, len(whole), columns)]
+        equations += [
+            [scale * value % prime for scale, value in zip(scales, column, strict=True)]
+            for column in zip(*by_row, strict=True)
+        ]
+    found = [[_fraction(x, prime) for x in vector] for vector in _null_space(equations, len(rows), prime)]
+    basis = [tuple(x for x in vector if x is not None) for vector in found]
+    return tuple(basis) if all(len(vector) == len(rows) for vector in basis) else ()
+
+
+def projector(basis: Sequence[Numbers]) -> tuple[Numbers, ...]:
+    """The orthogonal projector onto what is at right angles to these vectors, which do not depend on each other."""
+    size = len(basis[0])
+    made = [[Fraction(int(i == j)) for j in range(size)] for i in range(size)]
+    for vector in basis:
+        # Gram and Schmidt, without roots
+        left = [sum((row[j] * vector[j] for j in range(size)), Fraction(0)) for row in made]
+        square = sum((x * x for x in left), Fraction(0))
+        made = [[made[i][j] - left[i] * left[j] / square for j in range(size)] for i in range(size)]
+    return tuple(map(tuple, made))
+
+
+def _null_space(equations: Sequence[Sequence[int]], size: int, prime: int) -> list[list[int]]:
+    """A basis of what satisfies all of them, one residue 1 and others 0 where nothing is determined."""
+    pivots: dict[int, list[int]] = {}
+    for equation in equations:
+        rest = list(equation)
+        for place, row in pivots.items():
+            share = rest[place]
+            if share:
+                rest = [(x - share * y) % prime for x, y in zip(rest, row, strict=True)]
+        if not any(rest):
+            continue
+        place = next(k for k, x in enumerate(rest) if x)
+        inverse = pow(rest[place], -1, prime)
+        rest = [x * inverse % prime for x in rest]
+        for other, row in pivots.items():
+            share = row[place]
+            pivots[other] = [(x - share * y) % prime for x, y in zip(row, rest, strict=True)]
+        pivots[place] = rest
+    basis = []
+    for free in (k for k in range(size) if k not in pivots):
+        vector = [int(k == free) for k in range(size)]
+        for place, row in pivots.items():
+            vector[place] = -row[free] % prime
+        basis.append(vector)
+    return basis
+
+
+def _fraction(residue: int, prime: int) -> Fraction | None:
+    """The fraction of a residue whose numerator and denominator are short, if there is one (Wang 1981)."""
+    (last, below), (rest, denominator) = (prime, 0), (residue, 1)
+    while rest > SHORT:
+        quotient = last // rest
+        last, rest = rest, last - quotient * rest
+        below, denominator = denominator, below - quotient * denominator
+    return None if abs(denominator) > SHORT or not denominator else Fraction(rest, denominator)
