@@ -18,9 +18,9 @@ from symgen.symbolic.matrix import Matrix
 Numbers: TypeAlias = tuple[Fraction, ...]
 
 # Points whose columns together say which numbers these are.
-POINTS = 3
+POINTS_OF_NUMBERS = 3
 # Numerators and denominators are below this: a residue at random is next to never such a fraction.
-SHORT = 10**20
+LONGEST_NUMBER = 10**20
 
 
 def numbers_of_dependent_rows(rows: Matrix, factors: Sequence[Fraction]) -> tuple[Numbers, ...]:
@@ -31,7 +31,7 @@ def numbers_of_dependent_rows(rows: Matrix, factors: Sequence[Fraction]) -> tupl
     prime = FIELD.prime
     scales = [FIELD.number(1 / factor) or 0 for factor in factors]
     equations: list[list[int]] = []
-    for seed in range(POINTS):
+    for seed in range(POINTS_OF_NUMBERS):
         values = ExactValues(seed)([entry for row in rows for entry in row])
         if any(not isinstance(value, int) for value in values):
             return ()
@@ -89,8 +89,8 @@ def _null_space(equations: Sequence[Sequence[int]], size: int, prime: int) -> li
 def _fraction(residue: int, prime: int) -> Fraction | None:
     """The fraction of a residue whose numerator and denominator are short, if there is one (Wang 1981)."""
     (last, below), (rest, denominator) = (prime, 0), (residue, 1)
-    while rest > SHORT:
+    while rest > LONGEST_NUMBER:
         quotient = last // rest
         last, rest = rest, last - quotient * rest
         below, denominator = denominator, below - quotient * denominator
-    return None if abs(denominator) > SHORT or not denominator else Fraction(rest, denominator)
+    return None if abs(denominator) > LONGEST_NUMBER or not denominator else Fraction(rest, denominator)

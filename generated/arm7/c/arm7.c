@@ -1139,7 +1139,7 @@ arm7_status arm7_forward_dynamics(const double q[7], const double qd[7], const d
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy3 = p->I_yy3;
-    if (ARM7_RARELY(!(48.0 >= I_yy3))) {
+    if (ARM7_RARELY(!(85.0 >= I_yy3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_zz3 = p->I_zz3;
@@ -1159,7 +1159,7 @@ arm7_status arm7_forward_dynamics(const double q[7], const double qd[7], const d
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx4 = p->I_xx4;
-    if (ARM7_RARELY(!(48.0 >= I_xx4))) {
+    if (ARM7_RARELY(!(27.0 >= I_xx4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy4 = p->I_yy4;
@@ -1171,7 +1171,7 @@ arm7_status arm7_forward_dynamics(const double q[7], const double qd[7], const d
         return ARM7_PARAMETER_RANGE;
     }
     const double m_5 = p->m_5;
-    if (ARM7_RARELY(!(170.0 >= m_5))) {
+    if (ARM7_RARELY(!(53.0 >= m_5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x5 = p->c_x5;
@@ -1192,11 +1192,11 @@ arm7_status arm7_forward_dynamics(const double q[7], const double qd[7], const d
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy5 = p->I_yy5;
-    if (ARM7_RARELY(!(27.0 >= I_yy5))) {
+    if (ARM7_RARELY(!(15.0 >= I_yy5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double m_6 = p->m_6;
-    if (ARM7_RARELY(!(18.0 >= m_6))) {
+    if (ARM7_RARELY(!(32.0 >= m_6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x6 = p->c_x6;
@@ -1225,7 +1225,7 @@ arm7_status arm7_forward_dynamics(const double q[7], const double qd[7], const d
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x7 = p->c_x7;
-    if (ARM7_RARELY(!(0.17 >= c_x7))) {
+    if (ARM7_RARELY(!(0.31 >= c_x7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_y7 = p->c_y7;
@@ -1238,7 +1238,7 @@ arm7_status arm7_forward_dynamics(const double q[7], const double qd[7], const d
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx7 = p->I_xx7;
-    if (ARM7_RARELY(!(0.094 >= I_xx7))) {
+    if (ARM7_RARELY(!(1.6 >= I_xx7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy7 = p->I_yy7;

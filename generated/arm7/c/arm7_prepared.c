@@ -738,7 +738,7 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy3 = p->value[17];
-    if (ARM7_RARELY(!(48.0 >= I_yy3))) {
+    if (ARM7_RARELY(!(85.0 >= I_yy3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_zz3 = p->value[18];
@@ -758,7 +758,7 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx4 = p->value[26];
-    if (ARM7_RARELY(!(48.0 >= I_xx4))) {
+    if (ARM7_RARELY(!(27.0 >= I_xx4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy4 = p->value[27];
@@ -770,7 +770,7 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double m_5 = p->value[32];
-    if (ARM7_RARELY(!(170.0 >= m_5))) {
+    if (ARM7_RARELY(!(53.0 >= m_5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x5 = p->value[33];
@@ -790,11 +790,11 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy5 = p->value[37];
-    if (ARM7_RARELY(!(27.0 >= I_yy5))) {
+    if (ARM7_RARELY(!(15.0 >= I_yy5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double m_6 = p->value[42];
-    if (ARM7_RARELY(!(18.0 >= m_6))) {
+    if (ARM7_RARELY(!(32.0 >= m_6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x6 = p->value[43];
@@ -822,7 +822,7 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x7 = p->value[53];
-    if (ARM7_RARELY(!(0.17 >= c_x7))) {
+    if (ARM7_RARELY(!(0.31 >= c_x7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_y7 = p->value[54];
@@ -834,7 +834,7 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx7 = p->value[56];
-    if (ARM7_RARELY(!(0.094 >= I_xx7))) {
+    if (ARM7_RARELY(!(1.6 >= I_xx7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy7 = p->value[57];

@@ -725,7 +725,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy3 = p->value[17];
-    if (ARM7_RARELY_F(!(48.0f >= I_yy3))) {
+    if (ARM7_RARELY_F(!(85.0f >= I_yy3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz3 = p->value[18];
@@ -745,7 +745,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx4 = p->value[26];
-    if (ARM7_RARELY_F(!(85.0f >= I_xx4))) {
+    if (ARM7_RARELY_F(!(27.0f >= I_xx4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy4 = p->value[27];
@@ -757,7 +757,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float m_5 = p->value[32];
-    if (ARM7_RARELY_F(!(170.0f >= m_5))) {
+    if (ARM7_RARELY_F(!(53.0f >= m_5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x5 = p->value[33];
@@ -777,7 +777,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy5 = p->value[37];
-    if (ARM7_RARELY_F(!(27.0f >= I_yy5))) {
+    if (ARM7_RARELY_F(!(15.0f >= I_yy5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz5 = p->value[38];
@@ -785,7 +785,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float m_6 = p->value[42];
-    if (ARM7_RARELY_F(!(18.0f >= m_6))) {
+    if (ARM7_RARELY_F(!(32.0f >= m_6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x6 = p->value[43];
@@ -809,7 +809,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz6 = p->value[48];
-    if (ARM7_RARELY_F(!(720.0f >= I_zz6))) {
+    if (ARM7_RARELY_F(!(2200.0f >= I_zz6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_7 = p->value[52];
@@ -817,7 +817,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x7 = p->value[53];
-    if (ARM7_RARELY_F(!(0.17f >= c_x7))) {
+    if (ARM7_RARELY_F(!(0.31f >= c_x7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_y7 = p->value[54];
@@ -829,7 +829,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx7 = p->value[56];
-    if (ARM7_RARELY_F(!(0.094f >= I_xx7))) {
+    if (ARM7_RARELY_F(!(1.6f >= I_xx7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy7 = p->value[57];
@@ -837,7 +837,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz7 = p->value[58];
-    if (ARM7_RARELY_F(!(370.0f >= I_zz7))) {
+    if (ARM7_RARELY_F(!(1200.0f >= I_zz7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float q_2 = q[1];

@@ -5393,6 +5393,11 @@ delta_status delta_multipliers(const double q[6], const double qd[6], const doub
     if (DELTA_RARELY(!(5.0 >= m_r))) {
         return DELTA_PARAMETER_RANGE;
     }
+    const double g = p->g;
+    const double size_of_g = fabs(g);
+    if (DELTA_RARELY(!(98.0 >= size_of_g))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const double a_1 = q[0];
     const double t1 = fabs(a_1);
     const double a_3 = q[2];
@@ -5735,7 +5740,6 @@ delta_status delta_multipliers(const double q[6], const double qd[6], const doub
     const double t251 = t246 + t250;
     const double t252 = t114 + t251;
     const double t253 = t192 * t252;
-    const double g = p->g;
     const double t339 = g * t188;
     const double t209 = t195 * t208;
     const double t214 = t24 * t209;

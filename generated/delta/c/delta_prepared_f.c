@@ -392,7 +392,7 @@ delta_status delta_inverse_dynamics_prepared_f(const float q[6], const float qd[
         return DELTA_PARAMETER_RANGE;
     }
     const float l_2 = p->value[4];
-    if (DELTA_RARELY_F(!(l_2 >= 0.00043f))) {
+    if (DELTA_RARELY_F(!(l_2 >= 0.076f))) {
         return DELTA_PARAMETER_RANGE;
     }
     if (DELTA_RARELY_F(!(8.5f >= l_2))) {

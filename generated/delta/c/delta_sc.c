@@ -1006,6 +1006,11 @@ delta_status delta_multipliers_sc(const delta_trig *sc, const double q[6], const
     if (DELTA_RARELY(!(5.0 >= m_r))) {
         return DELTA_PARAMETER_RANGE;
     }
+    const double g = p->g;
+    const double size_of_g = fabs(g);
+    if (DELTA_RARELY(!(98.0 >= size_of_g))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const double r = p->r;
     const double t36 = 0.5 * r;
     const double x = q[3];
@@ -1329,7 +1334,6 @@ delta_status delta_multipliers_sc(const delta_trig *sc, const double q[6], const
     const double t251 = t246 + t250;
     const double t252 = t114 + t251;
     const double t253 = t192 * t252;
-    const double g = p->g;
     const double t339 = g * t188;
     const double t209 = t195 * t208;
     const double t214 = t24 * t209;

@@ -1612,7 +1612,7 @@ front_car_status front_car_minimal_mass_matrix(const double q[4], const front_ca
 
 front_car_status front_car_minimal_coriolis_matrix(const double q[4], const double qd[4], const front_car_params *p, double C_bar[4]) {
     const double L = p->L;
-    if (FRONT_CAR_RARELY(!(L >= 0.57))) {
+    if (FRONT_CAR_RARELY(!(L >= 0.11))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
     const double Theta_1 = p->Theta_1;

@@ -1602,7 +1602,7 @@ front_car_status front_car_minimal_mass_matrix_f(const float q[4], const front_c
 
 front_car_status front_car_minimal_coriolis_matrix_f(const float q[4], const float qd[4], const front_car_params_f *p, float C_bar[4]) {
     const float L = p->L;
-    if (FRONT_CAR_RARELY_F(!(L >= 0.32f))) {
+    if (FRONT_CAR_RARELY_F(!(L >= 0.11f))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
     if (FRONT_CAR_RARELY_F(!(120000000.0f >= L))) {

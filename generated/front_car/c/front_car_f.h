@@ -56,7 +56,7 @@
  *   nullspace_projector_dot L <= 4e+08
  *   projected_mass_matrix 0.57 <= L, 50 <= m_1, Theta_1 <= 40000
  *   projected_coriolis_matrix 0.11 <= L <= 40
- *   minimal_coriolis_matrix 0.32 <= L <= 1.2e+08
+ *   minimal_coriolis_matrix 0.11 <= L <= 1.2e+08
  *   admissible_acceleration L <= 710000
  *   actuator_bias m_2 <= 2000
  *   multipliers 0.11 <= L

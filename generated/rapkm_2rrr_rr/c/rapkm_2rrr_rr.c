@@ -3020,7 +3020,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse(const double q[6], con
     if (RAPKM_2RRR_RR_RARELY(!(J_2 >= 1.1e-05))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY(!(0.1 >= J_2))) {
+    if (RAPKM_2RRR_RR_RARELY(!(1.0 >= J_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double J_motor = p->J_motor;
@@ -3950,7 +3950,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector(const double q[6
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double J_2 = p->J_2;
-    if (RAPKM_2RRR_RR_RARELY(!(J_2 >= 1.1e-09))) {
+    if (RAPKM_2RRR_RR_RARELY(!(J_2 >= 1.1e-05))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     if (RAPKM_2RRR_RR_RARELY(!(3.1 >= J_2))) {
@@ -6634,6 +6634,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix(const double q[6], 
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const double J_2 = p->J_2;
+    if (RAPKM_2RRR_RR_RARELY(!(0.1 >= J_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
     if (RAPKM_2RRR_RR_RARELY(!(10.0 >= size_of_m_payload))) {
@@ -7000,7 +7004,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix(const double q[6], 
     const double t314 = l_2 * l_2;
     const double t315 = m_2 * t314;
     const double t316 = 0.25 * t315;
-    const double J_2 = p->J_2;
     const double J_elbow = J_2 + t316;
     const double t317 = m_payload * t314;
     const double J_elbow_1 = J_elbow + t317;
@@ -10924,11 +10927,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration(const double q[6], co
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    const double y_1 = p->y_1;
-    const double size_of_y_1 = fabs(y_1);
-    if (RAPKM_2RRR_RR_RARELY(!(1.0 >= size_of_y_1))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     const double a_1 = q[0];
     const double b_1 = q[3];
     const double t1 = a_1 + b_1;
@@ -11276,6 +11274,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration(const double q[6], co
     const double t301 = sqrt(t226);
     const double t302 = copysign(t301, t217);
     const double t303 = t217 + t302;
+    const double y_1 = p->y_1;
     const double t304 = y_1 + t22;
     const double tip_1_y = t304 + t23;
     const double y_3 = p->y_3;
@@ -19751,6 +19750,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics(const double q[6], const dou
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers(const double q[6], const double qd[6], const double u[3], const rapkm_2rrr_rr_params *p, double lambda_B[4]) {
+    const double m_2 = p->m_2;
+    if (RAPKM_2RRR_RR_RARELY(!(56.0 >= m_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double J_2 = p->J_2;
     if (RAPKM_2RRR_RR_RARELY(!(0.1 >= J_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -20029,7 +20032,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers(const double q[6], const double q
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
     const double t227 = l_2 * l_2;
-    const double m_2 = p->m_2;
     const double t228 = m_2 * t227;
     const double t229 = 0.25 * t228;
     const double J_elbow = J_2 + t229;

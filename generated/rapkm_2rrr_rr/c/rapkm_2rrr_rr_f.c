@@ -3010,7 +3010,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse_f(const float q[6], co
     if (RAPKM_2RRR_RR_RARELY_F(!(J_2 >= 1.1e-05f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY_F(!(0.1f >= J_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(1.0f >= J_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float J_motor = p->J_motor;
@@ -6634,6 +6634,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const float J_2 = p->J_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(0.1f >= J_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float m_payload = p->m_payload;
     const float size_of_m_payload = fabsf(m_payload);
     if (RAPKM_2RRR_RR_RARELY_F(!(10.0f >= size_of_m_payload))) {
@@ -7000,7 +7004,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t314 = l_2 * l_2;
     const float t315 = m_2 * t314;
     const float t316 = 0.25f * t315;
-    const float J_2 = p->J_2;
     const float J_elbow = J_2 + t316;
     const float t317 = m_payload * t314;
     const float J_elbow_1 = J_elbow + t317;
@@ -8836,7 +8839,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix_f(const float q[6], c
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float x_2 = p->x_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 6.3e-06f))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 3.5e-06f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float m_payload = p->m_payload;
@@ -9851,7 +9854,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_applied_force_f(const float q[6], con
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float M_bar[6]) {
     const float x_2 = p->x_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 3.5e-06f))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 6.3e-06f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_1 = q[0];
@@ -10933,11 +10936,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration_f(const float q[6], c
     if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    const float y_1 = p->y_1;
-    const float size_of_y_1 = fabsf(y_1);
-    if (RAPKM_2RRR_RR_RARELY_F(!(1.0f >= size_of_y_1))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     const float a_1 = q[0];
     const float b_1 = q[3];
     const float t1 = a_1 + b_1;
@@ -11285,6 +11283,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration_f(const float q[6], c
     const float t301 = sqrtf(t226);
     const float t302 = copysignf(t301, t217);
     const float t303 = t217 + t302;
+    const float y_1 = p->y_1;
     const float t304 = y_1 + t22;
     const float tip_1_y = t304 + t23;
     const float y_3 = p->y_3;
@@ -19774,7 +19773,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float m_2 = p->m_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(56000.0f >= m_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(56.0f >= m_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float J_1 = p->J_1;

@@ -72,18 +72,18 @@ Beyond these bounds of parameters results would lose digits; they have the statu
   nullspace_projector 0.015 <= l_1, l_2 <= 3
   nullspace_projector_dot 0.015 <= l_1
   weighted_pseudoinverse 0.015 <= l_1, l_2 <= 1.6, 0.0051 <= m_1, m_2 <= 10
-  weighted_pseudoinverse 1.1e-05 <= J_1, 1.1e-05 <= J_2 <= 0.1, 1.1e-05 <= J_motor, |m_payload| <= 1700
-  weighted_nullspace_projector 0.015 <= l_1 <= 3, l_2 <= 3, m_2 <= 10, 1.1e-09 <= J_2 <= 3.1
+  weighted_pseudoinverse 1.1e-05 <= J_1, 1.1e-05 <= J_2 <= 1, 1.1e-05 <= J_motor, |m_payload| <= 1700
+  weighted_nullspace_projector 0.015 <= l_1 <= 3, l_2 <= 3, m_2 <= 10, 1.1e-05 <= J_2 <= 3.1
   weighted_nullspace_projector |m_payload| <= 10
   projected_control_matrix 0.015 <= l_1
   projected_control_pseudoinverse 0.015 <= l_1
   projected_mass_matrix 0.015 <= l_1, |m_payload| <= 560
-  projected_coriolis_matrix 0.015 <= l_1 <= 3, |m_payload| <= 10
+  projected_coriolis_matrix 0.015 <= l_1 <= 3, J_2 <= 0.1, |m_payload| <= 10
   minimal_mass_matrix 0.015 <= l_1, l_2 <= 3, 8.9e-07 <= m_2, |m_payload| <= 10
   minimal_coriolis_matrix 0.015 <= l_1 <= 3, l_2 <= 3, |m_payload| <= 170
   admissible_velocity 0.015 <= l_1, l_2 <= 3
   admissible_acceleration 0.015 <= l_1 <= 3
-  projected_configuration l_1 <= 3, l_2 <= 3, |y_1| <= 1
+  projected_configuration l_1 <= 3, l_2 <= 3
   configuration_from_measured l_1 <= 3, l_2 <= 3
   velocity_from_measured 0.015 <= l_1, l_2 <= 3
   acceleration_from_measured 0.015 <= l_1 <= 3
@@ -92,7 +92,7 @@ Beyond these bounds of parameters results would lose digits; they have the statu
   inverse_dynamics |m_payload| <= 310
   forward_dynamics m_1 <= 5600, J_1 <= 100, J_2 <= 170, J_motor <= 170
   forward_dynamics |m_payload| <= 10
-  multipliers J_2 <= 0.1, |m_payload| <= 17000
+  multipliers m_2 <= 56, J_2 <= 0.1, |m_payload| <= 17000
   energy |m_payload| <= 10
   singularity 0.015 <= l_1 <= 3
 
@@ -2839,7 +2839,7 @@ def weighted_pseudoinverse(q: ArrayLike, p: Parameters = PARAMETERS) -> NDArray[
         status = _first(status, ~np.asarray(10.0 >= m_2), 6)
         status = _first(status, ~np.asarray(J_1 >= 1.1e-05), 6)
         status = _first(status, ~np.asarray(J_2 >= 1.1e-05), 6)
-        status = _first(status, ~np.asarray(0.1 >= J_2), 6)
+        status = _first(status, ~np.asarray(1.0 >= J_2), 6)
         status = _first(status, ~np.asarray(J_motor >= 1.1e-05), 6)
         size_of_m_payload = np.abs(m_payload)
         status = _first(status, ~np.asarray(1700.0 >= size_of_m_payload), 6)
@@ -3705,7 +3705,7 @@ def weighted_nullspace_projector(q: ArrayLike, p: Parameters = PARAMETERS) -> ND
         status = _first(status, ~np.asarray(3.0 >= l_1), 6)
         status = _first(status, ~np.asarray(3.0 >= l_2), 6)
         status = _first(status, ~np.asarray(10.0 >= m_2), 6)
-        status = _first(status, ~np.asarray(J_2 >= 1.1e-09), 6)
+        status = _first(status, ~np.asarray(J_2 >= 1.1e-05), 6)
         status = _first(status, ~np.asarray(3.1 >= J_2), 6)
         size_of_m_payload = np.abs(m_payload)
         status = _first(status, ~np.asarray(10.0 >= size_of_m_payload), 6)
@@ -6139,6 +6139,7 @@ def projected_coriolis_matrix(q: ArrayLike, qd: ArrayLike, p: Parameters = PARAM
         m_payload = np.float64(p.m_payload)
         status = _first(status, ~np.asarray(l_1 >= 0.015), 6)
         status = _first(status, ~np.asarray(3.0 >= l_1), 6)
+        status = _first(status, ~np.asarray(0.1 >= J_2), 6)
         size_of_m_payload = np.abs(m_payload)
         status = _first(status, ~np.asarray(10.0 >= size_of_m_payload), 6)
         t1 = np.abs(a_2)
@@ -10213,8 +10214,6 @@ def projected_configuration(q: ArrayLike, p: Parameters = PARAMETERS) -> NDArray
         y_3 = np.float64(p.y_3)
         status = _first(status, ~np.asarray(3.0 >= l_1), 6)
         status = _first(status, ~np.asarray(3.0 >= l_2), 6)
-        size_of_y_1 = np.abs(y_1)
-        status = _first(status, ~np.asarray(1.0 >= size_of_y_1), 6)
         t1 = a_1 + b_1
         t2 = a_2 + b_2
         t3 = a_3 + b_3
@@ -18521,6 +18520,7 @@ def multipliers(q: ArrayLike, qd: ArrayLike, u: ArrayLike, p: Parameters = PARAM
         J_2 = np.float64(p.J_2)
         J_motor = np.float64(p.J_motor)
         m_payload = np.float64(p.m_payload)
+        status = _first(status, ~np.asarray(56.0 >= m_2), 6)
         status = _first(status, ~np.asarray(0.1 >= J_2), 6)
         size_of_m_payload = np.abs(m_payload)
         status = _first(status, ~np.asarray(17000.0 >= size_of_m_payload), 6)
