@@ -5,12 +5,13 @@ A number that is hardly one of its type any more has lost its digits, however la
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from fractions import Fraction
 from itertools import count
 
-from symgen.ir.kernel import UNIT_ROUNDOFF, Block, Kernel, Literal, Local, Operand, Scalar, Statement, Status
+from symgen.diagnostics import SymgenBug
+from symgen.ir.kernel import UNIT_ROUNDOFF, Block, Check, Kernel, Literal, Local, Operand, Scalar, Statement, Status
 
 # Of rows, and of inputs along what these leave free.
 RANKS = frozenset({Status.CONSTRAINT_RANK, Status.ACTUATION_RANK})
@@ -21,32 +22,59 @@ LEAST_NORMAL: dict[Scalar, Fraction] = {"float64": Fraction(1, 2**1022), "float3
 def with_raised_thresholds(kernel: Kernel, scalar: Scalar, decades: int) -> Kernel:
     """The kernel with a status where what shows the rank of rows or inputs is so many decades further from 0.
 
-    Without any, too, it has a status where that is too small a number to have digits.
+    Without any, too, it has a status where that is too small a number to have digits.  Ranks that are looked at to name
+    a cause once another is lost are looked at always: directions of rows that lose rank are as long as others.
     """
     taken = {load.local for load in kernel.loads}
     for block in kernel.blocks:
         taken.update(target for statement in block.all_statements() for target in statement.targets)
     names = (name for k in count(1) if (name := f"raised_{k}") not in taken)
-    factor, least = Literal(Fraction(10) ** decades), Literal(LEAST_NORMAL[scalar] / UNIT_ROUNDOFF[scalar])
-    return replace(kernel, blocks=tuple(_raised(block, factor, least, names) for block in kernel.blocks))
+    raising = _Raising(Literal(Fraction(10) ** decades), Literal(LEAST_NORMAL[scalar] / UNIT_ROUNDOFF[scalar]), names)
+    return replace(kernel, blocks=tuple(map(raising.block, kernel.blocks)))
 
 
-def _raised(block: Block, factor: Literal, least: Literal, names: Iterator[str]) -> Block:
-    statements, checks = list(block.statements), []
-    limits: dict[Operand, Operand] = {}
-    for check in block.checks:
-        first = None if check.first is None else _raised(check.first, factor, least, names)
-        if check.status in RANKS and check.limit not in limits:
-            if isinstance(check.limit, Literal):
-                limits[check.limit] = Literal(check.limit.value * factor.value)
-            elif factor.value == 1:
-                limits[check.limit] = check.limit
-            else:
-                name = next(names)
-                statements.append(Statement((name,), "mul", (check.limit, factor)))
-                limits[check.limit] = Local(name)
-        limit = limits[check.limit] if check.status in RANKS else check.limit
-        checks.append(replace(check, limit=limit, first=first))
-        if check.status in RANKS:
-            checks.append(replace(check, limit=least, first=first))
-    return Block(tuple(statements), tuple(checks))
+class _Raising:
+    """Of the blocks of one kernel, in their order."""
+
+    def __init__(self, factor: Literal, least: Literal, names: Iterator[str]) -> None:
+        self._factor, self._least, self._names = factor, least, names
+        self._known: dict[str, Statement] = {}
+
+    def block(self, block: Block) -> Block:
+        """With its thresholds raised, and what names a cause in line."""
+        statements = [*self._new(block.statements)]
+        checks: list[Check] = []
+        limits: dict[Operand, Operand] = {}
+        for check in block.checks:
+            if check.status not in RANKS:
+                checks.append(check)
+                continue
+            if check.first is not None:
+                cause = self.block(check.first)
+                statements += cause.statements
+                checks += cause.checks
+            if check.limit not in limits:
+                limits[check.limit] = self._raised(check.limit, statements)
+            checks += [
+                replace(check, limit=limit, first=None, apart=False) for limit in (limits[check.limit], self._least)
+            ]
+        return Block(tuple(statements), tuple(checks))
+
+    def _new(self, statements: Iterable[Statement]) -> Iterator[Statement]:
+        """Those that nothing before has worked out: causes may do so for themselves."""
+        for statement in statements:
+            known = self._known.get(statement.targets[0])
+            if known is not None and known != statement:
+                raise SymgenBug(f"{statement.targets[0]} is worked out in two ways")
+            self._known[statement.targets[0]] = statement
+            if known is None:
+                yield statement
+
+    def _raised(self, limit: Operand, statements: list[Statement]) -> Operand:
+        if isinstance(limit, Literal):
+            return Literal(limit.value * self._factor.value)
+        if self._factor.value == 1:
+            return limit
+        name = next(self._names)
+        statements.append(Statement((name,), "mul", (limit, self._factor)))
+        return Local(name)

@@ -29,7 +29,7 @@ from symgen.verify.sampling.nearby import Nearby, Surroundings, joined
 from symgen.verify.sampling.searched import NUMBERS
 from symgen.verify.sampling.settling import Settling
 from symgen.verify.sampling.states import rounded
-from symgen.verify.single_precision import distances, lost_in_float32
+from symgen.verify.single_precision import distances, lost_in_float32, units_in_float32
 from symgen.verify.tolerance import FACTOR, is_beyond
 
 # States that are led to a drop of rank, of which those with a coordinate near 0 go on, and how far measures of these,
@@ -41,7 +41,7 @@ AROUND_ZERO = 32
 # are beyond what is allowed so many show how far a threshold has to go.
 DOUBTFUL, JUDGED, SHOWING = FACTOR / 2, 24, 4
 # Statements of the longest kernels that are looked at: in pairs these are twenty times as many.
-LONGEST_PAIRED = 4_000
+LONGEST_PAIRED, PAIRED = 4_000, 20
 # Decades by which thresholds are raised at a time and at most, and how many more to keep a distance.
 DECADES_RAISED, MOST_DECADES, MARGIN = 2, 24, 2
 
@@ -60,16 +60,18 @@ class NextToSingular:
         made = {}
         with working("next to singular states"):
             for scalar, kernel in kernels.items():
-                # pairs of numbers have digits enough
-                if kernel.name not in MAIN or works_with_pairs(kernel) or len(kernel.statements) > LONGEST_PAIRED:
+                in_pairs = works_with_pairs(kernel)
+                length = len(kernel.statements) / (PAIRED if in_pairs else 1)
+                # pairs of float64 have digits enough
+                if kernel.name not in MAIN or (in_pairs and scalar == "float64") or length > LONGEST_PAIRED:
                     continue
                 if len(self._states):
-                    made[scalar] = self._decades(kernel, programs[scalar])
+                    made[scalar] = self._decades(kernel, programs, scalar)
         return {scalar: decades for scalar, decades in made.items() if decades is not None}
 
-    def _decades(self, kernel: Kernel, program: Program) -> int | None:
-        scalar, sincos = program.scalar, program.sincos
-        lost = list(self._lost(kernel, program))
+    def _decades(self, kernel: Kernel, programs: Mapping[Scalar, Program], scalar: Scalar) -> int | None:
+        sincos = programs[scalar].sincos
+        lost = list(self._lost(kernel, programs, scalar))
         regular = [sample.state for sample in self._expected.samples(scalar)]
         before = [one.status for one in outcomes(kernel, sincos, scalar, regular)]
         for decades in range(0, MOST_DECADES if lost else 0, DECADES_RAISED):
@@ -81,13 +83,13 @@ class NextToSingular:
                 return more if after == before else None
         return None
 
-    def _lost(self, kernel: Kernel, program: Program) -> Iterator[State]:
+    def _lost(self, kernel: Kernel, programs: Mapping[Scalar, Program], scalar: Scalar) -> Iterator[State]:
         """States of status 0 at which the reference finds more lost than is allowed, the furthest first."""
-        scalar, states = program.scalar, self._states
+        states = self._states
         # of long kernels fewer states are looked at
         count = min(len(states), NUMBERS // (len(kernel.statements) + 1))
         places = np.linspace(0, len(states), count, endpoint=False).astype(int)
-        doubtful = places[self._units(kernel, scalar, states.only(places)) > DOUBTFUL]
+        doubtful = places[self._units(kernel, programs, scalar, states.only(places)) > DOUBTFUL]
         order = doubtful[np.argsort(-self._measures[doubtful], kind="stable")][:JUDGED]
         showing = 0
         for place in order.tolist():
@@ -95,7 +97,7 @@ class NextToSingular:
             if sample is None:
                 continue
             state = rounded(sample, scalar).state
-            (made,) = outcomes(kernel, program.sincos, scalar, [state])
+            (made,) = outcomes(kernel, programs[scalar].sincos, scalar, [state])
             if made.valid and self._is_beyond(kernel.name, scalar, state, made.entries):
                 yield state
                 showing += 1
@@ -108,8 +110,15 @@ class NextToSingular:
         except ReferenceValueError:
             return False
 
-    def _units(self, kernel: Kernel, scalar: Scalar, states: Nearby) -> Lanes:
-        """What a kernel loses, in units of d + eps |y|, measured beside the same operations in more digits."""
+    def _units(self, kernel: Kernel, programs: Mapping[Scalar, Program], scalar: Scalar, states: Nearby) -> Lanes:
+        """What a kernel loses, in units of d + eps |y|, measured beside the same operations in more digits.
+
+        Plain numbers have no digits of d left where float32 needs pairs: there d is that of a few changes.
+        """
+        if works_with_pairs(kernel):
+            units = units_in_float32(kernel, programs, states.parts)
+            # as large as numbers get where it refuses
+            return np.where(units < np.finfo(float).max, units, 0.0)
         precise = paired(kernel, scalar) if scalar == "float64" else kernel
         errors, held = RoundingErrors(kernel), max(1, NUMBERS // (len(precise.statements) + 1))
         units = []

@@ -153,7 +153,42 @@ def test_configurations_around_0_are_met_where_no_direction_is_lost() -> None:
     assert np.abs(np.sin(q[:, 0]) - np.sin(q[:, 1]) + 0.25 / 0.16 * np.sin(q[:, 0] + q[:, 3])).max() < 1e-9
 
 
-def test_kernels_with_twice_the_digits_and_other_quantities_keep_their_thresholds() -> None:
+def test_pairs_of_float32_have_a_status_where_they_have_lost_all_digits() -> None:
+    """Three inputs for one direction: what they do along it is as much as ever where the rows have none left of it."""
+    name = "inverse_dynamics"
+    text = LIFT.replace("lift: {joint: k_0}", "lift: {joint: k_0}\n  u_2: {joint: p_1}\n  u_3: {joint: k_1}")
+    model = load_text(text, "lift.yaml")
+    expected = Expected(model, [name], 16, lambda _: None)
+    for scalar in ("float64", "float32"):
+        expected.values(scalar)
+    draft = draft_of(model, [name], Options(methods={name: "householder"}))
+    taken = draft.taken(name)
+    kernels = draft.kernels_along(
+        replace(taken, choice=replace(taken.choice, wide=("float32",))), ("float64", "float32")
+    )
+    decades = NextToSingular(expected).decades({"float32": kernels["float32"]}, draft.programs)
+    raised = with_raised_thresholds(kernels["float32"], "float32", decades["float32"])
+
+    def statuses(share: float) -> tuple[float, int]:
+        state = replace(flat(share), u=(3.0, 0.0, 0.0))
+        state = in_scalar(state, "float32")
+        known = expectations(expected.reference, state, [name], "float32", "flat")[name]
+        made, limited = (
+            outcomes(one, draft.programs["float32"].sincos, "float32", [state])[0]
+            for one in (kernels["float32"], raised)
+        )
+        assert made.valid
+        return known.in_units(known.distance(made.entries)), limited.status
+
+    units_there, status_there = statuses(1e-11)
+    assert units_there > FACTOR
+    assert status_there == Status.CONSTRAINT_RANK
+    units_beside, status_beside = statuses(1e-3)
+    assert units_beside < FACTOR
+    assert status_beside == 0
+
+
+def test_kernels_with_twice_the_digits_of_float64_and_other_quantities_keep_their_thresholds() -> None:
     draft, expected = lift()
     (kernel,) = draft.kernels("forward_dynamics").values()
     taken = draft.taken("forward_dynamics")
@@ -175,27 +210,38 @@ def test_the_unit_of_error_is_known_next_to_a_drop() -> None:
 
 
 def test_thresholds_of_ranks_alone_are_raised() -> None:
-    """Be they numbers or products, of causes too."""
+    """Be they numbers or products, of causes too, which are looked at whether anything else is lost or not."""
     value, scale, number = Local("value"), Local("scale"), Literal(Fraction(1, 8))
-    cause = Block((), (Check(Status.CONSTRAINT_RANK, value, scale),))
+    again = Statement(("twice",), "add", (value, value))
+    cause = Block((again,), (Check(Status.CONSTRAINT_RANK, Local("twice"), scale),))
     checks = (
-        Check(Status.ACTUATION_RANK, value, number, first=cause),
+        Check(Status.ACTUATION_RANK, value, number, first=cause, apart=True),
         Check(Status.CONSTRAINT_RANK, value, scale),
         Check(Status.CONSTRAINT_RANK, number, scale),
         Check(Status.MASS_RANK, value, scale),
     )
     named = Block((Statement(("raised_1",), "mul", (value, number)),), ())
-    kernel = Kernel("k", (), (Load("value", "q", 0), Load("scale", "q", 1)), (named, Block((), checks)), (value,), (1,))
-    _, made = with_raised_thresholds(kernel, "float32", 3).blocks
-    first, second = (one.all_statements() for one in (made.checks[0].first, replace(made, checks=())) if one)
-    assert [*first] == [Statement(("raised_2",), "mul", (scale, Literal(Fraction(1000))))]
-    assert [*second] == [Statement(("raised_3",), "mul", (scale, Literal(Fraction(1000))))]
-    least = Literal(Fraction(1, 2**102))
-    limits = [check.limit for check in made.checks]
-    assert limits == [Literal(Fraction(125)), least, Local("raised_3"), least, Local("raised_3"), least, scale]
-    assert made.checks[1] == replace(made.checks[0], limit=least)
-    _, made = with_raised_thresholds(kernel, "float32", 0).blocks
-    assert [check.limit for check in made.checks] == [number, least, scale, least, scale, least, scale]
+    blocks = (named, Block((), checks), Block((again,), ()))
+    kernel = Kernel("k", (), (Load("value", "q", 0), Load("scale", "q", 1)), blocks, (value,), (1,))
+    _, made, after = with_raised_thresholds(kernel, "float32", 3).blocks
+    factor, least = Literal(Fraction(1000)), Literal(Fraction(1, 2**102))
+    products = [Statement((name,), "mul", (scale, factor)) for name in ("raised_2", "raised_3")]
+    assert [*made.statements] == [again, *products]
+    assert after.statements == ()
+    limits = [(check.status, check.limit) for check in made.checks]
+    rows, inputs, masses = Status.CONSTRAINT_RANK, Status.ACTUATION_RANK, Status.MASS_RANK
+    raised = [(rows, Local("raised_3")), (rows, least)]
+    assert limits == [
+        *((rows, Local("raised_2")), (rows, least)),
+        *((inputs, Literal(Fraction(125))), (inputs, least)),
+        *raised,
+        *raised,
+        (masses, scale),
+    ]
+    assert all(check.first is None and not check.apart for check in made.checks)
+    _, made, _ = with_raised_thresholds(kernel, "float32", 0).blocks
+    assert [*made.statements] == [again]
+    assert [check.limit for check in made.checks] == [scale, least, number, least, scale, least, scale, least, scale]
 
 
 def test_sweeps_meet_states_on_the_constraints_there() -> None:
