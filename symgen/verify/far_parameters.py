@@ -56,6 +56,8 @@ CLOSER_STATES = 256
 MOST = 30_000_000
 # Units of an estimate that count as lost: other states than these lose twice as much, and more.
 UNITS_LOST = FACTOR / 2
+# As many numbers as a statement of a kernel that works with pairs counts for.
+IN_PAIRS = 4
 # Up to this power the reference judges so many of the worst.
 JUDGED_UP_TO, JUDGED_FAR = 1.0, 2
 
@@ -133,6 +135,7 @@ class _Bounds:
         self._errors = FarErrors(kernels, programs, plain)
         self._plain = plain or kernels["float64"]
         self._size = len(kernels["float64"].statements) + 1
+        self._work = self._size if plain is None else IN_PAIRS * self._size
 
     def of(self, read: Sequence[int]) -> dict[Scalar, tuple[Bound, ...]]:
         """By scalar type, those of the parameters that are `read`, given by their places."""
@@ -163,7 +166,7 @@ class _Bounds:
 
     def _as_many(self, states: int, steps: int) -> int:
         """States on both sides of so many steps, fewer for long kernels."""
-        return max(1, min(states, MOST // (self._size * steps * len(SIDES))))
+        return max(1, min(states, MOST // (self._work * steps * len(SIDES))))
 
     def _chosen(self, read: Sequence[int], states: int) -> dict[tuple[int, int], Lanes]:
         """On each side of a parameter the starts at which most is lost far away, half of the states that are looked at.

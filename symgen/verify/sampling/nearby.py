@@ -10,6 +10,7 @@ from __future__ import annotations
 import random
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from math import hypot, prod
 from typing import Any
 
@@ -206,9 +207,7 @@ class Surroundings:
         """The same out of the ranges of the file, half a turn or a width of these away: kernels answer there, too."""
         if not self._stated.any():
             return self.samples.only(slice(0))
-        led = self._drawn_towards(count, least, random.Random("out of ranges"), None, self._beyond)
-        q = led.parts["q"]
-        return led.only((((q < self._low) | (q > self._high)) & self._stated).any(axis=1))
+        return self._outside(self._drawn_towards(count, least, random.Random("out of ranges"), None, self._beyond))
 
     def around_zero(self, count: int) -> Nearby:
         """So many on V where all coordinates are small; none where it leads elsewhere."""
@@ -243,10 +242,30 @@ class Surroundings:
 
         The others stay as far from a drop of rank as measures say.
         """
-        system = self._system
-        masses = MassesInLanes(system, sum(part.constraints for part in self._parts), self._loops, self._literals)
-        low = share * float(masses.shares(self.samples.parts["q"], self.samples.parts["p"]).max())
-        return self._drawn_towards(count, [*least, low], random.Random("towards no mass"), masses)
+        least = [*least, share * self._largest_share]
+        return self._drawn_towards(count, least, random.Random("towards no mass"), self._masses)
+
+    def no_mass_out_of_ranges(self, count: int, least: Sequence[float], share: float) -> Nearby:
+        """The same out of the ranges of the file."""
+        if not self._stated.any():
+            return self.samples.only(slice(0))
+        least, dice = [*least, share * self._largest_share], random.Random("no mass out of ranges")
+        return self._outside(self._drawn_towards(count, least, dice, self._masses, self._beyond))
+
+    @cached_property
+    def _masses(self) -> MassesInLanes:
+        constraints = sum(part.constraints for part in self._parts)
+        return MassesInLanes(self._system, constraints, self._loops, self._literals)
+
+    @cached_property
+    def _largest_share(self) -> float:
+        """Of all samples."""
+        return float(self._masses.shares(self.samples.parts["q"], self.samples.parts["p"]).max())
+
+    def _outside(self, states: Nearby) -> Nearby:
+        """Those with a coordinate out of the range that the file states."""
+        q = states.parts["q"]
+        return states.only((((q < self._low) | (q > self._high)) & self._stated).any(axis=1))
 
     def _drawn_towards(
         self,

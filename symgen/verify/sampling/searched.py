@@ -81,9 +81,14 @@ class WorstStateSearch:
         with working("estimates beside samples"):
             errors = RoundingErrors(kernel)
             self._add(kernel, errors, self._estimated(kernel, errors))
-            if kernel.name in MAIN and len(self._out_of_ranges):
+            if kernel.name not in MAIN:
+                return
+            outside = [self._out_of_ranges]
+            if kernel.name in DIVIDED_BY_MASSES:
+                outside.append(self._massless_out_of_ranges)
+            for states in filter(len, outside):
                 least = self._settling(kernel.name).measures
-                self._add(kernel, errors, self._units(errors, self._out_of_ranges, least, together=True))
+                self._add(kernel, errors, self._units(errors, states, least, together=True))
 
     def _add(self, kernel: Kernel, errors: RoundingErrors, made: _Estimates) -> None:
         samples = self._brought(kernel, made.states, made.units, SETTLED)
@@ -211,6 +216,12 @@ class WorstStateSearch:
         _, nearest = self._settlings
         count = self._affordable(TOWARDS)
         return self._surroundings.towards_no_mass(count, nearest.measures, NEARER * REGULAR_INERTIA)
+
+    @cached_property
+    def _massless_out_of_ranges(self) -> Nearby:
+        _, nearest = self._settlings
+        count = self._affordable(TOWARDS)
+        return self._surroundings.no_mass_out_of_ranges(count, nearest.measures, NEARER * REGULAR_INERTIA)
 
     def _affordable(self, count: int) -> int:
         return self._surroundings.affordable(count)

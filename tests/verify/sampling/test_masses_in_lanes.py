@@ -74,3 +74,19 @@ def test_states_are_led_to_where_a_direction_loses_its_mass() -> None:
     flat = states.parts["q"][shares < 1e-8]
     assert np.abs(np.cos(flat[:, 4])).max() < 1e-3
     assert around.measures(states, together=True).min() > 1e-3
+
+
+def test_where_a_direction_loses_its_mass_out_of_the_ranges_is_looked_at() -> None:
+    """Lying flat, whatever the file says of how it leans: kernels answer there."""
+    text = DISC.rstrip() + "\nranges: {lean: [0.2, 0.8]}\n"
+    reference = Reference(load_text(text, "disc.yaml"))
+    around, masses = Surroundings(reference, sample_states(reference, ["forward_dynamics"], 16)), in_lanes(reference)
+    usual = masses.shares(around.samples.parts["q"], around.samples.parts["p"]).max()
+    states = around.no_mass_out_of_ranges(128, [1e-12, 1e-12], 1e-12)
+    lean = states.parts["q"][:, 4]
+    assert ((lean < 0.2) | (lean > 0.8)).all()
+    shares = masses.shares(states.parts["q"], states.parts["p"]) / usual
+    assert 1e-12 <= shares.min() < 1e-4
+    without = Reference(load_text(DISC, "disc.yaml"))
+    around = Surroundings(without, sample_states(without, ["forward_dynamics"], 16))
+    assert not len(around.no_mass_out_of_ranges(128, [1e-12, 1e-12], 1e-12))
