@@ -31,6 +31,7 @@ from symgen.model.model import Model
 from symgen.runtime.activity import working
 
 if TYPE_CHECKING:
+    from symgen.generation.coordinate_bounds import CoordinateBounds
     from symgen.generation.parameter_bounds import ParameterBounds
     from symgen.generation.rank_thresholds import RankThresholds
     from symgen.generation.trial import Trial
@@ -57,13 +58,14 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
     outputs = requested_outputs(model, options)
     draft: Draft | None = None
     trial: Trial | None = None
-    limits: tuple[RankThresholds, ParameterBounds] | None = None
+    limits: tuple[RankThresholds, CoordinateBounds, ParameterBounds] | None = None
     while True:
         with _reporting(model, options.verify) if "report" in options.parts else nullcontext() as reporting:
             if draft is None:
                 progress("deriving")
                 draft = _derive(model, outputs, options)
                 if options.verify and verified(options):
+                    from symgen.generation.coordinate_bounds import CoordinateBounds
                     from symgen.generation.parameter_bounds import ParameterBounds
                     from symgen.generation.rank_thresholds import RankThresholds
                     from symgen.generation.trial import Trial
@@ -73,7 +75,8 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
                     draft, tried = trial.settled(draft)
                     if not draft.program.kernels:
                         return _result(draft, options, {}, replace(tried, left_out=draft.left_out))
-                    limits = RankThresholds(trial.expected), ParameterBounds(trial.expected)
+                    expected = trial.expected
+                    limits = RankThresholds(expected), CoordinateBounds(expected), ParameterBounds(expected)
             for limit in limits or ():
                 with _literals_in_range(path):
                     check_literals(draft.programs)

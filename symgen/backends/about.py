@@ -8,6 +8,7 @@ from symgen.backends.comments import docstring_lines, indent_of, one_line
 from symgen.backends.locals import Names
 from symgen.backends.operations import count_operations
 from symgen.ir.bounded import Bound, bounds_of
+from symgen.ir.bounded_coordinates import CoordinateBound, coordinate_bounds_of
 from symgen.ir.kernel import Kernel, Program, Status
 from symgen.model.model import Allocation, Model, Parameter
 
@@ -26,14 +27,16 @@ STATUS_MEANING: dict[Status, str] = {
     Status.BRANCH: "the start is so far away that the result may belong to another assembly mode",
     Status.TASK_RANK: "the task does not determine the rest at this configuration",
     Status.LIMITS: "no inputs within their limits produce this motion",
+    Status.COORDINATE_RANGE: "a coordinate is so far out of its range in the model file that digits would be lost",
     Status.FRICTION_LOCK: "friction returns half of the reactions it grows with, or more than its steps hold",
 }
-# Those of models that name what is measured, of models that have a task, of limits that are kept or refused, and of
-# friction that grows with reactions.
+# Those of models that name what is measured, of models that have a task, of limits that are kept or refused, of
+# friction that grows with reactions, and of coordinates whose range is stated.
 _OF_MEASURED = frozenset({Status.MEASURED_RANK, Status.NOT_CLOSED, Status.BRANCH})
 _OF_TASK = frozenset({Status.TASK_RANK, Status.NOT_CLOSED, Status.BRANCH})
 _OF_LIMITS = frozenset({Status.LIMITS})
 _OF_FRICTION = frozenset({Status.FRICTION_LOCK})
+_OF_RANGES = frozenset({Status.COORDINATE_RANGE})
 _OPEN_TASK = "the task loses rank at this configuration: a direction in which it cannot be moved"
 
 
@@ -45,10 +48,11 @@ def status_meaning(status: Status, model: Model) -> str:
 
 def statuses_of(model: Model) -> tuple[Status, ...]:
     """The statuses that kernels of a model may have."""
-    special = _OF_MEASURED | _OF_TASK | _OF_LIMITS | _OF_FRICTION
+    special = _OF_MEASURED | _OF_TASK | _OF_LIMITS | _OF_FRICTION | _OF_RANGES
     met = (_OF_MEASURED if model.measured else frozenset()) | (_OF_TASK if model.task else frozenset())
     met |= _OF_LIMITS if model.keeps_limits else frozenset()
     met |= _OF_FRICTION if model.rough else frozenset()
+    met |= _OF_RANGES if any(c.has_range for c in model.coordinates) else frozenset()
     return tuple(status for status in Status if status not in special or status in met)
 
 
@@ -107,14 +111,27 @@ def count_lines(program: Program) -> Iterator[str]:
     yield "(changes of sign are not counted)"
 
 
-def bound_lines(program: Program) -> Iterator[str]:
-    """The bounds of parameters beyond which kernels refuse."""
+def bound_lines(model: Model, program: Program) -> Iterator[str]:
+    """The bounds of parameters, and of coordinates, beyond which kernels refuse."""
     by_kernel = {kernel.name: [_bound(*one) for one in bounds_of(kernel)] for kernel in program.kernels}
     if any(by_kernel.values()):
         yield "Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:"
         for name, bounds in by_kernel.items():
             lines = [bounds[start : start + BOUNDS_A_LINE] for start in range(0, len(bounds), BOUNDS_A_LINE)]
             yield from (f"  {name}  {', '.join(line)}" for line in lines)
+    coordinates = [c.name for c in model.coordinates]
+    by_kernel = {
+        kernel.name: [_coordinate_bound(one) for one in coordinate_bounds_of(kernel, coordinates)]
+        for kernel in program.kernels
+    }
+    if any(by_kernel.values()):
+        yield "Out of their ranges coordinates have bounds, too, with the status COORDINATE_RANGE beyond them:"
+        yield from (f"  {name}  {', '.join(bounds)}" for name, bounds in by_kernel.items() if bounds)
+
+
+def _coordinate_bound(bound: CoordinateBound) -> str:
+    low, high = (None if end is None else f"{float(end):g}" for end in (bound.low, bound.high))
+    return " <= ".join(part for part in (low, bound.coordinate, high) if part is not None)
 
 
 def _bound(bound: Bound, signed: bool) -> str:
@@ -128,7 +145,7 @@ def module_lines(model: Model, program: Program) -> tuple[str, ...]:
     lines = list(docstring_lines(f"{model.name}: {model.description or 'constrained mechanical system'}"))
     if model.source:
         lines += ["", *docstring_lines(f"Source: {model.source}")]
-    for group in (symbol_lines(model), count_lines(program), bound_lines(program)):
+    for group in (symbol_lines(model), count_lines(program), bound_lines(model, program)):
         wrapped: list[str] = []
         for line in group:
             indent = indent_of(line)

@@ -13,6 +13,7 @@ from symgen.backends.operations import count_operations
 from symgen.backends.quantities import BATCHED
 from symgen.generation.draft import Draft
 from symgen.ir.bounded import Bound
+from symgen.ir.bounded_coordinates import CoordinateBound
 from symgen.ir.given_trig import given_trig
 from symgen.ir.kernel import Kernel
 from symgen.ir.prepare import prepare
@@ -21,6 +22,7 @@ from symgen.model.model import Model
 from symgen.quantities.select import Rejection
 
 # The key of decades by which thresholds of rank are raised.
+COORDINATE_BOUNDS = "coordinate_bounds"
 RAISED = "thresholds_raised_by_decades"
 # Of shares of reactions in the file.
 SHOWN_DECIMALS = 4
@@ -41,6 +43,7 @@ def derivation_json(draft: Draft) -> str:
             **({"form": choice.method} if choice.method else {}),
             **({"twice_the_digits": list(choice.wide)} if choice.wide else {}),
             **_bounds(draft, kernel.name),
+            **_coordinate_bounds(draft, kernel.name),
             **_raised(draft, kernel.name),
             "counted_cost": dict(choice.costs),
             "operations": _operations(kernel),
@@ -115,13 +118,19 @@ def _bounds(draft: Draft, quantity: str) -> dict[str, Any]:
     return {"bounds": by_scalar} if any(by_scalar.values()) else {}
 
 
+def _coordinate_bounds(draft: Draft, quantity: str) -> dict[str, Any]:
+    bounds = {scalar: draft.coordinate_bounds.get(scalar, {}).get(quantity, ()) for scalar in draft.kernels(quantity)}
+    by_scalar = {scalar: {bound.coordinate: _ends(bound) for bound in own} for scalar, own in bounds.items()}
+    return {COORDINATE_BOUNDS: by_scalar} if any(by_scalar.values()) else {}
+
+
 def _raised(draft: Draft, quantity: str) -> dict[str, Any]:
     """By how many decades thresholds of rank are above what rounding leaves, by type, where any is."""
     decades = {scalar: every[quantity] for scalar, every in draft.raised.items() if quantity in every}
     return {RAISED: decades} if decades else {}
 
 
-def _ends(bound: Bound) -> list[float | None]:
+def _ends(bound: Bound | CoordinateBound) -> list[float | None]:
     return [None if end is None else float(end) for end in (bound.low, bound.high)]
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from symgen.generation.results import Options, Trig, WrongUseError
 from symgen.ir.bounded import Bound, bounded
+from symgen.ir.bounded_coordinates import CoordinateBound, within
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.ir.library_trig import with_library_trig
 from symgen.ir.raised import with_raised_thresholds
@@ -35,9 +36,9 @@ LARGE_GRAPH = 100_000
 class Draft:
     """The derived quantities of a model and their kernels; `left_out` is what verification rejects by every method.
 
-    `bounds` are those of parameters by type and quantity, and thresholds of rank are `raised` by so many decades: so
-    are `written` programs.  `notice` says why it does not hold what an earlier verification led to, where that was
-    asked for.
+    `bounds` are those of parameters by type and quantity, `coordinate_bounds` those of coordinates, and thresholds of
+    rank are `raised` by so many decades: so are `written` programs.  `notice` says why it does not hold what an earlier
+    verification led to, where that was asked for.
     """
 
     model: Model
@@ -48,12 +49,14 @@ class Draft:
     left_out: tuple[LeftOut, ...] = ()
     notice: str = ""
     bounds: Mapping[Scalar, Mapping[str, tuple[Bound, ...]]] = field(default_factory=dict)
+    coordinate_bounds: Mapping[Scalar, Mapping[str, tuple[CoordinateBound, ...]]] = field(default_factory=dict)
     raised: Mapping[Scalar, Mapping[str, int]] = field(default_factory=dict)
 
     @property
     def written(self) -> dict[Scalar, Program]:
         """The programs as they are written: with the checks of bounds and thresholds that are raised."""
         names = tuple(parameter.name for parameter in self.model.parameters)
+        coordinates = tuple(coordinate.name for coordinate in self.model.coordinates)
         positive = positive_parameters(self.model) | nonnegative_parameters(self.model)
         made = {}
         for scalar, program in self.programs.items():
@@ -62,6 +65,8 @@ class Draft:
                 with_raised_thresholds(kernel, scalar, decades[kernel.name]) if kernel.name in decades else kernel
                 for kernel in program.kernels
             )
+            inside = self.coordinate_bounds.get(scalar, {})
+            raised = (within(kernel, inside.get(kernel.name, ()), coordinates) for kernel in raised)
             kernels = (bounded(kernel, bounds.get(kernel.name, ()), names, positive) for kernel in raised)
             made[scalar] = replace(program, kernels=tuple(kernels))
         return made

@@ -47,7 +47,7 @@ def notices(draft: Draft, options: Options, certificate: Certificate | None) -> 
     idle = [Notice(f"--form {n}={name}: {n} is not generated") for n, name in unmade]
     unverified = () if certificate is None else certificate.notes
     said = (*replaced(draft), *_short(draft), *_left_open(draft))
-    others = (*said, *_near_bounds(draft), *dense_motions(draft, options))
+    others = (*said, *_near_bounds(draft), *_out_of_ranges(draft), *dense_motions(draft, options))
     recorded = draft.notes if options.as_recorded else ()
     of_kernels = (*absent, *others, *_size(draft, options), *idle, *map(Notice, (*unverified, *recorded)))
     return (*_renamed(draft.model), *_friction(draft), *of_kernels)
@@ -134,6 +134,23 @@ def _near_bounds(draft: Draft) -> Iterator[Notice]:
         beyond = ", ".join(f"{name} {side} {value:g}" for side, bounds in sides for name, value in bounds.items())
         if beyond:
             yield Notice(f"{quantity} refuses {beyond}: it would lose digits; a `range` has it verified further")
+
+
+def _out_of_ranges(draft: Draft) -> Iterator[Notice]:
+    """Where kernels refuse coordinates out of the ranges that the file states."""
+    for quantity in (kernel.name for kernel in draft.program.kernels):
+        ends: dict[tuple[str, str], float] = {}
+        for bound in (bound for every in draft.coordinate_bounds.values() for bound in every.get(quantity, ())):
+            if bound.low is not None:
+                side = bound.coordinate, "below"
+                ends[side] = max(float(bound.low), ends.get(side, -inf))
+            if bound.high is not None:
+                side = bound.coordinate, "above"
+                ends[side] = min(float(bound.high), ends.get(side, inf))
+        if ends:
+            beyond = ", ".join(f"{name} {side} {value:g}" for (name, side), value in ends.items())
+            why = "out of the range it would lose digits; a wider one has it verified further"
+            yield Notice(f"{quantity} refuses {beyond}: {why}")
 
 
 def _bytes(kernel: Kernel) -> int:

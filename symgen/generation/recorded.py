@@ -14,9 +14,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symgen import __version__
-from symgen.generation.derivation_file import RAISED
+from symgen.generation.derivation_file import COORDINATE_BOUNDS, RAISED
 from symgen.generation.draft import REJECTED, Draft, draft_of
 from symgen.ir.bounded import Bound
+from symgen.ir.bounded_coordinates import CoordinateBound
 from symgen.ir.kernel import UNIT_ROUNDOFF
 from symgen.quantities.alternatives import Alternatives
 from symgen.quantities.select import Rejection
@@ -46,6 +47,7 @@ class _VerificationRecord:
     taken: Mapping[str, _Taken]
     left_out: Mapping[str, tuple[Scalar, ...]]
     bounds: Mapping[Scalar, Mapping[str, tuple[Bound, ...]]]
+    coordinate_bounds: Mapping[Scalar, Mapping[str, tuple[CoordinateBound, ...]]]
     raised: Mapping[Scalar, Mapping[str, int]]
 
 
@@ -99,6 +101,12 @@ def _record(content: Mapping[str, Any]) -> _VerificationRecord:
             for scalar in UNIT_ROUNDOFF
         },
         {
+            scalar: {
+                name: tuple(_coordinate_bounds(one.get(COORDINATE_BOUNDS, {}).get(scalar, {}))) for name, one in kernels
+            }
+            for scalar in UNIT_ROUNDOFF
+        },
+        {
             scalar: {name: int(one[RAISED][scalar]) for name, one in kernels if scalar in one.get(RAISED, {})}
             for scalar in UNIT_ROUNDOFF
         },
@@ -109,6 +117,12 @@ def _bounds(bounds: Mapping[str, Sequence[float | None]]) -> Iterator[Bound]:
     for parameter, ends in bounds.items():
         low, high = (None if end is None else Fraction(str(end)) for end in ends)
         yield Bound(parameter, low, high)
+
+
+def _coordinate_bounds(bounds: Mapping[str, Sequence[float | None]]) -> Iterator[CoordinateBound]:
+    for coordinate, ends in bounds.items():
+        low, high = (None if end is None else Fraction(str(end)) for end in ends)
+        yield CoordinateBound(coordinate, low, high)
 
 
 def _with_record(draft: Draft, record: _VerificationRecord, asked: Container[str]) -> Draft:
@@ -124,11 +138,15 @@ def _with_record(draft: Draft, record: _VerificationRecord, asked: Container[str
         }
         for scalar, every in record.bounds.items()
     }
+    coordinate_bounds = {
+        scalar: {name: own for name, own in every.items() if name in present and name not in asked}
+        for scalar, every in record.coordinate_bounds.items()
+    }
     raised = {
         scalar: {name: decades for name, decades in every.items() if name in present and name not in asked}
         for scalar, every in record.raised.items()
     }
-    draft = replace(draft, bounds=bounds, raised=raised)
+    draft = replace(draft, bounds=bounds, coordinate_bounds=coordinate_bounds, raised=raised)
     replaced = [name for name in dict.fromkeys(one.quantity for one in record.rejected) if name in present]
     if not replaced:
         return draft

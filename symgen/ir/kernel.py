@@ -37,6 +37,7 @@ class Status(IntEnum):
     TASK_RANK = 10
     LIMITS = 11
     FRICTION_LOCK = 12
+    COORDINATE_RANGE = 13
 
 
 OperationName: TypeAlias = Choice[

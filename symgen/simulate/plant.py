@@ -21,6 +21,7 @@ MEANING = {
     Status.ANGLE_RANGE: "an angle has left the range of the sine and cosine",
     Status.MASS_RANK: "the accelerations are not determined",
     Status.PARAMETER_RANGE: "a parameter is too far from its value in the model file",
+    Status.COORDINATE_RANGE: "a coordinate is too far out of its range in the model file",
     Status.MEASURED_RANK: "what is measured does not determine the rest",
     Status.NOT_CLOSED: "no configuration with what is measured closes the loops",
     Status.BRANCH: "what is measured is too far from where the machine was",

@@ -13,6 +13,7 @@ from symgen.runtime.activity import each, working
 from symgen.verify.reference.reference import Reference, ReferenceValueError
 from symgen.verify.sampling.modes import modes
 from symgen.verify.sampling.nearby import Surroundings
+from symgen.verify.sampling.outside import OutsideStates
 from symgen.verify.sampling.regular import FEWEST_STATES
 from symgen.verify.sampling.states import (
     USUAL_STATES,
@@ -51,6 +52,11 @@ class Expected:
     def surroundings(self) -> Surroundings:
         """What lies near the states."""
         return Surroundings(self.reference, self.drawn, self.modes)
+
+    @cached_property
+    def outside(self) -> OutsideStates:
+        """States out of the ranges of the file."""
+        return OutsideStates(self.reference, self.drawn, self.surroundings)
 
     @property
     def scalars(self) -> tuple[Scalar, ...]:

@@ -13,24 +13,20 @@ from functools import cached_property
 
 import numpy as np
 
-from symgen.ir.kernel import UNIT_ROUNDOFF, Kernel, Program, Scalar
+from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.ir.raised import with_raised_thresholds
-from symgen.ir.wide import paired
-from symgen.ir.wide_functions import works_with_pairs
 from symgen.model.quantities import MAIN
 from symgen.runtime.activity import working
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import outcomes
 from symgen.verify.lane_arithmetic import Lanes
-from symgen.verify.many_states import run_lanes
-from symgen.verify.reference.reference import ReferenceValueError, State
-from symgen.verify.sampling.lanes import RoundingErrors
+from symgen.verify.lost_digits import LostDigits
+from symgen.verify.reference.reference import State
 from symgen.verify.sampling.nearby import Nearby, Surroundings, joined
 from symgen.verify.sampling.searched import NUMBERS
 from symgen.verify.sampling.settling import Settling
 from symgen.verify.sampling.states import rounded
-from symgen.verify.single_precision import distances, lost_in_float32, units_in_float32
-from symgen.verify.tolerance import FACTOR, is_beyond
+from symgen.verify.tolerance import FACTOR
 
 # States that are led to a drop of rank, of which those with a coordinate near 0 go on, and how far measures of these,
 # which are squares, may be below the least of the verification: 1e-12 of the way is left.
@@ -40,8 +36,6 @@ AROUND_ZERO = 32
 # Rounding errors above so many units are judged, the furthest from a drop of rank first, so many at most; of those that
 # are beyond what is allowed so many show how far a threshold has to go.
 DOUBTFUL, JUDGED, SHOWING = FACTOR / 2, 24, 4
-# Statements of the longest kernels that are looked at: in pairs these are twenty times as many.
-LONGEST_PAIRED, PAIRED = 4_000, 20
 # Decades by which thresholds are raised at a time and at most, and how many more to keep a distance.
 DECADES_RAISED, MOST_DECADES, MARGIN = 2, 24, 2
 
@@ -50,7 +44,7 @@ class NextToSingular:
     """Those states of one verification."""
 
     def __init__(self, expected: Expected) -> None:
-        self._expected = expected
+        self._expected, self._digits = expected, LostDigits(expected)
 
     def decades(self, kernels: Mapping[Scalar, Kernel], programs: Mapping[Scalar, Program]) -> dict[Scalar, int]:
         """By how many decades the thresholds of the kernels of a quantity are to be raised, by scalar type.
@@ -60,10 +54,7 @@ class NextToSingular:
         made = {}
         with working("next to singular states"):
             for scalar, kernel in kernels.items():
-                in_pairs = works_with_pairs(kernel)
-                length = len(kernel.statements) / (PAIRED if in_pairs else 1)
-                # pairs of float64 have digits enough
-                if kernel.name not in MAIN or (in_pairs and scalar == "float64") or length > LONGEST_PAIRED:
+                if kernel.name not in MAIN or not self._digits.are_measured(kernel, scalar):
                     continue
                 if len(self._states):
                     made[scalar] = self._decades(kernel, programs, scalar)
@@ -89,7 +80,7 @@ class NextToSingular:
         # of long kernels fewer states are looked at
         count = min(len(states), NUMBERS // (len(kernel.statements) + 1))
         places = np.linspace(0, len(states), count, endpoint=False).astype(int)
-        doubtful = places[self._units(kernel, programs, scalar, states.only(places)) > DOUBTFUL]
+        doubtful = places[self._digits.units(kernel, programs, scalar, states.only(places)) > DOUBTFUL]
         order = doubtful[np.argsort(-self._measures[doubtful], kind="stable")][:JUDGED]
         showing = 0
         for place in order.tolist():
@@ -97,37 +88,11 @@ class NextToSingular:
             if sample is None:
                 continue
             state = rounded(sample, scalar).state
-            (made,) = outcomes(kernel, programs[scalar].sincos, scalar, [state])
-            if made.valid and self._is_beyond(kernel.name, scalar, state, made.entries):
+            if self._digits.is_lost(kernel, programs[scalar], state, "next to singular"):
                 yield state
                 showing += 1
             if showing == SHOWING:
                 return
-
-    def _is_beyond(self, quantity: str, scalar: Scalar, state: State, entries: tuple[float, ...]) -> bool:
-        try:
-            return is_beyond(self._expected.reference, state, quantity, scalar, "next to singular", entries, FACTOR)
-        except ReferenceValueError:
-            return False
-
-    def _units(self, kernel: Kernel, programs: Mapping[Scalar, Program], scalar: Scalar, states: Nearby) -> Lanes:
-        """What a kernel loses, in units of d + eps |y|, measured beside the same operations in more digits.
-
-        Plain numbers have no digits of d left where float32 needs pairs: there d is that of a few changes.
-        """
-        if works_with_pairs(kernel):
-            units = units_in_float32(kernel, programs, states.parts)
-            # as large as numbers get where it refuses
-            return np.where(units < np.finfo(float).max, units, 0.0)
-        precise = paired(kernel, scalar) if scalar == "float64" else kernel
-        errors, held = RoundingErrors(kernel), max(1, NUMBERS // (len(precise.statements) + 1))
-        units = []
-        for start in range(0, len(states), held):
-            part = states.only(slice(start, start + held))
-            unit = errors.with_units(part.parts, self._tangents(part))[1] * float(UNIT_ROUNDOFF[scalar])
-            with np.errstate(all="ignore"):
-                units.append(np.nan_to_num(_off(kernel, precise, scalar, part.parts) / unit, posinf=0.0))
-        return np.concatenate(units)
 
     @property
     def _around(self) -> Surroundings:
@@ -147,16 +112,3 @@ class NextToSingular:
     @cached_property
     def _measures(self) -> Lanes:
         return self._around.measures(self._states, together=True).min(axis=1)
-
-    def _tangents(self, states: Nearby) -> Lanes | None:
-        reference = self._expected.reference
-        return self._around.tangents(states) if reference.ranks.constraints < reference.system.r else None
-
-
-def _off(kernel: Kernel, precise: Kernel, scalar: Scalar, given: Mapping[str, Lanes]) -> Lanes:
-    """How far results are off, beside float64 or beside pairs of numbers."""
-    if scalar == "float32":
-        return lost_in_float32(kernel, given)
-    refused, y = run_lanes(kernel, None, scalar, given)
-    unknown, z = run_lanes(precise, None, scalar, given)
-    return np.where(refused + unknown == 0, distances(y, z), 0.0)

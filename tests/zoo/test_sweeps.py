@@ -194,6 +194,18 @@ def test_a_status_beside_a_singular_set_is_not(folder: Path, monkeypatch: pytest
         assert tally.of(UNEXPLAINED) == unexplained
 
 
+def test_a_coordinate_out_of_its_range_is_a_reason_of_its_own(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Within the range that the file states, or where it states none, a kernel has to answer."""
+    monkeypatch.setattr(sweeps, "targets", lambda *_: [kernel("float64", lambda *_: Answer(13, ()))])
+    state = FloatState((0.4,), (0.1,), (0.2,), (1.0,), (3.0, 2.0))
+    for ranges, unexplained in (("", 1), ("ranges: {x: [0.1, 0.5]}\n", 1), ("ranges: {x: [0.1, 0.3]}\n", 0)):
+        witness = Witness(SLIDE + ranges)
+        witness.opened(folder)
+        tally = compared(witness, folder, "slide", [LedState("lengths", "beside", state, GenericRanks(0, 1), 1e-6)])
+        assert tally.of("coordinate range") == 1
+        assert tally.of(UNEXPLAINED) == unexplained
+
+
 @pytest.mark.parametrize(("units", "outcome"), [(2.0, [ANSWERED, BEYOND]), (0.5, [ANSWERED])])
 def test_the_tolerance_is_that_of_regular_states_wherever_it_is_met(units: float, outcome: list[str]) -> None:
     assert list(sweeps._outcomes(JudgedResult(0, units, 3e4, 1e-12, False), True)) == outcome

@@ -77,7 +77,7 @@ def _about(model: Model, program: Program, names: Names) -> tuple[str, ...]:
     lines = list(c_comment_lines(f"{model.name}: {model.description or 'constrained mechanical system'} ({kind})"))
     if model.source:
         lines += c_comment_lines(f"Source: {model.source}")
-    for group in (symbol_lines(model), renaming_lines(names), count_lines(program), bound_lines(program)):
+    for group in (symbol_lines(model), renaming_lines(names), count_lines(program), bound_lines(model, program)):
         wrapped = [part for line in group for part in _comment_line(line)]
         lines += ["", *wrapped] if wrapped else []
     return tuple(lines)

@@ -35,10 +35,11 @@ STATUSES = {
     4: "angle range",
     5: "mass rank",
     6: "parameter range",
+    13: "coordinate range",
     11: "limits",
     12: "friction lock",
 }
-ANGLE_RANGE, PARAMETER_RANGE = 4, 6
+ANGLE_RANGE, PARAMETER_RANGE, COORDINATE_RANGE = 4, 6, 13
 # angles up to twice this have sines in every kernel: sums of two are beyond it
 ANGLES = {"float64": 5e4, "float32": 50.0}
 BEYOND, UNEXPLAINED, UNKNOWN, ANSWERED = "beyond", "unexplained", "no truth", "answered"
@@ -115,6 +116,8 @@ def compared(witness: Witness, folder: Path, model: str, led: Iterable[LedState]
                 far = one.distance > CERTAIN[target.scalar]
                 if judged is not None and judged.status == PARAMETER_RANGE:
                     far = one.kind != SCALED
+                elif judged is not None and judged.status == COORDINATE_RANGE:
+                    far = True
                 elif judged is not None and judged.status == ANGLE_RANGE:
                     far = max(map(abs, one.state.q)) < ANGLES[target.scalar]
                 elif far and judged is not None and judged.certain:

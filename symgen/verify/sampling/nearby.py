@@ -259,7 +259,6 @@ class Surroundings:
 
     @cached_property
     def _largest_share(self) -> float:
-        """Of all samples."""
         return float(self._masses.shares(self.samples.parts["q"], self.samples.parts["p"]).max())
 
     def _outside(self, states: Nearby) -> Nearby:

@@ -29,8 +29,7 @@ from symgen.verify.running.compile import Outcome
 from symgen.verify.sampling.inertias import DIVIDED_BY_MASSES, REGULAR_INERTIA
 from symgen.verify.sampling.lanes import RoundingErrors
 from symgen.verify.sampling.nearby import Nearby, Surroundings, joined, of_samples
-from symgen.verify.sampling.reach import out_of_range
-from symgen.verify.sampling.settling import Settling
+from symgen.verify.sampling.settling import NEARER, Settling
 from symgen.verify.sampling.states import Sample, rounded
 from symgen.verify.single_precision import lost_in_float32
 from symgen.verify.tolerance import FACTOR, Expectation, expectations
@@ -43,10 +42,6 @@ NUMBERS = 4_000_000
 KEPT, DIRECTIONS, STEPS_FURTHER = 32, 8, 3
 # Units; what is estimated counts every rounding with all that it may do, and d for less than it is.
 DOUBTFUL = FACTOR / 2
-# How near to singular states u, accelerations and multipliers are judged, beside samples: a thousandth, of measures
-# that are squares.  The others keep to where samples are: beside stretched knees N_B and admissible velocities lose
-# digits, and hardly anybody wants them there at ten times the operations.
-NEARER = 1e-6
 # How many are judged, and how many are brought onto V at most: not all that lie near come to a regular state.
 JUDGED, SETTLED = 8, 32
 # How many more are, of those at which float32 is measured to lose most.
@@ -81,14 +76,6 @@ class WorstStateSearch:
         with working("estimates beside samples"):
             errors = RoundingErrors(kernel)
             self._add(kernel, errors, self._estimated(kernel, errors))
-            if kernel.name not in MAIN:
-                return
-            outside = [self._out_of_ranges]
-            if kernel.name in DIVIDED_BY_MASSES:
-                outside.append(self._massless_out_of_ranges)
-            for states in filter(len, outside):
-                least = self._settling(kernel.name).measures
-                self._add(kernel, errors, self._units(errors, states, least, together=True))
 
     def _add(self, kernel: Kernel, errors: RoundingErrors, made: _Estimates) -> None:
         samples = self._brought(kernel, made.states, made.units, SETTLED)
@@ -125,22 +112,14 @@ class WorstStateSearch:
     def largest(self, kernel: Kernel, sincos: Function | None, scalar: Scalar) -> float:
         """The largest error with status 0, in units of d + eps |y*|, at the states that were found for its quantity.
 
-        They are those of every method that was looked at.  Out of the ranges of the file what is allowed is enough, and
-        no margin is asked for.
+        They are those of every method that was looked at.
         """
         states = [rounded(sample, scalar).state for sample in self._states[kernel.name]]
         worst = 0.0
         for place, made in enumerate(outcomes(kernel, sincos, scalar, states)):
             if made.valid and (expected := self._expectation(kernel.name, place, scalar)) is not None:
-                units = expected.in_units(expected.distance(made.entries))
-                if units > FACTOR or self._is_in_ranges([float(x) for x in states[place].q]):
-                    worst = max(worst, units)
+                worst = max(worst, expected.in_units(expected.distance(made.entries)))
         return worst
-
-    def _is_in_ranges(self, q: Sequence[float]) -> bool:
-        """Whether the ranges that the file states hold all coordinates."""
-        coordinates = self._expected.reference.model.coordinates
-        return not any(coordinates[place].has_range for place in out_of_range(coordinates, q))
 
     def _expectation(self, quantity: str, place: int, scalar: Scalar) -> Expectation | None:
         """None where there is no value once the state is rounded."""
@@ -206,22 +185,11 @@ class WorstStateSearch:
         return joined(self._drawn, self._surroundings.towards(self._affordable(TOWARDS), nearest.measures))
 
     @cached_property
-    def _out_of_ranges(self) -> Nearby:
-        _, nearest = self._settlings
-        return self._surroundings.out_of_ranges(self._affordable(TOWARDS), nearest.measures)
-
-    @cached_property
     def _all_but_massless(self) -> Nearby:
         """Others that are led to where a direction loses its mass."""
         _, nearest = self._settlings
         count = self._affordable(TOWARDS)
         return self._surroundings.towards_no_mass(count, nearest.measures, NEARER * REGULAR_INERTIA)
-
-    @cached_property
-    def _massless_out_of_ranges(self) -> Nearby:
-        _, nearest = self._settlings
-        count = self._affordable(TOWARDS)
-        return self._surroundings.no_mass_out_of_ranges(count, nearest.measures, NEARER * REGULAR_INERTIA)
 
     def _affordable(self, count: int) -> int:
         return self._surroundings.affordable(count)

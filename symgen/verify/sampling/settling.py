@@ -20,6 +20,10 @@ from symgen.verify.sampling.regular import REGULAR_SHARE
 from symgen.verify.sampling.states import Sample
 from symgen.verify.sampling.task_ahead import with_task
 
+# How near to singular states u, accelerations and multipliers are judged, beside samples: a thousandth, of measures
+# that are squares.  The others keep to where samples are: beside stretched knees N_B and admissible velocities lose
+# digits, and hardly anybody wants them there at ten times the operations.
+NEARER = 1e-6
 # Samples whose rows show how long rows are.
 TYPICAL = 8
 

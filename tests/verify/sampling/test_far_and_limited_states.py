@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from symgen.generation.draft import draft_of
-from symgen.generation.results import Options
 from symgen.model.load import load_text
 from symgen.verify.expected import Expected
 from symgen.verify.reference.reference import Reference
-from symgen.verify.sampling.searched import WorstStateSearch
 from symgen.verify.sampling.states import sample_states
-from symgen.verify.tolerance import FACTOR
 
 # The steering torque follows from the motion: motions at random hardly ever need 20 to 30 N m.
 STEERED = """\
@@ -55,39 +51,3 @@ def test_no_state_is_turns_away() -> None:
     drawn = sample_states(Reference(load_text(WOUND, "model.yaml")), ["potential_force"], 64, seed=12)
     assert len(drawn) == 64
     assert max(abs(sample.state.q[1]) for sample in drawn) < 30
-
-# A chain of three links closes a loop and stretches where c is 0, out of its range: the crank moves the load no more.
-STRETCHED = """\
-model: stretched
-joints:
-  crank: {type: revolute, axis: z, coordinate: a}
-  load: {type: revolute, axis: z, parent: crank, at: [0.4, 0, 0], coordinate: s}
-  rod: {type: revolute, axis: z, parent: crank, at: [0.4, 0, 0], coordinate: b}
-  rocker: {type: revolute, axis: z, parent: rod, at: [0.6, 0, 0], coordinate: c}
-gravity: [0, -9.81, 0]
-bodies:
-  crank: {mass: 6, com: [0.4, 0, 0], inertia: {zz: 0.18}}
-  load: {mass: 7, com: [0.3, 0, 0], inertia: {zz: 0.13}}
-  rod: {mass: 3, com: [0.24, 0, 0], inertia: {zz: 0.2}}
-  rocker: {mass: 5, com: [0.14, 0, 0], inertia: {zz: 0.3}}
-points: {tip: {frame: rocker, at: [0.29, 0, 0]}, ground: {at: [-0.163, -0.866, 0]}}
-loops: {pin: {type: point, between: [tip, ground]}}
-inputs: {u: {joint: a}}
-configuration: {a: -2.04, s: 0.66, b: 0, c: 2.13}
-ranges: {a: [-3, -1.5], s: [0.1, 1.1], c: [1.2, 3.1]}
-"""
-
-
-def test_singular_sets_out_of_the_ranges_are_looked_at() -> None:
-    """A kernel answers there, too: one that loses digits is found out, and margins are those within the ranges."""
-    name = "inverse_dynamics"
-    model = load_text(STRETCHED, "stretched.yaml")
-    draft = draft_of(model, [name], Options(methods={name: "minor"}, scalars=("float64",)))
-    expected = states(STRETCHED, name)
-    expected.values("float64")
-    search = WorstStateSearch(expected)
-    kernel, sines = draft.kernels(name)["float64"], draft.programs["float64"].sincos
-    search.look(kernel)
-    met = [abs(sample.state.q[3]) for sample in search._states[name]]
-    assert min(met) < 0.1
-    assert search.largest(kernel, sines, "float64") > FACTOR

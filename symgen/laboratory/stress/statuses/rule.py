@@ -202,6 +202,10 @@ def _in_thresholds(
     small = SMALL * model.n * float(UNIT_ROUNDOFF[scalar])
     if status == Status.PARAMETER_RANGE:
         return 0.0  # a bound that derivation.json gives, and nothing else
+    if status == Status.COORDINATE_RANGE:
+        ranges = [map(float, c.range) for c in model.coordinates if c.has_range]
+        places = [x for x, c in zip(state.q, model.coordinates, strict=True) if c.has_range]
+        return 2.0 if all(low <= x <= high for x, (low, high) in zip(places, ranges, strict=True)) else 0.0
     if status == Status.ANGLE_RANGE:
         angles = [abs(x) for x, c in zip(state.q, model.coordinates, strict=True) if c.is_angle]
         return 2.0 if max(angles, default=0.0) < ANGLE_LIMITS[scalar] / 2 else 0.0
