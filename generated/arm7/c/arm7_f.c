@@ -1126,7 +1126,7 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy3 = p->I_yy3;
-    if (ARM7_RARELY_F(!(85.0f >= I_yy3))) {
+    if (ARM7_RARELY_F(!(48.0f >= I_yy3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz3 = p->I_zz3;
@@ -1134,7 +1134,7 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
         return ARM7_PARAMETER_RANGE;
     }
     const float m_4 = p->m_4;
-    if (ARM7_RARELY_F(!(1500.0f >= m_4))) {
+    if (ARM7_RARELY_F(!(480.0f >= m_4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x4 = p->c_x4;
@@ -1146,7 +1146,7 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx4 = p->I_xx4;
-    if (ARM7_RARELY_F(!(27.0f >= I_xx4))) {
+    if (ARM7_RARELY_F(!(15.0f >= I_xx4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy4 = p->I_yy4;
@@ -1158,7 +1158,7 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
         return ARM7_PARAMETER_RANGE;
     }
     const float m_5 = p->m_5;
-    if (ARM7_RARELY_F(!(53.0f >= m_5))) {
+    if (ARM7_RARELY_F(!(30.0f >= m_5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x5 = p->c_x5;
@@ -1166,12 +1166,12 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
         return ARM7_PARAMETER_RANGE;
     }
     const float c_y5 = p->c_y5;
-    if (ARM7_RARELY_F(!(2.0f >= c_y5))) {
+    if (ARM7_RARELY_F(!(0.63f >= c_y5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_z5 = p->c_z5;
     const float size_of_c_z5 = fabsf(c_z5);
-    if (ARM7_RARELY_F(!(3.1f >= size_of_c_z5))) {
+    if (ARM7_RARELY_F(!(1.7f >= size_of_c_z5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx5 = p->I_xx5;
@@ -1183,15 +1183,15 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz5 = p->I_zz5;
-    if (ARM7_RARELY_F(!(2100.0f >= I_zz5))) {
+    if (ARM7_RARELY_F(!(1200.0f >= I_zz5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_6 = p->m_6;
-    if (ARM7_RARELY_F(!(32.0f >= m_6))) {
+    if (ARM7_RARELY_F(!(18.0f >= m_6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x6 = p->c_x6;
-    if (ARM7_RARELY_F(!(1.0f >= c_x6))) {
+    if (ARM7_RARELY_F(!(0.32f >= c_x6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_y6 = p->c_y6;
@@ -1212,7 +1212,7 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz6 = p->I_zz6;
-    if (ARM7_RARELY_F(!(2200.0f >= I_zz6))) {
+    if (ARM7_RARELY_F(!(1200.0f >= I_zz6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_7 = p->m_7;
@@ -1220,7 +1220,7 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x7 = p->c_x7;
-    if (ARM7_RARELY_F(!(0.31f >= c_x7))) {
+    if (ARM7_RARELY_F(!(0.17f >= c_x7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_y7 = p->c_y7;
@@ -1229,19 +1229,19 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
     }
     const float c_z7 = p->c_z7;
     const float size_of_c_z7 = fabsf(c_z7);
-    if (ARM7_RARELY_F(!(1.6f >= size_of_c_z7))) {
+    if (ARM7_RARELY_F(!(0.53f >= size_of_c_z7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx7 = p->I_xx7;
-    if (ARM7_RARELY_F(!(1.6f >= I_xx7))) {
+    if (ARM7_RARELY_F(!(0.094f >= I_xx7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy7 = p->I_yy7;
-    if (ARM7_RARELY_F(!(0.27f >= I_yy7))) {
+    if (ARM7_RARELY_F(!(0.48f >= I_yy7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz7 = p->I_zz7;
-    if (ARM7_RARELY_F(!(1200.0f >= I_zz7))) {
+    if (ARM7_RARELY_F(!(370.0f >= I_zz7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float q_2 = q[1];

@@ -738,7 +738,7 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy3 = p->value[17];
-    if (ARM7_RARELY(!(85.0 >= I_yy3))) {
+    if (ARM7_RARELY(!(48.0 >= I_yy3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_zz3 = p->value[18];
@@ -746,7 +746,7 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double m_4 = p->value[22];
-    if (ARM7_RARELY(!(1500.0 >= m_4))) {
+    if (ARM7_RARELY(!(480.0 >= m_4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x4 = p->value[23];
@@ -758,7 +758,7 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx4 = p->value[26];
-    if (ARM7_RARELY(!(27.0 >= I_xx4))) {
+    if (ARM7_RARELY(!(15.0 >= I_xx4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy4 = p->value[27];
@@ -770,7 +770,7 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double m_5 = p->value[32];
-    if (ARM7_RARELY(!(53.0 >= m_5))) {
+    if (ARM7_RARELY(!(30.0 >= m_5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x5 = p->value[33];
@@ -778,11 +778,11 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double c_y5 = p->value[34];
-    if (ARM7_RARELY(!(2.0 >= c_y5))) {
+    if (ARM7_RARELY(!(0.63 >= c_y5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double size_of_c_z5 = p->value[62];
-    if (ARM7_RARELY(!(3.1 >= size_of_c_z5))) {
+    if (ARM7_RARELY(!(1.7 >= size_of_c_z5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx5 = p->value[36];
@@ -794,11 +794,11 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double m_6 = p->value[42];
-    if (ARM7_RARELY(!(32.0 >= m_6))) {
+    if (ARM7_RARELY(!(18.0 >= m_6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x6 = p->value[43];
-    if (ARM7_RARELY(!(1.0 >= c_x6))) {
+    if (ARM7_RARELY(!(0.32 >= c_x6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_y6 = p->value[44];
@@ -822,7 +822,7 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x7 = p->value[53];
-    if (ARM7_RARELY(!(0.31 >= c_x7))) {
+    if (ARM7_RARELY(!(0.17 >= c_x7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_y7 = p->value[54];
@@ -830,15 +830,15 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double size_of_c_z7 = p->value[64];
-    if (ARM7_RARELY(!(1.6 >= size_of_c_z7))) {
+    if (ARM7_RARELY(!(0.53 >= size_of_c_z7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx7 = p->value[56];
-    if (ARM7_RARELY(!(1.6 >= I_xx7))) {
+    if (ARM7_RARELY(!(0.094 >= I_xx7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy7 = p->value[57];
-    if (ARM7_RARELY(!(0.27 >= I_yy7))) {
+    if (ARM7_RARELY(!(0.48 >= I_yy7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double q_2 = q[1];

@@ -725,7 +725,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy3 = p->value[17];
-    if (ARM7_RARELY_F(!(85.0f >= I_yy3))) {
+    if (ARM7_RARELY_F(!(48.0f >= I_yy3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz3 = p->value[18];
@@ -733,7 +733,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float m_4 = p->value[22];
-    if (ARM7_RARELY_F(!(1500.0f >= m_4))) {
+    if (ARM7_RARELY_F(!(480.0f >= m_4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x4 = p->value[23];
@@ -745,7 +745,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx4 = p->value[26];
-    if (ARM7_RARELY_F(!(27.0f >= I_xx4))) {
+    if (ARM7_RARELY_F(!(15.0f >= I_xx4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy4 = p->value[27];
@@ -757,7 +757,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float m_5 = p->value[32];
-    if (ARM7_RARELY_F(!(53.0f >= m_5))) {
+    if (ARM7_RARELY_F(!(30.0f >= m_5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x5 = p->value[33];
@@ -765,11 +765,11 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float c_y5 = p->value[34];
-    if (ARM7_RARELY_F(!(2.0f >= c_y5))) {
+    if (ARM7_RARELY_F(!(0.63f >= c_y5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float size_of_c_z5 = p->value[62];
-    if (ARM7_RARELY_F(!(3.1f >= size_of_c_z5))) {
+    if (ARM7_RARELY_F(!(1.7f >= size_of_c_z5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx5 = p->value[36];
@@ -781,15 +781,15 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz5 = p->value[38];
-    if (ARM7_RARELY_F(!(2100.0f >= I_zz5))) {
+    if (ARM7_RARELY_F(!(1200.0f >= I_zz5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_6 = p->value[42];
-    if (ARM7_RARELY_F(!(32.0f >= m_6))) {
+    if (ARM7_RARELY_F(!(18.0f >= m_6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x6 = p->value[43];
-    if (ARM7_RARELY_F(!(1.0f >= c_x6))) {
+    if (ARM7_RARELY_F(!(0.32f >= c_x6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_y6 = p->value[44];
@@ -809,7 +809,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz6 = p->value[48];
-    if (ARM7_RARELY_F(!(2200.0f >= I_zz6))) {
+    if (ARM7_RARELY_F(!(1200.0f >= I_zz6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_7 = p->value[52];
@@ -817,7 +817,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float c_x7 = p->value[53];
-    if (ARM7_RARELY_F(!(0.31f >= c_x7))) {
+    if (ARM7_RARELY_F(!(0.17f >= c_x7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float c_y7 = p->value[54];
@@ -825,19 +825,19 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float size_of_c_z7 = p->value[64];
-    if (ARM7_RARELY_F(!(1.6f >= size_of_c_z7))) {
+    if (ARM7_RARELY_F(!(0.53f >= size_of_c_z7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx7 = p->value[56];
-    if (ARM7_RARELY_F(!(1.6f >= I_xx7))) {
+    if (ARM7_RARELY_F(!(0.094f >= I_xx7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy7 = p->value[57];
-    if (ARM7_RARELY_F(!(0.27f >= I_yy7))) {
+    if (ARM7_RARELY_F(!(0.48f >= I_yy7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz7 = p->value[58];
-    if (ARM7_RARELY_F(!(1200.0f >= I_zz7))) {
+    if (ARM7_RARELY_F(!(370.0f >= I_zz7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float q_2 = q[1];

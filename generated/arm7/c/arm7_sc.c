@@ -928,7 +928,7 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy3 = p->I_yy3;
-    if (ARM7_RARELY(!(85.0 >= I_yy3))) {
+    if (ARM7_RARELY(!(48.0 >= I_yy3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_zz3 = p->I_zz3;
@@ -936,7 +936,7 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
         return ARM7_PARAMETER_RANGE;
     }
     const double m_4 = p->m_4;
-    if (ARM7_RARELY(!(1500.0 >= m_4))) {
+    if (ARM7_RARELY(!(480.0 >= m_4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x4 = p->c_x4;
@@ -948,7 +948,7 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx4 = p->I_xx4;
-    if (ARM7_RARELY(!(27.0 >= I_xx4))) {
+    if (ARM7_RARELY(!(15.0 >= I_xx4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy4 = p->I_yy4;
@@ -960,7 +960,7 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
         return ARM7_PARAMETER_RANGE;
     }
     const double m_5 = p->m_5;
-    if (ARM7_RARELY(!(53.0 >= m_5))) {
+    if (ARM7_RARELY(!(30.0 >= m_5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x5 = p->c_x5;
@@ -968,12 +968,12 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
         return ARM7_PARAMETER_RANGE;
     }
     const double c_y5 = p->c_y5;
-    if (ARM7_RARELY(!(2.0 >= c_y5))) {
+    if (ARM7_RARELY(!(0.63 >= c_y5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_z5 = p->c_z5;
     const double size_of_c_z5 = fabs(c_z5);
-    if (ARM7_RARELY(!(3.1 >= size_of_c_z5))) {
+    if (ARM7_RARELY(!(1.7 >= size_of_c_z5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx5 = p->I_xx5;
@@ -985,11 +985,11 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
         return ARM7_PARAMETER_RANGE;
     }
     const double m_6 = p->m_6;
-    if (ARM7_RARELY(!(32.0 >= m_6))) {
+    if (ARM7_RARELY(!(18.0 >= m_6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x6 = p->c_x6;
-    if (ARM7_RARELY(!(1.0 >= c_x6))) {
+    if (ARM7_RARELY(!(0.32 >= c_x6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_y6 = p->c_y6;
@@ -1014,7 +1014,7 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x7 = p->c_x7;
-    if (ARM7_RARELY(!(0.31 >= c_x7))) {
+    if (ARM7_RARELY(!(0.17 >= c_x7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_y7 = p->c_y7;
@@ -1023,15 +1023,15 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
     }
     const double c_z7 = p->c_z7;
     const double size_of_c_z7 = fabs(c_z7);
-    if (ARM7_RARELY(!(1.6 >= size_of_c_z7))) {
+    if (ARM7_RARELY(!(0.53 >= size_of_c_z7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx7 = p->I_xx7;
-    if (ARM7_RARELY(!(1.6 >= I_xx7))) {
+    if (ARM7_RARELY(!(0.094 >= I_xx7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy7 = p->I_yy7;
-    if (ARM7_RARELY(!(0.27 >= I_yy7))) {
+    if (ARM7_RARELY(!(0.48 >= I_yy7))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double c_x2 = p->c_x2;

@@ -1555,7 +1555,7 @@ delta_status delta_velocity_from_measured(const double q[6], const double qd_m[3
 
 delta_status delta_acceleration_from_measured(const double q[6], const double qd_m[3], const double qdd_m[3], const delta_params *p, double qdd_found[6]) {
     const double r = p->r;
-    if (DELTA_RARELY(!(0.7 >= r))) {
+    if (DELTA_RARELY(!(0.39 >= r))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double l_2 = p->l_2;
@@ -4814,7 +4814,7 @@ delta_status delta_forward_dynamics(const double q[6], const double qd[6], const
         return DELTA_PARAMETER_RANGE;
     }
     const double J_a = p->J_a;
-    if (DELTA_RARELY(!(2.0 >= J_a))) {
+    if (DELTA_RARELY(!(3.5 >= J_a))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double m_p = p->m_p;
@@ -4822,7 +4822,7 @@ delta_status delta_forward_dynamics(const double q[6], const double qd[6], const
         return DELTA_PARAMETER_RANGE;
     }
     const double J_m = p->J_m;
-    if (DELTA_RARELY(!(2.8 >= J_m))) {
+    if (DELTA_RARELY(!(0.88 >= J_m))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double a_1 = q[0];

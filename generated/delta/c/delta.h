@@ -35,10 +35,10 @@
  * Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:
  *   configuration_from_measured r <= 0.7, l_2 <= 8.5
  *   velocity_from_measured l_2 <= 8.5
- *   acceleration_from_measured r <= 0.7, l_2 <= 8.5
+ *   acceleration_from_measured r <= 0.39, l_2 <= 8.5
  *   inverse_dynamics 0.00043 <= l_2 <= 8.5
- *   forward_dynamics 0.015 <= R, 0.03 <= m_a, J_a <= 2, m_p <= 30
- *   forward_dynamics J_m <= 2.8
+ *   forward_dynamics 0.015 <= R, 0.03 <= m_a, J_a <= 3.5, m_p <= 30
+ *   forward_dynamics J_m <= 0.88
  *   multipliers m_a <= 20, m_r <= 5, |g| <= 98
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.
@@ -64,7 +64,8 @@ typedef enum {
     DELTA_MEASURED_RANK = 7, /* what is measured does not determine the rest at this configuration */
     DELTA_NOT_CLOSED = 8, /* Newton's method has not closed the loops from this start */
     DELTA_BRANCH = 9, /* the start is so far away that the result may belong to another assembly mode */
-    DELTA_TASK_RANK = 10 /* the task does not determine the rest at this configuration */
+    DELTA_TASK_RANK = 10, /* the task does not determine the rest at this configuration */
+    DELTA_COORDINATE_RANGE = 13 /* a coordinate is so far out of its range in the model file that digits would be lost */
 } delta_status;
 #endif
 

@@ -903,9 +903,9 @@ size_t delta_forward_dynamics_batch(size_t count, size_t stride, const double *q
             double rest = (t459 - t459) * t465 * t468 + (t476 - t476) * t484 * t492;
             rest += R >= 0.015 ? 0.0 : 1.0;
             rest += m_a >= 0.03 ? 0.0 : 1.0;
-            rest += 2.0 >= J_a ? 0.0 : 1.0;
+            rest += 3.5 >= J_a ? 0.0 : 1.0;
             rest += 30.0 >= m_p ? 0.0 : 1.0;
-            rest += 2.8 >= J_m ? 0.0 : 1.0;
+            rest += 0.88 >= J_m ? 0.0 : 1.0;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += 100000.0 >= t2 ? 0.0 : 1.0;
             rest += 100000.0 >= t3 ? 0.0 : 1.0;

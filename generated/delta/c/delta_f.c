@@ -166,7 +166,7 @@ delta_status delta_configuration_from_measured_f(const float q_m[3], const float
         return DELTA_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;
-    if (DELTA_RARELY_F(!(l_2 >= 1.4e-06f))) {
+    if (DELTA_RARELY_F(!(l_2 >= 2.4e-06f))) {
         return DELTA_PARAMETER_RANGE;
     }
     if (DELTA_RARELY_F(!(8.5f >= l_2))) {
@@ -2038,11 +2038,11 @@ delta_status delta_acceleration_from_measured_f(const float q[6], const float qd
 
 delta_status delta_configuration_from_task_f(const float x_t[3], const float q[6], const delta_params_f *p, float q_found[6]) {
     const float l_1 = p->l_1;
-    if (DELTA_RARELY_F(!(l_1 >= 0.0026f))) {
+    if (DELTA_RARELY_F(!(l_1 >= 0.0045f))) {
         return DELTA_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;
-    if (DELTA_RARELY_F(!(8.5f >= l_2))) {
+    if (DELTA_RARELY_F(!(15.0f >= l_2))) {
         return DELTA_PARAMETER_RANGE;
     }
     const float a_1 = q[0];
@@ -2736,7 +2736,7 @@ delta_status delta_configuration_from_task_f(const float x_t[3], const float q[6
 
 delta_status delta_velocity_from_task_f(const float q[6], const float xd_t[3], const delta_params_f *p, float qd_found[6]) {
     const float l_2 = p->l_2;
-    if (DELTA_RARELY_F(!(l_2 >= 1.4e-07f))) {
+    if (DELTA_RARELY_F(!(l_2 >= 2.4e-07f))) {
         return DELTA_PARAMETER_RANGE;
     }
     const float a_1 = q[0];
@@ -3524,7 +3524,7 @@ delta_status delta_velocity_from_task_f(const float q[6], const float xd_t[3], c
 
 delta_status delta_acceleration_from_task_f(const float q[6], const float xd_t[3], const float xdd_t[3], const delta_params_f *p, float qdd_found[6]) {
     const float l_2 = p->l_2;
-    if (DELTA_RARELY_F(!(l_2 >= 1.4e-07f))) {
+    if (DELTA_RARELY_F(!(l_2 >= 2.4e-07f))) {
         return DELTA_PARAMETER_RANGE;
     }
     const float a_1 = q[0];
@@ -4816,11 +4816,11 @@ delta_status delta_inverse_dynamics_f(const float q[6], const float qd[6], const
 
 delta_status delta_forward_dynamics_f(const float q[6], const float qd[6], const float u[3], const delta_params_f *p, float qdd[6]) {
     const float J_a = p->J_a;
-    if (DELTA_RARELY_F(!(2.0f >= J_a))) {
+    if (DELTA_RARELY_F(!(3.5f >= J_a))) {
         return DELTA_PARAMETER_RANGE;
     }
     const float J_m = p->J_m;
-    if (DELTA_RARELY_F(!(2.8f >= J_m))) {
+    if (DELTA_RARELY_F(!(0.88f >= J_m))) {
         return DELTA_PARAMETER_RANGE;
     }
     const float a_1 = q[0];

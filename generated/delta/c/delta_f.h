@@ -33,14 +33,14 @@
  * (changes of sign are not counted)
  *
  * Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:
- *   configuration_from_measured r <= 0.7, 1.4e-06 <= l_2 <= 8.5
+ *   configuration_from_measured r <= 0.7, 2.4e-06 <= l_2 <= 8.5
  *   velocity_from_measured 1.4e-05 <= l_2 <= 8.5
  *   acceleration_from_measured 2.4e-05 <= l_2 <= 8.5
- *   configuration_from_task 0.0026 <= l_1, l_2 <= 8.5
- *   velocity_from_task 1.4e-07 <= l_2
- *   acceleration_from_task 1.4e-07 <= l_2
+ *   configuration_from_task 0.0045 <= l_1, l_2 <= 15
+ *   velocity_from_task 2.4e-07 <= l_2
+ *   acceleration_from_task 2.4e-07 <= l_2
  *   inverse_dynamics l_1 <= 3.5, 0.076 <= l_2 <= 8.5
- *   forward_dynamics J_a <= 2, J_m <= 2.8
+ *   forward_dynamics J_a <= 3.5, J_m <= 0.88
  *   multipliers m_a <= 20, m_r <= 5
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.
@@ -66,7 +66,8 @@ typedef enum {
     DELTA_MEASURED_RANK = 7, /* what is measured does not determine the rest at this configuration */
     DELTA_NOT_CLOSED = 8, /* Newton's method has not closed the loops from this start */
     DELTA_BRANCH = 9, /* the start is so far away that the result may belong to another assembly mode */
-    DELTA_TASK_RANK = 10 /* the task does not determine the rest at this configuration */
+    DELTA_TASK_RANK = 10, /* the task does not determine the rest at this configuration */
+    DELTA_COORDINATE_RANGE = 13 /* a coordinate is so far out of its range in the model file that digits would be lost */
 } delta_status;
 #endif
 

@@ -446,7 +446,7 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
         return DELTA_PARAMETER_RANGE;
     }
     const double J_a = p->J_a;
-    if (DELTA_RARELY(!(2.0 >= J_a))) {
+    if (DELTA_RARELY(!(3.5 >= J_a))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double m_p = p->m_p;
@@ -454,7 +454,7 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
         return DELTA_PARAMETER_RANGE;
     }
     const double J_m = p->J_m;
-    if (DELTA_RARELY(!(2.8 >= J_m))) {
+    if (DELTA_RARELY(!(0.88 >= J_m))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double r = p->r;

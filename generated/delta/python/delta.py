@@ -35,10 +35,10 @@ singularity                      56    107     13      3      3      0
 Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:
   configuration_from_measured r <= 0.7, l_2 <= 8.5
   velocity_from_measured l_2 <= 8.5
-  acceleration_from_measured r <= 0.7, l_2 <= 8.5
+  acceleration_from_measured r <= 0.39, l_2 <= 8.5
   inverse_dynamics 0.00043 <= l_2 <= 8.5
-  forward_dynamics 0.015 <= R, 0.03 <= m_a, J_a <= 2, m_p <= 30
-  forward_dynamics J_m <= 2.8
+  forward_dynamics 0.015 <= R, 0.03 <= m_a, J_a <= 3.5, m_p <= 30
+  forward_dynamics J_m <= 0.88
   multipliers m_a <= 20, m_r <= 5, |g| <= 98
 
 Every function takes arrays with any leading axes (one state each) and the parameters `p`. A single state that is
@@ -84,6 +84,7 @@ class Status(enum.IntEnum):
     NOT_CLOSED = 8  # Newton's method has not closed the loops from this start
     BRANCH = 9  # the start is so far away that the result may belong to another assembly mode
     TASK_RANK = 10  # the task does not determine the rest at this configuration
+    COORDINATE_RANGE = 13  # a coordinate is so far out of its range in the model file that digits would be lost
 
 
 class StateError(ArithmeticError):
@@ -1550,7 +1551,7 @@ def acceleration_from_measured(q: ArrayLike, qd_m: ArrayLike, qdd_m: ArrayLike, 
         r = np.float64(p.r)
         l_1 = np.float64(p.l_1)
         l_2 = np.float64(p.l_2)
-        status = _first(status, ~np.asarray(0.7 >= r), 6)
+        status = _first(status, ~np.asarray(0.39 >= r), 6)
         status = _first(status, ~np.asarray(8.5 >= l_2), 6)
         t1 = np.abs(a_3)
         t2 = np.abs(a_2)
@@ -4636,9 +4637,9 @@ def forward_dynamics(q: ArrayLike, qd: ArrayLike, u: ArrayLike, p: Parameters = 
         g = np.float64(p.g)
         status = _first(status, ~np.asarray(R >= 0.015), 6)
         status = _first(status, ~np.asarray(m_a >= 0.03), 6)
-        status = _first(status, ~np.asarray(2.0 >= J_a), 6)
+        status = _first(status, ~np.asarray(3.5 >= J_a), 6)
         status = _first(status, ~np.asarray(30.0 >= m_p), 6)
-        status = _first(status, ~np.asarray(2.8 >= J_m), 6)
+        status = _first(status, ~np.asarray(0.88 >= J_m), 6)
         t1 = np.abs(a_1)
         t2 = np.abs(a_2)
         t3 = np.abs(a_3)

@@ -1150,7 +1150,7 @@ front_car_status front_car_orthogonal_complement(const double q[4], const front_
 
 front_car_status front_car_projected_mass_matrix(const double q[4], const front_car_params *p, double G_tilde[16]) {
     const double L = p->L;
-    if (FRONT_CAR_RARELY(!(L >= 0.32))) {
+    if (FRONT_CAR_RARELY(!(L >= 0.57))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
     const double m_1 = p->m_1;
@@ -1612,7 +1612,7 @@ front_car_status front_car_minimal_mass_matrix(const double q[4], const front_ca
 
 front_car_status front_car_minimal_coriolis_matrix(const double q[4], const double qd[4], const front_car_params *p, double C_bar[4]) {
     const double L = p->L;
-    if (FRONT_CAR_RARELY(!(L >= 0.11))) {
+    if (FRONT_CAR_RARELY(!(L >= 0.57))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
     const double Theta_1 = p->Theta_1;
@@ -2376,10 +2376,6 @@ front_car_status front_car_forward_dynamics(const double q[4], const double qd[4
 }
 
 front_car_status front_car_multipliers(const double q[4], const double qd[4], const double u[2], const front_car_params *p, double lambda_B[2]) {
-    const double L = p->L;
-    if (FRONT_CAR_RARELY(!(L >= 0.11))) {
-        return FRONT_CAR_PARAMETER_RANGE;
-    }
     const double phi = q[3];
     const double t1 = fabs(phi);
     const double theta = q[2];
@@ -2396,6 +2392,7 @@ front_car_status front_car_multipliers(const double q[4], const double qd[4], co
     front_car_sincos_group(2, angle, sine, cosine);
     const double t3 = sine[0];
     const double t7 = t3 * t3;
+    const double L = p->L;
     const double t4 = cosine[0];
     const double t8 = L * t4;
     const double t9 = t8 * t8;

@@ -53,11 +53,10 @@
  * (changes of sign are not counted)
  *
  * Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:
- *   projected_mass_matrix 0.32 <= L, 50 <= m_1, Theta_1 <= 40000
+ *   projected_mass_matrix 0.57 <= L, 50 <= m_1, Theta_1 <= 40000
  *   projected_coriolis_matrix 0.11 <= L <= 40
- *   minimal_coriolis_matrix 0.11 <= L, Theta_1 <= 710000
+ *   minimal_coriolis_matrix 0.57 <= L, Theta_1 <= 710000
  *   actuator_bias m_2 <= 2000
- *   multipliers 0.11 <= L
  *   singularity 0.11 <= L
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.
@@ -79,7 +78,8 @@ typedef enum {
     FRONT_CAR_ACTUATION_RANK = 3, /* the inputs lose rank at this configuration */
     FRONT_CAR_ANGLE_RANGE = 4, /* an angle is beyond the range of the sine and cosine */
     FRONT_CAR_MASS_RANK = 5, /* the masses do not determine the acceleration although the constraints keep their rank */
-    FRONT_CAR_PARAMETER_RANGE = 6 /* a parameter is so far from its value in the model file that the result would lose digits */
+    FRONT_CAR_PARAMETER_RANGE = 6, /* a parameter is so far from its value in the model file that the result would lose digits */
+    FRONT_CAR_COORDINATE_RANGE = 13 /* a coordinate is so far out of its range in the model file that digits would be lost */
 } front_car_status;
 #endif
 

@@ -600,7 +600,6 @@ size_t front_car_multipliers_batch(size_t count, size_t stride, const double *q,
             const double t115 = t43 * t114;
             const double t116 = t43 * t107;
             double rest = (t115 - t115) * t116;
-            rest += L >= 0.11 ? 0.0 : 1.0;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += 100000.0 >= t2 ? 0.0 : 1.0;
             rest += t10 > t12 ? 0.0 : 1.0;

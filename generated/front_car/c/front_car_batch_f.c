@@ -587,7 +587,6 @@ size_t front_car_multipliers_batch_f(size_t count, size_t stride, const float *q
             const float t115 = t43 * t114;
             const float t116 = t43 * t107;
             float rest = (t115 - t115) * t116;
-            rest += L >= 0.11f ? 0.0f : 1.0f;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += 100.0f >= t2 ? 0.0f : 1.0f;
             rest += t10 > t12 ? 0.0f : 1.0f;

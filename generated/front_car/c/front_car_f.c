@@ -1602,10 +1602,10 @@ front_car_status front_car_minimal_mass_matrix_f(const float q[4], const front_c
 
 front_car_status front_car_minimal_coriolis_matrix_f(const float q[4], const float qd[4], const front_car_params_f *p, float C_bar[4]) {
     const float L = p->L;
-    if (FRONT_CAR_RARELY_F(!(L >= 0.11f))) {
+    if (FRONT_CAR_RARELY_F(!(L >= 0.32f))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
-    if (FRONT_CAR_RARELY_F(!(120000000.0f >= L))) {
+    if (FRONT_CAR_RARELY_F(!(71000000.0f >= L))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
     const float phi = q[3];
@@ -2369,10 +2369,6 @@ front_car_status front_car_forward_dynamics_f(const float q[4], const float qd[4
 }
 
 front_car_status front_car_multipliers_f(const float q[4], const float qd[4], const float u[2], const front_car_params_f *p, float lambda_B[2]) {
-    const float L = p->L;
-    if (FRONT_CAR_RARELY_F(!(L >= 0.11f))) {
-        return FRONT_CAR_PARAMETER_RANGE;
-    }
     const float phi = q[3];
     const float t1 = fabsf(phi);
     const float theta = q[2];
@@ -2389,6 +2385,7 @@ front_car_status front_car_multipliers_f(const float q[4], const float qd[4], co
     front_car_sincos_group_f(2, angle, sine, cosine);
     const float t3 = sine[0];
     const float t7 = t3 * t3;
+    const float L = p->L;
     const float t4 = cosine[0];
     const float t8 = L * t4;
     const float t9 = t8 * t8;

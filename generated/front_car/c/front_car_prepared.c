@@ -406,10 +406,6 @@ front_car_status front_car_forward_dynamics_prepared(const double q[4], const do
 }
 
 front_car_status front_car_multipliers_prepared(const double q[4], const double qd[4], const double u[2], const front_car_prepared *p, double lambda_B[2]) {
-    const double L = p->value[0];
-    if (FRONT_CAR_RARELY(!(L >= 0.11))) {
-        return FRONT_CAR_PARAMETER_RANGE;
-    }
     const double phi = q[3];
     const double t1 = fabs(phi);
     const double theta = q[2];
@@ -426,6 +422,7 @@ front_car_status front_car_multipliers_prepared(const double q[4], const double 
     front_car_sincos_group(2, angle, sine, cosine);
     const double t3 = sine[0];
     const double t7 = t3 * t3;
+    const double L = p->value[0];
     const double t4 = cosine[0];
     const double t8 = L * t4;
     const double t9 = t8 * t8;

@@ -257,12 +257,9 @@ front_car_status front_car_forward_dynamics_sc(const front_car_trig *sc, const d
 
 front_car_status front_car_multipliers_sc(const front_car_trig *sc, const double q[4], const double qd[4], const double u[2], const front_car_params *p, double lambda_B[2]) {
     (void)q;
-    const double L = p->L;
-    if (FRONT_CAR_RARELY(!(L >= 0.11))) {
-        return FRONT_CAR_PARAMETER_RANGE;
-    }
     const double sin_phi = sc->sin_phi;
     const double t7 = sin_phi * sin_phi;
+    const double L = p->L;
     const double cos_phi = sc->cos_phi;
     const double t8 = L * cos_phi;
     const double t9 = t8 * t8;

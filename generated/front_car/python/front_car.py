@@ -53,11 +53,10 @@ singularity                          12     23      5      1      2      0
 (changes of sign are not counted)
 
 Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:
-  projected_mass_matrix 0.32 <= L, 50 <= m_1, Theta_1 <= 40000
+  projected_mass_matrix 0.57 <= L, 50 <= m_1, Theta_1 <= 40000
   projected_coriolis_matrix 0.11 <= L <= 40
-  minimal_coriolis_matrix 0.11 <= L, Theta_1 <= 710000
+  minimal_coriolis_matrix 0.57 <= L, Theta_1 <= 710000
   actuator_bias m_2 <= 2000
-  multipliers 0.11 <= L
   singularity 0.11 <= L
 
 Every function takes arrays with any leading axes (one state each) and the parameters `p`. A single state that is
@@ -99,6 +98,7 @@ class Status(enum.IntEnum):
     ANGLE_RANGE = 4  # an angle is beyond the range of the sine and cosine
     MASS_RANK = 5  # the masses do not determine the acceleration although the constraints keep their rank
     PARAMETER_RANGE = 6  # a parameter is so far from its value in the model file that the result would lose digits
+    COORDINATE_RANGE = 13  # a coordinate is so far out of its range in the model file that digits would be lost
 
 
 class StateError(ArithmeticError):
@@ -1101,7 +1101,7 @@ def projected_mass_matrix(q: ArrayLike, p: Parameters = PARAMETERS) -> NDArray[n
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         Theta_2 = np.float64(p.Theta_2)
-        status = _first(status, ~np.asarray(L >= 0.32), 6)
+        status = _first(status, ~np.asarray(L >= 0.57), 6)
         status = _first(status, ~np.asarray(m_1 >= 50.0), 6)
         status = _first(status, ~np.asarray(40000.0 >= Theta_1), 6)
         t1 = np.abs(theta)
@@ -1525,7 +1525,7 @@ def minimal_coriolis_matrix(q: ArrayLike, qd: ArrayLike, p: Parameters = PARAMET
         m_1 = np.float64(p.m_1)
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
-        status = _first(status, ~np.asarray(L >= 0.11), 6)
+        status = _first(status, ~np.asarray(L >= 0.57), 6)
         status = _first(status, ~np.asarray(710000.0 >= Theta_1), 6)
         t1 = np.abs(phi)
         t2 = np.abs(theta)
@@ -2233,7 +2233,6 @@ def multipliers(q: ArrayLike, qd: ArrayLike, u: ArrayLike, p: Parameters = PARAM
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         Theta_2 = np.float64(p.Theta_2)
-        status = _first(status, ~np.asarray(L >= 0.11), 6)
         t1 = np.abs(phi)
         t2 = np.abs(theta)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)

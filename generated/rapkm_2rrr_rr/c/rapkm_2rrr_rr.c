@@ -3020,7 +3020,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse(const double q[6], con
     if (RAPKM_2RRR_RR_RARELY(!(J_2 >= 1.1e-05))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY(!(1.0 >= J_2))) {
+    if (RAPKM_2RRR_RR_RARELY(!(0.17 >= J_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double J_motor = p->J_motor;
@@ -3953,7 +3953,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector(const double q[6
     if (RAPKM_2RRR_RR_RARELY(!(J_2 >= 1.1e-05))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY(!(3.1 >= J_2))) {
+    if (RAPKM_2RRR_RR_RARELY(!(1.7 >= J_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double m_payload = p->m_payload;
@@ -5594,6 +5594,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_pseudoinverse(const double 
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement(const double q[6], const rapkm_2rrr_rr_params *p, double F_B[12]) {
+    const double l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY(!(1600.0 >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_1 = q[0];
     const double b_1 = q[3];
     const double t1 = a_1 + b_1;
@@ -5650,7 +5654,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement(const double q[6], cons
     double cosine[10];
     rapkm_2rrr_rr_sincos_group(9, angle, sine, cosine);
     const double l_1 = p->l_1;
-    const double l_2 = p->l_2;
     const double t37 = l_1 * l_2;
     const double t25 = sine[3];
     const double t34 = cosine[7];
@@ -5766,7 +5769,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix(const double q[6], cons
     }
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
-    if (RAPKM_2RRR_RR_RARELY(!(560.0 >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY(!(170.0 >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double a_2 = q[1];
@@ -9848,6 +9851,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_applied_force(const double q[6], cons
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix(const double q[6], const rapkm_2rrr_rr_params *p, double M_bar[6]) {
+    const double l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY(!(1600.0 >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_1 = q[0];
     const double b_1 = q[3];
     const double t1 = a_1 + b_1;
@@ -9888,7 +9895,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix(const double q[6], con
     double cosine[6];
     rapkm_2rrr_rr_sincos_group(6, angle, sine, cosine);
     const double l_1 = p->l_1;
-    const double l_2 = p->l_2;
     const double t24 = l_1 * l_2;
     const double t14 = sine[1];
     const double t17 = cosine[2];
@@ -10338,6 +10344,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_acceleration(const double q[6], co
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const double l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_2 = q[1];
     const double b_2 = q[4];
     const double t1 = a_2 + b_2;
@@ -10375,7 +10385,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_acceleration(const double q[6], co
     double sine[6];
     double cosine[6];
     rapkm_2rrr_rr_sincos_group(6, angle, sine, cosine);
-    const double l_2 = p->l_2;
     const double t10 = sine[0];
     const double t22 = l_2 * t10;
     const double t12 = sine[1];
@@ -10927,6 +10936,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration(const double q[6], co
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const double y_1 = p->y_1;
+    const double size_of_y_1 = fabs(y_1);
+    if (RAPKM_2RRR_RR_RARELY(!(1.0 >= size_of_y_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_1 = q[0];
     const double b_1 = q[3];
     const double t1 = a_1 + b_1;
@@ -11274,7 +11288,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration(const double q[6], co
     const double t301 = sqrt(t226);
     const double t302 = copysign(t301, t217);
     const double t303 = t217 + t302;
-    const double y_1 = p->y_1;
     const double t304 = y_1 + t22;
     const double tip_1_y = t304 + t23;
     const double y_3 = p->y_3;
@@ -15654,6 +15667,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_measured(const double q[6],
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const double l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_3 = q[2];
     const double b_3 = q[5];
     const double t1 = a_3 + b_3;
@@ -15691,7 +15708,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_measured(const double q[6],
     double sine[6];
     double cosine[6];
     rapkm_2rrr_rr_sincos_group(6, angle, sine, cosine);
-    const double l_2 = p->l_2;
     const double t12 = sine[1];
     const double t22 = l_2 * t12;
     const double t23 = t22 * t22;
@@ -16424,6 +16440,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_task_jacobian(const double q[6], const rapkm_
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_task(const double x_t[2], const double q[6], const rapkm_2rrr_rr_params *p, double q_found[6]) {
+    const double l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY(!(53.0 >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double l_2 = p->l_2;
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -16466,7 +16486,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_task(const double x_t[2], 
     const double t19 = l_2 * t9;
     const double t10 = cosine[1];
     const double t20 = l_2 * t10;
-    const double l_1 = p->l_1;
     const double t21 = l_1 + t20;
     const double t22 = 2.0 * t21;
     const double t23 = 2.0 * t20;
@@ -18615,7 +18634,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_task(const double q[6], con
 rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics(const double q[6], const double qd[6], const double qdd[6], const rapkm_2rrr_rr_params *p, double u[3]) {
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
-    if (RAPKM_2RRR_RR_RARELY(!(310.0 >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY(!(170.0 >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double a_1 = q[0];
@@ -18863,11 +18882,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_residual(const double q[6], 
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics(const double q[6], const double qd[6], const double u[3], const rapkm_2rrr_rr_params *p, double qdd[6]) {
     const double m_1 = p->m_1;
-    if (RAPKM_2RRR_RR_RARELY(!(5600.0 >= m_1))) {
+    if (RAPKM_2RRR_RR_RARELY(!(1700.0 >= m_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double J_1 = p->J_1;
-    if (RAPKM_2RRR_RR_RARELY(!(100.0 >= J_1))) {
+    if (RAPKM_2RRR_RR_RARELY(!(17.0 >= J_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double J_2 = p->J_2;

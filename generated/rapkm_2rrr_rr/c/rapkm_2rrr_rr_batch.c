@@ -321,7 +321,7 @@ size_t rapkm_2rrr_rr_inverse_dynamics_batch(size_t count, size_t stride, const d
             const double t161 = t41 * t156;
             const double t162 = t138 - t161;
             double rest = (t158 - t158) * t160 * t162;
-            rest += 310.0 >= size_of_m_payload ? 0.0 : 1.0;
+            rest += 170.0 >= size_of_m_payload ? 0.0 : 1.0;
             rest += 100000.0 >= t7 ? 0.0 : 1.0;
             rest += 100000.0 >= t8 ? 0.0 : 1.0;
             rest += 100000.0 >= t9 ? 0.0 : 1.0;
@@ -1214,8 +1214,8 @@ size_t rapkm_2rrr_rr_forward_dynamics_batch(size_t count, size_t stride, const d
             const double t771 = t769 - t770;
             const double t772 = t771 - t754;
             double rest = (t748 - t748) * t751 * t754 + (t760 - t760) * t766 * t772;
-            rest += 5600.0 >= m_1 ? 0.0 : 1.0;
-            rest += 100.0 >= J_1 ? 0.0 : 1.0;
+            rest += 1700.0 >= m_1 ? 0.0 : 1.0;
+            rest += 17.0 >= J_1 ? 0.0 : 1.0;
             rest += 170.0 >= J_2 ? 0.0 : 1.0;
             rest += 170.0 >= J_motor ? 0.0 : 1.0;
             rest += 10.0 >= size_of_m_payload ? 0.0 : 1.0;

@@ -1201,10 +1201,11 @@ size_t rapkm_2rrr_rr_forward_dynamics_batch_f(size_t count, size_t stride, const
             const float t771 = t769 - t770;
             const float t772 = t771 - t754;
             float rest = (t748 - t748) * t751 * t754 + (t760 - t760) * t766 * t772;
-            rest += 5600.0f >= m_1 ? 0.0f : 1.0f;
+            rest += 3.0f >= l_2 ? 0.0f : 1.0f;
+            rest += 1700.0f >= m_1 ? 0.0f : 1.0f;
             rest += 56000.0f >= m_2 ? 0.0f : 1.0f;
-            rest += 100.0f >= J_1 ? 0.0f : 1.0f;
-            rest += 310.0f >= J_2 ? 0.0f : 1.0f;
+            rest += 17.0f >= J_1 ? 0.0f : 1.0f;
+            rest += 170.0f >= J_2 ? 0.0f : 1.0f;
             rest += 170.0f >= J_motor ? 0.0f : 1.0f;
             rest += 10.0f >= size_of_m_payload ? 0.0f : 1.0f;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;

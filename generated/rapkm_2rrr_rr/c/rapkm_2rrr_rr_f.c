@@ -2991,7 +2991,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse_f(const float q[6], co
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(1.6f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float m_1 = p->m_1;
@@ -3010,7 +3010,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse_f(const float q[6], co
     if (RAPKM_2RRR_RR_RARELY_F(!(J_2 >= 1.1e-05f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY_F(!(1.0f >= J_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(0.17f >= J_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float J_motor = p->J_motor;
@@ -3940,7 +3940,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector_f(const float q[
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float J_2 = p->J_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(3.1f >= J_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(1.7f >= J_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float m_payload = p->m_payload;
@@ -4767,7 +4767,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_matrix_f(const float q[6], 
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(30.0f >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(5.3f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_3 = q[2];
@@ -5314,7 +5314,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_pseudoinverse_f(const float
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(16.0f >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(5.3f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_2 = q[1];
@@ -5593,8 +5593,12 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_pseudoinverse_f(const float
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float F_B[12]) {
+    const float l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float x_2 = p->x_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 3.5e-06f))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 2e-05f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_1 = q[0];
@@ -5653,7 +5657,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement_f(const float q[6], con
     float cosine[12];
     rapkm_2rrr_rr_sincos_group_f(9, angle, sine, cosine);
     const float l_1 = p->l_1;
-    const float l_2 = p->l_2;
     const float t37 = l_1 * l_2;
     const float t25 = sine[3];
     const float t34 = cosine[7];
@@ -5769,7 +5772,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix_f(const float q[6], con
     }
     const float m_payload = p->m_payload;
     const float size_of_m_payload = fabsf(m_payload);
-    if (RAPKM_2RRR_RR_RARELY_F(!(560.0f >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(170.0f >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_2 = q[1];
@@ -6632,6 +6635,9 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix_f(const float q[6], con
 rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6], const float qd[6], const rapkm_2rrr_rr_params_f *p, float C_tilde[36]) {
     const float l_1 = p->l_1;
     if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float J_2 = p->J_2;
@@ -8566,7 +8572,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix_f(const float q[6], const
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float x_2 = p->x_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 3.5e-06f))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 2e-05f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float m_payload = p->m_payload;
@@ -8839,7 +8845,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_coriolis_matrix_f(const float q[6], c
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float x_2 = p->x_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 3.5e-06f))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 2e-05f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float m_payload = p->m_payload;
@@ -9853,8 +9859,12 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_applied_force_f(const float q[6], con
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float M_bar[6]) {
+    const float l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float x_2 = p->x_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 6.3e-06f))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(x_2 >= 2e-05f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_1 = q[0];
@@ -9897,7 +9907,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix_f(const float q[6], co
     float cosine[8];
     rapkm_2rrr_rr_sincos_group_f(6, angle, sine, cosine);
     const float l_1 = p->l_1;
-    const float l_2 = p->l_2;
     const float t24 = l_1 * l_2;
     const float t14 = sine[1];
     const float t17 = cosine[2];
@@ -10347,6 +10356,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_acceleration_f(const float q[6], c
     if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const float l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_2 = q[1];
     const float b_2 = q[4];
     const float t1 = a_2 + b_2;
@@ -10384,7 +10397,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_acceleration_f(const float q[6], c
     float sine[8];
     float cosine[8];
     rapkm_2rrr_rr_sincos_group_f(6, angle, sine, cosine);
-    const float l_2 = p->l_2;
     const float t10 = sine[0];
     const float t22 = l_2 * t10;
     const float t12 = sine[1];
@@ -10936,6 +10948,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration_f(const float q[6], c
     if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const float y_1 = p->y_1;
+    const float size_of_y_1 = fabsf(y_1);
+    if (RAPKM_2RRR_RR_RARELY_F(!(1.0f >= size_of_y_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_1 = q[0];
     const float b_1 = q[3];
     const float t1 = a_1 + b_1;
@@ -11283,7 +11300,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration_f(const float q[6], c
     const float t301 = sqrtf(t226);
     const float t302 = copysignf(t301, t217);
     const float t303 = t217 + t302;
-    const float y_1 = p->y_1;
     const float t304 = y_1 + t22;
     const float tip_1_y = t304 + t23;
     const float y_3 = p->y_3;
@@ -15666,6 +15682,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_measured_f(const float q[6]
     if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const float l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_3 = q[2];
     const float b_3 = q[5];
     const float t1 = a_3 + b_3;
@@ -15703,7 +15723,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_measured_f(const float q[6]
     float sine[8];
     float cosine[8];
     rapkm_2rrr_rr_sincos_group_f(6, angle, sine, cosine);
-    const float l_2 = p->l_2;
     const float t12 = sine[1];
     const float t22 = l_2 * t12;
     const float t23 = t22 * t22;
@@ -16437,11 +16456,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_task_jacobian_f(const float q[6], const rapkm
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_task_f(const float x_t[2], const float q[6], const rapkm_2rrr_rr_params_f *p, float q_found[6]) {
     const float l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY_F(!(3000.0f >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(300.0f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(5300.0f >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(160.0f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_1 = q[0];
@@ -18877,8 +18896,12 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_residual_f(const float q[6],
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const float qd[6], const float u[3], const rapkm_2rrr_rr_params_f *p, float qdd[6]) {
+    const float l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float m_1 = p->m_1;
-    if (RAPKM_2RRR_RR_RARELY_F(!(5600.0f >= m_1))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(1700.0f >= m_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float m_2 = p->m_2;
@@ -18886,11 +18909,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float J_1 = p->J_1;
-    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= J_1))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(17.0f >= J_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float J_2 = p->J_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(310.0f >= J_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(170.0f >= J_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float J_motor = p->J_motor;
@@ -18943,7 +18966,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_f(const float q[6], const fl
     const float t14 = cosine[3];
     const float t20 = t11 * t14;
     const float t21 = t19 + t20;
-    const float l_2 = p->l_2;
     const float t22 = l_2 * t21;
     const float t23 = t22 * t22;
     const float l_1 = p->l_1;

@@ -50,7 +50,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_sc(const rapkm_2rrr_rr_trig 
     (void)q;
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
-    if (RAPKM_2RRR_RR_RARELY(!(310.0 >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY(!(170.0 >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double sin_a_1 = sc->sin_a_1;
@@ -287,11 +287,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_sc(const rapkm_2rrr_rr_trig 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc(const rapkm_2rrr_rr_trig *sc, const double q[6], const double qd[6], const double u[3], const rapkm_2rrr_rr_params *p, double qdd[6]) {
     (void)q;
     const double m_1 = p->m_1;
-    if (RAPKM_2RRR_RR_RARELY(!(5600.0 >= m_1))) {
+    if (RAPKM_2RRR_RR_RARELY(!(1700.0 >= m_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double J_1 = p->J_1;
-    if (RAPKM_2RRR_RR_RARELY(!(100.0 >= J_1))) {
+    if (RAPKM_2RRR_RR_RARELY(!(17.0 >= J_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double J_2 = p->J_2;

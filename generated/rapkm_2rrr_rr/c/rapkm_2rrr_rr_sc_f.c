@@ -281,8 +281,12 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_sc_f(const rapkm_2rrr_rr_tri
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc_f(const rapkm_2rrr_rr_trig_f *sc, const float q[6], const float qd[6], const float u[3], const rapkm_2rrr_rr_params_f *p, float qdd[6]) {
     (void)q;
+    const float l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float m_1 = p->m_1;
-    if (RAPKM_2RRR_RR_RARELY_F(!(5600.0f >= m_1))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(1700.0f >= m_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float m_2 = p->m_2;
@@ -290,11 +294,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc_f(const rapkm_2rrr_rr_tri
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float J_1 = p->J_1;
-    if (RAPKM_2RRR_RR_RARELY_F(!(100.0f >= J_1))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(17.0f >= J_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float J_2 = p->J_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(310.0f >= J_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(170.0f >= J_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float J_motor = p->J_motor;
@@ -313,7 +317,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc_f(const rapkm_2rrr_rr_tri
     const float cos_b_2 = sc->cos_b_2;
     const float t20 = sin_a_2 * cos_b_2;
     const float t21 = t19 + t20;
-    const float l_2 = p->l_2;
     const float t22 = l_2 * t21;
     const float t23 = t22 * t22;
     const float l_1 = p->l_1;

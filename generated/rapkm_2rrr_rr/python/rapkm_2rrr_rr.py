@@ -72,25 +72,27 @@ Beyond these bounds of parameters results would lose digits; they have the statu
   nullspace_projector 0.015 <= l_1, l_2 <= 3
   nullspace_projector_dot 0.015 <= l_1
   weighted_pseudoinverse 0.015 <= l_1, l_2 <= 1.6, 0.0051 <= m_1, m_2 <= 10
-  weighted_pseudoinverse 1.1e-05 <= J_1, 1.1e-05 <= J_2 <= 1, 1.1e-05 <= J_motor, |m_payload| <= 1700
-  weighted_nullspace_projector 0.015 <= l_1 <= 3, l_2 <= 3, m_2 <= 10, 1.1e-05 <= J_2 <= 3.1
+  weighted_pseudoinverse 1.1e-05 <= J_1, 1.1e-05 <= J_2 <= 0.17, 1.1e-05 <= J_motor, |m_payload| <= 1700
+  weighted_nullspace_projector 0.015 <= l_1 <= 3, l_2 <= 3, m_2 <= 10, 1.1e-05 <= J_2 <= 1.7
   weighted_nullspace_projector |m_payload| <= 10
   projected_control_matrix 0.015 <= l_1
   projected_control_pseudoinverse 0.015 <= l_1
-  projected_mass_matrix 0.015 <= l_1, |m_payload| <= 560
+  orthogonal_complement l_2 <= 1600
+  projected_mass_matrix 0.015 <= l_1, |m_payload| <= 170
   projected_coriolis_matrix 0.015 <= l_1 <= 3, J_2 <= 0.1, |m_payload| <= 10
   minimal_mass_matrix 0.015 <= l_1, l_2 <= 3, 8.9e-07 <= m_2, |m_payload| <= 10
   minimal_coriolis_matrix 0.015 <= l_1 <= 3, l_2 <= 3, |m_payload| <= 170
+  minimal_control_matrix l_2 <= 1600
   admissible_velocity 0.015 <= l_1, l_2 <= 3
-  admissible_acceleration 0.015 <= l_1 <= 3
-  projected_configuration l_1 <= 3, l_2 <= 3
+  admissible_acceleration 0.015 <= l_1 <= 3, l_2 <= 3
+  projected_configuration l_1 <= 3, l_2 <= 3, |y_1| <= 1
   configuration_from_measured l_1 <= 3, l_2 <= 3
   velocity_from_measured 0.015 <= l_1, l_2 <= 3
-  acceleration_from_measured 0.015 <= l_1 <= 3
-  configuration_from_task l_2 <= 3
+  acceleration_from_measured 0.015 <= l_1 <= 3, l_2 <= 3
+  configuration_from_task l_1 <= 53, l_2 <= 3
   acceleration_from_task l_2 <= 3
-  inverse_dynamics |m_payload| <= 310
-  forward_dynamics m_1 <= 5600, J_1 <= 100, J_2 <= 170, J_motor <= 170
+  inverse_dynamics |m_payload| <= 170
+  forward_dynamics m_1 <= 1700, J_1 <= 17, J_2 <= 170, J_motor <= 170
   forward_dynamics |m_payload| <= 10
   multipliers m_2 <= 56, J_2 <= 0.1, |m_payload| <= 17000
   energy |m_payload| <= 10
@@ -2839,7 +2841,7 @@ def weighted_pseudoinverse(q: ArrayLike, p: Parameters = PARAMETERS) -> NDArray[
         status = _first(status, ~np.asarray(10.0 >= m_2), 6)
         status = _first(status, ~np.asarray(J_1 >= 1.1e-05), 6)
         status = _first(status, ~np.asarray(J_2 >= 1.1e-05), 6)
-        status = _first(status, ~np.asarray(1.0 >= J_2), 6)
+        status = _first(status, ~np.asarray(0.17 >= J_2), 6)
         status = _first(status, ~np.asarray(J_motor >= 1.1e-05), 6)
         size_of_m_payload = np.abs(m_payload)
         status = _first(status, ~np.asarray(1700.0 >= size_of_m_payload), 6)
@@ -3706,7 +3708,7 @@ def weighted_nullspace_projector(q: ArrayLike, p: Parameters = PARAMETERS) -> ND
         status = _first(status, ~np.asarray(3.0 >= l_2), 6)
         status = _first(status, ~np.asarray(10.0 >= m_2), 6)
         status = _first(status, ~np.asarray(J_2 >= 1.1e-05), 6)
-        status = _first(status, ~np.asarray(3.1 >= J_2), 6)
+        status = _first(status, ~np.asarray(1.7 >= J_2), 6)
         size_of_m_payload = np.abs(m_payload)
         status = _first(status, ~np.asarray(10.0 >= size_of_m_payload), 6)
         t1 = np.abs(a_2)
@@ -5185,6 +5187,7 @@ def orthogonal_complement(q: ArrayLike, p: Parameters = PARAMETERS) -> NDArray[n
         b_3 = q[..., 5]
         l_1 = np.float64(p.l_1)
         l_2 = np.float64(p.l_2)
+        status = _first(status, ~np.asarray(1600.0 >= l_2), 6)
         t1 = a_1 + b_1
         t2 = a_2 + b_2
         t3 = a_2 - a_3
@@ -5321,7 +5324,7 @@ def projected_mass_matrix(q: ArrayLike, p: Parameters = PARAMETERS) -> NDArray[n
         m_payload = np.float64(p.m_payload)
         status = _first(status, ~np.asarray(l_1 >= 0.015), 6)
         size_of_m_payload = np.abs(m_payload)
-        status = _first(status, ~np.asarray(560.0 >= size_of_m_payload), 6)
+        status = _first(status, ~np.asarray(170.0 >= size_of_m_payload), 6)
         t1 = np.abs(a_2)
         t2 = np.abs(b_2)
         t3 = np.abs(a_1)
@@ -9224,6 +9227,7 @@ def minimal_control_matrix(q: ArrayLike, p: Parameters = PARAMETERS) -> NDArray[
         b_3 = q[..., 5]
         l_1 = np.float64(p.l_1)
         l_2 = np.float64(p.l_2)
+        status = _first(status, ~np.asarray(1600.0 >= l_2), 6)
         t1 = a_1 + b_1
         t2 = a_2 + b_2
         t3 = a_1 - a_3
@@ -9668,6 +9672,7 @@ def admissible_acceleration(q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, p: Para
         l_2 = np.float64(p.l_2)
         status = _first(status, ~np.asarray(l_1 >= 0.015), 6)
         status = _first(status, ~np.asarray(3.0 >= l_1), 6)
+        status = _first(status, ~np.asarray(3.0 >= l_2), 6)
         t1 = a_2 + b_2
         t2 = a_1 + b_1
         t3 = a_3 + b_3
@@ -10214,6 +10219,8 @@ def projected_configuration(q: ArrayLike, p: Parameters = PARAMETERS) -> NDArray
         y_3 = np.float64(p.y_3)
         status = _first(status, ~np.asarray(3.0 >= l_1), 6)
         status = _first(status, ~np.asarray(3.0 >= l_2), 6)
+        size_of_y_1 = np.abs(y_1)
+        status = _first(status, ~np.asarray(1.0 >= size_of_y_1), 6)
         t1 = a_1 + b_1
         t2 = a_2 + b_2
         t3 = a_3 + b_3
@@ -14378,6 +14385,7 @@ def acceleration_from_measured(q: ArrayLike, qd_m: ArrayLike, qdd_m: ArrayLike, 
         l_2 = np.float64(p.l_2)
         status = _first(status, ~np.asarray(l_1 >= 0.015), 6)
         status = _first(status, ~np.asarray(3.0 >= l_1), 6)
+        status = _first(status, ~np.asarray(3.0 >= l_2), 6)
         t1 = a_3 + b_3
         t2 = a_2 + b_2
         t3 = a_1 + b_1
@@ -15378,6 +15386,7 @@ def configuration_from_task(x_t: ArrayLike, q: ArrayLike, p: Parameters = PARAME
         y_2 = np.float64(p.y_2)
         x_3 = np.float64(p.x_3)
         y_3 = np.float64(p.y_3)
+        status = _first(status, ~np.asarray(53.0 >= l_1), 6)
         status = _first(status, ~np.asarray(3.0 >= l_2), 6)
         t1 = np.abs(a_1)
         t2 = np.abs(b_1)
@@ -17455,7 +17464,7 @@ def inverse_dynamics(q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, p: Parameters 
         J_motor = np.float64(p.J_motor)
         m_payload = np.float64(p.m_payload)
         size_of_m_payload = np.abs(m_payload)
-        status = _first(status, ~np.asarray(310.0 >= size_of_m_payload), 6)
+        status = _first(status, ~np.asarray(170.0 >= size_of_m_payload), 6)
         t1 = a_1 + b_1
         t2 = a_2 + b_2
         t3 = t1 - t2
@@ -17685,8 +17694,8 @@ def forward_dynamics(q: ArrayLike, qd: ArrayLike, u: ArrayLike, p: Parameters = 
         J_2 = np.float64(p.J_2)
         J_motor = np.float64(p.J_motor)
         m_payload = np.float64(p.m_payload)
-        status = _first(status, ~np.asarray(5600.0 >= m_1), 6)
-        status = _first(status, ~np.asarray(100.0 >= J_1), 6)
+        status = _first(status, ~np.asarray(1700.0 >= m_1), 6)
+        status = _first(status, ~np.asarray(17.0 >= J_1), 6)
         status = _first(status, ~np.asarray(170.0 >= J_2), 6)
         status = _first(status, ~np.asarray(170.0 >= J_motor), 6)
         size_of_m_payload = np.abs(m_payload)
