@@ -20,7 +20,7 @@ Numbers: TypeAlias = tuple[Fraction, ...]
 # Points whose columns together say which numbers these are.
 POINTS_OF_NUMBERS = 3
 # Numerators and denominators are below this: a residue at random is next to never such a fraction.
-LONGEST_NUMBER = 10**20
+LONGEST_NUMBER = 100_000_000_000_000_000_000
 
 
 def numbers_of_dependent_rows(rows: Matrix, factors: Sequence[Fraction]) -> tuple[Numbers, ...]:
@@ -42,8 +42,8 @@ def numbers_of_dependent_rows(rows: Matrix, factors: Sequence[Fraction]) -> tupl
             [scale * value % prime for scale, value in zip(scales, column, strict=True)]
             for column in zip(*by_row, strict=True)
         ]
-    found = [[_fraction(x, prime) for x in vector] for vector in _null_space(equations, len(rows), prime)]
-    basis = [tuple(x for x in vector if x is not None) for vector in found]
+    vectors = [[_fraction(x, prime) for x in vector] for vector in _null_space(equations, len(rows), prime)]
+    basis = [tuple(x for x in vector if x is not None) for vector in vectors]
     return tuple(basis) if all(len(vector) == len(rows) for vector in basis) else ()
 
 

@@ -151,8 +151,8 @@ def test_bounds_of_coordinates_are_told_and_taken_up_again(tmp_path: Path) -> No
     assert "twice_the_digits" not in kernel
     ends = kernel["coordinate_bounds"]["float64"]["theta"]
     assert "COORDINATE_RANGE" in kernel["statuses"]
-    (told,) = (one.message for one in made.notices if "out of the range" in one.message)
-    assert told.startswith("forward_dynamics refuses theta below ")
+    (message,) = (one.message for one in made.notices if "out of the range" in one.message)
+    assert message.startswith("forward_dynamics refuses theta below ")
     header = str(made.files["c/top.h"])
     assert f"forward_dynamics {ends[0]:g} <= theta" in header
     assert "TOP_COORDINATE_RANGE = 13" in header
