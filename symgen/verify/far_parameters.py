@@ -53,11 +53,11 @@ CHOSEN_AMONG, CHOSEN_AT = 24, (4, 9)
 # States at which quarters of a power are looked at: the worst far away are not the worst close by.
 CLOSER_STATES = 256
 # Numbers that are worked out for the powers of one kernel.
-MOST = 30_000_000
+MOST = 20_000_000
 # Units of an estimate that count as lost: other states than these lose twice as much, and more.
 UNITS_LOST = FACTOR / 2
 # As many numbers as a statement of a kernel that works with pairs counts for.
-IN_PAIRS = 4
+IN_PAIRS = 16
 # Up to this power the reference judges so many of the worst.
 JUDGED_UP_TO, JUDGED_FAR = 1.0, 2
 
@@ -175,7 +175,8 @@ class _Bounds:
         than the worst of a few.
         """
         starts = self._as_many(CHOSEN_AMONG, len(read) * len(CHOSEN_AT))
-        if starts <= states:
+        # of long kernels the first states have to do: to choose takes as long as to look
+        if starts < CHOSEN_AMONG:
             return {}
         steps = [(k, sign * power) for k in read for sign in SIDES for power in CHOSEN_AT]
         far = self._far.states.led(steps, starts, self._lossy_furthest(read, 2 * starts // 3))
@@ -211,8 +212,8 @@ class _Bounds:
         return worst
 
     def _losses(self, given: Mapping[str, Lanes]) -> tuple[Lanes, Lanes]:
-        """What plain float32 is off, and the noise of float64."""
-        noise = noise_in_units(self._kernels["float64"], self._programs["float64"].sincos, given)
+        """What plain float32 is off, and the noise of float64: for a choice, along one line."""
+        noise = noise_in_units(self._kernels["float64"], self._programs["float64"].sincos, given, lines=1)
         return units_in_float32(self._plain, self._programs, given), noise
 
     def _of(

@@ -28,12 +28,14 @@ LINES = 3
 OF_THREE = sqrt(6)
 
 
-def noise_in_units(kernel: Kernel, sincos: Function | None, given: Mapping[str, Lanes]) -> Lanes:
+def noise_in_units(
+    kernel: Kernel, sincos: Function | None, given: Mapping[str, Lanes], lines: int = LINES
+) -> Lanes:
     """The noise of a kernel in float64 at each state in units of d + eps |y|, d by its slopes; 0 where it refuses."""
     dice, eps = random.Random(kernel.name), float(UNIT_ROUNDOFF["float64"])
     status, here = run_lanes(kernel, sincos, "float64", given)
     changes = noise = np.zeros(len(status))
-    for _ in range(LINES):
+    for _ in range(lines):
         above, below = _aside(given, dice)
         (refused, up), (lost, down) = (run_lanes(kernel, sincos, "float64", one) for one in (above, below))
         known = status + refused + lost == 0
