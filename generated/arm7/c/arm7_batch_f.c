@@ -160,8 +160,6 @@ size_t arm7_inverse_dynamics_batch_f(size_t count, size_t stride, const float *q
     const float I_xy7 = p->I_xy7;
     const float I_xz7 = p->I_xz7;
     const float I_yz7 = p->I_yz7;
-    const float size_of_I_xz2 = fabsf(I_xz2);
-    const float size_of_I_yz2 = fabsf(I_yz2);
     const float t19 = c_x1 * c_x1;
     const float t20 = c_y1 * c_y1;
     const float t21 = t19 + t20;
@@ -955,8 +953,6 @@ size_t arm7_inverse_dynamics_batch_f(size_t count, size_t stride, const float *q
             float rest = (t703 - t703) * t727 * t700 + (t635 - t635) * t581 * t521 + t469 - t469;
             rest += d_5 >= 0.041f ? 0.0f : 1.0f;
             rest += 280.0f >= I_zz2 ? 0.0f : 1.0f;
-            rest += 110.0f >= size_of_I_xz2 ? 0.0f : 1.0f;
-            rest += 200.0f >= size_of_I_yz2 ? 0.0f : 1.0f;
             rest += 48.0f >= m_4 ? 0.0f : 1.0f;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += 100.0f >= t2 ? 0.0f : 1.0f;
@@ -2901,7 +2897,7 @@ size_t arm7_forward_dynamics_batch_f(size_t count, size_t stride, const float *q
             const float t1749 = t1744 - t1748;
             const float t1750 = t1724 - t1749;
             float rest = (t1617 - t1617) * t1624 * t1648 + (t1669 - t1669) * t1698 * t1723 + t1750 - t1750;
-            rest += 1300.0f >= d_3 ? 0.0f : 1.0f;
+            rest += 2300.0f >= d_3 ? 0.0f : 1.0f;
             rest += 4.0f >= d_5 ? 0.0f : 1.0f;
             rest += 2.2f >= d_7 ? 0.0f : 1.0f;
             rest += 40000.0f >= m_2 ? 0.0f : 1.0f;
@@ -2909,13 +2905,13 @@ size_t arm7_forward_dynamics_batch_f(size_t count, size_t stride, const float *q
             rest += 940.0f >= m_3 ? 0.0f : 1.0f;
             rest += 1.6f >= c_x3 ? 0.0f : 1.0f;
             rest += 5600.0f >= c_z3 ? 0.0f : 1.0f;
-            rest += 53.0f >= I_xx3 ? 0.0f : 1.0f;
+            rest += 94.0f >= I_xx3 ? 0.0f : 1.0f;
             rest += 48.0f >= I_yy3 ? 0.0f : 1.0f;
             rest += 2100.0f >= I_zz3 ? 0.0f : 1.0f;
             rest += 480.0f >= m_4 ? 0.0f : 1.0f;
             rest += 1.1f >= c_x4 ? 0.0f : 1.0f;
             rest += 1.7f >= c_y4 ? 0.0f : 1.0f;
-            rest += 15.0f >= I_xx4 ? 0.0f : 1.0f;
+            rest += 48.0f >= I_xx4 ? 0.0f : 1.0f;
             rest += 24.0f >= I_yy4 ? 0.0f : 1.0f;
             rest += 1900.0f >= I_zz4 ? 0.0f : 1.0f;
             rest += 30.0f >= m_5 ? 0.0f : 1.0f;
@@ -2923,7 +2919,7 @@ size_t arm7_forward_dynamics_batch_f(size_t count, size_t stride, const float *q
             rest += 0.63f >= c_y5 ? 0.0f : 1.0f;
             rest += 1.7f >= size_of_c_z5 ? 0.0f : 1.0f;
             rest += 30.0f >= I_xx5 ? 0.0f : 1.0f;
-            rest += 15.0f >= I_yy5 ? 0.0f : 1.0f;
+            rest += 27.0f >= I_yy5 ? 0.0f : 1.0f;
             rest += 1200.0f >= I_zz5 ? 0.0f : 1.0f;
             rest += 18.0f >= m_6 ? 0.0f : 1.0f;
             rest += 0.32f >= c_x6 ? 0.0f : 1.0f;
@@ -2931,7 +2927,7 @@ size_t arm7_forward_dynamics_batch_f(size_t count, size_t stride, const float *q
             rest += 3.5f >= size_of_c_z6 ? 0.0f : 1.0f;
             rest += 3.2f >= I_xx6 ? 0.0f : 1.0f;
             rest += 5.1f >= I_yy6 ? 0.0f : 1.0f;
-            rest += 1200.0f >= I_zz6 ? 0.0f : 1.0f;
+            rest += 720.0f >= I_zz6 ? 0.0f : 1.0f;
             rest += 3.0f >= m_7 ? 0.0f : 1.0f;
             rest += 0.17f >= c_x7 ? 0.0f : 1.0f;
             rest += 0.4f >= c_y7 ? 0.0f : 1.0f;

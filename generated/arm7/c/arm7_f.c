@@ -221,16 +221,6 @@ arm7_status arm7_inverse_dynamics_f(const float q[7], const float qd[7], const f
     if (ARM7_RARELY_F(!(280.0f >= I_zz2))) {
         return ARM7_PARAMETER_RANGE;
     }
-    const float I_xz2 = p->I_xz2;
-    const float size_of_I_xz2 = fabsf(I_xz2);
-    if (ARM7_RARELY_F(!(110.0f >= size_of_I_xz2))) {
-        return ARM7_PARAMETER_RANGE;
-    }
-    const float I_yz2 = p->I_yz2;
-    const float size_of_I_yz2 = fabsf(I_yz2);
-    if (ARM7_RARELY_F(!(200.0f >= size_of_I_yz2))) {
-        return ARM7_PARAMETER_RANGE;
-    }
     const float m_4 = p->m_4;
     if (ARM7_RARELY_F(!(48.0f >= m_4))) {
         return ARM7_PARAMETER_RANGE;
@@ -288,6 +278,7 @@ arm7_status arm7_inverse_dynamics_f(const float q[7], const float qd[7], const f
     const float t27 = t25 * t26;
     const float q_2_ddot = qdd[1];
     const float t28 = q_2_ddot + t27;
+    const float I_xz2 = p->I_xz2;
     const float t29 = I_xz2 * t28;
     const float t30 = q_1_ddot * t7;
     const float q_2_dot = qd[1];
@@ -310,6 +301,7 @@ arm7_status arm7_inverse_dynamics_f(const float q[7], const float qd[7], const f
     const float t44 = t26 * t26;
     const float t45 = q_2_dot * q_2_dot;
     const float t46 = t44 - t45;
+    const float I_yz2 = p->I_yz2;
     const float t47 = I_yz2 * t46;
     const float t48 = t43 + t47;
     const float c_x2 = p->c_x2;
@@ -1090,7 +1082,7 @@ arm7_status arm7_inverse_dynamics_f(const float q[7], const float qd[7], const f
 
 arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const float u[7], const arm7_params_f *p, float qdd[7]) {
     const float d_3 = p->d_3;
-    if (ARM7_RARELY_F(!(1300.0f >= d_3))) {
+    if (ARM7_RARELY_F(!(2300.0f >= d_3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float d_5 = p->d_5;
@@ -1122,7 +1114,7 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx3 = p->I_xx3;
-    if (ARM7_RARELY_F(!(53.0f >= I_xx3))) {
+    if (ARM7_RARELY_F(!(94.0f >= I_xx3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy3 = p->I_yy3;
@@ -1146,7 +1138,7 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx4 = p->I_xx4;
-    if (ARM7_RARELY_F(!(15.0f >= I_xx4))) {
+    if (ARM7_RARELY_F(!(48.0f >= I_xx4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy4 = p->I_yy4;
@@ -1179,7 +1171,7 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy5 = p->I_yy5;
-    if (ARM7_RARELY_F(!(15.0f >= I_yy5))) {
+    if (ARM7_RARELY_F(!(27.0f >= I_yy5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz5 = p->I_zz5;
@@ -1212,7 +1204,7 @@ arm7_status arm7_forward_dynamics_f(const float q[7], const float qd[7], const f
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz6 = p->I_zz6;
-    if (ARM7_RARELY_F(!(1200.0f >= I_zz6))) {
+    if (ARM7_RARELY_F(!(720.0f >= I_zz6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_7 = p->m_7;

@@ -27,16 +27,15 @@
  * (changes of sign are not counted)
  *
  * Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:
- *   inverse_dynamics 0.041 <= d_5, I_zz2 <= 280, |I_xz2| <= 110, |I_yz2| <= 200
- *   inverse_dynamics m_4 <= 48
- *   forward_dynamics d_3 <= 1300, d_5 <= 4, d_7 <= 2.2, m_2 <= 40000
+ *   inverse_dynamics 0.041 <= d_5, I_zz2 <= 280, m_4 <= 48
+ *   forward_dynamics d_3 <= 2300, d_5 <= 4, d_7 <= 2.2, m_2 <= 40000
  *   forward_dynamics I_zz2 <= 500, m_3 <= 940, c_x3 <= 1.6, c_z3 <= 5600
- *   forward_dynamics I_xx3 <= 53, I_yy3 <= 48, I_zz3 <= 2100, m_4 <= 480
- *   forward_dynamics c_x4 <= 1.1, c_y4 <= 1.7, I_xx4 <= 15, I_yy4 <= 24
+ *   forward_dynamics I_xx3 <= 94, I_yy3 <= 48, I_zz3 <= 2100, m_4 <= 480
+ *   forward_dynamics c_x4 <= 1.1, c_y4 <= 1.7, I_xx4 <= 48, I_yy4 <= 24
  *   forward_dynamics I_zz4 <= 1900, m_5 <= 30, c_x5 <= 2.6, c_y5 <= 0.63
- *   forward_dynamics |c_z5| <= 1.7, I_xx5 <= 30, I_yy5 <= 15, I_zz5 <= 1200
+ *   forward_dynamics |c_z5| <= 1.7, I_xx5 <= 30, I_yy5 <= 27, I_zz5 <= 1200
  *   forward_dynamics m_6 <= 18, c_x6 <= 0.32, c_y6 <= 0.29, |c_z6| <= 3.5
- *   forward_dynamics I_xx6 <= 3.2, I_yy6 <= 5.1, I_zz6 <= 1200, m_7 <= 3
+ *   forward_dynamics I_xx6 <= 3.2, I_yy6 <= 5.1, I_zz6 <= 720, m_7 <= 3
  *   forward_dynamics c_x7 <= 0.17, c_y7 <= 0.4, |c_z7| <= 0.53, I_xx7 <= 0.094
  *   forward_dynamics I_yy7 <= 0.48, I_zz7 <= 370
  *

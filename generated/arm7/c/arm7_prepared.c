@@ -702,7 +702,7 @@ arm7_prepared arm7_prepare(const arm7_params *p) {
 
 arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7], const double u[7], const arm7_prepared *p, double qdd[7]) {
     const double d_3 = p->value[0];
-    if (ARM7_RARELY(!(1300.0 >= d_3))) {
+    if (ARM7_RARELY(!(2300.0 >= d_3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double d_5 = p->value[1];
@@ -734,7 +734,7 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx3 = p->value[16];
-    if (ARM7_RARELY(!(53.0 >= I_xx3))) {
+    if (ARM7_RARELY(!(94.0 >= I_xx3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy3 = p->value[17];
@@ -758,15 +758,11 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx4 = p->value[26];
-    if (ARM7_RARELY(!(15.0 >= I_xx4))) {
+    if (ARM7_RARELY(!(48.0 >= I_xx4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy4 = p->value[27];
     if (ARM7_RARELY(!(24.0 >= I_yy4))) {
-        return ARM7_PARAMETER_RANGE;
-    }
-    const double I_zz4 = p->value[28];
-    if (ARM7_RARELY(!(3400.0 >= I_zz4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double m_5 = p->value[32];
@@ -790,7 +786,7 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy5 = p->value[37];
-    if (ARM7_RARELY(!(15.0 >= I_yy5))) {
+    if (ARM7_RARELY(!(27.0 >= I_yy5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double m_6 = p->value[42];
@@ -2099,6 +2095,7 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
     const double t1412 = I_xy4 * t1411;
     const double t1413 = p->value[147];
     const double t1414 = t979 * t1413;
+    const double I_zz4 = p->value[28];
     const double t1415 = I_zz4 * t984;
     const double t1416 = t1414 + t1415;
     const double t1417 = I_yz4 * t974;

@@ -689,7 +689,7 @@ arm7_prepared_f arm7_prepare_f(const arm7_params_f *p) {
 
 arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7], const float u[7], const arm7_prepared_f *p, float qdd[7]) {
     const float d_3 = p->value[0];
-    if (ARM7_RARELY_F(!(1300.0f >= d_3))) {
+    if (ARM7_RARELY_F(!(2300.0f >= d_3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float d_5 = p->value[1];
@@ -721,7 +721,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx3 = p->value[16];
-    if (ARM7_RARELY_F(!(53.0f >= I_xx3))) {
+    if (ARM7_RARELY_F(!(94.0f >= I_xx3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy3 = p->value[17];
@@ -745,7 +745,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float I_xx4 = p->value[26];
-    if (ARM7_RARELY_F(!(15.0f >= I_xx4))) {
+    if (ARM7_RARELY_F(!(48.0f >= I_xx4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy4 = p->value[27];
@@ -777,7 +777,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float I_yy5 = p->value[37];
-    if (ARM7_RARELY_F(!(15.0f >= I_yy5))) {
+    if (ARM7_RARELY_F(!(27.0f >= I_yy5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz5 = p->value[38];
@@ -809,7 +809,7 @@ arm7_status arm7_forward_dynamics_prepared_f(const float q[7], const float qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const float I_zz6 = p->value[48];
-    if (ARM7_RARELY_F(!(1200.0f >= I_zz6))) {
+    if (ARM7_RARELY_F(!(720.0f >= I_zz6))) {
         return ARM7_PARAMETER_RANGE;
     }
     const float m_7 = p->value[52];

@@ -56,16 +56,6 @@ arm7_status arm7_inverse_dynamics_sc(const arm7_trig *sc, const double q[7], con
     if (ARM7_RARELY(!(280.0 >= I_zz2))) {
         return ARM7_PARAMETER_RANGE;
     }
-    const double I_xz2 = p->I_xz2;
-    const double size_of_I_xz2 = fabs(I_xz2);
-    if (ARM7_RARELY(!(110.0 >= size_of_I_xz2))) {
-        return ARM7_PARAMETER_RANGE;
-    }
-    const double I_yz2 = p->I_yz2;
-    const double size_of_I_yz2 = fabs(I_yz2);
-    if (ARM7_RARELY(!(200.0 >= size_of_I_yz2))) {
-        return ARM7_PARAMETER_RANGE;
-    }
     const double m_4 = p->m_4;
     if (ARM7_RARELY(!(48.0 >= m_4))) {
         return ARM7_PARAMETER_RANGE;
@@ -89,6 +79,7 @@ arm7_status arm7_inverse_dynamics_sc(const arm7_trig *sc, const double q[7], con
     const double t27 = t25 * t26;
     const double q_2_ddot = qdd[1];
     const double t28 = q_2_ddot + t27;
+    const double I_xz2 = p->I_xz2;
     const double t29 = I_xz2 * t28;
     const double t30 = q_1_ddot * sin_q_2;
     const double q_2_dot = qd[1];
@@ -111,6 +102,7 @@ arm7_status arm7_inverse_dynamics_sc(const arm7_trig *sc, const double q[7], con
     const double t44 = t26 * t26;
     const double t45 = q_2_dot * q_2_dot;
     const double t46 = t44 - t45;
+    const double I_yz2 = p->I_yz2;
     const double t47 = I_yz2 * t46;
     const double t48 = t43 + t47;
     const double c_x2 = p->c_x2;
@@ -892,7 +884,7 @@ arm7_status arm7_inverse_dynamics_sc(const arm7_trig *sc, const double q[7], con
 arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], const double qd[7], const double u[7], const arm7_params *p, double qdd[7]) {
     (void)q;
     const double d_3 = p->d_3;
-    if (ARM7_RARELY(!(1300.0 >= d_3))) {
+    if (ARM7_RARELY(!(2300.0 >= d_3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double d_5 = p->d_5;
@@ -924,7 +916,7 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx3 = p->I_xx3;
-    if (ARM7_RARELY(!(53.0 >= I_xx3))) {
+    if (ARM7_RARELY(!(94.0 >= I_xx3))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy3 = p->I_yy3;
@@ -948,15 +940,11 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
         return ARM7_PARAMETER_RANGE;
     }
     const double I_xx4 = p->I_xx4;
-    if (ARM7_RARELY(!(15.0 >= I_xx4))) {
+    if (ARM7_RARELY(!(48.0 >= I_xx4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy4 = p->I_yy4;
     if (ARM7_RARELY(!(24.0 >= I_yy4))) {
-        return ARM7_PARAMETER_RANGE;
-    }
-    const double I_zz4 = p->I_zz4;
-    if (ARM7_RARELY(!(3400.0 >= I_zz4))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double m_5 = p->m_5;
@@ -981,7 +969,7 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
         return ARM7_PARAMETER_RANGE;
     }
     const double I_yy5 = p->I_yy5;
-    if (ARM7_RARELY(!(15.0 >= I_yy5))) {
+    if (ARM7_RARELY(!(27.0 >= I_yy5))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double m_6 = p->m_6;
@@ -1444,6 +1432,7 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
     const double t398 = t392 + t397;
     const double t399 = d_5 * t398;
     const double t400 = c_x4 * t353;
+    const double I_zz4 = p->I_zz4;
     const double t401 = I_zz4 + t339;
     const double t402 = t400 + t401;
     const double t403 = t399 + t402;

@@ -4805,16 +4805,12 @@ delta_status delta_inverse_dynamics(const double q[6], const double qd[6], const
 }
 
 delta_status delta_forward_dynamics(const double q[6], const double qd[6], const double u[3], const delta_params *p, double qdd[6]) {
-    const double R = p->R;
-    if (DELTA_RARELY(!(R >= 0.015))) {
-        return DELTA_PARAMETER_RANGE;
-    }
     const double m_a = p->m_a;
     if (DELTA_RARELY(!(m_a >= 0.03))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double J_a = p->J_a;
-    if (DELTA_RARELY(!(3.5 >= J_a))) {
+    if (DELTA_RARELY(!(1.1 >= J_a))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double m_p = p->m_p;
@@ -4851,6 +4847,7 @@ delta_status delta_forward_dynamics(const double q[6], const double qd[6], const
     const double l_1 = p->l_1;
     const double t9 = cosine[2];
     const double t100 = l_1 * t9;
+    const double R = p->R;
     const double t101 = R + t100;
     const double t102 = 0.5 * t101;
     const double t104 = t36 - t102;
@@ -5393,11 +5390,6 @@ delta_status delta_multipliers(const double q[6], const double qd[6], const doub
     if (DELTA_RARELY(!(5.0 >= m_r))) {
         return DELTA_PARAMETER_RANGE;
     }
-    const double g = p->g;
-    const double size_of_g = fabs(g);
-    if (DELTA_RARELY(!(98.0 >= size_of_g))) {
-        return DELTA_PARAMETER_RANGE;
-    }
     const double a_1 = q[0];
     const double t1 = fabs(a_1);
     const double a_3 = q[2];
@@ -5740,6 +5732,7 @@ delta_status delta_multipliers(const double q[6], const double qd[6], const doub
     const double t251 = t246 + t250;
     const double t252 = t114 + t251;
     const double t253 = t192 * t252;
+    const double g = p->g;
     const double t339 = g * t188;
     const double t209 = t195 * t208;
     const double t214 = t24 * t209;

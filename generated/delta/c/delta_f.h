@@ -40,7 +40,7 @@
  *   velocity_from_task 2.4e-07 <= l_2
  *   acceleration_from_task 2.4e-07 <= l_2
  *   inverse_dynamics l_1 <= 3.5, 0.076 <= l_2 <= 8.5
- *   forward_dynamics J_a <= 3.5, J_m <= 0.88
+ *   forward_dynamics J_a <= 1.1, J_m <= 0.88
  *   multipliers m_a <= 20, m_r <= 5
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

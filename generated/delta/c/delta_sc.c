@@ -437,16 +437,12 @@ delta_status delta_inverse_dynamics_sc(const delta_trig *sc, const double q[6], 
 }
 
 delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], const double qd[6], const double u[3], const delta_params *p, double qdd[6]) {
-    const double R = p->R;
-    if (DELTA_RARELY(!(R >= 0.015))) {
-        return DELTA_PARAMETER_RANGE;
-    }
     const double m_a = p->m_a;
     if (DELTA_RARELY(!(m_a >= 0.03))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double J_a = p->J_a;
-    if (DELTA_RARELY(!(3.5 >= J_a))) {
+    if (DELTA_RARELY(!(1.1 >= J_a))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double m_p = p->m_p;
@@ -464,6 +460,7 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
     const double l_1 = p->l_1;
     const double cos_a_3 = sc->cos_a_3;
     const double t100 = l_1 * cos_a_3;
+    const double R = p->R;
     const double t101 = R + t100;
     const double t102 = 0.5 * t101;
     const double t104 = t36 - t102;
@@ -1006,11 +1003,6 @@ delta_status delta_multipliers_sc(const delta_trig *sc, const double q[6], const
     if (DELTA_RARELY(!(5.0 >= m_r))) {
         return DELTA_PARAMETER_RANGE;
     }
-    const double g = p->g;
-    const double size_of_g = fabs(g);
-    if (DELTA_RARELY(!(98.0 >= size_of_g))) {
-        return DELTA_PARAMETER_RANGE;
-    }
     const double r = p->r;
     const double t36 = 0.5 * r;
     const double x = q[3];
@@ -1334,6 +1326,7 @@ delta_status delta_multipliers_sc(const delta_trig *sc, const double q[6], const
     const double t251 = t246 + t250;
     const double t252 = t114 + t251;
     const double t253 = t192 * t252;
+    const double g = p->g;
     const double t339 = g * t188;
     const double t209 = t195 * t208;
     const double t214 = t24 * t209;

@@ -3020,7 +3020,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse(const double q[6], con
     if (RAPKM_2RRR_RR_RARELY(!(J_2 >= 1.1e-05))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY(!(0.17 >= J_2))) {
+    if (RAPKM_2RRR_RR_RARELY(!(1.7 >= J_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double J_motor = p->J_motor;
@@ -6637,10 +6637,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix(const double q[6], 
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    const double J_2 = p->J_2;
-    if (RAPKM_2RRR_RR_RARELY(!(0.1 >= J_2))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
     if (RAPKM_2RRR_RR_RARELY(!(10.0 >= size_of_m_payload))) {
@@ -7007,6 +7003,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix(const double q[6], 
     const double t314 = l_2 * l_2;
     const double t315 = m_2 * t314;
     const double t316 = 0.25 * t315;
+    const double J_2 = p->J_2;
     const double J_elbow = J_2 + t316;
     const double t317 = m_payload * t314;
     const double J_elbow_1 = J_elbow + t317;
@@ -19769,10 +19766,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics(const double q[6], const dou
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers(const double q[6], const double qd[6], const double u[3], const rapkm_2rrr_rr_params *p, double lambda_B[4]) {
-    const double m_2 = p->m_2;
-    if (RAPKM_2RRR_RR_RARELY(!(56.0 >= m_2))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     const double J_2 = p->J_2;
     if (RAPKM_2RRR_RR_RARELY(!(0.1 >= J_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -20051,6 +20044,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers(const double q[6], const double q
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
     const double t227 = l_2 * l_2;
+    const double m_2 = p->m_2;
     const double t228 = m_2 * t227;
     const double t229 = 0.25 * t228;
     const double J_elbow = J_2 + t229;

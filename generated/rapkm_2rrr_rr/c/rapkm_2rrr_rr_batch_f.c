@@ -2021,7 +2021,7 @@ size_t rapkm_2rrr_rr_multipliers_batch_f(size_t count, size_t stride, const floa
             const float t679 = t671 - t678;
             float rest = (t679 - t679) * t677 * t669 + t663 - t663;
             rest += 170000.0f >= m_1 ? 0.0f : 1.0f;
-            rest += 56.0f >= m_2 ? 0.0f : 1.0f;
+            rest += 56000.0f >= m_2 ? 0.0f : 1.0f;
             rest += 1700.0f >= J_1 ? 0.0f : 1.0f;
             rest += 0.1f >= J_2 ? 0.0f : 1.0f;
             rest += 1000.0f >= J_motor ? 0.0f : 1.0f;

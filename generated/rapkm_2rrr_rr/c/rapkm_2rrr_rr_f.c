@@ -3010,7 +3010,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse_f(const float q[6], co
     if (RAPKM_2RRR_RR_RARELY_F(!(J_2 >= 1.1e-05f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY_F(!(0.17f >= J_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(1.7f >= J_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float J_motor = p->J_motor;
@@ -6640,10 +6640,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    const float J_2 = p->J_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(0.1f >= J_2))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     const float m_payload = p->m_payload;
     const float size_of_m_payload = fabsf(m_payload);
     if (RAPKM_2RRR_RR_RARELY_F(!(10.0f >= size_of_m_payload))) {
@@ -7010,6 +7006,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t314 = l_2 * l_2;
     const float t315 = m_2 * t314;
     const float t316 = 0.25f * t315;
+    const float J_2 = p->J_2;
     const float J_elbow = J_2 + t316;
     const float t317 = m_payload * t314;
     const float J_elbow_1 = J_elbow + t317;
@@ -19795,7 +19792,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_f(const float q[6], const float q
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float m_2 = p->m_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(56.0f >= m_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(56000.0f >= m_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float J_1 = p->J_1;

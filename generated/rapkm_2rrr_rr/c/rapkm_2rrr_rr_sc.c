@@ -1141,10 +1141,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_forward_dynamics_sc(const rapkm_2rrr_rr_trig 
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_sc(const rapkm_2rrr_rr_trig *sc, const double q[6], const double qd[6], const double u[3], const rapkm_2rrr_rr_params *p, double lambda_B[4]) {
     (void)q;
-    const double m_2 = p->m_2;
-    if (RAPKM_2RRR_RR_RARELY(!(56.0 >= m_2))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     const double J_2 = p->J_2;
     if (RAPKM_2RRR_RR_RARELY(!(0.1 >= J_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -1389,6 +1385,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_sc(const rapkm_2rrr_rr_trig *sc, 
         return RAPKM_2RRR_RR_CONSTRAINT_RANK;
     }
     const double t227 = l_2 * l_2;
+    const double m_2 = p->m_2;
     const double t228 = m_2 * t227;
     const double t229 = 0.25 * t228;
     const double J_elbow = J_2 + t229;

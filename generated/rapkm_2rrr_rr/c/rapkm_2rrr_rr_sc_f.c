@@ -1147,7 +1147,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_sc_f(const rapkm_2rrr_rr_trig_f *
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float m_2 = p->m_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(56.0f >= m_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(56000.0f >= m_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float J_1 = p->J_1;

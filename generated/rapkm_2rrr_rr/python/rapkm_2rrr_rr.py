@@ -72,14 +72,14 @@ Beyond these bounds of parameters results would lose digits; they have the statu
   nullspace_projector 0.015 <= l_1, l_2 <= 3
   nullspace_projector_dot 0.015 <= l_1
   weighted_pseudoinverse 0.015 <= l_1, l_2 <= 1.6, 0.0051 <= m_1, m_2 <= 10
-  weighted_pseudoinverse 1.1e-05 <= J_1, 1.1e-05 <= J_2 <= 0.17, 1.1e-05 <= J_motor, |m_payload| <= 1700
+  weighted_pseudoinverse 1.1e-05 <= J_1, 1.1e-05 <= J_2 <= 1.7, 1.1e-05 <= J_motor, |m_payload| <= 1700
   weighted_nullspace_projector 0.015 <= l_1 <= 3, l_2 <= 3, m_2 <= 10, 1.1e-05 <= J_2 <= 1.7
   weighted_nullspace_projector |m_payload| <= 10
   projected_control_matrix 0.015 <= l_1
   projected_control_pseudoinverse 0.015 <= l_1
   orthogonal_complement l_2 <= 1600
   projected_mass_matrix 0.015 <= l_1, |m_payload| <= 170
-  projected_coriolis_matrix 0.015 <= l_1 <= 3, J_2 <= 0.1, |m_payload| <= 10
+  projected_coriolis_matrix 0.015 <= l_1 <= 3, |m_payload| <= 10
   minimal_mass_matrix 0.015 <= l_1, l_2 <= 3, 8.9e-07 <= m_2, |m_payload| <= 10
   minimal_coriolis_matrix 0.015 <= l_1 <= 3, l_2 <= 3, |m_payload| <= 170
   minimal_control_matrix l_2 <= 1600
@@ -94,7 +94,7 @@ Beyond these bounds of parameters results would lose digits; they have the statu
   inverse_dynamics |m_payload| <= 170
   forward_dynamics m_1 <= 1700, J_1 <= 17, J_2 <= 170, J_motor <= 170
   forward_dynamics |m_payload| <= 10
-  multipliers m_2 <= 56, J_2 <= 0.1, |m_payload| <= 17000
+  multipliers J_2 <= 0.1, |m_payload| <= 17000
   energy |m_payload| <= 10
   singularity 0.015 <= l_1 <= 3
 
@@ -2841,7 +2841,7 @@ def weighted_pseudoinverse(q: ArrayLike, p: Parameters = PARAMETERS) -> NDArray[
         status = _first(status, ~np.asarray(10.0 >= m_2), 6)
         status = _first(status, ~np.asarray(J_1 >= 1.1e-05), 6)
         status = _first(status, ~np.asarray(J_2 >= 1.1e-05), 6)
-        status = _first(status, ~np.asarray(0.17 >= J_2), 6)
+        status = _first(status, ~np.asarray(1.7 >= J_2), 6)
         status = _first(status, ~np.asarray(J_motor >= 1.1e-05), 6)
         size_of_m_payload = np.abs(m_payload)
         status = _first(status, ~np.asarray(1700.0 >= size_of_m_payload), 6)
@@ -6142,7 +6142,6 @@ def projected_coriolis_matrix(q: ArrayLike, qd: ArrayLike, p: Parameters = PARAM
         m_payload = np.float64(p.m_payload)
         status = _first(status, ~np.asarray(l_1 >= 0.015), 6)
         status = _first(status, ~np.asarray(3.0 >= l_1), 6)
-        status = _first(status, ~np.asarray(0.1 >= J_2), 6)
         size_of_m_payload = np.abs(m_payload)
         status = _first(status, ~np.asarray(10.0 >= size_of_m_payload), 6)
         t1 = np.abs(a_2)
@@ -18529,7 +18528,6 @@ def multipliers(q: ArrayLike, qd: ArrayLike, u: ArrayLike, p: Parameters = PARAM
         J_2 = np.float64(p.J_2)
         J_motor = np.float64(p.J_motor)
         m_payload = np.float64(p.m_payload)
-        status = _first(status, ~np.asarray(56.0 >= m_2), 6)
         status = _first(status, ~np.asarray(0.1 >= J_2), 6)
         size_of_m_payload = np.abs(m_payload)
         status = _first(status, ~np.asarray(17000.0 >= size_of_m_payload), 6)
