@@ -2,9 +2,9 @@
 
 Systems are derived with rows times powers of 2, which change no digit; what depends on the units of rows is given in
 those of the file in the end: g and B as they are, B^+ and lambda the other way round.  Where rows depend on each other
-the smallest multipliers are meant, in the units of the file, so that these rows have one factor
-(`model/configurations/branches.py`).  Where one of them is next to nothing beside the others it keeps its own, without
-which it had no digits; then multipliers are made the smallest in the end.
+the smallest multipliers are meant, in the units of the file.  Of rows that are sums of others everywhere they are made
+so in the end, by exact numbers; rows that depend on each other on the constraints alone have one factor
+(`model/configurations/branches.py`).
 """
 
 from __future__ import annotations
@@ -17,10 +17,11 @@ from typing import TypeAlias
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
 from symgen.methods.quantity import Quantity
+from symgen.model.configurations.assembly import Assembly
 from symgen.model.expressions.expression import Binary, Number
 from symgen.model.model import Model
 from symgen.quantities.constant_dependence import Numbers, numbers_of_dependent_rows, projector
-from symgen.symbolic.matrix import Matrix, matmul
+from symgen.symbolic.matrix import Matrix, matmul, transpose
 from symgen.symbolic.scalar import Graph, Scalar
 
 # Units are powers of this, so that nothing is rounded.
@@ -51,14 +52,24 @@ SMALLEST_ALONG_COLUMNS = {
 def in_ordinary_units(model: Model) -> Model:
     """The model with rows times powers of 2 where they are in units of their own; the same model where none is."""
     assembly = model.assembly
-    if assembly is None or model.row_units or not any(assembly.units):
+    if assembly is None or model.row_units or not any(assembly.own_units):
         return model
-    units = assembly.units
+    units = assembly.own_units if _depend_everywhere(model, assembly) else assembly.units
+    if not any(units):
+        return model
     rows = tuple(
         replace(row, expression=Binary("*", Number(UNIT_BASE**unit), row.expression)) if unit else row
         for row, unit in zip(model.constraints, units, strict=True)
     )
     return replace(model, constraints=rows, row_units=units)
+
+
+def _depend_everywhere(model: Model, assembly: Assembly) -> bool:
+    """Whether rows that share a factor with others are sums of these everywhere; so are rows none of which shares."""
+    if assembly.units == assembly.own_units:
+        return True
+    rows = System(model).constraint_jacobian
+    return len(numbers_of_dependent_rows(rows, [Fraction(1)] * model.r)) == model.r - assembly.ranks.constraints
 
 
 def in_units_of_the_file(mechanics: System, generic: Genericity, derived: Quantity) -> Quantity:
@@ -67,11 +78,15 @@ def in_units_of_the_file(mechanics: System, generic: Genericity, derived: Quanti
     exponent = BACK.get(derived.name)
     if exponent is None or not any(units):
         return derived
+    if derived.name in SMALLEST_ALONG_COLUMNS and (smallest := _smallest(mechanics, generic)):
+        numbers = tuple(
+            tuple(x * UNIT_BASE**unit for x, unit in zip(row, units, strict=True)) for row in smallest
+        )
+        outputs = _projected(graph, numbers, derived.outputs, SMALLEST_ALONG_COLUMNS[derived.name])
+        return replace(derived, outputs=outputs)
     length = derived.shape[-1]
     factors = [UNIT_BASE ** exponent(units, entry, length) for entry in range(len(derived.outputs))]
     outputs = tuple(graph.const(factor) * x for factor, x in zip(factors, derived.outputs, strict=True))
-    if derived.name in SMALLEST_ALONG_COLUMNS and (smallest := _smallest(mechanics, generic)):
-        outputs = _projected(graph, smallest, outputs, SMALLEST_ALONG_COLUMNS[derived.name])
     return replace(derived, outputs=outputs)
 
 
@@ -90,9 +105,10 @@ def _smallest(mechanics: System, generic: Genericity) -> tuple[Numbers, ...]:
 def _projected(
     graph: Graph, numbers: tuple[Numbers, ...], outputs: tuple[Scalar, ...], along_columns: bool
 ) -> tuple[Scalar, ...]:
-    """These numbers times a matrix with a row for each row of B; with a column for each the other way round."""
+    """These numbers times a matrix with a row for each row of B; their transpose behind one with a column for each."""
     length = len(numbers) if along_columns else len(outputs) // len(numbers)
     rows: Matrix = tuple(outputs[start : start + length] for start in range(0, len(outputs), length))
     weights: Matrix = tuple(tuple(map(graph.const, row)) for row in numbers)
-    made = matmul(graph, rows, weights, length) if along_columns else matmul(graph, weights, rows, length)
+    behind = transpose(weights, length)
+    made = matmul(graph, rows, behind, length) if along_columns else matmul(graph, weights, rows, length)
     return tuple(entry for row in made for entry in row)

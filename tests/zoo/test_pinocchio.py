@@ -167,6 +167,31 @@ configuration: {a: -0.3, s: 0.4}
             assert difference < SAME, quantity
 
 
+@pytest.mark.parametrize("index", [269, 321])
+def test_u_is_that_of_pinocchio_as_far_as_doubles_hold_what_it_is_made_of(index: int) -> None:
+    """Inputs that hardly reach a direction, and weights that these do not hold, near rest: rounding is what is left."""
+    description = draw(21001, index, None)
+    witness = Witness(description.text, description.start, description.text, description.files)
+    defaults = witness.defaults()
+    states, ranks = witness.walker().states(defaults, 20)
+    tree = tree_of(yaml.load(description.text, Loader=yaml.BaseLoader), defaults, description.files)
+    assert tree is not None
+    answers = PinocchioAnswers(tree[0], witness._system.blocks, ranks)
+    names = (*witness._system.coordinates, *witness._system.rate_names)
+    gaps = {0.0: list[float](), 1e-6: list[float]()}
+    for state in states:
+        values = {**defaults, **dict(zip(names, (*state.q, *state.qd), strict=True))}
+        with precision():
+            truth = witness._known("inverse_dynamics", state, ranks)
+        for share, own in gaps.items():
+            given = [] if truth is None else [float(x.mid()) * (1 + share) for x in truth.value]
+            gap = answers.apart("inverse_dynamics", state, values, given) if given else None
+            own += [] if gap is None else [gap]
+    assert len(gaps[0.0]) > 10
+    assert max(gaps[0.0]) < SAME
+    assert np.median(gaps[1e-6]) > 10 * SAME
+
+
 def test_a_tree_that_a_loop_closes_is_compared_by_its_u() -> None:
     """Pinocchio has the bodies, the zoo what the loop leaves free; accelerations of a tree are none of its own."""
     press = """

@@ -34,7 +34,8 @@ class Assembly:
     alone the loops close, because rows depend on each other.
     `losing` are the numbers of the rows that lose rank at the first place, where none is regular.
     `held` are the numbers of coordinates that no admissible motion changes.
-    Rows times 2 to the power of their `units` are of ordinary size; rows that depend on each other share one.
+    Rows times 2 to the power of their `own_units` are of ordinary size; of `units` rows that depend on each other share
+    one.
     """
 
     ranks: ConfigurationRanks
@@ -47,6 +48,7 @@ class Assembly:
     losing: tuple[int, ...] = ()
     held: tuple[int, ...] = ()
     units: tuple[int, ...] = ()
+    own_units: tuple[int, ...] = ()
 
     @property
     def has_branches(self) -> bool:

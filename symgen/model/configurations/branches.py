@@ -98,7 +98,10 @@ class _Search:
             if places:
                 assembly = self._chosen(places, configurations[0])
                 losing = () if assembly.regular else self._losing(assembly.places[0])
-                return replace(assembly, held=self._held(assembly), losing=losing, units=self._units_of(assembly))
+                units = self._units_of(assembly)
+                return replace(
+                    assembly, held=self._held(assembly), losing=losing, units=units, own_units=self._units
+                )
         return None
 
     def _losing(self, place: RankedConfiguration) -> tuple[int, ...]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from symgen.laboratory.zoo.witness.allocation import directed, is_directed, preloads
 from symgen.laboratory.zoo.witness.fields import Floats
-from symgen.laboratory.zoo.witness.float_rows import null_space
+from symgen.laboratory.zoo.witness.float_rows import normalized, null_space
 from symgen.laboratory.zoo.witness.kkt import EquationEvaluator, EquationValues, GenericRanks
 from symgen.laboratory.zoo.witness.mechanics import equations
 from symgen.laboratory.zoo.witness.pinocchio_trees import PinocchioTree
@@ -27,6 +27,8 @@ SMALL = 1e-3
 # of the weight of all bodies, on levers of a metre: it is turned into the axes of bodies and back, and what rounding
 # leaves of that is all there is where a machine all but rests
 TURNED = 1e-6
+# what doubles lose of what is worked out in them here, sixteen roundings as the generated u may
+ROUNDING = 16 * 2.0**-53
 COMPARED = ("inverse_dynamics", "forward_dynamics")
 
 
@@ -48,6 +50,7 @@ class PinocchioAnswers:
         q, qd, qdd, u = (np.array(part) for part in (state.q, state.qd, state.qdd, state.u))
         mass, bias = self._tree.forces(q, qd)
         rotors: Any = np.array(at.mass)
+        rounded = 0.0
         control: Any = np.array(at.control).reshape(len(q), -1)
         # of what cancels, rounding leaves a share of the parts
         parts = np.abs(bias) + np.abs(at.bias) + TURNED * self._tree.weight
@@ -58,6 +61,7 @@ class PinocchioAnswers:
         if quantity == "inverse_dynamics":
             load = self._tree.load(q, qd, qdd) + rotors @ qdd + np.array(at.bias)
             expected, share = self._inputs(at, control, free, load, values)
+            rounded = self._rounded(at, free.T @ control, load, expected)
             parts = parts + (np.abs(mass) + np.abs(rotors)) @ np.abs(qdd) + np.abs(control) @ np.abs(expected)
             # what no input supplies turns the inputs that it is shared out over
             rest = free @ (free.T @ (load - control @ expected))
@@ -70,10 +74,20 @@ class PinocchioAnswers:
             answers = free @ np.linalg.solve(free.T @ (mass + rotors) @ free, free.T)
             parts = parts + np.abs(control) @ np.abs(u) + (np.abs(mass) + np.abs(rotors)) @ np.abs(expected)
             sizes = np.abs(answers) @ parts
-        away = np.abs(np.array(given) - expected)
+        away = np.maximum(np.abs(np.array(given) - expected) - rounded, 0.0)
         sizes = sizes + np.abs(expected)
         sizes = sizes + SMALL * sizes.max(initial=0.0)
         return float((away / np.where(sizes > 0, sizes, 1)).max(initial=0.0))
+
+    def _rounded(self, at: EquationValues, projected: Any, load: Any, inputs: Any) -> float:
+        """What doubles leave of u here: what rows leave free is known as well as these are independent, and u follows
+        from it as well as the inputs are along it.
+        """
+        reach = np.linalg.svd(projected, compute_uv=False)[: self._ranks.actuation]
+        rows = np.linalg.svd(normalized(np.array(at.rows, dtype=float).reshape(-1, at.n)), compute_uv=False)
+        held = rows[: self._ranks.constraints].min(initial=1.0)
+        lost = np.linalg.norm(load) / held + reach.max(initial=0.0) * np.linalg.norm(inputs)
+        return float(ROUNDING * lost / reach.min(initial=np.inf))
 
     def _inputs(
         self, at: EquationValues, control: Any, free: Any, load: Any, values: Mapping[str, float]
