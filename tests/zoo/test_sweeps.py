@@ -17,6 +17,7 @@ from symgen.laboratory.zoo.approach import Approach
 from symgen.laboratory.zoo.campaign import Campaign
 from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.draws.describe import read_description
+from symgen.laboratory.zoo.draws.families import draw
 from symgen.laboratory.zoo.sweep_campaign import one_sweep, record_of, table, write_violations
 from symgen.laboratory.zoo.sweeps import ANSWERED, BEYOND, UNEXPLAINED, UNKNOWN, LedState, compared, sweep
 from symgen.laboratory.zoo.witness.generated import Answer, Target
@@ -305,3 +306,12 @@ def test_a_state_that_refinement_leads_elsewhere_is_none() -> None:
     for q in refined:
         if q is not None:
             assert np.abs(walker.numbers(q, defaults).residual).max() < 1e-13
+
+
+def test_what_closes_but_for_the_last_digits_of_the_file_is_a_state() -> None:
+    """Two rows for one angle, whose numbers are rounded: the steep one leaves as many times that to the other."""
+    description = draw(21001, 359, None)
+    witness = Witness(description.text, description.start, description.text, description.files)
+    states, ranks = witness.walker().states(witness.defaults(), 3)
+    assert len(states) == 3
+    assert ranks.geometric == 1

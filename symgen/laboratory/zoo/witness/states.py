@@ -22,7 +22,7 @@ STEPS = 30
 REFINEMENTS, REFINED = 12, 1e-20
 CLOSED = 1e-12
 # what is left of rows on V, in lengths of these, and what is no length of a row
-ON_IT, NO_LENGTH = 1e-15, 1e-14
+ON_IT, NO_LENGTH = 1e-14, 1e-14
 # of the largest coordinate: what is less after refinement to 30 digits is 0
 ROOT_AT_ZERO = 1e-30
 # a closed configuration that is refined moves less
