@@ -17,6 +17,7 @@ import struct
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from math import isclose
 from typing import Any
 
 from flint import arb, arb_mat
@@ -32,6 +33,8 @@ from symgen.verify.reference.reference import Reference, State
 FACTOR = 16.0
 # Random changes of which d is the largest effect.
 PERTURBATIONS = 8
+# Numbers of a state are of equal size up to this share, which is some roundings of float32.
+ALIKE = 1e-6
 # Binary digits of states that are moved, and of what they make of results; next to singular states this leaves none,
 # and more are taken where results are not known to a share of eps.
 PERTURBED_BITS, MOST_PERTURBED = 160, 640
@@ -176,10 +179,10 @@ def _is_held(value: Fraction, scalar: Scalar) -> bool:
 
 
 def _signs(reference: Reference, state: State, generator: random.Random) -> list[list[int]]:
-    """Random signs for each perturbation, with which no two numbers of equal size move together every time.
+    """Random signs for each perturbation, of which every two numbers of equal size have both pairs that are not alike.
 
-    By chance one pair in 256 does.  What vanishes where the two are equal, as on a parallelogram, then shows no
-    change at all, and there is no unit of error.
+    By chance one pair in 16 lacks one of these.  What vanishes where the two are equal, as on a parallelogram, shows no
+    change at all if they move together every time, nor if they change places only, and there is no unit of error.
     """
     parts = state.parts
     count = sum(map(len, parts)) + len(reference.literals())
@@ -188,10 +191,10 @@ def _signs(reference: Reference, state: State, generator: random.Random) -> list
     for part in parts:
         sizes = [abs(float(x)) for x in part]
         for j in range(len(part)):
-            ways = [[signs[begin + i] for signs in drawn] for i in range(j) if sizes[i] == sizes[j] != 0]
-            for signs in drawn:
-                if [other[begin + j] for other in drawn] not in ways:
-                    break
-                signs[begin + j] ^= 1
+            for i in (i for i in range(j) if sizes[j] and isclose(sizes[i], sizes[j], rel_tol=ALIKE)):
+                for one in (0, 1):
+                    ways = [signs for signs in drawn if signs[begin + i] == one]
+                    if ways and all(signs[begin + j] == one for signs in ways):
+                        ways[0][begin + j] = 1 - one
         begin += len(part)
     return drawn

@@ -1,0 +1,46 @@
+"""The unit of error d + eps |y*|: what roundings of the inputs do, whichever way they go."""
+
+from __future__ import annotations
+
+import random
+
+import numpy as np
+import pytest
+
+from symgen.model.load import load_text
+from symgen.verify.reference.reference import Reference, State
+from symgen.verify.tolerance import PERTURBATIONS, _signs, expectations
+
+# Two cranks that a rod of the length of their distance keeps at one angle: its rows depend on each other there.
+CRANKS = """\
+model: cranks
+coordinates: {a: {unit: rad}, b: {unit: rad}}
+parameters: {l: {value: 0.83}, m: {value: 1.9}}
+kinetic_energy: (0.17 + m*l**2)/2*a_dot**2 + 0.17/2*b_dot**2
+constraints:
+  geometric:
+    x: l*cos(a) - l*cos(b)
+    y: l*sin(a) - l*sin(b)
+inputs: {u: {acts_on: {a: 1}}}
+outputs: [inverse_dynamics_residual]
+configuration: {a: -1.1, b: -1.1}
+"""
+
+
+def state(a: float, b: float) -> State:
+    return State((a, b), (0.3, 0.3), (0.7, 0.7), (0.0,), (0.83, 1.9), ())
+
+
+@pytest.mark.parametrize("beside", [0.0, 1.0])
+def test_numbers_of_equal_size_move_apart_both_ways(beside: float) -> None:
+    """Up to what they are rounded by: from one unit in the last place apart, one way leads to the other side of 0."""
+    reference = Reference(load_text(CRANKS, "cranks.yaml"))
+    b = float(np.nextafter(-1.1, -2.0)) if beside else -1.1
+    for seed in range(40):
+        drawn = _signs(reference, state(-1.1, b), random.Random(seed))
+        assert len(drawn) == PERTURBATIONS
+        assert {(0, 1), (1, 0)} <= {tuple(signs[:2]) for signs in drawn}
+        made = expectations(reference, state(-1.1, b), ["inverse_dynamics_residual"], "float64", str(seed))
+        known = made["inverse_dynamics_residual"]
+        # what is 0 on the constraints is within the tolerance
+        assert known.in_units(known.distance([0.0, 0.0])) < 1
