@@ -14,6 +14,7 @@ from symgen.model.quantities import MOTIONS
 from symgen.quantities.excess import with_test_of_excess
 from symgen.quantities.moving_axes import in_moving_axes
 from symgen.quantities.row_units import in_units_of_the_file
+from symgen.quantities.vanishing_parameters import vanishing_with_parameters
 from symgen.symbolic.hidden_zeros import without_hidden_zeros
 from symgen.symbolic.passes.grouping import grouped as grouped_scalars
 
@@ -38,6 +39,7 @@ def complete(mechanics: System, generic: Genericity, derived: Quantity) -> Quant
     # what is locked is so where B has its rank, and results that are fixed may rest on that
     needless = is_fixed(outputs) and not (generic.locked and is_fixed(derived.outputs))
     derived = replace(derived, outputs=outputs, guards=() if needless else derived.guards)
+    derived = vanishing_with_parameters(mechanics, derived)
     tested = with_test_of_excess(mechanics, generic, derived)
     tested = in_units_of_the_file(mechanics, generic, tested)
     return _remarked(tested, generic, mechanics.model)
