@@ -50,7 +50,7 @@ def recorded(
     file = out / NAME / "derivation.json"
     content: dict[str, Any] = json.loads(file.read_bytes())
     left_out = left_out or {}
-    content["rejected"] = [{"quantity": q, "way": "minor", "why": "of a test"} for q in (*wide, *left_out)]
+    content["rejected"] = [{"quantity": q, "method": "minor", "why": "of a test"} for q in (*wide, *left_out)]
     for quantity, types in wide.items():
         content["kernels"][quantity]["twice_the_digits"] = list(types)
     content["left_out"] = [{"quantity": q, "scalars": list(types)} for q, types in left_out.items()]

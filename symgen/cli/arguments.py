@@ -56,7 +56,7 @@ def add_quiet(parser: argparse.ArgumentParser) -> None:
 
 
 def add_generation(parser: argparse.ArgumentParser) -> None:
-    """What generation and verification share: --out, --states, --form, --trig, --quiet."""
+    """What generation and verification share: --out, --states, --method, --trig, --quiet."""
     add_out(parser)
     parser.add_argument(
         "--states",
@@ -76,8 +76,9 @@ def add_generation(parser: argparse.ArgumentParser) -> None:
 
 
 def add_method(parser: argparse.ArgumentParser) -> None:
-    """--form, once for each quantity."""
+    """--method, once for each quantity."""
     parser.add_argument(
+        "--method",
         "--form",
         metavar="[QUANTITY=]METHOD",
         type=method_of,

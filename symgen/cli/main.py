@@ -58,7 +58,7 @@ examples:
   symgen models/front_car.yaml
   symgen models/*.yaml --out build/symgen --quiet
   symgen models/front_car.yaml --outputs inverse_dynamics,forward_dynamics --scalar float32 --only c
-  symgen models/front_car.yaml --form householder --form multipliers=schur_qr
+  symgen models/front_car.yaml --method householder --method multipliers=schur_qr
   symgen models/*.yaml --check
   symgen explain models/front_car.yaml nullspace_projector
 

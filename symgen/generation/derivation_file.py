@@ -6,6 +6,7 @@ The counts are the baseline against which a change of symgen is held.
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from typing import Any
 
 from symgen import __version__
@@ -19,7 +20,7 @@ from symgen.ir.kernel import Kernel
 from symgen.ir.prepare import prepare
 from symgen.methods.selection import MethodChoice
 from symgen.model.model import Model
-from symgen.quantities.select import Rejection
+from symgen.quantities.select import Choice, Rejection
 
 # The key of decades by which thresholds of rank are raised.
 COORDINATE_BOUNDS = "coordinate_bounds"
@@ -39,8 +40,7 @@ def derivation_json(draft: Draft) -> str:
         choice = choices[kernel.name]
         kernels[kernel.name] = {
             "shape": list(kernel.shape),
-            "way": choice.title,
-            **({"form": choice.method} if choice.method else {}),
+            **_of_choice(choice),
             **({"twice_the_digits": list(choice.wide)} if choice.wide else {}),
             **_bounds(draft, kernel.name),
             **_coordinate_bounds(draft, kernel.name),
@@ -77,7 +77,7 @@ def derivation_json(draft: Draft) -> str:
                 "coordinates": list(block.coordinates),
                 "rank": block.rank,
                 "delta": block.delta,
-                "way": block.way,
+                "null_space": block.null_space,
             }
             for block in structure.blocks
         ],
@@ -88,8 +88,8 @@ def derivation_json(draft: Draft) -> str:
         **({"rejected": [_rejection(one) for one in rejected]} if rejected else {}),
         **({"left_out": [{"quantity": name, "scalars": list(types)} for name, types in left_out]} if left_out else {}),
         "sine_and_cosine": "libm" if program.sincos is None else "portable",
-        "form_of_inverse_dynamics": _method(derivations.method_of_u),
-        **{f"form_of_{quantity}": _method(one) for quantity, one in derivations.named},
+        "method_of_inverse_dynamics": _method(derivations.method_of_u),
+        **{f"method_of_{quantity}": _method(one) for quantity, one in derivations.named},
         "kernels": kernels,
     }
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
@@ -109,6 +109,17 @@ def _friction(model: Model) -> dict[str, Any]:
         if one is not None
     }
     return {"friction": {"places": [place.name for place in model.rough], **known}} if model.rough else {}
+
+
+def _of_choice(choice: Choice) -> dict[str, str]:
+    """The method of a quantity, and along which null space it is, where that is not all there is to it."""
+    own = choice.method not in ("", choice.title)
+    return {"method": choice.method, "along": choice.title} if own else {"method": choice.title}
+
+
+def title_of(kernel: Mapping[str, Any]) -> str:
+    """The title of the candidate that a kernel of the file took."""
+    return str(kernel.get("along", kernel["method"]))
 
 
 def _bounds(draft: Draft, quantity: str) -> dict[str, Any]:
@@ -135,7 +146,7 @@ def _ends(bound: Bound | CoordinateBound) -> list[float | None]:
 
 
 def _rejection(one: Rejection) -> dict[str, str]:
-    return {"quantity": one.quantity, "way": one.method, "why": one.why}
+    return {"quantity": one.quantity, "method": one.method, "why": one.why}
 
 
 def _method(one: MethodChoice | None) -> dict[str, Any] | None:
@@ -147,7 +158,7 @@ def _method(one: MethodChoice | None) -> dict[str, Any] | None:
         "valid_at_every_regular_state": one.validity.admitted,
         "because": one.validity.explanation,
         "singular": [{"where_zero": s.where_zero, "for_example": dict(s.state)} for s in one.validity.singular],
-        "forms": [{"name": name, "counted_cost": weight, "remark": remark} for name, weight, remark in one.others],
+        "methods": [{"name": name, "counted_cost": weight, "remark": remark} for name, weight, remark in one.others],
     }
 
 

@@ -64,7 +64,7 @@ def methods_text(quantity: str, choice: MethodChoice) -> str:
         f"{', '.join((f'{name} ({weight})', *_marks(quantity, name, choice)))}: {remark}"
         for name, weight, remark in choice.others
     ]
-    option = "--form" if quantity == "inverse_dynamics" else f"--form {quantity}=NAME"
+    option = "--method" if quantity == "inverse_dynamics" else f"--method {quantity}=NAME"
     return "\n".join(_section(f"methods of {quantity} (counted cost; choose one with {option})", entries))
 
 

@@ -20,7 +20,9 @@ def facts(draft: Draft) -> Facts:
     operations = {kernel.name: count_operations(kernel.statements) for kernel in draft.program.kernels}
     decisions = tuple((decision.what, decision.why) for decision in draft.structure.decisions)
     derivations = draft.derivations
-    rejected = ((f"form {r.method} of {r.quantity}", f"verification rejects it: {r.why}") for r in derivations.rejected)
+    rejected = (
+        (f"method {r.method} of {r.quantity}", f"verification rejects it: {r.why}") for r in derivations.rejected
+    )
     return Facts(operations, (*decisions, *derivations.absent, *rejected, *_failing_methods(draft)))
 
 
@@ -32,15 +34,16 @@ def _failing_methods(draft: Draft) -> tuple[tuple[str, str], ...]:
     remarks = list(invalid_methods(derivations, ()))
     if of_u is not None and methods is not None and of_u.validity.admitted:
         others = methods.failing() or of_u.failed
-        remarks += ((f"form {name} of u", f"{why}; it is made if asked for (--form {name})") for name, why in others)
+        asked_for = "it is made if asked for (--method"
+        remarks += ((f"method {name} of u", f"{why}; {asked_for} {name})") for name, why in others)
     # articulated inertias are taken only where G is definite, and then no method fails
     moving = [choice.quantity for choice in derivations.choices if choice.method not in ("", BY_FRAMES)]
     if moving:
         from symgen.methods.forward_dynamics.motions import failing_motions
 
         for name, why in failing_motions(derivations.mechanics):
-            asked = " ".join(f"--form {quantity}={name}" for quantity in moving)
-            remarks.append((f"form {name} of {' and '.join(moving)}", f"{why}; it is made if asked for ({asked})"))
+            asked = " ".join(f"--method {quantity}={name}" for quantity in moving)
+            remarks.append((f"method {name} of {' and '.join(moving)}", f"{why}; it is made if asked for ({asked})"))
     return tuple(remarks)
 
 
@@ -50,9 +53,9 @@ def invalid_methods(derivations: Selection, failed: tuple[tuple[str, str], ...])
     asked = ((("u", of_u),) if of_u is not None else ()) + derivations.named
     return (
         *(
-            (f"validity of {quantity} at every regular state", f"form {one.name}: {one.validity.explanation}")
+            (f"validity of {quantity} at every regular state", f"method {one.name}: {one.validity.explanation}")
             for quantity, one in asked
             if not one.validity.admitted
         ),
-        *((f"form {name} of u", why) for name, why in failed if of_u is not None and of_u.validity.admitted),
+        *((f"method {name} of u", why) for name, why in failed if of_u is not None and of_u.validity.admitted),
     )

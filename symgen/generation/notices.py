@@ -44,7 +44,7 @@ def notices(draft: Draft, options: Options, certificate: Certificate | None) -> 
     absent += [Notice(f"{n}: {why}") for n, why in of_all]
     kernels = {kernel.name for kernel in draft.program.kernels}
     unmade = ((n, name) for n, name in options.methods.items() if n not in kernels)
-    idle = [Notice(f"--form {n}={name}: {n} is not generated") for n, name in unmade]
+    idle = [Notice(f"--method {n}={name}: {n} is not generated") for n, name in unmade]
     unverified = () if certificate is None else certificate.notes
     said = (*replaced(draft), *_short(draft), *_left_open(draft))
     others = (*said, *_near_bounds(draft), *_out_of_ranges(draft), *dense_motions(draft, options))

@@ -29,7 +29,7 @@ def digest(kernels: Kernels) -> int:
 def remedy(asked: str, quantity: str, without: Sequence[Scalar]) -> str:
     """What a user may do who is left without a quantity in some types; `asked` is the method that was asked for."""
     if asked != AUTO:
-        return f"leave `--form {quantity}={asked}` away: another method may pass"
+        return f"leave `--method {quantity}={asked}` away: another method may pass"
     if "float64" not in without:
         return f"float64 has {quantity}; `--scalar float64` asks for that type alone"
     return "give narrower `ranges` if states near a singularity are never met; `--no-verify` writes it as it is"

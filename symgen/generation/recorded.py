@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symgen import __version__
-from symgen.generation.derivation_file import COORDINATE_BOUNDS, RAISED
+from symgen.generation.derivation_file import COORDINATE_BOUNDS, RAISED, title_of
 from symgen.generation.draft import REJECTED, Draft, draft_of
 from symgen.ir.bounded import Bound
 from symgen.ir.bounded_coordinates import CoordinateBound
@@ -93,8 +93,8 @@ def _read(file: Path, model: Model) -> _VerificationRecord:
 def _record(content: Mapping[str, Any]) -> _VerificationRecord:
     kernels = content["kernels"].items()
     return _VerificationRecord(
-        tuple(Rejection(str(r["quantity"]), str(r["way"]), str(r["why"])) for r in content.get("rejected", ())),
-        {name: _Taken(str(one["way"]), tuple(one.get("twice_the_digits", ()))) for name, one in kernels},
+        tuple(Rejection(str(r["quantity"]), str(r["method"]), str(r["why"])) for r in content.get("rejected", ())),
+        {name: _Taken(title_of(one), tuple(one.get("twice_the_digits", ()))) for name, one in kernels},
         {str(one["quantity"]): tuple(one["scalars"]) for one in content.get("left_out", ())},
         {
             scalar: {name: tuple(_bounds(one.get("bounds", {}).get(scalar, {}))) for name, one in kernels}

@@ -31,7 +31,7 @@ class ConstraintBlock:
         return len(self.coordinates) - self.rank
 
     @property
-    def way(self) -> str:
+    def null_space(self) -> str:
         """How its null space is found."""
         match self.delta:
             case 0:

@@ -117,7 +117,7 @@ def _constraint_decisions(
         if block.coordinates:
             what = "(B Bᵀ)⁻¹" if len(blocks) == 1 else f"(B Bᵀ)⁻¹ of {_some(block.rows)}"
             size = f"δ = {block.delta} for {counted(len(block.coordinates), 'coordinate')}"
-            yield Decision(what, f"{size}: {block.way}")
+            yield Decision(what, f"{size}: {block.null_space}")
     if not mechanics.constraint_residual:
         yield Decision("projection of configurations", "there are no geometric constraints")
     entries = flatten(mechanics.constraint_jacobian)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 # Decimals of a state in a message.
 DECIMALS = 6
 LOST = "a denominator is a small difference of large terms, which single precision takes for zero at regular states"
-FAILS = "this form is singular where"
+FAILS = "this method is singular where"
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,7 +39,7 @@ _LABELS = {Use.LAST: "for comparison and as last resort", Use.COMPARISON: "for c
 
 @dataclass(frozen=True, slots=True)
 class MethodRow:
-    """A method by the name that `--form` and derivation.json give it."""
+    """A method by the name that `--method` and derivation.json give it."""
 
     name: str
     quantities: tuple[str, ...]
@@ -94,7 +94,7 @@ METHODS: tuple[MethodRow, ...] = (
     _method("schur_qr", _WEIGHTED, "forward_dynamics.weighted_projection", "SCHUR_QR", Use.SPARE),
     _method("articulated", _WEIGHTED, "forward_dynamics.weighted_projection", "ARTICULATED", Use.SPARE),
 )
-# `--form` takes the methods of these by name.
+# `--method` takes the methods of these by name.
 NAMED = (*MAIN, *_PROJECTOR)
 
 

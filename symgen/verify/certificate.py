@@ -140,7 +140,7 @@ class Certificate:
                 {
                     "quantity": one.quantity,
                     "scalars": list(one.scalars),
-                    "tried": [{"way": method, "why": why} for method, why in one.tried],
+                    "tried": [{"method": method, "why": why} for method, why in one.tried],
                     "remedy": one.remedy,
                 }
                 for one in self.left_out

@@ -258,5 +258,5 @@ def test_methods_that_form_no_reactions_are_refused_by_name(capsys: pytest.Captu
     from symgen.cli.main import main
 
     for form, why in (("elimination", "multipliers"), ("forward_dynamics=articulated", "reactions")):
-        assert main([str(MODEL), "--form", form, "--no-verify", "--out", str(tmp_path), "--quiet"]) != 0
+        assert main([str(MODEL), "--method", form, "--no-verify", "--out", str(tmp_path), "--quiet"]) != 0
         assert f"friction grows with {why}, which it does not form" in capsys.readouterr().err

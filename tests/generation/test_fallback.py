@@ -225,8 +225,8 @@ def test_what_is_rejected_takes_the_next_method(
     rejected, *_ = derived(result)["rejected"]
     assert rejected["quantity"] == "multipliers"
     assert re.search(why, rejected["why"])
-    taken = derived(result)["kernels"]["multipliers"]["way"]
-    assert derived(result)["form_of_multipliers"]["name"] == taken
+    taken = derived(result)["kernels"]["multipliers"]["method"]
+    assert derived(result)["method_of_multipliers"]["name"] == taken
     assert any(n.message.startswith(f"multipliers takes {taken}: verification speaks against") for n in result.notices)
     kernels, before = derived(result)["kernels"], usual["kernels"]
     assert all(kernels[name] == before[name] for name in before if name != "multipliers")
@@ -264,7 +264,7 @@ def test_what_passes_narrowly_takes_one_with_half_of_its_error(yoke: Path, monke
     result = made(yoke)
     assert "rejected" not in derived(result)
     assert result.left_out == ()
-    assert derived(result)["kernels"]["multipliers"]["way"] == "minors"
+    assert derived(result)["kernels"]["multipliers"]["method"] == "minors"
     assert result.certificate is not None
     assert result.certificate["passed"]
 
@@ -301,7 +301,7 @@ def test_a_long_alternative_has_its_numbers_grouped_once_its_worst_states_speak_
     spoil_choice(monkeypatch, edgy)
     result = made(yoke)
     assert result.left_out == ()
-    assert regrouped == [derived(result)["kernels"]["multipliers"]["way"]]
+    assert regrouped == [derived(result)["kernels"]["multipliers"]["method"]]
     # every method passes at the states of the verification, and none where it is worst
     regrouped.clear()
     spoil_named(monkeypatch, edgy)
@@ -379,7 +379,7 @@ def test_the_method_taken_is_the_one_that_counts_least_of_those_that_pass(
 ) -> None:
     spoil_choice(monkeypatch, cancelling)
     result = derived(made(yoke))
-    assert [one["way"] for one in result["rejected"]] == ["minor along minors"]
+    assert [one["method"] for one in result["rejected"]] == ["minor along minors"]
     taken = result["kernels"]["multipliers"]
     alone = replace(FAST, outputs=("multipliers",))
     others = [
@@ -601,7 +601,7 @@ def test_a_method_that_was_asked_for_is_not_replaced(yoke: Path, monkeypatch: py
     (left_out,) = result.left_out
     assert left_out.quantity == "multipliers"
     assert [method for method, _ in left_out.tried] == ["kkt"]
-    assert "--form multipliers=kkt" in left_out.remedy
+    assert "--method multipliers=kkt" in left_out.remedy
     assert "forward_dynamics" in derived(result)["kernels"]
 
 

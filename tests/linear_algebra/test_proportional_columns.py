@@ -54,6 +54,13 @@ def test_columns_are_gathered_by_their_directions() -> None:
     assert [family.entries for family in groups] == [{0: 1, 2: Fraction(-2, 3), 5: -1}, {1: 1, 6: 3}, {4: 1}]
 
 
+@pytest.mark.parametrize(("factor", "count"), [(Fraction(9973, 9967), 1), (Fraction(9967, 10007), 2)])
+def test_factors_are_fractions_of_four_digits(factor: Fraction, count: int) -> None:
+    graph = Graph()
+    s, t = graph.symbol("s"), graph.symbol("t")
+    assert len(families(((s, s * factor), (t, t * factor)), 2)) == count
+
+
 def test_columns_that_are_proportional_here_and_there_stay_apart() -> None:
     graph = Graph()
     s, t = graph.symbol("s"), graph.symbol("t")

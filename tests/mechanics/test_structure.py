@@ -56,7 +56,7 @@ def test_blocks_with_rank_and_freedom() -> None:
     }
     assert structure.dependent_rows == ("two", "five")
     assert structure.free_coordinates == ()
-    ways = [block.way for block in structure.blocks]
+    ways = [block.null_space for block in structure.blocks]
     assert [way.split(",")[0] for way in ways] == [
         "locked",
         "one direction",

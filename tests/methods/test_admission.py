@@ -86,7 +86,7 @@ def test_a_null_space_basis_of_the_rapkm_is_offered_with_its_singular_set() -> N
     assert not isinstance(decision, str)
     _, choice = decision
     assert not choice.validity.admitted
-    assert choice.validity.explanation.startswith("this form is singular where")
+    assert choice.validity.explanation.startswith("this method is singular where")
     assert any("sin(" in entry.where_zero for entry in choice.validity.singular)
 
 

@@ -106,5 +106,5 @@ def test_what_is_not_chosen_is_labelled_where_it_is_offered(tmp_path: Path, caps
     assert main(["explain", str(file), "forward_dynamics"]) == 0
     (line,) = (line for line in capsys.readouterr().out.splitlines() if line.strip().startswith("kkt ("))
     assert ", for comparison and as last resort: " in line
-    assert main(["explain", str(file), "--form", "printed_fixed"]) == 0
-    assert "), taken, for comparison: this form is singular where" in capsys.readouterr().out
+    assert main(["explain", str(file), "--method", "printed_fixed"]) == 0
+    assert "), taken, for comparison: this method is singular where" in capsys.readouterr().out

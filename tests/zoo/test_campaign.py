@@ -54,13 +54,13 @@ def test_chunks_are_summed_up(tmp_path: Path) -> None:
 def test_methods_are_counted(tmp_path: Path) -> None:
     derivation = {
         "kernels": {
-            "inverse_dynamics": {"way": "minor"},
-            "forward_dynamics": {"way": "householder", "form": "schur_qr"},
-            "energy": {"way": "minors"},
+            "inverse_dynamics": {"method": "minor"},
+            "forward_dynamics": {"method": "schur_qr", "along": "householder"},
+            "energy": {"method": "minors"},
         }
     }
     for index in range(2):
-        known = methods_of(derivation if index else {"kernels": {"inverse_dynamics": {"way": "minor"}}})
+        known = methods_of(derivation if index else {"kernels": {"inverse_dynamics": {"method": "minor"}}})
         write_record(tmp_path / "a", DrawRecord(1, index, "disc", VERIFIED, "", "", 2.0, 100, methods=known))
     text = summary(read_records([tmp_path / "a"]))
     assert "  inverse_dynamics: minor 2\n  forward_dynamics: schur_qr 1\n" in text

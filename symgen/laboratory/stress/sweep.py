@@ -338,7 +338,7 @@ def _within(series: Sequence[Series], exceeded: Series) -> str:
         and one.method in LABELS.values()
         and one.breaks is None
     ]
-    return f"; within it: --form {exceeded.quantity}={' or '.join(methods)}" if methods else ""
+    return f"; within it: --method {exceeded.quantity}={' or '.join(methods)}" if methods else ""
 
 
 def _texts(values: Sequence[float]) -> str:

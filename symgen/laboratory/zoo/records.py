@@ -91,7 +91,7 @@ def summary(records: list[DrawRecord]) -> str:
 def methods_of(derivation: Mapping[str, Any]) -> dict[str, str]:
     """By quantity, the method that its derivation.json names."""
     kernels = derivation.get("kernels", {})
-    return {name: kernels[name].get("form", kernels[name]["way"]) for name in CHOSEN if name in kernels}
+    return {name: kernels[name]["method"] for name in CHOSEN if name in kernels}
 
 
 def _methods(records: list[DrawRecord]) -> Iterator[str]:

@@ -47,7 +47,7 @@ how far the exact result moves when inputs, parameters and literals are rounded;
 formulas run in NumPy, in the same precision, on B, M, G, C and Q as the generated kernels compute them: (9) with the
 coordinates, and (28) with the inputs, that fail where the family leads. Beside (27) and (28), N_B is (21), and λ and q̈
 are (14) and (15) as corrected. Methods by name are symgen's own, compiled as the generated one is (decisions 8, 12 and
-20; `--form` takes them); they answer for the states that the generated kernel accepts. "Breaks" is the largest d at
+20; `--method` takes them); they answer for the states that the generated kernel accepts. "Breaks" is the largest d at
 which a method is beyond the tolerance.
 """
 CLAIM = """## The paper's claim
