@@ -181,11 +181,13 @@ def _is_held(value: Fraction, scalar: Scalar) -> bool:
 def _signs(reference: Reference, state: State, generator: random.Random) -> list[list[int]]:
     """Random signs for each perturbation, of which every two numbers of equal size have both pairs that are not alike.
 
-    By chance one pair in 16 lacks one of these.  What vanishes where the two are equal, as on a parallelogram, shows no
-    change at all if they move together every time, nor if they change places only, and there is no unit of error.
+    By chance one pair in 16 lacks one of these, and of many equal numbers a few go on doing so.  What vanishes where
+    the two are equal, as on a parallelogram, shows no change at all if they move together every time, nor if they
+    change places only, and there is no unit of error.  Nor has what a difference of two literals holds, such as the
+    closure of a loop.
     """
-    parts = state.parts
-    count = sum(map(len, parts)) + len(reference.literals())
+    parts = (*state.parts, reference.literals())
+    count = sum(map(len, parts))
     drawn = [[generator.getrandbits(1) for _ in range(count)] for _ in range(PERTURBATIONS)]
     begin = 0
     for part in parts:

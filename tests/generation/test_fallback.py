@@ -264,7 +264,7 @@ def test_what_passes_narrowly_takes_one_with_half_of_its_error(yoke: Path, monke
     result = made(yoke)
     assert "rejected" not in derived(result)
     assert result.left_out == ()
-    assert derived(result)["kernels"]["multipliers"]["method"] == "minors"
+    assert derived(result)["kernels"]["multipliers"]["method"] == "minor"
     assert result.certificate is not None
     assert result.certificate["passed"]
 

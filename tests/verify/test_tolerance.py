@@ -44,3 +44,18 @@ def test_numbers_of_equal_size_move_apart_both_ways(beside: float) -> None:
         known = made["inverse_dynamics_residual"]
         # what is 0 on the constraints is within the tolerance
         assert known.in_units(known.distance([0.0, 0.0])) < 1
+
+
+def test_literals_of_equal_value_move_apart_both_ways() -> None:
+    """What 3 and -3 leave of a row may be all there is of it."""
+    text = CRANKS.replace("x: l*cos(a) - l*cos(b)", "x: l*cos(a) - l*cos(b) + 3*(l + 7) - 3*l - 3*7")
+    reference = Reference(load_text(text, "cranks.yaml"))
+    values = [literal.value for literal in reference.system.literals]
+    pairs = [(i, j) for j, x in enumerate(values) for i in range(j) if values[i] == x]
+    assert len(pairs) > 3
+    for seed in range(40):
+        drawn = _signs(reference, state(-1.1, -0.9), random.Random(seed))
+        literals = [signs[-len(values) :] for signs in drawn]
+        missing = [pair for pair in pairs if not {(0, 1), (1, 0)} <= {tuple(s[k] for k in pair) for s in literals}]
+        # where three are equal a pair may lack one way
+        assert all(values.count(values[i]) > 2 for i, _ in missing)
