@@ -77,8 +77,11 @@ class FarCoordinates:
             judged += 1
             if sample is not None:
                 state = rounded(sample, scalar).state
-                if self._digits.is_lost(kernel, programs[scalar], state, "out of ranges"):
-                    yield np.array([float(x) for x in state.q])
+                q = np.array([float(x) for x in state.q])
+                # one that the constraints lead back into the ranges is no reason for a bound
+                outside = self._beyond(q).max(initial=-np.inf) > 0
+                if outside and self._digits.is_lost(kernel, programs[scalar], state, "out of ranges"):
+                    yield q
             if judged == JUDGED_OUTSIDE:
                 return
 

@@ -45,24 +45,26 @@ class LostDigits:
 
         Plain numbers have no digits of d left where float32 needs pairs: there d is that of a few changes.
         """
-        if works_with_pairs(kernel):
-            if scalar == "float64":
-                return np.zeros(len(states))
-            units = units_in_float32(kernel, programs, states.parts)
-            # as large as numbers get where it refuses
-            return np.where(units < np.finfo(float).max, units, 0.0)
-        if not self.are_measured(kernel, scalar):
-            own, unit = RoundingErrors(kernel).with_units(states.parts, self._tangents(states))
-            return np.nan_to_num(own / unit, posinf=0.0)
-        precise = paired(kernel, scalar) if scalar == "float64" else kernel
-        errors, held = RoundingErrors(kernel), max(1, NUMBERS // (len(precise.statements) + 1))
-        made = [np.zeros(0)]
-        for start in range(0, len(states), held):
-            part = states.only(slice(start, start + held))
-            unit = errors.with_units(part.parts, self._tangents(part))[1] * float(UNIT_ROUNDOFF[scalar])
+        in_pairs, measured = works_with_pairs(kernel), self.are_measured(kernel, scalar)
+        if in_pairs and scalar == "float64":
+            return np.zeros(len(states))
+        precise = paired(kernel, scalar) if measured and scalar == "float64" else kernel
+        errors = None if in_pairs else RoundingErrors(kernel)
+
+        def lost(part: Nearby) -> Lanes:
+            if errors is None:
+                units = units_in_float32(kernel, programs, part.parts)
+                # as large as numbers get where it refuses
+                return np.where(units < np.finfo(float).max, units, 0.0)
+            own, unit = errors.with_units(part.parts, self._tangents(part))
             with np.errstate(all="ignore"):
-                made.append(np.nan_to_num(_off(kernel, precise, scalar, part.parts) / unit, posinf=0.0))
-        return np.concatenate(made)
+                if measured:
+                    own, unit = _off(kernel, precise, scalar, part.parts), unit * float(UNIT_ROUNDOFF[scalar])
+                return np.nan_to_num(own / unit, posinf=0.0)
+
+        held = max(1, NUMBERS // (len(precise.statements) + 1))
+        parts = (states.only(slice(start, start + held)) for start in range(0, len(states), held))
+        return np.concatenate([np.zeros(0), *map(lost, parts)])
 
     def is_lost(self, kernel: Kernel, program: Program, state: State, where: str) -> bool:
         """Whether a kernel has status 0 at a state, and the reference finds more lost than is allowed."""

@@ -229,6 +229,8 @@ def test_the_same_signal_once_more_does_not_kill_a_process_that_ends() -> None:
     """It may come when the run is over and what became of its files is not told yet."""
     code = (
         "import os, signal, sys\nfrom symgen.cli.signals import EndedError, signals_end_the_run\n"
+        # under nohup it is ignored, here as in a run
+        "signal.signal(signal.SIGHUP, signal.SIG_DFL)\n"
         "def send():\n    os.kill(os.getpid(), signal.SIGHUP)\n"
         "try:\n    with signals_end_the_run(process_ends=True):\n        send()\n"
         "except EndedError as ending:\n    send()\n    print('told')\n    sys.exit(ending.number)\n"

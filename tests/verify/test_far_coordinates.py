@@ -19,7 +19,9 @@ from symgen.pipeline import generate
 from symgen.verify.expected import Expected
 from symgen.verify.far_coordinates import FarCoordinates
 from symgen.verify.interpreted import outcomes
+from symgen.verify.lost_digits import LostDigits
 from symgen.verify.reference.reference import State
+from symgen.verify.sampling.outside import OutsideStates
 from symgen.verify.sampling.states import in_scalar
 from symgen.verify.tolerance import FACTOR, expectations
 
@@ -139,6 +141,16 @@ def test_the_coordinate_that_is_furthest_out_is_bounded(monkeypatch: pytest.Monk
         CoordinateBound("s", None, Fraction(7, 5)),
         CoordinateBound("c", Fraction(7, 10), Fraction(163, 50)),
     )
+
+
+def test_a_loss_that_constraints_lead_back_into_the_ranges_bounds_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    model = load_text(TOP, "top.yaml")
+    expected = Expected(model, ["forward_dynamics"], 16, lambda _: None)
+    monkeypatch.setattr(OutsideStates, "settled", lambda *_: expected.drawn[0])
+    monkeypatch.setattr(LostDigits, "units", lambda *given: 100 + 0 * given[-1].origins)
+    monkeypatch.setattr(LostDigits, "is_lost", lambda *_: True)
+    draft = draft_of(model, ["forward_dynamics"], Options(methods={"forward_dynamics": "schur_qr"}))
+    assert FarCoordinates(expected).bounds(draft.kernels("forward_dynamics"), draft.programs)["float64"] == ()
 
 
 def test_bounds_of_coordinates_are_told_and_taken_up_again(tmp_path: Path) -> None:

@@ -88,6 +88,15 @@ def lift() -> tuple[Draft, Expected]:
     return draft_of(model, ["forward_dynamics"], Options(methods=METHOD, scalars=("float64",))), expected
 
 
+def drafted(text: str, name: str, method: str) -> tuple[Draft, Expected]:
+    """One quantity by a method, and what both scalar types are to give."""
+    model = load_text(text, "model.yaml")
+    expected = Expected(model, [name], 16, lambda _: None)
+    for scalar in ("float64", "float32"):
+        expected.values(scalar)
+    return draft_of(model, [name], Options(methods={name: method})), expected
+
+
 def flat(share: float) -> State:
     """All but flat, and moving along."""
     pose, rate = (1.0, -2.0, 1.0, 1.0, -2.0), 0.25
@@ -122,11 +131,7 @@ def test_a_kernel_that_loses_digits_next_to_a_drop_has_a_status_there() -> None:
 def test_a_number_too_small_to_have_digits_is_a_status() -> None:
     """Beside what it is made of it is as large as ever: 1e-43 of float32, of which two bits are left."""
     name = "inverse_dynamics"
-    model = load_text(CRANKS, "cranks.yaml")
-    expected = Expected(model, [name], 16, lambda _: None)
-    for scalar in ("float64", "float32"):
-        expected.values(scalar)
-    draft = draft_of(model, [name], Options(methods={name: "minor"}))
+    draft, expected = drafted(CRANKS, name, "minor")
     kernels = draft.kernels(name)
     assert NextToSingular(expected).decades(kernels, draft.programs) == {"float32": 0}
     q, qd, qdd = (tuple(size * x for x in (1, 1, 1, -1, -1)) for size in (-3.7e-10, 1.0, 0.5))
@@ -157,11 +162,7 @@ def test_pairs_of_float32_have_a_status_where_they_have_lost_all_digits() -> Non
     """Three inputs for one direction: what they do along it is as much as ever where the rows have none left of it."""
     name = "inverse_dynamics"
     text = LIFT.replace("lift: {joint: k_0}", "lift: {joint: k_0}\n  u_2: {joint: p_1}\n  u_3: {joint: k_1}")
-    model = load_text(text, "lift.yaml")
-    expected = Expected(model, [name], 16, lambda _: None)
-    for scalar in ("float64", "float32"):
-        expected.values(scalar)
-    draft = draft_of(model, [name], Options(methods={name: "householder"}))
+    draft, expected = drafted(text, name, "householder")
     taken = draft.taken(name)
     kernels = draft.kernels_along(
         replace(taken, choice=replace(taken.choice, wide=("float32",))), ("float64", "float32")

@@ -34,6 +34,7 @@ from symgen.laboratory.zoo.witness.pinocchio_answers import COMPARED, PinocchioA
 from symgen.laboratory.zoo.witness.pinocchio_trees import SAME, disagreement, tree_of
 from symgen.laboratory.zoo.witness.reader import SystemReader
 from symgen.laboratory.zoo.witness.results import CheckResult, Finding, JudgedResult, Truth
+from symgen.laboratory.zoo.witness.stated_ranges import StatedRanges
 from symgen.laboratory.zoo.witness.states import FloatState, Walker, rounded
 from symgen.laboratory.zoo.witness.tape import FileNumber, NodeProgram
 from symgen.laboratory.zoo.witness.urdf_file import expanded
@@ -74,7 +75,7 @@ class Witness:
         self._seed = seed
         configuration = {name: float(value) for name, value in (blocks.get("configuration") or {}).items()}
         self._start = {**configuration, **(start or {})}
-        self._ranges = [_range(blocks, name) for name in self._system.coordinates]
+        self._ranges = StatedRanges(blocks, self._system.coordinates)
         self._balls = Balls()
         self._rows: Sequence[int] = range(len(self._system.rows))
         self._runtime: list[bool] = []
@@ -240,7 +241,7 @@ class Witness:
                 certain = min(truth.clear, self._shortest_row(given, ranks)) > CERTAIN[scalar]
                 certain = certain and all(abs(x) < LARGEST[scalar] for x in exact)
                 if answer.status == COORDINATE_RANGE:
-                    certain = self._is_in_ranges(given.q)
+                    certain = self._ranges.hold(given.q)
                 if quantity == "inverse_dynamics" and ranks.actuation < self._spanned:
                     # the branch that was drawn is told to be one on which inputs lose rank
                     certain = answer.status != ACTUATION_RANK
@@ -248,10 +249,6 @@ class Witness:
             units = self._units(answer, truth, quantity, given, ranks, EPS[scalar])
         apart = _norm([a - b for a, b in zip(answer.value, exact, strict=True)])
         return JudgedResult(0, units, apart / (_norm(exact) or 1.0), truth.clear, False)
-
-    def _is_in_ranges(self, q: Sequence[float]) -> bool:
-        """Whether no coordinate is out of a range that the file states."""
-        return all(low <= x <= high for x, (low, high) in zip(q, self._ranges, strict=True))
 
     def _shortest_row(self, state: FloatState, ranks: GenericRanks) -> float:
         """The least length of a row beside its usual one: rows that all but vanish are a reason for a status."""
@@ -399,11 +396,3 @@ def check(description: Description, folder: Path) -> CheckResult:
     """What the witness says of the files in a folder; it must read all that is drawn."""
     text = description.text
     return Witness(text, description.start, text, description.files).check(folder)
-
-
-def _range(blocks: Mapping[str, Any], name: str) -> tuple[float, float]:
-    """That of a coordinate in the file, all there is where it states none."""
-    of_coordinate = (blocks.get("coordinates") or {}).get(name) or {}
-    ends = (blocks.get("ranges") or {}).get(name) or of_coordinate.get("range")
-    low, high = ends or (-math.inf, math.inf)
-    return float(low), float(high)
