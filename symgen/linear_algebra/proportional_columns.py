@@ -23,8 +23,6 @@ from symgen.symbolic.matrix import Matrix, Vector, identity, transpose
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import reached
 
-# Points at which two columns are compared.
-POINTS_OF_RATIOS = 2
 # What rounding may leave of a ratio.
 ROUNDING_OF_RATIOS = 1e-9
 # The largest denominator of a ratio.
@@ -90,7 +88,7 @@ def _square(values: Sequence[Fraction]) -> Fraction:
 def families(rows: Matrix, n: int) -> tuple[ColumnFamily, ...]:
     """The columns that are not 0, gathered by their directions, in the order of their first members.
 
-    Points in double precision find what may be proportional; equal functions decide.
+    A point in double precision finds what may be proportional; equal functions decide.
     """
     columns = [tuple(row[j] for row in rows) for j in range(n)]
     alike: dict[tuple[int, ...], list[int]] = {}
@@ -116,28 +114,24 @@ def families(rows: Matrix, n: int) -> tuple[ColumnFamily, ...]:
     return tuple(ColumnFamily(tuple(family), tuple(family.values())) for family in column_families)
 
 
-def _values(columns: Sequence[Vector]) -> list[list[list[float]]]:
-    """The columns at each of a few random points."""
+def _values(columns: Sequence[Vector]) -> list[list[float]]:
+    """The columns at a random point."""
     flat = [entry for column in columns for entry in column]
     if not flat:
         return []
     names = [str(node.payload) for node in reached(flat) if node.op == "symbol"]
-    evaluate, r = Evaluator(flat), len(columns[0])
-    points = range(POINTS_OF_RATIOS)
-    at = [evaluate({name: random.Random(f"{k} {name}").uniform(0.1, 0.9) for name in names}) for k in points]
-    return [[list(entries[j * r : (j + 1) * r]) for entries in at] for j in range(len(columns))]
+    at = Evaluator(flat)({name: random.Random(name).uniform(0.1, 0.9) for name in names})
+    r = len(columns[0])
+    return [list(at[start : start + r]) for start in range(0, len(at), r)]
 
 
-def _factor(one: list[list[float]], other: list[list[float]], place: int) -> Fraction | None:
+def _factor(one: Sequence[float], other: Sequence[float], place: int) -> Fraction | None:
     """What the second column may be of the first."""
-    if not one[0][place] or not isfinite(ratio := other[0][place] / one[0][place]) or not ratio:
+    if not one[place] or not isfinite(ratio := other[place] / one[place]) or not ratio:
         return None
     factor = Fraction(ratio).limit_denominator(LARGEST_DENOMINATOR)
-    for a, b in zip(one, other, strict=True):
-        size = max(map(abs, b))
-        if not all(abs(y - float(factor) * x) <= ROUNDING_OF_RATIOS * size for x, y in zip(a, b, strict=True)):
-            return None
-    return factor or None
+    rest = max(abs(y - float(factor) * x) for x, y in zip(one, other, strict=True))
+    return factor or None if rest <= ROUNDING_OF_RATIOS * max(map(abs, other)) else None
 
 
 def _is_multiple(column: Vector, first: Vector, factor: Fraction) -> bool:

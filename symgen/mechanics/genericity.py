@@ -22,9 +22,6 @@ from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.translate import translate
 
-# Configurations at which ranks and zeros are looked at, unless a caller says how many.
-USUAL_CONFIGURATIONS = 6
-
 
 @dataclass(frozen=True, slots=True)
 class Genericity:
@@ -94,12 +91,11 @@ def assembly_of(model: Model) -> Assembly:
     return assembly
 
 
-def configurations(mechanics: System, count: int = USUAL_CONFIGURATIONS) -> list[dict[str, float]]:
+def configurations(mechanics: System) -> list[dict[str, float]]:
     """Configurations on V with the generic ranks, parameters included; where the declared start leads is the first."""
     parameters = parameter_values(mechanics)
     names = [c.name for c in mechanics.model.coordinates]
-    places = assembly_of(mechanics.model).places[:count]
-    return [parameters | dict(zip(names, place.q, strict=True)) for place in places]
+    return [parameters | dict(zip(names, place.q, strict=True)) for place in assembly_of(mechanics.model).places]
 
 
 def rank(rows: Sequence[Sequence[float]], plain: float = PLAIN) -> int | None:

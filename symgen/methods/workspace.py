@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
 # Share of operations that regrouping parameters has to take off: they are computed at each call.
 LUMPING_GAIN = Fraction(1, 20)
-# Configurations at which denominators are looked at.
-RESOLVED_AT = 2
 
 
 class Workspace:
@@ -54,7 +52,7 @@ class Workspace:
     @cached_property
     def points(self) -> list[dict[str, float]]:
         """Configurations on V at which denominators are looked at."""
-        return configurations(System(self.model), RESOLVED_AT)
+        return configurations(System(self.model))
 
     @property
     def minor_measures(self) -> list[Scalar]:

@@ -123,7 +123,7 @@ def start_on_constraints(
     try:
         return consistent_start(plant, q, qd)
     except PlantError:
-        starts = [] if chosen else configurations(mechanics, 1)
+        starts = [] if chosen else configurations(mechanics)[:1]
         if not starts:
             raise
         return consistent_start(plant, [starts[0][c.name] for c in plant.model.coordinates], qd)

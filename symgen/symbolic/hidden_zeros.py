@@ -18,16 +18,13 @@ from symgen.symbolic.traverse import reached
 
 # What rounding may leave of a 0 among numbers about 1; more than that is worth no exact value.
 ROUNDING_OF_ZEROS = 1e-6
-# Points at which what may be 0 has to vanish before exact values decide.
-POINTS_OF_ZEROS = 2
 
 
 def without_hidden_zeros(scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
     """The scalars, 0 in place of those that are 0 at every point."""
-    hidden = [scalar for scalar in dict.fromkeys(scalars) if scalar.constant is None]
-    for seed in range(POINTS_OF_ZEROS):
-        values = zip(hidden, _floats(hidden, seed), strict=True) if hidden else ()
-        hidden = [scalar for scalar, value in values if abs(value) <= ROUNDING_OF_ZEROS]
+    unknown = [scalar for scalar in dict.fromkeys(scalars) if scalar.constant is None]
+    values = zip(unknown, _floats(unknown), strict=True)
+    hidden = [scalar for scalar, value in values if abs(value) <= ROUNDING_OF_ZEROS]
     if not hidden:
         return tuple(scalars)
     zeros = set(_zeros(hidden, 0))
@@ -46,8 +43,9 @@ def _zeros(scalars: Sequence[Scalar], seed: int) -> list[Scalar]:
     return [scalar for scalar, value in zip(scalars, values, strict=True) if value == 0]
 
 
-def _floats(scalars: Sequence[Scalar], seed: int) -> list[float]:
+def _floats(scalars: Sequence[Scalar]) -> Sequence[float]:
     """Values at a random point that lies inside the domains of most functions; NaN elsewhere."""
+    if not scalars:
+        return ()
     names = [str(node.payload) for node in reached(scalars) if node.op == "symbol"]
-    point = {name: random.Random(f"{seed} {name}").uniform(0.1, 0.9) for name in names}
-    return Evaluator(scalars)(point)
+    return Evaluator(scalars)({name: random.Random(name).uniform(0.1, 0.9) for name in names})

@@ -39,8 +39,6 @@ MOST_DRIVEN_SQUARES = 12
 VANISHED = 1e-12
 # Share of its usual size below which a scalar in double precision goes on in 40 digits.
 NEAR = 1e-8
-# The same where no step in double precision gains any more.
-FINISHED = 1e-14
 # Share of the largest pivot that is no drop of rank, for a matrix with rows that usually have length 1.
 REGULAR = 1e-4
 # Points that tell how long rows of [B; M^T] usually are.
@@ -143,8 +141,6 @@ class ZeroSearch:
         damping, size = 1e-3, max(abs(v) * w for v, w in zip(values, weights, strict=True))
         slow = 0
         for _ in range(SEARCH_STEPS):
-            if size <= FINISHED:
-                break
             if slow == STALLED_STEPS:
                 return None
             scaled = [

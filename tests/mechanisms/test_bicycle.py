@@ -105,7 +105,7 @@ def test_methods_that_float32_would_refuse_everywhere_are_told_apart() -> None:
     Minors stand beside the lengths of rows, which exceed them by little.
     """
     mechanics = System(bicycle().model)
-    methods, points = Methods(mechanics.model, genericity(mechanics)), configurations(mechanics, 2)
+    methods, points = Methods(mechanics.model, genericity(mechanics)), configurations(mechanics)
     made = {name: methods.candidate(INPUTS, name) for name in ("elimination", "minor", "nullspace")}
     standing = {
         name: distinguishable(one.derived.guards, mechanics.n, points)

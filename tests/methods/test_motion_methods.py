@@ -56,7 +56,7 @@ configuration: {a: 0.9, b: 0.9, d: 0.9, x: 0.62, y: 0.78, p: 0, z: 0, w: 0}
 def point(mechanics: System, q: dict[str, float] | None = None) -> dict[str, float]:
     """A configuration on V with random rates and inputs."""
     source = random.Random(7)
-    values = dict(configurations(mechanics, 1)[0]) | (q or {})
+    values = dict(configurations(mechanics)[0]) | (q or {})
     for symbol in (*mechanics.qd, *mechanics.u):
         values[str(symbol.payload)] = source.uniform(-1, 1)
     return values

@@ -108,7 +108,7 @@ def test_they_solve_the_equations_of_motion(text: str) -> None:
     # the reference stands on a graph of its own: beside each other equal functions are one node
     own = System(mechanics.model)
     problem, n, r = Problem(own, ()), own.n, own.r
-    for configuration in configurations(own, 3):
+    for configuration in configurations(own):
         at = dict(configuration)
         at |= {str(symbol.payload): source.uniform(-1, 1) for symbol in (*own.qd, *own.u)}
         given = Evaluator([*flatten(problem.mass_matrix), *flatten(problem.rows), *problem.force, *problem.bias])(at)

@@ -77,7 +77,7 @@ def fixed_candidate(system: MethodInput) -> Candidate | str:
     project, _ = _projection(mechanics.graph, mechanics.constraint_jacobian)
     columns = [project(column) for column in mechanics.inputs]
     sizes = Evaluator([_determinant(mechanics.graph, columns, chosen) for chosen in choices])
-    (start,) = configurations(mechanics, 1)
+    start = configurations(mechanics)[0]
     return printed_candidate(system, max(zip(sizes(start), choices, strict=True))[1])
 
 
