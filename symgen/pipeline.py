@@ -31,10 +31,10 @@ from symgen.model.model import Model
 from symgen.runtime.activity import working
 
 if TYPE_CHECKING:
-    from symgen.generation.coordinate_bounds import CoordinateBounds
-    from symgen.generation.parameter_bounds import ParameterBounds
-    from symgen.generation.rank_thresholds import RankThresholds
-    from symgen.generation.trial import Trial
+    from symgen.generation.acceptance.coordinate_bounds import CoordinateBounds
+    from symgen.generation.acceptance.parameter_bounds import ParameterBounds
+    from symgen.generation.acceptance.rank_thresholds import RankThresholds
+    from symgen.generation.acceptance.trial import Trial
     from symgen.report.facts import ReportFiles
     from symgen.report.proof import ProofFacts
     from symgen.report.targets import TargetCore
@@ -65,10 +65,10 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
                 progress("deriving")
                 draft = _derive(model, outputs, options)
                 if options.verify and verified(options):
-                    from symgen.generation.coordinate_bounds import CoordinateBounds
-                    from symgen.generation.parameter_bounds import ParameterBounds
-                    from symgen.generation.rank_thresholds import RankThresholds
-                    from symgen.generation.trial import Trial
+                    from symgen.generation.acceptance.coordinate_bounds import CoordinateBounds
+                    from symgen.generation.acceptance.parameter_bounds import ParameterBounds
+                    from symgen.generation.acceptance.rank_thresholds import RankThresholds
+                    from symgen.generation.acceptance.trial import Trial
 
                     with _literals_in_range(path):
                         trial = Trial(path, draft, options, progress)
@@ -132,7 +132,7 @@ def _finished(
 def _derive(model: Model, outputs: tuple[str, ...], options: Options) -> Draft:
     if not options.as_recorded or options.measured is None:
         return draft_of(model, outputs, options)
-    from symgen.generation.recorded import as_recorded
+    from symgen.generation.acceptance.recorded import as_recorded
 
     return as_recorded(model, outputs, options)
 

@@ -115,11 +115,22 @@ def page(needs: dict[str, set[str]]) -> str:
     rows = []
     for name in sorted(needs, key=lambda name: (-height[name], name)):
         path = ROOT / "symgen" / name / "__init__.py"
-        text = (path if path.exists() else ROOT / f"symgen/{name}.py").read_text(encoding="utf-8")
-        meaning = (ast.get_docstring(ast.parse(text)) or "").split("\n\n")[0].replace("\n", " ")
         below = ", ".join(sorted(direct(needs)[name])) or "nothing"
-        rows.append(f"| `{name}` | {meaning} | {below} |\n")
-    return TOP + "".join(rows) + BOTTOM
+        rows.append(f"| `{name}` | {_meaning(path if path.exists() else path.parent.with_suffix('.py'))} | {below} |\n")
+    return TOP + "".join(rows) + INSIDE + "".join(_folders()) + BOTTOM
+
+
+def _folders() -> list[str]:
+    """A row for each folder inside a package."""
+    paths = sorted((ROOT / "symgen").glob("*/**/__init__.py"))
+    inside = [(path.parent.relative_to(ROOT / "symgen").as_posix(), path) for path in paths]
+    return [f"| `{place}` | {_meaning(path)} |\n" for place, path in inside if "/" in place]
+
+
+def _meaning(path: Path) -> str:
+    """The first paragraph of a module."""
+    documented = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
+    return documented.split("\n\n")[0].replace("\n", " ")
 
 
 TOP = """# Architecture
@@ -142,6 +153,13 @@ nothing with the derivation but the parsed model; the zoo knows the command line
 | package | what it is for | imports, beside what these import |
 |---|---|---|
 """
+INSIDE = """
+Folders inside packages, each of one idea:
+
+| folder | what it is for |
+|---|---|
+"""
+
 BOTTOM = """
 ## How to add a backend
 

@@ -8,7 +8,7 @@ from functools import lru_cache
 from operator import attrgetter
 
 from symgen.ir.kernel import OperationName, Statement
-from symgen.ir.wide_functions import is_wide_operation, wide_function
+from symgen.ir.pairs.wide_functions import is_wide_operation, wide_function
 from symgen.records import dataclass
 
 _operation = attrgetter("operation")

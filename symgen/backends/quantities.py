@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symgen.ir.kernel import Kernel
-from symgen.ir.wide_functions import works_with_pairs
+from symgen.ir.pairs.wide_functions import works_with_pairs
 from symgen.model.quantities import MAIN, ROWS
 
 # Those with a kernel for many states: what trajectories, sampling and simulations evaluate by the million.

@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from fractions import Fraction
 
 from symgen.ir.kernel import Block, Check, Function, Local, Operand, Statement
-from symgen.ir.wide_functions import is_wide
+from symgen.ir.pairs.wide_functions import is_wide
 from symgen.naming import identifiers
 from symgen.records import dataclass
 

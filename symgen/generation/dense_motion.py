@@ -6,7 +6,7 @@ from symgen.backends.operations import count_operations
 from symgen.diagnostics import Notice
 from symgen.generation.draft import Draft
 from symgen.generation.results import Options
-from symgen.ir.wide_functions import works_with_pairs
+from symgen.ir.pairs.wide_functions import works_with_pairs
 from symgen.methods.forward_dynamics.motions import BY_FRAMES
 from symgen.model.quantities import MOTIONS
 from symgen.quantities.candidates import ARTICULATED

@@ -7,11 +7,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from symgen.closedform.algebra.limits import TooLargeError
+from symgen.generation.acceptance.recorded import as_recorded
 from symgen.generation.draft import Draft
 from symgen.generation.explain_text import methods_text, overview, quantity_text
 from symgen.generation.facts import facts
 from symgen.generation.notices import replaced
-from symgen.generation.recorded import as_recorded
 from symgen.generation.requested import unknown_quantity
 from symgen.generation.results import LINEARIZATION, NAMED_METHODS, Options
 from symgen.methods.selection import MethodChoice

@@ -14,7 +14,7 @@ from symgen.generation.draft import Draft
 from symgen.generation.files import asked_for
 from symgen.generation.results import Options
 from symgen.ir.kernel import Kernel
-from symgen.ir.wide_functions import works_with_pairs
+from symgen.ir.pairs.wide_functions import works_with_pairs
 from symgen.model.model import Model
 from symgen.model.open_task import left_open, norm_of_motions
 from symgen.model.quantities import ROWS, TASK_PLACES, TASK_RATES

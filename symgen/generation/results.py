@@ -45,7 +45,7 @@ class Options:
 
     `measured` is where an earlier run may have left measurements (`<model>/target.json`), for the PDF.
     `trig` says whose sine and cosine the code calls: its own, with the same bits everywhere, or the library's.
-    `as_recorded` takes over what the earlier run's verification led to, see `symgen.generation.recorded`.
+    `as_recorded` takes over what the earlier run's verification led to, see `symgen.generation.acceptance.recorded`.
     Without packages that the report needs it is left out where `parts` are those made as a rule (`usual`).
     """
 

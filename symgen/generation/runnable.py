@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from symgen.backends.c.plain import emit_c
-from symgen.generation.recorded import as_recorded
+from symgen.generation.acceptance.recorded import as_recorded
 from symgen.generation.results import Options
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Kernel, Program, Scalar

@@ -12,8 +12,8 @@ from dataclasses import replace
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Operand, OperationName, Statement, Status
 from symgen.ir.last_kernels import LastKernels
 from symgen.ir.lifted import Lifted, same_kernel
+from symgen.ir.pairs.wide_functions import works_with_pairs
 from symgen.ir.split import pruned
-from symgen.ir.wide_functions import works_with_pairs
 from symgen.records import dataclass
 
 # Coordinates in a sum, counted with their multiples, up to which addition is cheaper than another pair.

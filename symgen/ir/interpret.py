@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 
 from symgen.ir.kernel import Block, Check, Function, Kernel, Literal, Operand, Scalar, Statement, Status
-from symgen.ir.wide_functions import is_wide, wide_function
+from symgen.ir.pairs.wide_functions import is_wide, wide_function
 
 
 def _divide(a: float, b: float) -> float:

@@ -64,7 +64,7 @@ OperationName: TypeAlias = Choice[
     "cosh",
     "tanh",
     "pow",  # real power with a literal exponent, where products and roots do not serve
-    # two targets (value, rest); the operands are pairs of these, too: the functions of `ir/wide_functions.py`
+    # two targets (value, rest); the operands are pairs of these, too: the functions of `ir/pairs/wide_functions.py`
     "wide_add",
     "wide_sub",
     "wide_mul",

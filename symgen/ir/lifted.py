@@ -13,7 +13,7 @@ from typing import Generic, TypeAlias, TypeVar
 from symgen.diagnostics import SymgenBug
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Operand, Statement, Status
 from symgen.ir.last_kernels import LastKernels
-from symgen.ir.wide_functions import is_wide, plain_operation
+from symgen.ir.pairs.wide_functions import is_wide, plain_operation
 from symgen.records import dataclass
 from symgen.symbolic.fingerprint import PRIME, angle_pair, combine, leaf_pair, opaque, residue
 from symgen.symbolic.identity import same_values

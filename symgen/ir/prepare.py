@@ -9,8 +9,8 @@ from typing import TypeAlias
 
 from symgen.ir.kernel import Kernel, Literal, Load, Local, Program, Statement
 from symgen.ir.lifted import Lifted, same_kernel
+from symgen.ir.pairs.wide_functions import works_with_pairs
 from symgen.ir.split import Split, names_in, names_of_blocks, split
-from symgen.ir.wide_functions import works_with_pairs
 from symgen.records import dataclass
 
 # A prepared kernel is made where it saves at least this share of the operations of a call.

@@ -12,7 +12,7 @@ from typing import Protocol
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.exterior import wedge
 from symgen.linear_algebra.guards import Guard, magnitude
-from symgen.linear_algebra.null_spaces import HouseholderSpace, MinorSpace
+from symgen.linear_algebra.null_space.null_spaces import HouseholderSpace, MinorSpace
 from symgen.symbolic.matrix import Matrix, Vector, dot, identity, matmul, matvec, transpose
 from symgen.symbolic.scalar import Graph, Scalar
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.guards import Guard, multiplied
-from symgen.linear_algebra.pivoted import longest
+from symgen.linear_algebra.null_space.pivoted import longest
 from symgen.symbolic.matrix import Matrix, Vector, dot, transpose
 from symgen.symbolic.scalar import Graph, Scalar
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from symgen.linear_algebra.null_spaces import HouseholderSpace, Restriction
-from symgen.linear_algebra.pivoted import reflected
+from symgen.linear_algebra.null_space.null_spaces import HouseholderSpace, Restriction
+from symgen.linear_algebra.null_space.pivoted import reflected
 from symgen.symbolic.matrix import Matrix, Vector, transpose
 from symgen.symbolic.scalar import Graph, Scalar
 

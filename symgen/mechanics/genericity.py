@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 from symgen.diagnostics import SymgenBug
 from symgen.linear_algebra.blocks import components
-from symgen.linear_algebra.proportional_columns import families, folded
+from symgen.linear_algebra.null_space.proportional_columns import families, folded
 from symgen.mechanics.system import System
 from symgen.model.configurations.assembly import Assembly
 from symgen.model.configurations.branches import branches

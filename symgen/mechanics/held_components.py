@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from symgen.mechanics.bodies import Bodies, Vector3
+from symgen.mechanics.rigid_bodies.bodies import Bodies, Vector3
 from symgen.model.kinematics.triples import (
     Rows,
     acceleration_field,

@@ -10,8 +10,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from symgen.mechanics.bodies import Vector3
 from symgen.mechanics.held_components import HeldComponents
+from symgen.mechanics.rigid_bodies.bodies import Vector3
 from symgen.model.kinematics.components import components_in, without_components
 from symgen.model.mechanism import component
 from symgen.symbolic.calculus import derivative_along, gradient

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from symgen.linear_algebra.null_spaces import HouseholderSpace
-from symgen.linear_algebra.pivoted import reflected
-from symgen.linear_algebra.proportional_columns import FamilySpace, families
+from symgen.linear_algebra.null_space.null_spaces import HouseholderSpace
+from symgen.linear_algebra.null_space.pivoted import reflected
+from symgen.linear_algebra.null_space.proportional_columns import FamilySpace, families
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
 

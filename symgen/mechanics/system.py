@@ -10,10 +10,10 @@ from collections.abc import Mapping
 from functools import cached_property
 
 from symgen.mechanics.absolute_angles import AbsoluteAngles
-from symgen.mechanics.bodies import Bodies, Vector3
 from symgen.mechanics.christoffel import by_products_of_rates
 from symgen.mechanics.held_rows import HeldRows, acceleration_bias, geometric_jacobian
-from symgen.mechanics.joint_axes import along_joints
+from symgen.mechanics.rigid_bodies.bodies import Bodies, Vector3
+from symgen.mechanics.rigid_bodies.joint_axes import along_joints
 from symgen.model.checks.signs import nonnegative_parameters, positive_parameters
 from symgen.model.expressions.expression import Expression
 from symgen.model.kinematics.components import components_in, definitions_before_frames
@@ -277,7 +277,7 @@ class System:
 
     def _forces_of_bodies(self, acceleration: Vector, gravity: Vector3) -> Vector:
         """What Newton and Euler's equations ask of each coordinate."""
-        from symgen.mechanics.newton_euler import newton_euler  # models given by energies start without it
+        from symgen.mechanics.rigid_bodies.newton_euler import newton_euler  # models given by energies start without it
 
         return newton_euler(self.bodies, self.qd, acceleration, gravity, self.lumped)
 

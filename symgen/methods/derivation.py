@@ -12,7 +12,7 @@ from functools import cached_property
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.constrained_inverse import BasisInertia, ConstrainedInertia, FreeInertia, MinorInertia
 from symgen.linear_algebra.guards import Guard, moved
-from symgen.linear_algebra.null_spaces import (
+from symgen.linear_algebra.null_space.null_spaces import (
     HouseholderSpace,
     InputEquations,
     MinorSpace,
@@ -20,18 +20,18 @@ from symgen.linear_algebra.null_spaces import (
     Restriction,
     residual,
 )
-from symgen.linear_algebra.pivoted import reflected
+from symgen.linear_algebra.null_space.pivoted import reflected
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.mechanics.system import System
-from symgen.methods.allocation import InputAllocation
 from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
 from symgen.methods.forward_dynamics.motion import Problem
+from symgen.methods.friction.reactions import ReactionFriction
 from symgen.methods.given.configuration import GivenConfiguration
 from symgen.methods.given.functions import GivenBy
 from symgen.methods.given.least_motion import MotionOfGiven, motion_of
 from symgen.methods.least_inputs import least_inputs
-from symgen.methods.reaction_friction import ReactionFriction
+from symgen.methods.redundancy.allocation import InputAllocation
 from symgen.model.quantities import DIRECTION
 from symgen.symbolic.calculus import derivative_along, gradient, jacobian
 from symgen.symbolic.matrix import (

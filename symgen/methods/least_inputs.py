@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symgen.linear_algebra.null_spaces import InputEquations, Restriction
+from symgen.linear_algebra.null_space.null_spaces import InputEquations, Restriction
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
 from symgen.symbolic.matrix import Vector, matvec

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from symgen.linear_algebra.block_space import BlockSpace
 from symgen.linear_algebra.blocks import components
-from symgen.linear_algebra.null_spaces import MinorSpace, has_few_minors
+from symgen.linear_algebra.null_space.block_space import BlockSpace
+from symgen.linear_algebra.null_space.null_spaces import MinorSpace, has_few_minors
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.mechanics.system import System

@@ -13,8 +13,8 @@ from symgen.backends.operations import count_operations
 from symgen.backends.quantities import meaning
 from symgen.backends.scalars import C_TYPE, file_stem
 from symgen.ir.kernel import Kernel, Program, Status
+from symgen.ir.pairs.wide_functions import works_with_pairs
 from symgen.ir.sincos import ANGLE_LIMIT
-from symgen.ir.wide_functions import works_with_pairs
 from symgen.model.model import Model, Range
 from symgen.naming import macro_name
 from symgen.package.single_header import implementation_macro

@@ -9,7 +9,7 @@ from symgen.backends.locals import array_arguments
 from symgen.backends.scalars import file_stem
 from symgen.backends.statements import INFIX
 from symgen.ir.kernel import Kernel, Literal, Operand, Program
-from symgen.ir.wide_functions import works_with_pairs
+from symgen.ir.pairs.wide_functions import works_with_pairs
 from symgen.model.model import Model
 from symgen.proof.eva import MOST_RUNS, emit_eva
 from symgen.proof.fuzz import emit_fuzz

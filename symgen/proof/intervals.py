@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from symgen.ir.kernel import Function, Kernel, Literal, Local, Operand, Statement
-from symgen.ir.wide_functions import WIDE, is_wide
+from symgen.ir.pairs.wide_functions import WIDE, is_wide
 from symgen.model.model import Range
 
 Interval = tuple[float, float]

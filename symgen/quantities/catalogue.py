@@ -6,14 +6,14 @@ from collections.abc import Callable, Mapping
 from typing import TypeAlias
 
 from symgen.linear_algebra.guards import Guard, tested
-from symgen.linear_algebra.null_spaces import rests_on_rank
+from symgen.linear_algebra.null_space.null_spaces import rests_on_rank
 from symgen.mechanics.genericity import Genericity
 from symgen.methods.actuator_coordinates import actuator_bias, actuator_mass_matrix, actuator_velocity
 from symgen.methods.derivation import Derivation
 from symgen.methods.given.functions import GivenBy, measured, task
 from symgen.methods.given.least_motion import LeastMotion
 from symgen.methods.quantity import Quantity, is_fixed
-from symgen.methods.utilisation import utilisation
+from symgen.methods.redundancy.utilisation import utilisation
 from symgen.methods.variations import constraint_variations
 from symgen.model.availability import lacking
 from symgen.model.model import Model

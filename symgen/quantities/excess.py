@@ -16,8 +16,8 @@ from itertools import combinations
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.exterior import ActuationForms, RowForms, small_family, square, wedge
 from symgen.linear_algebra.guards import Guard
-from symgen.linear_algebra.null_spaces import has_few_minors
-from symgen.linear_algebra.pivoted import PivotedReflections
+from symgen.linear_algebra.null_space.null_spaces import has_few_minors
+from symgen.linear_algebra.null_space.pivoted import PivotedReflections
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
 from symgen.methods.quantity import Quantity, scalars

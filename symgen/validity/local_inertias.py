@@ -14,8 +14,8 @@ from collections.abc import Sequence
 from fractions import Fraction
 from functools import cached_property, lru_cache
 
-from symgen.mechanics.articulated_inertias import ArticulatedFactor, Six
 from symgen.mechanics.never_zero import Definite
+from symgen.mechanics.rigid_bodies.articulated_inertias import ArticulatedFactor, Six
 from symgen.mechanics.system import System
 from symgen.model.checks.bodies import unsound_bodies
 from symgen.model.configurations.mechanics import default_values

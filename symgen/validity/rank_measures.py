@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from symgen.linear_algebra.exterior import ActuationForms, RowForms, small_family
 from symgen.linear_algebra.minor_sums import elementary_symmetric, squared_minors
-from symgen.linear_algebra.null_spaces import HouseholderSpace, NullSpace
-from symgen.linear_algebra.pivoted import reflected
+from symgen.linear_algebra.null_space.null_spaces import HouseholderSpace, NullSpace
+from symgen.linear_algebra.null_space.pivoted import reflected
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
 from symgen.symbolic.matrix import Vector, dot

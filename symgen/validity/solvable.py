@@ -16,7 +16,7 @@ from symgen.ir.kernel import Status
 from symgen.linear_algebra.exterior import ActuationForms
 from symgen.linear_algebra.guards import Guard, magnitude
 from symgen.linear_algebra.minor_sums import elementary_symmetric
-from symgen.linear_algebra.null_spaces import InputEquations, MinorSpace, NullSpace, rests_on_rank
+from symgen.linear_algebra.null_space.null_spaces import InputEquations, MinorSpace, NullSpace, rests_on_rank
 from symgen.linear_algebra.reflected_inputs import ReflectedInputs
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System

@@ -17,13 +17,13 @@ from typing import Any
 from flint import arb
 
 from symgen.ir.kernel import UNIT_ROUNDOFF, Kernel, Literal, Operand, Statement
-from symgen.ir.wide_functions import is_wide, plain_operation
+from symgen.ir.pairs.wide_functions import is_wide, plain_operation
 from symgen.model.model import Model
 from symgen.model.quantities import MAIN
 from symgen.verify.expected import Expected
 from symgen.verify.given import entry, parts_of
 from symgen.verify.reference.arithmetic.tape import ball, precision
-from symgen.verify.reference.closing import onto_manifold
+from symgen.verify.reference.configurations.closing import onto_manifold
 from symgen.verify.reference.parameter_values import ParameterValues
 from symgen.verify.reference.quantities import ITERATED
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State

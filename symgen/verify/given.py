@@ -14,7 +14,7 @@ from typing import Any
 from symgen.backends.locals import array_arguments
 from symgen.ir.kernel import Argument, Kernel, Load
 from symgen.model.quantities import DIRECTION
-from symgen.verify.reference.given import MOMENT
+from symgen.verify.reference.configurations.given import MOMENT
 from symgen.verify.reference.reference import State
 
 # The parts of a state that further arguments are taken from.

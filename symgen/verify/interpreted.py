@@ -11,7 +11,7 @@ from symgen.verify.certificate import ErrorRecord, Fault
 from symgen.verify.comparison import compare, faults_of
 from symgen.verify.expected import Expected
 from symgen.verify.given import parts_of
-from symgen.verify.many_states import run_many
+from symgen.verify.lanes.many_states import run_many
 from symgen.verify.reference.reference import State
 from symgen.verify.running.compile import Outcome
 

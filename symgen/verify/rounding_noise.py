@@ -15,8 +15,8 @@ from math import sqrt
 import numpy as np
 
 from symgen.ir.kernel import UNIT_ROUNDOFF, Function, Kernel
-from symgen.verify.lane_arithmetic import Lanes
-from symgen.verify.many_states import run_lanes
+from symgen.verify.lanes.lane_arithmetic import Lanes
+from symgen.verify.lanes.many_states import run_lanes
 from symgen.verify.single_precision import distances
 
 # Of every number that is given, the share that a state is moved by: more than it is rounded by, and so little that

@@ -12,8 +12,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from symgen.ir.kernel import UNIT_ROUNDOFF, Kernel, Program, Scalar
-from symgen.verify.lane_arithmetic import Lanes
-from symgen.verify.many_states import run_lanes
+from symgen.verify.lanes.lane_arithmetic import Lanes
+from symgen.verify.lanes.many_states import run_lanes
 
 TYPES: tuple[Scalar, Scalar] = ("float64", "float32")
 # Changes of what is given, of which d is the largest effect.

@@ -9,7 +9,7 @@ from symgen.lowering.schedule import schedule
 from symgen.model.load import load_text
 from symgen.model.quantities import MOTIONS
 from symgen.quantities.select import derive_quantities
-from symgen.verify.sampling.lanes import RoundingErrors
+from symgen.verify.lanes.rounding import RoundingErrors
 
 # A point on a rod about a place that is no number of binary digits.
 ROD = """model: rod

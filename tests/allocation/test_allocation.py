@@ -17,16 +17,16 @@ from symgen.backends.c.plain import emit_c
 from symgen.backends.python.module import emit_python
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.exterior import ActuationForms
-from symgen.linear_algebra.null_spaces import HouseholderSpace
+from symgen.linear_algebra.null_space.null_spaces import HouseholderSpace
 from symgen.linear_algebra.reflected_inputs import ReflectedInputs
-from symgen.methods.allocation import InputAllocation
 from symgen.methods.derivation import Derivation
+from symgen.methods.redundancy.allocation import InputAllocation
 from symgen.methods.spaces import derivations
 from symgen.symbolic.evaluate import Evaluator
-from symgen.verify.reference.allocation import internal_force
 from symgen.verify.reference.arithmetic.linear import column, norm, solve
 from symgen.verify.reference.arithmetic.tape import ball, precision
 from symgen.verify.reference.evaluation import Evaluation
+from symgen.verify.reference.inputs.allocation import internal_force
 from symgen.verify.reference.quantities import QUANTITIES
 from symgen.verify.reference.reference import State
 from symgen.verify.run import verify
@@ -199,7 +199,7 @@ def test_every_way_gives_the_same_inputs(text: str) -> None:
 def test_reflections_of_the_inputs_give_the_same(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """As where determinants would be too many: the direction of the internal force keeps its sign."""
     made = system(text, {**WEIGHTS, **LIMITS}[text])
-    monkeypatch.setattr("symgen.linear_algebra.null_spaces.small_family", lambda *_: False)
+    monkeypatch.setattr("symgen.linear_algebra.null_space.null_spaces.small_family", lambda *_: False)
     mechanics, generic = made.derivations.mechanics, made.derivations.generic
     ways = derivations(mechanics, generic)
     assert made.model.r == 0 or set(ways) == {"minors", "householder"}

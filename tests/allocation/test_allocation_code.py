@@ -14,7 +14,7 @@ from laws_harness import System
 from symgen.backends.c.plain import emit_c
 from symgen.backends.python.module import emit_python
 from symgen.ir.kernel import Scalar, Status
-from symgen.ir.wide import widened
+from symgen.ir.pairs.wide import widened
 from symgen.verify.interpreted import outcomes
 from symgen.verify.reference.reference import State
 

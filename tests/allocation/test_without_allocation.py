@@ -9,7 +9,7 @@ from pathlib import Path
 import allocation_models as models
 
 from symgen.cli.main import main
-from symgen.generation.recorded import as_recorded
+from symgen.generation.acceptance.recorded import as_recorded
 from symgen.generation.results import Options
 from symgen.ir.bounded import bounds_of
 from symgen.model.blocks.allocation import without_allocation

@@ -29,7 +29,7 @@ from symgen.generation.results import Options
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Kernel, Program, Scalar, Status
 from symgen.ir.library_trig import with_library_trig
-from symgen.ir.wide import widened
+from symgen.ir.pairs.wide import widened
 from symgen.pipeline import generate
 from symgen.verify.run import verify
 

@@ -22,10 +22,10 @@ from symgen.backends.python.module import emit_python
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Scalar, Status
 from symgen.model.model import Model
+from symgen.verify.lanes.lane_replay import LaneReplay
 from symgen.verify.reference.parameter_values import default_parameters
 from symgen.verify.reference.system import ReferenceSystem
 from symgen.verify.reference.translation import literal_values
-from symgen.verify.sampling.lane_replay import LaneReplay
 
 C_NUMBER = {"float64": ctypes.c_double, "float32": ctypes.c_float}
 STATES = 3

@@ -26,7 +26,7 @@ from symgen.backends.locals import array_arguments
 from symgen.backends.python.module import emit_python
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Program, Scalar, Status
-from symgen.ir.wide import widened
+from symgen.ir.pairs.wide import widened
 
 # A car that may stand across its way, masses on a rope, and a parallel robot: tests, roots, choices and functions.
 MODELS = ("rear_car", "rapkm_two_drives")

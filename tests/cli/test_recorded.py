@@ -11,12 +11,12 @@ import pytest
 from wide_record import NAME, recorded
 
 from symgen.cli.main import main
+from symgen.generation.acceptance.recorded import as_recorded
 from symgen.generation.draft import Draft
-from symgen.generation.recorded import as_recorded
 from symgen.generation.results import Options
 from symgen.generation.runnable import RunnableKernels
 from symgen.ir.kernel import Scalar
-from symgen.ir.wide_functions import works_with_pairs
+from symgen.ir.pairs.wide_functions import works_with_pairs
 from symgen.laboratory.bench.candidate import Task
 from symgen.laboratory.bench.symgen_kernels import generated, programs_of
 from symgen.model.load import load_model

@@ -16,8 +16,8 @@ from shipped import ROOT
 from symgen.backends.c import backend
 from symgen.cli import main as cli
 from symgen.diagnostics import SymgenBug
-from symgen.generation import fallback
-from symgen.generation.fallback import NARROW
+from symgen.generation.acceptance import fallback
+from symgen.generation.acceptance.fallback import NARROW
 from symgen.generation.results import Options, Result
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.guards import Guard

@@ -17,10 +17,10 @@ from symgen.methods.selection import Methods
 from symgen.model.load import load_text
 from symgen.model.model import Model
 from symgen.validity.search import ZeroSearch, symbols
-from symgen.verify.reference import closing as reference_closing
 from symgen.verify.reference import evaluation as reference_evaluation
 from symgen.verify.reference.arithmetic import linear as reference_linear
 from symgen.verify.reference.arithmetic.linear import solve
+from symgen.verify.reference.configurations import closing as reference_closing
 from symgen.verify.reference.reference import Reference
 from symgen.verify.sampling.states import sample_states
 

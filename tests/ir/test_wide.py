@@ -30,12 +30,12 @@ from symgen.ir.kernel import (
     Status,
 )
 from symgen.ir.lifted import Lifted, same_kernel
+from symgen.ir.pairs.wide import LOWERED, widened, with_sharp_thresholds
+from symgen.ir.pairs.wide_angles import MOST_PARTS
+from symgen.ir.pairs.wide_functions import WIDE, wide_function
 from symgen.ir.sincos import sincos
-from symgen.ir.wide import LOWERED, widened, with_sharp_thresholds
-from symgen.ir.wide_angles import MOST_PARTS
-from symgen.ir.wide_functions import WIDE, wide_function
 from symgen.verify.exactness import EXACT, ExactFunction
-from symgen.verify.many_states import run_many
+from symgen.verify.lanes.many_states import run_many
 from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.reference import State
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from symgen.linear_algebra.pivoted import reflected
+from symgen.linear_algebra.null_space.pivoted import reflected
 from symgen.mechanics.genericity import configurations, genericity
 from symgen.mechanics.system import System
 from symgen.methods.spaces import derivations

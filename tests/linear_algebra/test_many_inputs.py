@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from symgen.linear_algebra.exterior import ActuationForms, RowForms, small_family
-from symgen.linear_algebra.pivoted import reflected
+from symgen.linear_algebra.null_space.pivoted import reflected
 from symgen.linear_algebra.reflected_inputs import ReflectedInputs
 from symgen.mechanics.genericity import Genericity, genericity
 from symgen.mechanics.system import System

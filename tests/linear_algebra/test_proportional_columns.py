@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from symgen.ir.kernel import Status
-from symgen.linear_algebra.null_spaces import HouseholderSpace
-from symgen.linear_algebra.proportional_columns import FamilySpace, families
+from symgen.linear_algebra.null_space.null_spaces import HouseholderSpace
+from symgen.linear_algebra.null_space.proportional_columns import FamilySpace, families
 from symgen.mechanics.genericity import configurations, genericity
 from symgen.mechanics.system import System
 from symgen.methods.method import solved_for_u

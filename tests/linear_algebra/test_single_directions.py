@@ -15,8 +15,8 @@ from symgen.cli.main import main
 from symgen.ir.kernel import UNIT_ROUNDOFF, Literal, Status
 from symgen.linear_algebra.constrained_inverse import diagonal_sizes
 from symgen.linear_algebra.guards import Guard, lost_only_at_zero, magnitude, multiplied
-from symgen.linear_algebra.null_spaces import HouseholderSpace, MinorSpace
-from symgen.linear_algebra.pivoted import reflected
+from symgen.linear_algebra.null_space.null_spaces import HouseholderSpace, MinorSpace
+from symgen.linear_algebra.null_space.pivoted import reflected
 from symgen.lowering.schedule import schedule
 from symgen.mechanics.genericity import genericity
 from symgen.mechanics.system import System

@@ -13,12 +13,12 @@ from itertools import combinations
 import pytest
 
 from symgen.diagnostics import SymgenBug
-from symgen.linear_algebra.block_space import BlockSpace
 from symgen.linear_algebra.exterior import square, unit, wedge_all
 from symgen.linear_algebra.minor_sums import elementary_symmetric, squared_minors
-from symgen.linear_algebra.null_spaces import HouseholderSpace, MinorSpace, NullSpace
-from symgen.linear_algebra.pivoted import reflected
-from symgen.linear_algebra.proportional_columns import FamilySpace, families
+from symgen.linear_algebra.null_space.block_space import BlockSpace
+from symgen.linear_algebra.null_space.null_spaces import HouseholderSpace, MinorSpace, NullSpace
+from symgen.linear_algebra.null_space.pivoted import reflected
+from symgen.linear_algebra.null_space.proportional_columns import FamilySpace, families
 from symgen.linear_algebra.square import by_rows
 from symgen.symbolic.identity import every_identity_evaluated, same_values
 from symgen.symbolic.matrix import Matrix, Vector, flatten, identity, matmul, matvec, transpose

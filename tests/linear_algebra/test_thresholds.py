@@ -7,7 +7,7 @@ import pytest
 from symgen.ir.kernel import UNIT_ROUNDOFF, Status
 from symgen.linear_algebra.constrained_inverse import diagonal_sizes
 from symgen.linear_algebra.guards import Guard, multiplied
-from symgen.linear_algebra.null_spaces import MinorSpace
+from symgen.linear_algebra.null_space.null_spaces import MinorSpace
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.scalar import Graph
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from symgen.ir.kernel import Status
-from symgen.linear_algebra.constant_rows import ConstantRows
-from symgen.linear_algebra.sparser_rows import SparserRows
+from symgen.linear_algebra.rows.constant_rows import ConstantRows
+from symgen.linear_algebra.rows.sparser_rows import SparserRows
+from symgen.linear_algebra.rows.turned_rows import TurnedRows
 from symgen.linear_algebra.triangular_blocks import BlockwiseSolution, triangular_blocks
-from symgen.linear_algebra.turned_rows import TurnedRows
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.matrix import Matrix
 from symgen.symbolic.scalar import Graph

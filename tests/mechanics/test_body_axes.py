@@ -12,9 +12,9 @@ from flint import arb, ctx
 from shipped import ROOT, sparing
 
 from symgen.linear_algebra.guards import Guard
-from symgen.mechanics.body_axes import BodyAxes
-from symgen.mechanics.free_bodies import free_bodies
 from symgen.mechanics.genericity import genericity
+from symgen.mechanics.rigid_bodies.body_axes import BodyAxes
+from symgen.mechanics.rigid_bodies.free_bodies import free_bodies
 from symgen.mechanics.system import System
 from symgen.methods.inverse_dynamics.forces_eliminated import elimination_candidate
 from symgen.methods.method import INPUTS, Candidate

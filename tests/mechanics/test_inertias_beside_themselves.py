@@ -6,8 +6,8 @@ import random
 
 import pytest
 
-from symgen.mechanics.articulated_inertias import ArticulatedFactor
 from symgen.mechanics.genericity import parameter_values
+from symgen.mechanics.rigid_bodies.articulated_inertias import ArticulatedFactor
 from symgen.mechanics.system import System
 from symgen.model.load import load_text
 from symgen.symbolic.evaluate import Evaluator

@@ -7,9 +7,9 @@ import random
 import numpy as np
 import pytest
 
-from symgen.mechanics.articulated_inertias import ArticulatedFactor
-from symgen.mechanics.bodies import Bodies
-from symgen.mechanics.joint_axes import along_joints
+from symgen.mechanics.rigid_bodies.articulated_inertias import ArticulatedFactor
+from symgen.mechanics.rigid_bodies.bodies import Bodies
+from symgen.mechanics.rigid_bodies.joint_axes import along_joints
 from symgen.mechanics.system import System
 from symgen.model.load import load_text
 from symgen.symbolic.evaluate import Evaluator

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from symgen.ir.kernel import Status
-from symgen.linear_algebra.null_spaces import HouseholderSpace
-from symgen.mechanics.body_axes import BodyAxes
+from symgen.linear_algebra.null_space.null_spaces import HouseholderSpace
 from symgen.mechanics.genericity import genericity, parameter_values
+from symgen.mechanics.rigid_bodies.body_axes import BodyAxes
 from symgen.mechanics.system import System
 from symgen.methods.forward_dynamics.articulated import articulated
 from symgen.methods.inverse_dynamics.elimination import Elimination

@@ -10,7 +10,7 @@ from symgen.closedform.forms import derive_closed_forms
 from symgen.diagnostics import ModelError
 from symgen.model.load import load_text
 from symgen.model.model import Model
-from symgen.verify.reference.manifold import ManifoldRanks
+from symgen.verify.reference.configurations.manifold import ManifoldRanks
 from symgen.verify.reference.reference import Reference
 from symgen.verify.sampling.states import VerificationError, sample_states
 

@@ -12,7 +12,7 @@ import shipped
 
 import symgen.methods.forward_dynamics.articulated as by_frames
 from symgen.mechanics.genericity import genericity, parameter_values
-from symgen.mechanics.newton_euler import frame_motions
+from symgen.mechanics.rigid_bodies.newton_euler import frame_motions
 from symgen.mechanics.system import System
 from symgen.methods.forward_dynamics import joint_accelerations
 from symgen.methods.forward_dynamics.articulated import articulated

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 import shipped
 
-from symgen.linear_algebra.block_space import BlockSpace
 from symgen.linear_algebra.exterior import small_family
-from symgen.linear_algebra.null_spaces import has_few_minors
+from symgen.linear_algebra.null_space.block_space import BlockSpace
+from symgen.linear_algebra.null_space.null_spaces import has_few_minors
 from symgen.mechanics.genericity import Genericity, genericity
 from symgen.mechanics.system import System
 from symgen.methods import selection

@@ -11,8 +11,8 @@ import pytest
 from shipped import model
 
 from symgen.linear_algebra.minor_sums import elementary_symmetric
-from symgen.linear_algebra.null_spaces import MinorSpace
-from symgen.linear_algebra.pivoted import PivotedSpace, reflected
+from symgen.linear_algebra.null_space.null_spaces import MinorSpace
+from symgen.linear_algebra.null_space.pivoted import PivotedSpace, reflected
 from symgen.mechanics.genericity import configurations, genericity
 from symgen.mechanics.system import System
 from symgen.methods.derivation import Derivation

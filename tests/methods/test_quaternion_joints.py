@@ -7,10 +7,10 @@ import random
 import pytest
 
 from symgen.linear_algebra.constrained_inverse import BasisInertia
-from symgen.linear_algebra.pivoted import reflected
-from symgen.mechanics.articulated_inertias import ArticulatedFactor
+from symgen.linear_algebra.null_space.pivoted import reflected
 from symgen.mechanics.genericity import genericity, parameter_values
-from symgen.mechanics.quaternion_joints import quaternion_parts, turning_rate
+from symgen.mechanics.rigid_bodies.articulated_inertias import ArticulatedFactor
+from symgen.mechanics.rigid_bodies.quaternion_joints import quaternion_parts, turning_rate
 from symgen.mechanics.system import System
 from symgen.methods.forward_dynamics.along_spaces import nullspace
 from symgen.methods.forward_dynamics.articulated import articulated

@@ -9,7 +9,7 @@ from typing import get_args
 import pytest
 
 from symgen.ir.kernel import OperationName
-from symgen.ir.wide_functions import WIDE
+from symgen.ir.pairs.wide_functions import WIDE
 from symgen.linear_algebra.guards import magnitude
 from symgen.symbolic.calculus import derivative_along, gradient
 from symgen.symbolic.evaluate import FUNCTIONS, Evaluator

@@ -7,8 +7,8 @@ from fractions import Fraction
 
 import pytest
 
-from symgen.linear_algebra.constant_rows import MOST_PIVOTS_TRIED, ConstantRows
-from symgen.linear_algebra.sparser_rows import MOST_ROWS_COMBINED, SparserRows
+from symgen.linear_algebra.rows.constant_rows import MOST_PIVOTS_TRIED, ConstantRows
+from symgen.linear_algebra.rows.sparser_rows import MOST_ROWS_COMBINED, SparserRows
 from symgen.mechanics.genericity import genericity
 from symgen.mechanics.structure import MOST_ENTRIES, analyse
 from symgen.mechanics.system import System

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 import shipped
 
-from symgen.linear_algebra.null_spaces import MinorSpace
-from symgen.linear_algebra.pivoted import reflected
+from symgen.linear_algebra.null_space.null_spaces import MinorSpace
+from symgen.linear_algebra.null_space.pivoted import reflected
 from symgen.mechanics.genericity import genericity, parameter_values
 from symgen.mechanics.system import System
 from symgen.methods.derivation import Derivation

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from symgen.ir.kernel import Kernel
-from symgen.ir.wide import widened
+from symgen.ir.pairs.wide import widened
 from symgen.lowering.schedule import schedule
 from symgen.model.load import load_text
 from symgen.model.model import Model

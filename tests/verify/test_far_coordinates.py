@@ -8,18 +8,18 @@ from pathlib import Path
 
 import pytest
 
-from symgen.generation.coordinate_bounds import CoordinateBounds
+from symgen.generation.acceptance.coordinate_bounds import CoordinateBounds
+from symgen.generation.acceptance.recorded import as_recorded
 from symgen.generation.draft import Draft, draft_of
-from symgen.generation.recorded import as_recorded
 from symgen.generation.results import Options
 from symgen.ir.bounded_coordinates import CoordinateBound
 from symgen.ir.kernel import Kernel, Scalar, Status
 from symgen.model.load import load_text
 from symgen.pipeline import generate
 from symgen.verify.expected import Expected
-from symgen.verify.far_coordinates import FarCoordinates
 from symgen.verify.interpreted import outcomes
-from symgen.verify.lost_digits import LostDigits
+from symgen.verify.margins.far_coordinates import FarCoordinates
+from symgen.verify.margins.lost_digits import LostDigits
 from symgen.verify.reference.reference import State
 from symgen.verify.sampling.outside import OutsideStates
 from symgen.verify.sampling.states import in_scalar

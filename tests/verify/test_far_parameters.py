@@ -11,22 +11,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from symgen.generation.acceptance.parameter_bounds import ParameterBounds
+from symgen.generation.acceptance.recorded import as_recorded
 from symgen.generation.draft import draft_of
 from symgen.generation.notices import notices
-from symgen.generation.parameter_bounds import ParameterBounds
-from symgen.generation.recorded import as_recorded
 from symgen.generation.results import Options, Result
 from symgen.ir.bounded import Bound
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Program, Scalar, Statement, Status
-from symgen.ir.wide import widened
+from symgen.ir.pairs.wide import widened
 from symgen.model.load import load_model
 from symgen.pipeline import generate
 from symgen.verify.expected import Expected
-from symgen.verify.far_errors import Far, FarErrors
-from symgen.verify.far_parameters import FAR_STATES, FarParameters
-from symgen.verify.far_states import FarStates
 from symgen.verify.interpreted import outcomes
-from symgen.verify.lane_arithmetic import Lanes
+from symgen.verify.lanes.lane_arithmetic import Lanes
+from symgen.verify.margins.far_errors import Far, FarErrors
+from symgen.verify.margins.far_parameters import FAR_STATES, FarParameters
+from symgen.verify.margins.far_states import FarStates
 from symgen.verify.reference.reference import State
 from symgen.verify.sampling.plain_values import values_at
 from symgen.verify.tolerance import FACTOR, expectations

@@ -24,8 +24,8 @@ from symgen.ir.kernel import (
     Statement,
     Status,
 )
-from symgen.ir.wide_functions import WIDE
-from symgen.verify.many_states import run_many
+from symgen.ir.pairs.wide_functions import WIDE
+from symgen.verify.lanes.many_states import run_many
 
 SPECIAL = (0.0, -0.0, 1.0, -1.0, 0.5, 1e-40, -3e38, math.inf, -math.inf, math.nan)
 UNARY = ("neg", "abs", "sqrt", "tan", "asin", "acos", "atan", "exp", "log", "sinh", "cosh", "tanh")

@@ -16,7 +16,7 @@ from symgen.laboratory.zoo.witness.witness import Witness
 from symgen.model.load import load_text
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import outcomes
-from symgen.verify.next_to_singular import NextToSingular
+from symgen.verify.margins.next_to_singular import NextToSingular
 from symgen.verify.reference.reference import State
 from symgen.verify.sampling.nearby import Surroundings
 from symgen.verify.sampling.states import in_scalar

@@ -21,8 +21,8 @@ from symgen.backends.locals import Names, all_statements, array_arguments
 from symgen.backends.quantities import BATCHED, meaning
 from symgen.backends.scalars import C_TYPE, file_stem
 from symgen.ir.kernel import Argument, Check, Kernel, Load, Local, Operand, Program, Status
+from symgen.ir.pairs.wide_functions import works_with_pairs
 from symgen.ir.split import names_in, names_of_blocks, split, without_first
-from symgen.ir.wide_functions import works_with_pairs
 from symgen.model.model import Model
 from symgen.naming import macro_name
 from symgen.records import dataclass

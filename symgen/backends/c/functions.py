@@ -16,7 +16,7 @@ from symgen.backends.comments import c_comment_lines
 from symgen.backends.locals import Names, array_arguments, used_locals
 from symgen.backends.scalars import C_TYPE, SUFFIX
 from symgen.ir.kernel import Check, Kernel, Local, Operand, Program, Statement, Status
-from symgen.ir.wide_functions import works_with_pairs
+from symgen.ir.pairs.wide_functions import works_with_pairs
 from symgen.model.model import Model
 from symgen.records import dataclass
 

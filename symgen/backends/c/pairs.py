@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from symgen.backends.c.statements import c_helper
 from symgen.backends.scalars import C_TYPE
 from symgen.ir.kernel import Block, Function, Kernel, Program, Scalar, Statement
-from symgen.ir.wide_functions import works_with_pairs
+from symgen.ir.pairs.wide_functions import works_with_pairs
 from symgen.naming import macro_name
 from symgen.records import dataclass
 

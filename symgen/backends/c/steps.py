@@ -13,8 +13,8 @@ from heapq import heappop, heappush
 from symgen.backends.c.statements import CStatements, c_helper, c_literal
 from symgen.backends.scalars import C_TYPE
 from symgen.ir.kernel import Kernel, Literal, Operand, OperationName, Program, Scalar
+from symgen.ir.pairs.wide_functions import is_wide_operation, wide_function, works_with_pairs
 from symgen.ir.split import names_in, names_of_check
-from symgen.ir.wide_functions import is_wide_operation, wide_function, works_with_pairs
 from symgen.records import dataclass
 
 # Of a step: what it sets and what it reads at most.

@@ -6,7 +6,7 @@ from symgen.backends.c.steps import step_names
 from symgen.backends.locals import all_statements, used_locals
 from symgen.backends.scalars import C_TYPE, SUFFIX
 from symgen.ir.kernel import Kernel, Local, Program
-from symgen.ir.wide_functions import with_bodies
+from symgen.ir.pairs.wide_functions import with_bodies
 from symgen.naming import macro_name
 from symgen.records import dataclass
 

@@ -17,7 +17,7 @@ from symgen.backends.render import render
 from symgen.backends.scalars import file_stem
 from symgen.backends.statements import Helper
 from symgen.ir.kernel import Kernel, Program
-from symgen.ir.wide_functions import wide_function, wide_operations, with_bodies
+from symgen.ir.pairs.wide_functions import wide_function, wide_operations, with_bodies
 from symgen.model.model import Model
 from symgen.records import dataclass
 

@@ -16,8 +16,8 @@ from symgen.backends.c.steps import TABLE, step_names
 from symgen.backends.operations import count_operations
 from symgen.backends.python.module import emit_python
 from symgen.backends.scalars import SUFFIX, file_stem
+from symgen.generation.acceptance.recorded import as_recorded
 from symgen.generation.draft import Draft
-from symgen.generation.recorded import as_recorded
 from symgen.generation.results import Options
 from symgen.ir.kernel import Kernel, Literal, Program, Scalar
 from symgen.ir.library_trig import with_library_trig

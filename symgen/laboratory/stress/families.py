@@ -13,7 +13,7 @@ from symgen.laboratory.stress.zeros import BITS as PLACE_BITS
 from symgen.laboratory.stress.zeros import Place, places
 from symgen.model.model import Model
 from symgen.verify.reference.arithmetic.tape import ball, precision
-from symgen.verify.reference.closing import onto_manifold
+from symgen.verify.reference.configurations.closing import onto_manifold
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.sampling.states import sample_states
 

@@ -13,8 +13,8 @@ from symgen.laboratory.stress.determinants import Trouble
 from symgen.validity.descent import Evaluated, zero_beside
 from symgen.verify.reference.arithmetic.linear import column, norm
 from symgen.verify.reference.arithmetic.tape import precision
-from symgen.verify.reference.closing import onto_manifold
-from symgen.verify.reference.manifold import starts
+from symgen.verify.reference.configurations.closing import onto_manifold
+from symgen.verify.reference.configurations.manifold import starts
 from symgen.verify.reference.parameter_values import default_parameters
 from symgen.verify.reference.reference import Reference
 

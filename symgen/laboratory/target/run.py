@@ -15,10 +15,10 @@ from threading import Lock
 from symgen.backends.c.given_sines import emit_c_sc
 from symgen.backends.c.plain import emit_c
 from symgen.backends.c.prepared import emit_c_prepared
-from symgen.generation.recorded import as_recorded
+from symgen.generation.acceptance.recorded import as_recorded
 from symgen.generation.results import Options
 from symgen.ir.kernel import Program, Scalar
-from symgen.ir.wide_functions import with_bodies, works_with_pairs
+from symgen.ir.pairs.wide_functions import with_bodies, works_with_pairs
 from symgen.laboratory.target.build import STACK_WATCHED, Workshop
 from symgen.laboratory.target.compare import Units, compare, units_of, uses_library
 from symgen.laboratory.target.cores import LEVELS, Compiler, Core

@@ -18,7 +18,7 @@ from typing import Literal, TypeAlias
 from symgen.backends.operations import count_operations
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.ir.library_trig import with_library_trig
-from symgen.ir.wide_functions import works_with_pairs
+from symgen.ir.pairs.wide_functions import works_with_pairs
 from symgen.laboratory.target.cores import Compiler, Core
 
 PORTABLE, LIBM = "portable", "libm"

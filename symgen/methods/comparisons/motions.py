@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.guards import Guard
-from symgen.linear_algebra.null_spaces import NullSpace
+from symgen.linear_algebra.null_space.null_spaces import NullSpace
 from symgen.linear_algebra.reflections import Reflections
 from symgen.methods.forward_dynamics.along_spaces import along_space
 from symgen.methods.forward_dynamics.motion import Motion, Problem

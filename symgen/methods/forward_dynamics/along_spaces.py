@@ -8,7 +8,7 @@ from functools import partial
 
 from symgen.linear_algebra.constrained_inverse import ConstrainedInertia
 from symgen.linear_algebra.guards import Guard
-from symgen.linear_algebra.null_spaces import LONGEST_PRODUCT, MinorSpace, NullSpace
+from symgen.linear_algebra.null_space.null_spaces import LONGEST_PRODUCT, MinorSpace, NullSpace
 from symgen.linear_algebra.refinement import of_motion, refined
 from symgen.mechanics.genericity import Genericity
 from symgen.methods.derivation import Derivation

@@ -13,13 +13,13 @@ from enum import Enum, auto
 from functools import cached_property, partial
 
 from symgen.linear_algebra.guards import Guard
-from symgen.linear_algebra.null_spaces import LONGEST_PRODUCT
-from symgen.linear_algebra.pivoted import reflected
+from symgen.linear_algebra.null_space.null_spaces import LONGEST_PRODUCT
+from symgen.linear_algebra.null_space.pivoted import reflected
 from symgen.linear_algebra.refinement import Solution, refined
-from symgen.mechanics.articulated_inertias import ArticulatedFactor, Six
-from symgen.mechanics.bodies import Vector3
 from symgen.mechanics.genericity import Genericity
-from symgen.mechanics.newton_euler import frame_motions, inertial_wrenches
+from symgen.mechanics.rigid_bodies.articulated_inertias import ArticulatedFactor, Six
+from symgen.mechanics.rigid_bodies.bodies import Vector3
+from symgen.mechanics.rigid_bodies.newton_euler import frame_motions, inertial_wrenches
 from symgen.mechanics.system import System
 from symgen.methods.forward_dynamics.frame_forces import FrameForces, added_loads
 from symgen.methods.forward_dynamics.held_lengths import HeldLengths, LengthsApart, held_lengths

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from symgen.mechanics.articulated_inertias import Six
+from symgen.mechanics.rigid_bodies.articulated_inertias import Six
 from symgen.mechanics.system import System
 from symgen.model.expressions.expression import Expression
 from symgen.model.kinematics.components import components_in, definitions_before_frames

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.guards import Guard
 from symgen.linear_algebra.refinement import Solution
-from symgen.mechanics.quaternion_joints import QuaternionJoint, quaternion_joint
+from symgen.mechanics.rigid_bodies.quaternion_joints import QuaternionJoint, quaternion_joint
 from symgen.mechanics.system import System
 from symgen.methods.forward_dynamics.motion import Problem
 from symgen.methods.forward_dynamics.schur import MassMatrixFactor, SchurElimination

@@ -14,8 +14,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
-from symgen.mechanics.articulated_inertias import ArticulatedFactor
-from symgen.mechanics.newton_euler import FrameMotion, joint_motions
+from symgen.mechanics.rigid_bodies.articulated_inertias import ArticulatedFactor
+from symgen.mechanics.rigid_bodies.newton_euler import FrameMotion, joint_motions
 from symgen.mechanics.system import System
 from symgen.methods.forward_dynamics.frame_forces import Load, added_loads
 from symgen.methods.forward_dynamics.loop_points import LoopPoint, acceleration, loop_points

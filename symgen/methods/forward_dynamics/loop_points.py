@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from symgen.mechanics.articulated_inertias import Six
-from symgen.mechanics.bodies import Vector3
 from symgen.mechanics.held_rows import with_leaves
-from symgen.mechanics.newton_euler import FrameMotion
+from symgen.mechanics.rigid_bodies.articulated_inertias import Six
+from symgen.mechanics.rigid_bodies.bodies import Vector3
+from symgen.mechanics.rigid_bodies.newton_euler import FrameMotion
 from symgen.mechanics.system import System
 from symgen.model.kinematics.components import components_in
 from symgen.model.kinematics.triples import applied, cross, plus, transposed, triple

@@ -13,7 +13,7 @@ from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 
-from symgen.linear_algebra.null_spaces import has_few_minors
+from symgen.linear_algebra.null_space.null_spaces import has_few_minors
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
 from symgen.methods.admission import DECIMALS, ByTheorem, Singular, Validity

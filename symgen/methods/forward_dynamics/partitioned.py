@@ -16,8 +16,8 @@ from functools import cached_property
 
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.guards import Guard
-from symgen.linear_algebra.null_spaces import LONGEST_PRODUCT, MinorSpace, has_few_minors
-from symgen.linear_algebra.pivoted import reflected
+from symgen.linear_algebra.null_space.null_spaces import LONGEST_PRODUCT, MinorSpace, has_few_minors
+from symgen.linear_algebra.null_space.pivoted import reflected
 from symgen.mechanics.never_zero import Definite
 from symgen.mechanics.system import System
 from symgen.methods.admission import Validity, validity_of

@@ -12,14 +12,14 @@ from typing import TypeAlias
 
 from symgen.linear_algebra.constrained_inverse import ConstrainedInertia
 from symgen.linear_algebra.guards import Guard
-from symgen.linear_algebra.null_spaces import NullSpace
+from symgen.linear_algebra.null_space.null_spaces import NullSpace
 from symgen.linear_algebra.refinement import of_motion, refined
 from symgen.methods.derivation import Derivation
 from symgen.methods.forward_dynamics.minor_motion import MinorMotion, minor_motion
 from symgen.methods.forward_dynamics.motion import Motion, Problem
 from symgen.methods.forward_dynamics.schur import SchurQR
-from symgen.methods.friction_loads import FrictionLoads
-from symgen.methods.rough_columns import RoughColumns
+from symgen.methods.friction.loads import FrictionLoads
+from symgen.methods.friction.rough_columns import RoughColumns
 from symgen.symbolic.matrix import Vector, matvec, subtract_vectors
 from symgen.symbolic.traverse import substitute
 

@@ -13,7 +13,7 @@ from typing import Protocol
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.constrained_inverse import Cholesky, diagonal_sizes
 from symgen.linear_algebra.guards import Guard
-from symgen.linear_algebra.null_spaces import LONGEST_PRODUCT
+from symgen.linear_algebra.null_space.null_spaces import LONGEST_PRODUCT
 from symgen.linear_algebra.orthogonal import PivotedGramSchmidt, WeightedGramSchmidt
 from symgen.linear_algebra.refinement import Solution, less_forces, missing, of_columns, refined
 from symgen.methods.forward_dynamics.motion import Motion, Problem

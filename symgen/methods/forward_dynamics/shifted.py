@@ -6,7 +6,7 @@ It loses digits with the square of the condition number of B, and is taken only 
 from __future__ import annotations
 
 from symgen.linear_algebra.constrained_inverse import Cholesky, diagonal_sizes
-from symgen.linear_algebra.null_spaces import NullSpace
+from symgen.linear_algebra.null_space.null_spaces import NullSpace
 from symgen.methods.forward_dynamics.along_spaces import along_space, reactions
 from symgen.methods.forward_dynamics.motion import Motion, Problem
 from symgen.methods.forward_dynamics.motions import AlongNullSpace, constraints

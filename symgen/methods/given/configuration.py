@@ -21,8 +21,8 @@ from typing import TYPE_CHECKING
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.constrained_inverse import Cholesky
 from symgen.linear_algebra.guards import LEFT, Guard, magnitude, moved
-from symgen.linear_algebra.null_spaces import HouseholderSpace
-from symgen.linear_algebra.pivoted import reflected
+from symgen.linear_algebra.null_space.null_spaces import HouseholderSpace
+from symgen.linear_algebra.null_space.pivoted import reflected
 from symgen.methods.given.functions import Given
 from symgen.symbolic.calculus import gradient, jacobian
 from symgen.symbolic.matrix import Matrix, Vector, add, dot, matmul, matvec, transpose

@@ -15,10 +15,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, TypeAlias
 
 from symgen.linear_algebra.guards import Guard
-from symgen.linear_algebra.null_spaces import MinorSpace, NullSpace, has_few_minors
-from symgen.linear_algebra.pivoted import reflected
-from symgen.linear_algebra.sparser_rows import SparserRows
-from symgen.linear_algebra.turned_rows import TurnedRows
+from symgen.linear_algebra.null_space.null_spaces import MinorSpace, NullSpace, has_few_minors
+from symgen.linear_algebra.null_space.pivoted import reflected
+from symgen.linear_algebra.rows.sparser_rows import SparserRows
+from symgen.linear_algebra.rows.turned_rows import TurnedRows
 from symgen.methods.given.functions import Given
 from symgen.methods.given.motion import GivenMotion
 from symgen.symbolic.calculus import derivative_along

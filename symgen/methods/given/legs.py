@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from symgen.linear_algebra.constant_rows import ConstantRows
 from symgen.linear_algebra.guards import Guard, tested
-from symgen.linear_algebra.sparser_rows import SparserRows
+from symgen.linear_algebra.rows.constant_rows import ConstantRows
+from symgen.linear_algebra.rows.sparser_rows import SparserRows
+from symgen.linear_algebra.rows.turned_rows import TurnedRows
 from symgen.linear_algebra.triangular_blocks import BlockwiseSolution, triangular_blocks
-from symgen.linear_algebra.turned_rows import TurnedRows
 from symgen.mechanics.system import System
 from symgen.methods.admission import ByTheorem
 from symgen.methods.given.functions import Given, given_of, turning

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Sequence
 from itertools import combinations, permutations
 from typing import TypeAlias
 
-from symgen.linear_algebra.sparser_rows import MOST_ROWS_COMBINED, SparserRows
+from symgen.linear_algebra.rows.sparser_rows import MOST_ROWS_COMBINED, SparserRows
 from symgen.methods.given.row_solution import SolvableRow, solvable_row
 from symgen.records import dataclass
 from symgen.symbolic.calculus import derivative_along, gradient

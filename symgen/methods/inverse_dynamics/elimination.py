@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from symgen.linear_algebra.balance import along_rates, multipliers_alone
-from symgen.linear_algebra.null_spaces import LONGEST_PRODUCT
+from symgen.linear_algebra.null_space.null_spaces import LONGEST_PRODUCT
 from symgen.mechanics.system import System
 from symgen.symbolic.matrix import Matrix, Vector, dot
 from symgen.symbolic.passes.factoring import LONGEST_CANCELLED

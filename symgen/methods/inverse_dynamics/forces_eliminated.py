@@ -17,7 +17,7 @@ from dataclasses import replace
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.exterior import ActuationForms, RowForms, cross_product, unit, wedge_all
 from symgen.linear_algebra.guards import Guard, beside_lengths, magnitude
-from symgen.linear_algebra.null_spaces import LONGEST_PRODUCT, HouseholderSpace
+from symgen.linear_algebra.null_space.null_spaces import LONGEST_PRODUCT, HouseholderSpace
 from symgen.linear_algebra.square import by_rows
 from symgen.mechanics.absolute_angles import AbsoluteAngles, absolute_angles
 from symgen.mechanics.genericity import Genericity
@@ -293,11 +293,11 @@ def _in_body_axes(workspace: Workspace, system: MethodInput) -> MethodInput:
     """The system with the twists of free bodies for rates, where its equations count less that way."""
     if not workspace.model.mechanism.has_mass:
         return system
-    from symgen.mechanics.free_bodies import free_bodies  # models given by energies start without it
+    from symgen.mechanics.rigid_bodies.free_bodies import free_bodies  # models given by energies start without it
 
     if not free_bodies(system.mechanics):
         return system
-    from symgen.mechanics.body_axes import BodyAxes
+    from symgen.mechanics.rigid_bodies.body_axes import BodyAxes
 
     turned = MethodInput(BodyAxes(workspace.model, workspace.lumped), workspace.generic)
     return turned if cost(turned.given).weight < cost(system.given).weight else system

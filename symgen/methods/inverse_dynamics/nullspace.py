@@ -19,7 +19,7 @@ from symgen.ir.kernel import Status
 from symgen.linear_algebra.blocks import components
 from symgen.linear_algebra.exterior import ActuationForms, RowForms, cross_product, small_family
 from symgen.linear_algebra.guards import Guard
-from symgen.linear_algebra.null_spaces import MinorSpace
+from symgen.linear_algebra.null_space.null_spaces import MinorSpace
 from symgen.methods.admission import OfInputs, proof_for
 from symgen.methods.inverse_dynamics.estimates import least_of_basis
 from symgen.methods.inverse_dynamics.rates import Rates, reduced_rates

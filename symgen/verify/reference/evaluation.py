@@ -19,9 +19,9 @@ from symgen.verify.reference.arithmetic.linear import (
     rows_of,
     solve,
 )
-from symgen.verify.reference.driven import Driven
-from symgen.verify.reference.manifold import ManifoldRanks
-from symgen.verify.reference.parts import piece, placed
+from symgen.verify.reference.configurations.manifold import ManifoldRanks
+from symgen.verify.reference.configurations.parts import piece, placed
+from symgen.verify.reference.inputs.driven import Driven
 from symgen.verify.reference.system import Configuration, ReferenceSystem
 
 Derivative: TypeAlias = Callable[["Evaluation", Any], Any]

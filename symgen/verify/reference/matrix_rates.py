@@ -17,9 +17,9 @@ from symgen.model.mechanism import component
 from symgen.model.model import Model
 from symgen.verify.reference.arithmetic.tape import Register, Replay, Tape, replay_of
 from symgen.verify.reference.arithmetic.taylor import CONSTANT, Polynomial, Taylor
+from symgen.verify.reference.configurations.parts import Part
 from symgen.verify.reference.mechanism.bodies import BodyRows
 from symgen.verify.reference.mechanism.frames import Frames
-from symgen.verify.reference.parts import Part
 from symgen.verify.reference.translation import Moving, Translation, translation
 
 

@@ -10,8 +10,8 @@ from typing import Any
 from flint import arb, arb_mat
 
 from symgen.verify.reference.arithmetic.blocks import sum_of_minors
+from symgen.verify.reference.configurations.parts import Part, piece
 from symgen.verify.reference.evaluation import Evaluation
-from symgen.verify.reference.parts import Part, piece
 
 
 def constraint_measure(e: Evaluation) -> Any:

@@ -9,13 +9,13 @@ from collections.abc import Callable
 from typing import Any
 
 from symgen.model.quantities import DIRECTION, ROWS
-from symgen.verify.reference.allocation import allocated, utilisation
 from symgen.verify.reference.arithmetic.linear import column, identity, right_pseudoinverse
+from symgen.verify.reference.configurations.given import QUANTITIES_OF_GIVEN
+from symgen.verify.reference.configurations.parts import placed
 from symgen.verify.reference.evaluation import Evaluation
 from symgen.verify.reference.friction import friction_of
-from symgen.verify.reference.given import QUANTITIES_OF_GIVEN
+from symgen.verify.reference.inputs.allocation import allocated, utilisation
 from symgen.verify.reference.measures import actuation_measure, constraint_measure
-from symgen.verify.reference.parts import placed
 from symgen.verify.reference.slopes import curvature, jacobian
 
 

@@ -20,10 +20,10 @@ from symgen.model.model import Model
 from symgen.model.quantities import ROWS
 from symgen.verify.reference.arithmetic.linear import square
 from symgen.verify.reference.arithmetic.tape import ball, precision
+from symgen.verify.reference.configurations.manifold import ManifoldRanks, generic_ranks
 from symgen.verify.reference.evaluation import Evaluation
 from symgen.verify.reference.friction import FrictionLocksError
-from symgen.verify.reference.limits import NoneWithinError
-from symgen.verify.reference.manifold import ManifoldRanks, generic_ranks
+from symgen.verify.reference.inputs.limits import NoneWithinError
 from symgen.verify.reference.measures import measures_of_parts
 from symgen.verify.reference.quantities import DIFFERENCED, QUANTITIES
 from symgen.verify.reference.system import ReferenceSystem

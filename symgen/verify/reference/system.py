@@ -23,12 +23,12 @@ from symgen.model.model import Model
 from symgen.verify.reference.arithmetic.adjoints import shorter_gradients
 from symgen.verify.reference.arithmetic.tape import Register, Replay, Tape, replay_of
 from symgen.verify.reference.arithmetic.taylor import CONSTANT, Polynomial, Taylor
-from symgen.verify.reference.driven import blocks_of_inputs
+from symgen.verify.reference.configurations.parts import parts, touched
+from symgen.verify.reference.inputs.driven import blocks_of_inputs
 from symgen.verify.reference.matrix_rates import MatrixRates
 from symgen.verify.reference.mechanism.bodies import BodyJacobian, BodyRows, weights_of
 from symgen.verify.reference.mechanism.frames import Frames
 from symgen.verify.reference.motion import DriftAlongRate
-from symgen.verify.reference.parts import parts, touched
 from symgen.verify.reference.translation import Translation, literals_of, translation, uses_components
 
 

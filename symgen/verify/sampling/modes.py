@@ -16,12 +16,12 @@ from math import pi
 
 import numpy as np
 
-from symgen.verify.lane_arithmetic import Lanes
+from symgen.verify.lanes.lane_arithmetic import Lanes
+from symgen.verify.lanes.loops_in_lanes import DAMPED_STEPS, LoopsInLanes
+from symgen.verify.lanes.ranks_in_lanes import is_regular, matrices, ranked_parts
 from symgen.verify.reference.arithmetic.tape import precision
 from symgen.verify.reference.parameter_values import default_parameters
 from symgen.verify.reference.reference import Reference
-from symgen.verify.sampling.loops_in_lanes import DAMPED_STEPS, LoopsInLanes
-from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, ranked_parts
 from symgen.verify.sampling.reach import reachable
 
 # Binary digits in which parameters and literals are worked out before they are floats.

@@ -16,14 +16,14 @@ from typing import Any
 
 import numpy as np
 
-from symgen.verify.lane_arithmetic import Lanes
+from symgen.verify.lanes.lane_arithmetic import Lanes
+from symgen.verify.lanes.loops_in_lanes import DEPENDENT, LoopsInLanes, lengths_of
+from symgen.verify.lanes.masses_in_lanes import MassesInLanes
+from symgen.verify.lanes.ranks_in_lanes import is_regular, matrices, measures, ranked_parts
+from symgen.verify.lanes.rates_in_lanes import RatesInLanes
 from symgen.verify.reference.parameter_values import default_parameters
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
-from symgen.verify.sampling.loops_in_lanes import DEPENDENT, LoopsInLanes, lengths_of
-from symgen.verify.sampling.masses_in_lanes import MassesInLanes
 from symgen.verify.sampling.plain_values import values_at
-from symgen.verify.sampling.ranks_in_lanes import is_regular, matrices, measures, ranked_parts
-from symgen.verify.sampling.rates_in_lanes import RatesInLanes
 from symgen.verify.sampling.reach import reachable, unstated_lengths
 from symgen.verify.sampling.states import Sample
 from symgen.verify.sampling.task_ahead import TaskInLanes

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from symgen.model.model import Coordinate
-from symgen.verify.lane_arithmetic import Lanes
+from symgen.verify.lanes.lane_arithmetic import Lanes
 
 # How far lengths without a range reach, in the ranges taken for granted.
 LENGTH_REACH = 3.2

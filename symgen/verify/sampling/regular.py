@@ -18,10 +18,10 @@ from typing import Any
 
 from symgen.model.expressions.names import shown_names
 from symgen.verify.reference.arithmetic.tape import ball
-from symgen.verify.reference.closing import admissible, closed
-from symgen.verify.reference.manifold import exceeds, starts
+from symgen.verify.reference.configurations.closing import admissible, closed
+from symgen.verify.reference.configurations.manifold import exceeds, starts
+from symgen.verify.reference.configurations.parts import Part
 from symgen.verify.reference.parameter_values import ParameterValues, default_parameters
-from symgen.verify.reference.parts import Part
 from symgen.verify.reference.reference import BeyondLimitsError, LocksError, Reference, ReferenceValueError, State
 from symgen.verify.sampling.plain_values import SAMPLING_BITS, floats, in_floats, measured, settled
 from symgen.verify.sampling.reach import out_of_range

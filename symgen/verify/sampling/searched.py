@@ -18,16 +18,16 @@ from math import dist
 import numpy as np
 
 from symgen.ir.kernel import UNIT_ROUNDOFF, Function, Kernel, Scalar
-from symgen.ir.wide import paired
+from symgen.ir.pairs.wide import paired
 from symgen.model.quantities import MAIN
 from symgen.runtime.activity import working
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import outcomes
-from symgen.verify.lane_arithmetic import Lanes
+from symgen.verify.lanes.lane_arithmetic import Lanes
+from symgen.verify.lanes.rounding import RoundingErrors
 from symgen.verify.reference.reference import ReferenceValueError
 from symgen.verify.running.compile import Outcome
 from symgen.verify.sampling.inertias import DIVIDED_BY_MASSES, REGULAR_INERTIA
-from symgen.verify.sampling.lanes import RoundingErrors
 from symgen.verify.sampling.nearby import Nearby, Surroundings, joined, of_samples
 from symgen.verify.sampling.settling import NEARER, Settling
 from symgen.verify.sampling.states import Sample, rounded

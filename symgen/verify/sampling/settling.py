@@ -8,14 +8,14 @@ from math import hypot, isfinite, sqrt
 
 import numpy as np
 
+from symgen.verify.lanes.loops_in_lanes import LoopsInLanes
+from symgen.verify.lanes.ranks_in_lanes import lost_together, matrices, ranked_parts
 from symgen.verify.reference.arithmetic.tape import precision
-from symgen.verify.reference.closing import onto_manifold
-from symgen.verify.reference.manifold import exceeds
+from symgen.verify.reference.configurations.closing import onto_manifold
+from symgen.verify.reference.configurations.manifold import exceeds
 from symgen.verify.reference.parameter_values import ParameterValues
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
-from symgen.verify.sampling.loops_in_lanes import LoopsInLanes
 from symgen.verify.sampling.plain_values import PROJECTED, SAMPLING_BITS, floats, settled, values_at
-from symgen.verify.sampling.ranks_in_lanes import lost_together, matrices, ranked_parts
 from symgen.verify.sampling.regular import REGULAR_SHARE
 from symgen.verify.sampling.states import Sample
 from symgen.verify.sampling.task_ahead import with_task

@@ -13,14 +13,14 @@ from symgen.ir.kernel import Scalar
 from symgen.model.quantities import MEASURED, MEASURED_PLACES, PARTITION, ROWS, TASK_OPEN, TASK_PLACES, TASK_RATES
 from symgen.runtime.activity import working
 from symgen.verify.reference.arithmetic.tape import precision
-from symgen.verify.reference.evaluation import Evaluation
-from symgen.verify.reference.given import (
+from symgen.verify.reference.configurations.given import (
     USUAL_STEPS,
     is_near_measured,
     is_near_task,
     measured_determine,
     task_determines,
 )
+from symgen.verify.reference.evaluation import Evaluation
 from symgen.verify.reference.quantities import CURVED, DIFFERENCED, ITERATED, RATES
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.sampling.inertias import Inertias

@@ -8,11 +8,11 @@ from functools import cached_property
 
 import numpy as np
 
-from symgen.verify.lane_arithmetic import Lanes
-from symgen.verify.reference.given import MOMENT
+from symgen.verify.lanes.lane_arithmetic import Lanes
+from symgen.verify.lanes.lane_replay import LaneReplay
+from symgen.verify.reference.configurations.given import MOMENT
 from symgen.verify.reference.reference import Reference, State
 from symgen.verify.reference.system import ReferenceSystem
-from symgen.verify.sampling.lane_replay import LaneReplay
 from symgen.verify.sampling.plain_values import SAMPLING_BITS, floats
 
 

@@ -9,8 +9,8 @@ from flint import arb
 
 from symgen.model.load import load_text
 from symgen.verify.reference.arithmetic.tape import precision
-from symgen.verify.reference.closing import closed
-from symgen.verify.reference.manifold import RANK_BITS
+from symgen.verify.reference.configurations.closing import closed
+from symgen.verify.reference.configurations.manifold import RANK_BITS
 from symgen.verify.reference.system import ReferenceSystem
 from symgen.verify.reference.translation import literal_values
 

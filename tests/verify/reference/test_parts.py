@@ -9,8 +9,8 @@ import pytest
 from symgen.model.load import load_text
 from symgen.verify.reference.arithmetic.linear import norm
 from symgen.verify.reference.arithmetic.tape import precision
+from symgen.verify.reference.configurations.parts import Part, parts
 from symgen.verify.reference.measures import measures_of_parts
-from symgen.verify.reference.parts import Part, parts
 from symgen.verify.reference.reference import Reference
 from symgen.verify.sampling.states import sample_states
 

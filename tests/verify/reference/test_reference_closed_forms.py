@@ -14,8 +14,8 @@ from textbook_mechanisms import build, double_pendulum, skate, slider_crank, thr
 from symgen.model.model import Model
 from symgen.verify.reference.arithmetic.linear import column, identity, norm, pseudoinverse
 from symgen.verify.reference.arithmetic.tape import precision
-from symgen.verify.reference.closing import onto_manifold
-from symgen.verify.reference.manifold import ManifoldRanks, starts
+from symgen.verify.reference.configurations.closing import onto_manifold
+from symgen.verify.reference.configurations.manifold import ManifoldRanks, starts
 from symgen.verify.reference.parameter_values import default_parameters
 from symgen.verify.reference.reference import REFERENCE_DIGITS, Reference, ReferenceValueError, State
 

@@ -9,9 +9,9 @@ import pytest
 
 from symgen.model.load import load_text
 from symgen.model.model import Model
+from symgen.verify.lanes.loops_in_lanes import LoopsInLanes
 from symgen.verify.reference.parameter_values import default_parameters
 from symgen.verify.reference.reference import Reference
-from symgen.verify.sampling.loops_in_lanes import LoopsInLanes
 from symgen.verify.sampling.modes import modes
 from symgen.verify.sampling.nearby import Surroundings
 from symgen.verify.sampling.states import sample_states

@@ -9,6 +9,8 @@ import pytest
 from flint import arb, arb_mat
 
 from symgen.model.load import load_text
+from symgen.verify.lanes import ranks_in_lanes
+from symgen.verify.lanes.ranks_in_lanes import RankedPart, is_regular
 from symgen.verify.reference import system as reference_system
 from symgen.verify.reference.arithmetic.adjoints import shorter_gradients
 from symgen.verify.reference.arithmetic.linear import (
@@ -20,14 +22,12 @@ from symgen.verify.reference.arithmetic.linear import (
     right_pseudoinverse,
 )
 from symgen.verify.reference.arithmetic.tape import FUNCTIONS, Tape, precision, replay_of
-from symgen.verify.reference.driven import Driven, blocks_of_inputs
-from symgen.verify.reference.manifold import ManifoldRanks
-from symgen.verify.reference.parts import Part
+from symgen.verify.reference.configurations.manifold import ManifoldRanks
+from symgen.verify.reference.configurations.parts import Part
+from symgen.verify.reference.inputs.driven import Driven, blocks_of_inputs
 from symgen.verify.reference.reference import Reference, State
 from symgen.verify.reference.system import ReferenceSystem
 from symgen.verify.reference.translation import literal_values
-from symgen.verify.sampling import ranks_in_lanes
-from symgen.verify.sampling.ranks_in_lanes import RankedPart, is_regular
 
 
 def chain(links: int) -> str:

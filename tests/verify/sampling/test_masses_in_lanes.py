@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from symgen.model.load import load_text
+from symgen.verify.lanes.loops_in_lanes import LoopsInLanes
+from symgen.verify.lanes.masses_in_lanes import MassesInLanes
 from symgen.verify.reference.reference import Reference, State
-from symgen.verify.sampling.loops_in_lanes import LoopsInLanes
-from symgen.verify.sampling.masses_in_lanes import MassesInLanes
 from symgen.verify.sampling.nearby import Surroundings
 from symgen.verify.sampling.states import sample_states
 

@@ -12,7 +12,7 @@ from symgen.ir.kernel import Scalar
 from symgen.model.load import load_text
 from symgen.verify.reference.arithmetic.linear import independent_rows, right_pseudoinverse
 from symgen.verify.reference.arithmetic.tape import ball, precision
-from symgen.verify.reference.manifold import exceeds
+from symgen.verify.reference.configurations.manifold import exceeds
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.sampling.states import rounded, sample_states
 from symgen.verify.tolerance import expectations

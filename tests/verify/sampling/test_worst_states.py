@@ -12,17 +12,17 @@ import pytest
 from symgen.generation.draft import draft_of
 from symgen.generation.results import Options
 from symgen.ir.kernel import Block, Kernel, Literal, Load, Local, OperationName, Scalar, Statement
-from symgen.ir.wide import widened
+from symgen.ir.pairs.wide import widened
 from symgen.model.load import load_model, load_text
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import outcomes
+from symgen.verify.lanes.loops_in_lanes import LoopsInLanes
+from symgen.verify.lanes.ranks_in_lanes import RankedPart, measures, ranked_parts
+from symgen.verify.lanes.rates_in_lanes import RatesInLanes
+from symgen.verify.lanes.rounding import RoundingErrors
 from symgen.verify.reference.reference import Reference
-from symgen.verify.sampling.lanes import RoundingErrors
-from symgen.verify.sampling.loops_in_lanes import LoopsInLanes
 from symgen.verify.sampling.nearby import Surroundings
 from symgen.verify.sampling.plain_values import values_at
-from symgen.verify.sampling.ranks_in_lanes import RankedPart, measures, ranked_parts
-from symgen.verify.sampling.rates_in_lanes import RatesInLanes
 from symgen.verify.sampling.searched import WorstStateSearch
 from symgen.verify.sampling.states import Sample, rounded, sample_states
 from symgen.verify.single_precision import lost_in_float32

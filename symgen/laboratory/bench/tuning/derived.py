@@ -9,8 +9,8 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
+from symgen.generation.acceptance.recorded import as_recorded
 from symgen.generation.files import sources_of
-from symgen.generation.recorded import as_recorded
 from symgen.generation.results import Options
 from symgen.laboratory.bench.tuning.passes import costs
 from symgen.laboratory.bench.tuning.tuned import ROOT

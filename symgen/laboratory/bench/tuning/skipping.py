@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from symgen.linear_algebra.exterior import ActuationForms
-from symgen.linear_algebra.null_spaces import MinorSpace
+from symgen.linear_algebra.null_space.null_spaces import MinorSpace
 from symgen.mechanics.absolute_angles import absolute_angles
 from symgen.mechanics.genericity import Genericity, genericity
 from symgen.mechanics.system import System

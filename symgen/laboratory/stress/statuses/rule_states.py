@@ -15,7 +15,7 @@ from symgen.laboratory.stress.families import SingularFamilies
 from symgen.laboratory.stress.variants.dimensions import Dimension, parameter_dimensions
 from symgen.records import dataclass
 from symgen.verify.reference.arithmetic.tape import ball, precision
-from symgen.verify.reference.closing import onto_manifold
+from symgen.verify.reference.configurations.closing import onto_manifold
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.sampling.states import sample_states
 

@@ -21,7 +21,7 @@ from symgen.verify.reference.arithmetic.linear import (
     rows_of,
     sums_of_minors,
 )
-from symgen.verify.reference.parts import Part, others, piece, placed, product
+from symgen.verify.reference.configurations.parts import Part, others, piece, placed, product
 
 # Minors that are computed one by one; more of them are coefficients of one polynomial.
 MOST_DETERMINANTS = 10

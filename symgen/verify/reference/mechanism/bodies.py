@@ -12,8 +12,8 @@ from symgen.model.expressions.expression import Expression
 from symgen.model.mechanism import Mechanism
 from symgen.verify.reference.arithmetic.tape import Register
 from symgen.verify.reference.arithmetic.taylor import CONSTANT
+from symgen.verify.reference.configurations.parts import Part, piece, placed
 from symgen.verify.reference.mechanism.frames import Frames
-from symgen.verify.reference.parts import Part, piece, placed
 from symgen.verify.reference.translation import Translation
 
 # Rows of the Jacobian of a body.

@@ -1,0 +1,1 @@
+"""Twice the digits: numbers as pairs of numbers of their type."""

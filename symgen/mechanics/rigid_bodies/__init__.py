@@ -1,0 +1,1 @@
+"""Rigid bodies on the scalar graph: frames and joints, forces and inertias from frame to frame."""

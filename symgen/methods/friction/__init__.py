@@ -1,0 +1,1 @@
+"""Friction that grows with the reactions it changes: what it acts along, its loads, and u with it."""

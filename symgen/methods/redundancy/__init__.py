@@ -1,0 +1,1 @@
+"""More inputs than motions: how they share the work, and what their limits leave."""

@@ -1,0 +1,44 @@
+"""A recorded computation of the reference at many states at once, in float64: where to look, never what is right."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from symgen.verify.lanes.lane_arithmetic import Lanes
+from symgen.verify.reference.arithmetic.tape import Replay
+
+FUNCTIONS: dict[str, Callable[..., Lanes]] = {
+    "add": np.add, "sub": np.subtract, "mul": np.multiply, "div": np.divide, "neg": np.negative, "pow": np.power,
+    "sin": np.sin, "cos": np.cos, "tan": np.tan, "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan,
+    "atan2": np.arctan2, "sqrt": np.sqrt, "exp": np.exp, "log": np.log, "sinh": np.sinh, "cosh": np.cosh,
+    "tanh": np.tanh,
+}  # fmt: skip
+
+
+class LaneReplay:
+    """Registers are rows, states columns; a group of operations is one operation on arrays."""
+
+    def __init__(self, replay: Replay) -> None:
+        places = replay.places
+        self._constants = np.array(replay.constants.floats())[:, None]
+        self._inputs, self._outputs = places.inputs, np.array(places.outputs, dtype=int)
+        first = len(self._constants) + len(self._inputs)
+        self._groups: list[tuple[Callable[..., Lanes], slice, list[Lanes]]] = []
+        for operation, *operands in places.groups:
+            read = [np.array(rows) for rows in operands if rows is not None]
+            self._groups.append((FUNCTIONS[operation], slice(first, first + len(read[0])), read))
+            first += len(read[0])
+        self._count = first
+
+    def run(self, inputs: Sequence[Lanes], count: int) -> Lanes:
+        """The outputs, a row each; `inputs` are numbers, or a number for each of `count` states."""
+        registers = np.empty((self._count, count))
+        first = len(self._constants)
+        registers[:first] = self._constants
+        for place, source in enumerate(self._inputs, first):
+            registers[place] = inputs[source]
+        for function, made, read in self._groups:
+            function(*(registers.take(rows, 0) for rows in read), out=registers[made])
+        return registers[self._outputs]

@@ -1,0 +1,1 @@
+"""Points of the constraint manifold for the reference: loops closed, branches, what is measured or planned."""

@@ -1,0 +1,1 @@
+"""Inputs by definition: which are independent, how redundant ones share the work, what limits leave."""
