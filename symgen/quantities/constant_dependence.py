@@ -1,14 +1,15 @@
 """Rows that are sums of others with the same numbers everywhere, such as a row that is written down twice.
 
 The numbers y of y^T B = 0 are found in a prime field, at points where coordinates and parameters are residues, and
-read back as fractions: what holds of residues at random holds of the rows (Schwartz and Zippel).  Rows that depend on
-each other on the constraints alone have no such numbers.
+read back as fractions: what holds of residues at random holds of the rows (Schwartz and Zippel).  So there are points
+enough once one more tells nothing new.  Rows that depend on each other on the constraints alone have no such numbers.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from itertools import count
 from typing import TypeAlias
 
 from symgen.symbolic.angles.circle import FIELD
@@ -17,8 +18,6 @@ from symgen.symbolic.matrix import Matrix
 
 Numbers: TypeAlias = tuple[Fraction, ...]
 
-# Points whose columns together say which numbers these are.
-POINTS_OF_NUMBERS = 3
 # Numerators and denominators are below this: a residue at random is next to never such a fraction.
 LONGEST_NUMBER = 100_000_000_000_000_000_000
 
@@ -30,19 +29,19 @@ def numbers_of_dependent_rows(rows: Matrix, factors: Sequence[Fraction]) -> tupl
     """
     prime = FIELD.prime
     scales = [FIELD.number(1 / factor) or 0 for factor in factors]
-    equations: list[list[int]] = []
-    for seed in range(POINTS_OF_NUMBERS):
+    known: dict[int, list[int]] = {}
+    for seed in count():
         values = ExactValues(seed)([entry for row in rows for entry in row])
-        if any(not isinstance(value, int) for value in values):
-            return ()
-        columns = len(values) // len(rows)
         whole = [value for value in values if isinstance(value, int)]
+        if len(whole) < len(values):
+            return ()
+        columns, before = len(values) // len(rows), len(known)
         by_row = [whole[start : start + columns] for start in range(0, len(whole), columns)]
-        equations += [
-            [scale * value % prime for scale, value in zip(scales, column, strict=True)]
-            for column in zip(*by_row, strict=True)
-        ]
-    vectors = [[_fraction(x, prime) for x in vector] for vector in _null_space(equations, len(rows), prime)]
+        for column in zip(*by_row, strict=True):
+            known = _with(known, [scale * value % prime for scale, value in zip(scales, column, strict=True)], prime)
+        if len(known) == before:
+            break
+    vectors = [[_fraction(x, prime) for x in vector] for vector in _null_space(known, len(rows), prime)]
     basis = [tuple(x for x in vector if x is not None) for vector in vectors]
     return tuple(basis) if all(len(vector) == len(rows) for vector in basis) else ()
 
@@ -59,24 +58,26 @@ def projector(basis: Sequence[Numbers]) -> tuple[Numbers, ...]:
     return tuple(map(tuple, made))
 
 
-def _null_space(equations: Sequence[Sequence[int]], size: int, prime: int) -> list[list[int]]:
+def _with(pivots: Mapping[int, list[int]], equation: Sequence[int], prime: int) -> dict[int, list[int]]:
+    """Equations in reduced form, by the places of their leading ones, and one more if it does not follow from them."""
+    rest = list(equation)
+    for place, row in pivots.items():
+        share = rest[place]
+        if share:
+            rest = [(x - share * y) % prime for x, y in zip(rest, row, strict=True)]
+    if not any(rest):
+        return dict(pivots)
+    leading = next(k for k, x in enumerate(rest) if x)
+    inverse = pow(rest[leading], -1, prime)
+    rest = [x * inverse % prime for x in rest]
+    reduced = {
+        place: [(x - row[leading] * y) % prime for x, y in zip(row, rest, strict=True)] for place, row in pivots.items()
+    }
+    return {**reduced, leading: rest}
+
+
+def _null_space(pivots: Mapping[int, list[int]], size: int, prime: int) -> list[list[int]]:
     """A basis of what satisfies all of them, one residue 1 and others 0 where nothing is determined."""
-    pivots: dict[int, list[int]] = {}
-    for equation in equations:
-        rest = list(equation)
-        for place, row in pivots.items():
-            share = rest[place]
-            if share:
-                rest = [(x - share * y) % prime for x, y in zip(rest, row, strict=True)]
-        if not any(rest):
-            continue
-        place = next(k for k, x in enumerate(rest) if x)
-        inverse = pow(rest[place], -1, prime)
-        rest = [x * inverse % prime for x in rest]
-        for other, row in pivots.items():
-            share = row[place]
-            pivots[other] = [(x - share * y) % prime for x, y in zip(row, rest, strict=True)]
-        pivots[place] = rest
     basis = []
     for free in (k for k in range(size) if k not in pivots):
         vector = [int(k == free) for k in range(size)]
