@@ -370,3 +370,25 @@ def test_sharp_thresholds() -> None:
     first, second, third = sharp.blocks[1].checks
     assert first.limit == Literal(24 * eps**2 * gained**2)
     assert (second, third) == single.blocks[1].checks[1:]
+
+
+def test_closing_rows_keep_their_thresholds() -> None:
+    """Sines of pairs turn an iterate by eps of itself, each time anew: neither rows nor steps get smaller than that."""
+    def kernel(eps: Fraction) -> Kernel:
+        lines = Lines()
+        left, lost = (lines("mul", 64 * eps**2, size) for size in ("x", "y"))
+        tests = (
+            Check(Status.NOT_CLOSED, Local(left), Local("y")),
+            Check(Status.CONSTRAINT_RANK, Local("y"), Local(lost)),
+            Check(Status.NOT_CLOSED, Literal(eps / 2), Local("y")),
+        )
+        return lines.kernel(left, checks=tests)
+
+    single, double = (kernel(UNIT_ROUNDOFF[scalar]) for scalar in ("float32", "float64"))
+    sharp = with_sharp_thresholds(single, double)
+    eps = UNIT_ROUNDOFF["float32"]
+    assert [one.operands[0] for one in sharp.blocks[1].statements] == [
+        Literal(64 * eps**2),
+        Literal(64 * (eps / 2**LOWERED) ** 2),
+    ]
+    assert sharp.blocks[1].checks == single.blocks[1].checks

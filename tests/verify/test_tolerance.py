@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import random
+from itertools import combinations
 
 import numpy as np
 import pytest
 
 from symgen.model.load import load_text
 from symgen.verify.reference.reference import Reference, State
-from symgen.verify.tolerance import PERTURBATIONS, _signs, expectations
+from symgen.verify.tolerance import PERTURBATIONS, _set_apart, _signs, expectations
 
 # Two cranks that a rod of the length of their distance keeps at one angle: its rows depend on each other there.
 CRANKS = """\
@@ -59,3 +60,32 @@ def test_literals_of_equal_value_move_apart_both_ways() -> None:
         missing = [pair for pair in pairs if not {(0, 1), (1, 0)} <= {tuple(s[k] for k in pair) for s in literals}]
         # where three are equal a pair may lack one way
         assert all(values.count(values[i]) > 2 for i, _ in missing)
+
+
+# 0.4 cos a + 0.2 sin 2 a and its first two derivatives vanish together at a = -pi/2: so do roundings of both numbers.
+CREST = """\
+model: crest
+coordinates: {a: {unit: rad}, b: {unit: rad}}
+parameters: {m: {value: 1.9}}
+kinetic_energy: m/2*a_dot**2 + m/2*b_dot**2
+inputs: {u: {acts_on: {a: 1}}, v: {acts_on: {b: 1}}}
+task: {height: 0.4*cos(a) + 0.2*sin(2*a), side: b}
+outputs: [configuration_from_task]
+"""
+
+
+def test_any_two_numbers_move_together_and_apart() -> None:
+    """Changes in which two happen to agree each time say nothing of what lies between them, and d is luck."""
+    reference = Reference(load_text(CREST, "crest.yaml"))
+    a = -np.pi / 2 + 1e-3
+    there = float(0.4 * np.cos(a + 1e-5) + 0.2 * np.sin(2 * a + 2e-5))
+    start = State((a, 0.3), (0.1, 0.2), (0.0, 0.0), (0.0, 0.0), (1.9,), (there, 0.3))
+    units = []
+    for seed in range(40):
+        dice = random.Random(seed)
+        numbers = [*zip(*_set_apart(_signs(reference, start, dice), dice), strict=True)]
+        for pair in combinations(numbers, 2):
+            assert len({a ^ b for a, b in zip(*pair, strict=True)}) == 2
+        made = expectations(reference, start, ["configuration_from_task"], "float64", str(seed))
+        units.append(made["configuration_from_task"].unit)
+    assert max(units) < 3 * min(units)

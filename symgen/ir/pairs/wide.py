@@ -9,7 +9,7 @@ with all their digits.  What functions of the library round themselves stays.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import TypeAlias
@@ -58,9 +58,10 @@ def with_sharp_thresholds(single: Kernel, double: Kernel) -> Kernel:
     """A float32 kernel with thresholds of status as its pairs allow, where it differs from that in float64 by these.
 
     They are multiples of eps or its square, eps that of a type; angles stay in the range of the sine.  A pair has the
-    exponents of its type: thresholds do not follow its digits all the way.
+    exponents of its type: thresholds do not follow its digits all the way.  Those of closing rows stay: errors of sines
+    turn an iterate by eps of itself, each time anew, so that steps get no shorter than that.
     """
-    sharp = _Thresholds()
+    sharp = _Thresholds({name for block in single.blocks for name in _tested(block, Status.NOT_CLOSED)})
     if _shape(single) != _shape(double):
         return single
     blocks = [sharp.block(one, other) for one, other in zip(single.blocks, double.blocks, strict=True)]
@@ -82,13 +83,30 @@ def _shape(kernel: Kernel) -> list[object]:
     return shape
 
 
+def _tested(block: Block, status: Status) -> Iterator[str]:
+    """The names of what is compared for a status."""
+    for check in block.checks:
+        if check.status is status:
+            yield from (one.name for one in (check.value, check.limit) if isinstance(one, Local))
+        if check.first is not None:
+            yield from _tested(check.first, status)
+
+
 class _Thresholds:
-    """Literals of two types side by side."""
+    """Literals of two types side by side; statements that make what is in `kept` stay as they are."""
+
+    def __init__(self, kept: Container[str]) -> None:
+        self._kept = kept
 
     def block(self, single: Block, double: Block) -> Block:
         """The block with sharp literals."""
         lines = zip(single.statements, double.statements, strict=True)
-        statements = [replace(a, operands=tuple(map(self._literal, a.operands, b.operands))) for a, b in lines]
+        statements = [
+            a
+            if any(target in self._kept for target in a.targets)
+            else replace(a, operands=tuple(map(self._literal, a.operands, b.operands)))
+            for a, b in lines
+        ]
         checks = [self._check(a, b) for a, b in zip(single.checks, double.checks, strict=True)]
         return Block(tuple(statements), tuple(checks))
 
@@ -96,7 +114,7 @@ class _Thresholds:
         first = single.first
         if first is not None and double.first is not None:
             first = self.block(first, double.first)
-        if single.status is Status.ANGLE_RANGE:
+        if single.status in (Status.ANGLE_RANGE, Status.NOT_CLOSED):
             return replace(single, first=first)
         value, limit = (self._literal(a, b) for a, b in ((single.value, double.value), (single.limit, double.limit)))
         return replace(single, value=value, limit=limit, first=first)

@@ -37,8 +37,8 @@ QUARTER = np.pi / 2
 CUBES, FEWEST = 200_000_000, 8
 # Powers of ten: how far an angle is from a multiple of a quarter turn.
 OFF = (1.0, 5.0)
-# Powers of ten by which inputs of half of the states are smaller than those of samples, where weights or springs drive
-# the machine too: inputs that hold its heaviest body hide what rounding does to light ones that nothing else moves.
+# Powers of ten by which inputs of half of the states are smaller than those of samples, as where a machine coasts:
+# inputs that move its heaviest body hide what rounding does to light ones that weights, springs or rates alone move.
 LITTLE_INPUT = (1.0, 4.0)
 # Powers of ten by which a machine that all but rests is slower than samples are, its inputs as much smaller.
 SLOWER = (1.0, 4.0)
@@ -343,7 +343,7 @@ class Surroundings:
             return np.abs(start.parts["u"]).max(axis=1, initial=0.0)[:, None]
         dice = random.Random("inputs")
         little = np.array([10.0 ** -dice.uniform(*LITTLE_INPUT) for _ in range(len(start))])
-        whole = not self._driven_by_itself or np.arange(len(start)) // len(self.samples) // 2 % 2 == 0
+        whole = np.arange(len(start)) // len(self.samples) // 2 % 2 == 0
         return self._inputs[start.origins] * np.where(whole, 1.0, little)[:, None]
 
     def _settled(self, states: Nearby, start: Lanes) -> Nearby:
