@@ -1800,25 +1800,25 @@ front_car_status front_car_admissible_velocity(const double q[4], const double q
     if (FRONT_CAR_RARELY(!(t10 > t12))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    const double t13 = L / t10;
     const double theta_dot = qd[2];
-    const double t14 = theta_dot * t5;
+    const double t13 = theta_dot * t5;
     const double x_dot = qd[0];
     const double t4 = cosine[0];
-    const double t15 = x_dot * t4;
+    const double t14 = x_dot * t4;
     const double y_dot = qd[1];
     const double t3 = sine[0];
-    const double t16 = y_dot * t3;
-    const double t17 = t15 + t16;
-    const double t18 = t8 * t17;
-    const double t19 = t14 + t18;
-    const double t20 = t6 * t19;
-    const double t21 = t13 * t20;
+    const double t15 = y_dot * t3;
+    const double t16 = t14 + t15;
+    const double t17 = t8 * t16;
+    const double t18 = t13 + t17;
+    const double t19 = t6 * t18;
+    const double t20 = L / t10;
+    const double t21 = t19 * t20;
     const double t22 = t4 * t21;
     double rest = t22 - t22;
     const double t23 = t3 * t21;
     rest *= t23;
-    const double t24 = t5 * t19;
+    const double t24 = t5 * t18;
     const double t25 = t24 / t10;
     rest *= t25;
     const double phi_dot = qd[3];
@@ -1876,25 +1876,25 @@ front_car_status front_car_admissible_acceleration(const double q[4], const doub
     const double t21 = t16 + t20;
     const double t22 = t13 * t21;
     const double t23 = t6 * t22;
-    const double t24 = t5 * t10;
     const double theta_dot = qd[2];
-    const double t25 = theta_dot * t5;
+    const double t24 = theta_dot * t5;
     const double x_dot = qd[0];
-    const double t26 = x_dot * t4;
+    const double t25 = x_dot * t4;
     const double y_dot = qd[1];
-    const double t27 = y_dot * t3;
-    const double t28 = t26 + t27;
-    const double t29 = t8 * t28;
-    const double t30 = t25 + t29;
+    const double t26 = y_dot * t3;
+    const double t27 = t25 + t26;
+    const double t28 = t8 * t27;
+    const double t29 = t24 + t28;
     const double phi_dot = qd[3];
-    const double t31 = phi_dot * t30;
-    const double t32 = t24 * t31;
+    const double t30 = phi_dot * t29;
+    const double t31 = t5 * t10;
+    const double t32 = t30 * t31;
     const double t33 = t23 - t32;
     const double t34 = t15 * t33;
     const double t35 = t4 * t34;
     const double t36 = t8 * t5;
-    const double t37 = t36 * t30;
-    const double t38 = t30 * t37;
+    const double t37 = t36 * t29;
+    const double t38 = t29 * t37;
     const double t39 = t3 * t3;
     const double t40 = t4 * t4;
     const double t41 = t39 + t40;
@@ -1909,12 +1909,12 @@ front_car_status front_car_admissible_acceleration(const double q[4], const doub
     const double t49 = t4 * t45;
     const double t50 = t48 + t49;
     rest *= t50;
-    const double t51 = t16 * t24;
-    const double t52 = L * t31;
-    const double t53 = t19 * t24;
-    const double t54 = t52 + t53;
-    const double t55 = t8 * t54;
-    const double t56 = t51 + t55;
+    const double t51 = L * t30;
+    const double t52 = t19 * t31;
+    const double t53 = t51 + t52;
+    const double t54 = t8 * t53;
+    const double t55 = t16 * t31;
+    const double t56 = t54 + t55;
     const double t57 = t56 / t13;
     rest *= t57;
     const double phi_ddot = qdd[3];
@@ -2202,6 +2202,10 @@ front_car_status front_car_actuator_bias(const double q[4], const double qd[4], 
 }
 
 front_car_status front_car_forward_dynamics(const double q[4], const double qd[4], const double u[2], const front_car_params *p, double qdd[4]) {
+    const double L = p->L;
+    if (FRONT_CAR_RARELY(!(L >= 0.11))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const double phi = q[3];
     const double t1 = fabs(phi);
     const double theta = q[2];
@@ -2216,7 +2220,6 @@ front_car_status front_car_forward_dynamics(const double q[4], const double qd[4
     double sine[2];
     double cosine[2];
     front_car_sincos_group(2, angle, sine, cosine);
-    const double L = p->L;
     const double t4 = cosine[0];
     const double t8 = L * t4;
     const double t5 = sine[1];
@@ -2376,6 +2379,10 @@ front_car_status front_car_forward_dynamics(const double q[4], const double qd[4
 }
 
 front_car_status front_car_multipliers(const double q[4], const double qd[4], const double u[2], const front_car_params *p, double lambda_B[2]) {
+    const double L = p->L;
+    if (FRONT_CAR_RARELY(!(L >= 0.11))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const double phi = q[3];
     const double t1 = fabs(phi);
     const double theta = q[2];
@@ -2392,7 +2399,6 @@ front_car_status front_car_multipliers(const double q[4], const double qd[4], co
     front_car_sincos_group(2, angle, sine, cosine);
     const double t3 = sine[0];
     const double t7 = t3 * t3;
-    const double L = p->L;
     const double t4 = cosine[0];
     const double t8 = L * t4;
     const double t9 = t8 * t8;
@@ -2455,7 +2461,7 @@ front_car_status front_car_multipliers(const double q[4], const double qd[4], co
     const double t55 = t53 + t54;
     const double theta_dot = qd[2];
     const double t56 = theta_dot * t55;
-    const double t57 = t46 * t56;
+    const double t57 = t56 * t46;
     const double t64 = L * t3;
     const double t63 = t4 * t56;
     const double t65 = theta_dot * t64;

@@ -57,6 +57,8 @@
  *   projected_coriolis_matrix 0.11 <= L <= 40
  *   minimal_coriolis_matrix 0.57 <= L, Theta_1 <= 710000
  *   actuator_bias m_2 <= 2000
+ *   forward_dynamics 0.11 <= L
+ *   multipliers 0.11 <= L
  *   singularity 0.11 <= L
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

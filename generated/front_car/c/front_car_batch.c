@@ -392,6 +392,7 @@ size_t front_car_forward_dynamics_batch(size_t count, size_t stride, const doubl
             const double t114 = t41 * t113;
             const double t130 = t41 * t129;
             double rest = (t95 - t95) * t108 * t114 + t130 - t130;
+            rest += L >= 0.11 ? 0.0 : 1.0;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += 100000.0 >= t2 ? 0.0 : 1.0;
             rest += t14 > t17 ? 0.0 : 1.0;
@@ -539,7 +540,7 @@ size_t front_car_multipliers_batch(size_t count, size_t stride, const double *q,
             const double t54 = y_dot * t5;
             const double t55 = t53 + t54;
             const double t56 = theta_dot * t55;
-            const double t57 = t46 * t56;
+            const double t57 = t56 * t46;
             const double t64 = L * t3;
             const double t63 = t4 * t56;
             const double t65 = theta_dot * t64;
@@ -600,6 +601,7 @@ size_t front_car_multipliers_batch(size_t count, size_t stride, const double *q,
             const double t115 = t43 * t114;
             const double t116 = t43 * t107;
             double rest = (t115 - t115) * t116;
+            rest += L >= 0.11 ? 0.0 : 1.0;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += 100000.0 >= t2 ? 0.0 : 1.0;
             rest += t10 > t12 ? 0.0 : 1.0;

@@ -379,6 +379,7 @@ size_t front_car_forward_dynamics_batch_f(size_t count, size_t stride, const flo
             const float t114 = t41 * t113;
             const float t130 = t41 * t129;
             float rest = (t95 - t95) * t108 * t114 + t130 - t130;
+            rest += L >= 0.11f ? 0.0f : 1.0f;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += 100.0f >= t2 ? 0.0f : 1.0f;
             rest += t14 > t17 ? 0.0f : 1.0f;
@@ -526,7 +527,7 @@ size_t front_car_multipliers_batch_f(size_t count, size_t stride, const float *q
             const float t54 = y_dot * t5;
             const float t55 = t53 + t54;
             const float t56 = theta_dot * t55;
-            const float t57 = t46 * t56;
+            const float t57 = t56 * t46;
             const float t64 = L * t3;
             const float t63 = t4 * t56;
             const float t65 = theta_dot * t64;
@@ -587,6 +588,7 @@ size_t front_car_multipliers_batch_f(size_t count, size_t stride, const float *q
             const float t115 = t43 * t114;
             const float t116 = t43 * t107;
             float rest = (t115 - t115) * t116;
+            rest += L >= 0.11f ? 0.0f : 1.0f;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += 100.0f >= t2 ? 0.0f : 1.0f;
             rest += t10 > t12 ? 0.0f : 1.0f;

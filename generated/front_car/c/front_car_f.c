@@ -1790,25 +1790,25 @@ front_car_status front_car_admissible_velocity_f(const float q[4], const float q
     if (FRONT_CAR_RARELY_F(!(t10 > t12))) {
         return FRONT_CAR_CONSTRAINT_RANK;
     }
-    const float t13 = L / t10;
     const float theta_dot = qd[2];
-    const float t14 = theta_dot * t5;
+    const float t13 = theta_dot * t5;
     const float x_dot = qd[0];
     const float t4 = cosine[0];
-    const float t15 = x_dot * t4;
+    const float t14 = x_dot * t4;
     const float y_dot = qd[1];
     const float t3 = sine[0];
-    const float t16 = y_dot * t3;
-    const float t17 = t15 + t16;
-    const float t18 = t8 * t17;
-    const float t19 = t14 + t18;
-    const float t20 = t6 * t19;
-    const float t21 = t13 * t20;
+    const float t15 = y_dot * t3;
+    const float t16 = t14 + t15;
+    const float t17 = t8 * t16;
+    const float t18 = t13 + t17;
+    const float t19 = t6 * t18;
+    const float t20 = L / t10;
+    const float t21 = t19 * t20;
     const float t22 = t4 * t21;
     float rest = t22 - t22;
     const float t23 = t3 * t21;
     rest *= t23;
-    const float t24 = t5 * t19;
+    const float t24 = t5 * t18;
     const float t25 = t24 / t10;
     rest *= t25;
     const float phi_dot = qd[3];
@@ -1869,25 +1869,25 @@ front_car_status front_car_admissible_acceleration_f(const float q[4], const flo
     const float t21 = t16 + t20;
     const float t22 = t13 * t21;
     const float t23 = t6 * t22;
-    const float t24 = t5 * t10;
     const float theta_dot = qd[2];
-    const float t25 = theta_dot * t5;
+    const float t24 = theta_dot * t5;
     const float x_dot = qd[0];
-    const float t26 = x_dot * t4;
+    const float t25 = x_dot * t4;
     const float y_dot = qd[1];
-    const float t27 = y_dot * t3;
-    const float t28 = t26 + t27;
-    const float t29 = t8 * t28;
-    const float t30 = t25 + t29;
+    const float t26 = y_dot * t3;
+    const float t27 = t25 + t26;
+    const float t28 = t8 * t27;
+    const float t29 = t24 + t28;
     const float phi_dot = qd[3];
-    const float t31 = phi_dot * t30;
-    const float t32 = t24 * t31;
+    const float t30 = phi_dot * t29;
+    const float t31 = t5 * t10;
+    const float t32 = t30 * t31;
     const float t33 = t23 - t32;
     const float t34 = t15 * t33;
     const float t35 = t4 * t34;
     const float t36 = t8 * t5;
-    const float t37 = t36 * t30;
-    const float t38 = t30 * t37;
+    const float t37 = t36 * t29;
+    const float t38 = t29 * t37;
     const float t39 = t3 * t3;
     const float t40 = t4 * t4;
     const float t41 = t39 + t40;
@@ -1902,12 +1902,12 @@ front_car_status front_car_admissible_acceleration_f(const float q[4], const flo
     const float t49 = t4 * t45;
     const float t50 = t48 + t49;
     rest *= t50;
-    const float t51 = t16 * t24;
-    const float t52 = L * t31;
-    const float t53 = t19 * t24;
-    const float t54 = t52 + t53;
-    const float t55 = t8 * t54;
-    const float t56 = t51 + t55;
+    const float t51 = L * t30;
+    const float t52 = t19 * t31;
+    const float t53 = t51 + t52;
+    const float t54 = t8 * t53;
+    const float t55 = t16 * t31;
+    const float t56 = t54 + t55;
     const float t57 = t56 / t13;
     rest *= t57;
     const float phi_ddot = qdd[3];
@@ -2195,6 +2195,10 @@ front_car_status front_car_actuator_bias_f(const float q[4], const float qd[4], 
 }
 
 front_car_status front_car_forward_dynamics_f(const float q[4], const float qd[4], const float u[2], const front_car_params_f *p, float qdd[4]) {
+    const float L = p->L;
+    if (FRONT_CAR_RARELY_F(!(L >= 0.11f))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const float phi = q[3];
     const float t1 = fabsf(phi);
     const float theta = q[2];
@@ -2209,7 +2213,6 @@ front_car_status front_car_forward_dynamics_f(const float q[4], const float qd[4
     float sine[4];
     float cosine[4];
     front_car_sincos_group_f(2, angle, sine, cosine);
-    const float L = p->L;
     const float t4 = cosine[0];
     const float t8 = L * t4;
     const float t5 = sine[1];
@@ -2369,6 +2372,10 @@ front_car_status front_car_forward_dynamics_f(const float q[4], const float qd[4
 }
 
 front_car_status front_car_multipliers_f(const float q[4], const float qd[4], const float u[2], const front_car_params_f *p, float lambda_B[2]) {
+    const float L = p->L;
+    if (FRONT_CAR_RARELY_F(!(L >= 0.11f))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const float phi = q[3];
     const float t1 = fabsf(phi);
     const float theta = q[2];
@@ -2385,7 +2392,6 @@ front_car_status front_car_multipliers_f(const float q[4], const float qd[4], co
     front_car_sincos_group_f(2, angle, sine, cosine);
     const float t3 = sine[0];
     const float t7 = t3 * t3;
-    const float L = p->L;
     const float t4 = cosine[0];
     const float t8 = L * t4;
     const float t9 = t8 * t8;
@@ -2448,7 +2454,7 @@ front_car_status front_car_multipliers_f(const float q[4], const float qd[4], co
     const float t55 = t53 + t54;
     const float theta_dot = qd[2];
     const float t56 = theta_dot * t55;
-    const float t57 = t46 * t56;
+    const float t57 = t56 * t46;
     const float t64 = L * t3;
     const float t63 = t4 * t56;
     const float t65 = theta_dot * t64;

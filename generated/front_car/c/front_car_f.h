@@ -59,6 +59,8 @@
  *   minimal_coriolis_matrix 0.32 <= L <= 7.1e+07
  *   admissible_acceleration L <= 710000
  *   actuator_bias m_2 <= 2000
+ *   forward_dynamics 0.11 <= L
+ *   multipliers 0.11 <= L
  *   singularity 0.11 <= L
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

@@ -239,6 +239,10 @@ front_car_status front_car_inverse_dynamics_prepared(const double q[4], const do
 }
 
 front_car_status front_car_forward_dynamics_prepared(const double q[4], const double qd[4], const double u[2], const front_car_prepared *p, double qdd[4]) {
+    const double L = p->value[0];
+    if (FRONT_CAR_RARELY(!(L >= 0.11))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const double phi = q[3];
     const double t1 = fabs(phi);
     const double theta = q[2];
@@ -253,7 +257,6 @@ front_car_status front_car_forward_dynamics_prepared(const double q[4], const do
     double sine[2];
     double cosine[2];
     front_car_sincos_group(2, angle, sine, cosine);
-    const double L = p->value[0];
     const double t4 = cosine[0];
     const double t8 = L * t4;
     const double t5 = sine[1];
@@ -406,6 +409,10 @@ front_car_status front_car_forward_dynamics_prepared(const double q[4], const do
 }
 
 front_car_status front_car_multipliers_prepared(const double q[4], const double qd[4], const double u[2], const front_car_prepared *p, double lambda_B[2]) {
+    const double L = p->value[0];
+    if (FRONT_CAR_RARELY(!(L >= 0.11))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const double phi = q[3];
     const double t1 = fabs(phi);
     const double theta = q[2];
@@ -422,7 +429,6 @@ front_car_status front_car_multipliers_prepared(const double q[4], const double 
     front_car_sincos_group(2, angle, sine, cosine);
     const double t3 = sine[0];
     const double t7 = t3 * t3;
-    const double L = p->value[0];
     const double t4 = cosine[0];
     const double t8 = L * t4;
     const double t9 = t8 * t8;
@@ -479,7 +485,7 @@ front_car_status front_car_multipliers_prepared(const double q[4], const double 
     const double t55 = t53 + t54;
     const double theta_dot = qd[2];
     const double t56 = theta_dot * t55;
-    const double t57 = t46 * t56;
+    const double t57 = t56 * t46;
     const double t64 = L * t3;
     const double t63 = t4 * t56;
     const double t65 = theta_dot * t64;

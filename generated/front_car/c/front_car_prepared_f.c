@@ -226,6 +226,10 @@ front_car_status front_car_inverse_dynamics_prepared_f(const float q[4], const f
 }
 
 front_car_status front_car_forward_dynamics_prepared_f(const float q[4], const float qd[4], const float u[2], const front_car_prepared_f *p, float qdd[4]) {
+    const float L = p->value[0];
+    if (FRONT_CAR_RARELY_F(!(L >= 0.11f))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const float phi = q[3];
     const float t1 = fabsf(phi);
     const float theta = q[2];
@@ -240,7 +244,6 @@ front_car_status front_car_forward_dynamics_prepared_f(const float q[4], const f
     float sine[4];
     float cosine[4];
     front_car_sincos_group_f(2, angle, sine, cosine);
-    const float L = p->value[0];
     const float t4 = cosine[0];
     const float t8 = L * t4;
     const float t5 = sine[1];
@@ -393,6 +396,10 @@ front_car_status front_car_forward_dynamics_prepared_f(const float q[4], const f
 }
 
 front_car_status front_car_multipliers_prepared_f(const float q[4], const float qd[4], const float u[2], const front_car_prepared_f *p, float lambda_B[2]) {
+    const float L = p->value[0];
+    if (FRONT_CAR_RARELY_F(!(L >= 0.11f))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const float phi = q[3];
     const float t1 = fabsf(phi);
     const float theta = q[2];
@@ -409,7 +416,6 @@ front_car_status front_car_multipliers_prepared_f(const float q[4], const float 
     front_car_sincos_group_f(2, angle, sine, cosine);
     const float t3 = sine[0];
     const float t7 = t3 * t3;
-    const float L = p->value[0];
     const float t4 = cosine[0];
     const float t8 = L * t4;
     const float t9 = t8 * t8;
@@ -466,7 +472,7 @@ front_car_status front_car_multipliers_prepared_f(const float q[4], const float 
     const float t55 = t53 + t54;
     const float theta_dot = qd[2];
     const float t56 = theta_dot * t55;
-    const float t57 = t46 * t56;
+    const float t57 = t56 * t46;
     const float t64 = L * t3;
     const float t63 = t4 * t56;
     const float t65 = theta_dot * t64;

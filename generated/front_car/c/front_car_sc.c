@@ -97,6 +97,9 @@ front_car_status front_car_inverse_dynamics_sc(const front_car_trig *sc, const d
 front_car_status front_car_forward_dynamics_sc(const front_car_trig *sc, const double q[4], const double qd[4], const double u[2], const front_car_params *p, double qdd[4]) {
     (void)q;
     const double L = p->L;
+    if (FRONT_CAR_RARELY(!(L >= 0.11))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const double cos_phi = sc->cos_phi;
     const double t8 = L * cos_phi;
     const double sin_theta = sc->sin_theta;
@@ -257,9 +260,12 @@ front_car_status front_car_forward_dynamics_sc(const front_car_trig *sc, const d
 
 front_car_status front_car_multipliers_sc(const front_car_trig *sc, const double q[4], const double qd[4], const double u[2], const front_car_params *p, double lambda_B[2]) {
     (void)q;
+    const double L = p->L;
+    if (FRONT_CAR_RARELY(!(L >= 0.11))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const double sin_phi = sc->sin_phi;
     const double t7 = sin_phi * sin_phi;
-    const double L = p->L;
     const double cos_phi = sc->cos_phi;
     const double t8 = L * cos_phi;
     const double t9 = t8 * t8;
@@ -322,7 +328,7 @@ front_car_status front_car_multipliers_sc(const front_car_trig *sc, const double
     const double t55 = t53 + t54;
     const double theta_dot = qd[2];
     const double t56 = theta_dot * t55;
-    const double t57 = t46 * t56;
+    const double t57 = t56 * t46;
     const double t64 = L * sin_phi;
     const double t63 = cos_phi * t56;
     const double t65 = theta_dot * t64;

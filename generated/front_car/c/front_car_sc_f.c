@@ -92,6 +92,9 @@ front_car_status front_car_inverse_dynamics_sc_f(const front_car_trig_f *sc, con
 front_car_status front_car_forward_dynamics_sc_f(const front_car_trig_f *sc, const float q[4], const float qd[4], const float u[2], const front_car_params_f *p, float qdd[4]) {
     (void)q;
     const float L = p->L;
+    if (FRONT_CAR_RARELY_F(!(L >= 0.11f))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const float cos_phi = sc->cos_phi;
     const float t8 = L * cos_phi;
     const float sin_theta = sc->sin_theta;
@@ -252,9 +255,12 @@ front_car_status front_car_forward_dynamics_sc_f(const front_car_trig_f *sc, con
 
 front_car_status front_car_multipliers_sc_f(const front_car_trig_f *sc, const float q[4], const float qd[4], const float u[2], const front_car_params_f *p, float lambda_B[2]) {
     (void)q;
+    const float L = p->L;
+    if (FRONT_CAR_RARELY_F(!(L >= 0.11f))) {
+        return FRONT_CAR_PARAMETER_RANGE;
+    }
     const float sin_phi = sc->sin_phi;
     const float t7 = sin_phi * sin_phi;
-    const float L = p->L;
     const float cos_phi = sc->cos_phi;
     const float t8 = L * cos_phi;
     const float t9 = t8 * t8;
@@ -317,7 +323,7 @@ front_car_status front_car_multipliers_sc_f(const front_car_trig_f *sc, const fl
     const float t55 = t53 + t54;
     const float theta_dot = qd[2];
     const float t56 = theta_dot * t55;
-    const float t57 = t46 * t56;
+    const float t57 = t56 * t46;
     const float t64 = L * sin_phi;
     const float t63 = cos_phi * t56;
     const float t65 = theta_dot * t64;

@@ -57,6 +57,8 @@ Beyond these bounds of parameters results would lose digits; they have the statu
   projected_coriolis_matrix 0.11 <= L <= 40
   minimal_coriolis_matrix 0.57 <= L, Theta_1 <= 710000
   actuator_bias m_2 <= 2000
+  forward_dynamics 0.11 <= L
+  multipliers 0.11 <= L
   singularity 0.11 <= L
 
 Every function takes arrays with any leading axes (one state each) and the parameters `p`. A single state that is
@@ -1689,18 +1691,18 @@ def admissible_velocity(q: ArrayLike, qd: ArrayLike, p: Parameters = PARAMETERS)
         t11 = 1.0 + t9
         t12 = t11 * 7.888609052210118e-31
         status = _first(status, ~np.asarray(t10 > t12), 2)
-        t13 = L / t10
-        t14 = theta_dot * t5
-        t15 = x_dot * t4
-        t16 = y_dot * t3
-        t17 = t15 + t16
-        t18 = t8 * t17
-        t19 = t14 + t18
-        t20 = t6 * t19
-        t21 = t13 * t20
+        t13 = theta_dot * t5
+        t14 = x_dot * t4
+        t15 = y_dot * t3
+        t16 = t14 + t15
+        t17 = t8 * t16
+        t18 = t13 + t17
+        t19 = t6 * t18
+        t20 = L / t10
+        t21 = t19 * t20
         t22 = t4 * t21
         t23 = t3 * t21
-        t24 = t5 * t19
+        t24 = t5 * t18
         t25 = t24 / t10
         entries = (
             t22,
@@ -1755,21 +1757,21 @@ def admissible_acceleration(q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, p: Para
         t21 = t16 + t20
         t22 = t13 * t21
         t23 = t6 * t22
-        t24 = t5 * t10
-        t25 = theta_dot * t5
-        t26 = x_dot * t4
-        t27 = y_dot * t3
-        t28 = t26 + t27
-        t29 = t8 * t28
-        t30 = t25 + t29
-        t31 = phi_dot * t30
-        t32 = t24 * t31
+        t24 = theta_dot * t5
+        t25 = x_dot * t4
+        t26 = y_dot * t3
+        t27 = t25 + t26
+        t28 = t8 * t27
+        t29 = t24 + t28
+        t30 = phi_dot * t29
+        t31 = t5 * t10
+        t32 = t30 * t31
         t33 = t23 - t32
         t34 = t15 * t33
         t35 = t4 * t34
         t36 = t8 * t5
-        t37 = t36 * t30
-        t38 = t30 * t37
+        t37 = t36 * t29
+        t38 = t29 * t37
         t39 = t3 * t3
         t40 = t4 * t4
         t41 = t39 + t40
@@ -1782,12 +1784,12 @@ def admissible_acceleration(q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, p: Para
         t48 = t3 * t34
         t49 = t4 * t45
         t50 = t48 + t49
-        t51 = t16 * t24
-        t52 = L * t31
-        t53 = t19 * t24
-        t54 = t52 + t53
-        t55 = t8 * t54
-        t56 = t51 + t55
+        t51 = L * t30
+        t52 = t19 * t31
+        t53 = t51 + t52
+        t54 = t8 * t53
+        t55 = t16 * t31
+        t56 = t54 + t55
         t57 = t56 / t13
         entries = (
             t47,
@@ -2070,6 +2072,7 @@ def forward_dynamics(q: ArrayLike, qd: ArrayLike, u: ArrayLike, p: Parameters = 
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         Theta_2 = np.float64(p.Theta_2)
+        status = _first(status, ~np.asarray(L >= 0.11), 6)
         t1 = np.abs(phi)
         t2 = np.abs(theta)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
@@ -2233,6 +2236,7 @@ def multipliers(q: ArrayLike, qd: ArrayLike, u: ArrayLike, p: Parameters = PARAM
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         Theta_2 = np.float64(p.Theta_2)
+        status = _first(status, ~np.asarray(L >= 0.11), 6)
         t1 = np.abs(phi)
         t2 = np.abs(theta)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
@@ -2288,7 +2292,7 @@ def multipliers(q: ArrayLike, qd: ArrayLike, u: ArrayLike, p: Parameters = PARAM
         t54 = y_dot * t5
         t55 = t53 + t54
         t56 = theta_dot * t55
-        t57 = t46 * t56
+        t57 = t56 * t46
         t64 = L * t3
         t63 = t4 * t56
         t65 = theta_dot * t64

@@ -19772,7 +19772,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers(const double q[6], const double q
     }
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
-    if (RAPKM_2RRR_RR_RARELY(!(17000.0 >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY(!(17.0 >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double a_2 = q[1];

@@ -95,7 +95,7 @@
  *   inverse_dynamics |m_payload| <= 170
  *   forward_dynamics m_1 <= 1700, J_1 <= 17, J_2 <= 170, J_motor <= 170
  *   forward_dynamics |m_payload| <= 10
- *   multipliers J_2 <= 0.1, |m_payload| <= 17000
+ *   multipliers J_2 <= 0.1, |m_payload| <= 17
  *   energy |m_payload| <= 10
  *   singularity 0.015 <= l_1 <= 3
  *

@@ -2032,7 +2032,7 @@ size_t rapkm_2rrr_rr_multipliers_batch(size_t count, size_t stride, const double
             const double t679 = t671 - t678;
             double rest = (t679 - t679) * t677 * t669 + t663 - t663;
             rest += 0.1 >= J_2 ? 0.0 : 1.0;
-            rest += 17000.0 >= size_of_m_payload ? 0.0 : 1.0;
+            rest += 17.0 >= size_of_m_payload ? 0.0 : 1.0;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += 100000.0 >= t2 ? 0.0 : 1.0;
             rest += 100000.0 >= t3 ? 0.0 : 1.0;

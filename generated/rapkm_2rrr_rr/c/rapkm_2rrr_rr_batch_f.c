@@ -2025,7 +2025,7 @@ size_t rapkm_2rrr_rr_multipliers_batch_f(size_t count, size_t stride, const floa
             rest += 1700.0f >= J_1 ? 0.0f : 1.0f;
             rest += 0.1f >= J_2 ? 0.0f : 1.0f;
             rest += 1000.0f >= J_motor ? 0.0f : 1.0f;
-            rest += 17000.0f >= size_of_m_payload ? 0.0f : 1.0f;
+            rest += 17.0f >= size_of_m_payload ? 0.0f : 1.0f;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += 100.0f >= t2 ? 0.0f : 1.0f;
             rest += 100.0f >= t3 ? 0.0f : 1.0f;

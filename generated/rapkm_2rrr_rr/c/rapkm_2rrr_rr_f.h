@@ -96,7 +96,7 @@
  *   forward_dynamics l_2 <= 3, m_1 <= 1700, m_2 <= 56000, J_1 <= 17
  *   forward_dynamics J_2 <= 170, J_motor <= 170, |m_payload| <= 10
  *   multipliers m_1 <= 170000, m_2 <= 56000, J_1 <= 1700, J_2 <= 0.1
- *   multipliers J_motor <= 1000, |m_payload| <= 17000
+ *   multipliers J_motor <= 1000, |m_payload| <= 17
  *   energy |m_payload| <= 10
  *   singularity 0.015 <= l_1
  *

@@ -1164,7 +1164,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_multipliers_sc_f(const rapkm_2rrr_rr_trig_f *
     }
     const float m_payload = p->m_payload;
     const float size_of_m_payload = fabsf(m_payload);
-    if (RAPKM_2RRR_RR_RARELY_F(!(17000.0f >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(17.0f >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float sin_a_1 = sc->sin_a_1;

@@ -94,7 +94,7 @@ Beyond these bounds of parameters results would lose digits; they have the statu
   inverse_dynamics |m_payload| <= 170
   forward_dynamics m_1 <= 1700, J_1 <= 17, J_2 <= 170, J_motor <= 170
   forward_dynamics |m_payload| <= 10
-  multipliers J_2 <= 0.1, |m_payload| <= 17000
+  multipliers J_2 <= 0.1, |m_payload| <= 17
   energy |m_payload| <= 10
   singularity 0.015 <= l_1 <= 3
 
@@ -18530,7 +18530,7 @@ def multipliers(q: ArrayLike, qd: ArrayLike, u: ArrayLike, p: Parameters = PARAM
         m_payload = np.float64(p.m_payload)
         status = _first(status, ~np.asarray(0.1 >= J_2), 6)
         size_of_m_payload = np.abs(m_payload)
-        status = _first(status, ~np.asarray(17000.0 >= size_of_m_payload), 6)
+        status = _first(status, ~np.asarray(17.0 >= size_of_m_payload), 6)
         t1 = np.abs(a_2)
         t2 = np.abs(b_2)
         t3 = np.abs(a_1)
