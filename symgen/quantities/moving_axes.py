@@ -45,7 +45,7 @@ def in_moving_axes(mechanics: System, derived: Quantity) -> Quantity:
     """A quantity in axes that turn with a heading on which nothing else depends, where that takes fewer operations."""
     held = reached(scalars(derived))
     best, least = derived, counted_weight(derived)
-    numbers = _Numbers(mechanics, derived.outputs)
+    numbers = _TurnedNumbers(mechanics, derived.outputs)
     for heading in islice(_headings(mechanics, held), MOST_TURNED // (1 + len(held))):
         turned = _turned(mechanics, derived, heading) if numbers.may_turn(heading) else None
         if turned is not None and (weight := counted_weight(turned)) < least:
@@ -53,7 +53,7 @@ def in_moving_axes(mechanics: System, derived: Quantity) -> Quantity:
     return best
 
 
-class _Numbers:
+class _TurnedNumbers:
     """The outputs of a quantity at a point in double precision, which rule most headings out in a tenth of the time."""
 
     def __init__(self, mechanics: System, outputs: Vector) -> None:
