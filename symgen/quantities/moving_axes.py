@@ -58,7 +58,9 @@ class _TurnedNumbers:
 
     def __init__(self, mechanics: System, outputs: Vector) -> None:
         self._mechanics, self._count, self._evaluate = mechanics, len(outputs), Evaluator(outputs)
-        names = (str(node.payload) for node in reached(outputs) if node.op == "symbol")
+        held = reached(outputs)
+        self.size = len(held)
+        names = (str(node.payload) for node in held if node.op == "symbol")
         self._point = {name: random.Random(name).uniform(0.1, 0.9) for name in names}
         self._here = self._evaluate(self._point)
 
