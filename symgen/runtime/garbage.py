@@ -11,7 +11,7 @@ from collections.abc import Callable
 from contextlib import suppress
 
 # Objects, some hundred bytes each; fewer are not worth looking through all the others.
-MANY = 250_000
+MANY = 600_000
 # What clears the results that functions of scalars remember: each would keep a whole graph.
 _CLEARING: list[Callable[[], None]] = []
 

@@ -583,3 +583,72 @@ inputs: {f: {acts_on: {x: 1}}}
     points = [np.array([1.0, 0.0, a]) for a in (1.0, 0.5, 0.09)]
     _, regular = turned._regular(points, {})
     assert [q[2] for q in regular] == [1.0, 0.5]
+
+
+def test_a_walk_from_a_flat_pose_knows_the_ranks_elsewhere() -> None:
+    """The start is 0 but for rounding, which gives rows a direction there that depends on the others elsewhere."""
+    text = """model: cranks
+coordinates: {a: {}, b: {}, c: {}, d: {}}
+kinetic_energy: (a_dot**2 + b_dot**2 + c_dot**2 + d_dot**2)/2
+constraints:
+  geometric:
+    along: 0.85*cos(a) + cos(d) - 1 - 0.85*cos(b)
+    across: 0.85*sin(a) + sin(d) - 0.85*sin(b)
+    along_too: 0.85*cos(a) + 2*cos(d) - 2 - 0.85*cos(c)
+    across_too: 0.85*sin(a) + 2*sin(d) - 0.85*sin(c)
+inputs: {u: {acts_on: {b: 1}}}
+outputs: [forward_dynamics]
+"""
+    walker = Witness(text, {"a": 0.0, "b": 0.0, "c": 0.0, "d": 0.0}).walker()
+    flat_pose = np.array([0.0, 3e-9, -2e-9, 1e-9])
+    ranks, regular = walker._regular([flat_pose, *(np.array([a, a, a, 0.0]) for a in (0.3, -0.7, 1.1))], {})
+    assert (len(regular), ranks.constraints, ranks.actuation) == (3, 3, 1)
+
+
+def test_rows_across_a_bar_close_to_the_last_digits_of_its_length() -> None:
+    """One of two rows of a bar at rest changes by little as it turns, and by as much as the other with its length."""
+    x, y = 0.8 * math.cos(1.569), 0.8 * math.sin(1.569)
+    text = f"""model: bar
+coordinates: {{a: {{}}, b: {{}}}}
+parameters: {{l: 0.8, x: {x + 1e-17!r}, y: {y!r}}}
+kinetic_energy: (a_dot**2 + b_dot**2)/2
+constraints: {{geometric: {{one: l*cos(a + b) - x, two: l*sin(a + b) - y - 2e-16}}}}
+inputs: {{u: {{acts_on: {{a: 1}}}}}}
+outputs: [forward_dynamics]
+"""
+    witness = Witness(text, {"a": 1.0, "b": 0.569})
+    visited, ranks = witness.walker().states(witness.defaults(), 10)
+    assert (len(visited), ranks.constraints) == (10, 1)
+    off = Witness(text.replace("2e-16", "1e-13"), {"a": 1.0, "b": 0.569})
+    assert off.walker().states(off.defaults(), 10)[0] == []
+
+
+def test_an_internal_force_of_a_loop_in_a_plane_has_one_direction(tmp_path: Path) -> None:
+    """Rows of the loop across its plane hold nothing, and leave the force a sign of its own."""
+    text = """model: plane
+gravity: [0, -9.81, 0]
+joints:
+  one: {type: revolute, axis: z, coordinate: a}
+  two: {type: revolute, axis: z, parent: one, at: [0.5, 0, 0], coordinate: b}
+  three: {type: revolute, axis: z, parent: two, at: [0.9, 0, 0], coordinate: c}
+bodies:
+  one: {mass: 1, com: [0.2, 0, 0], inertia: {zz: 0.1}}
+  two: {mass: 2, com: [0.3, 0, 0], inertia: {zz: 0.2}}
+  three: {mass: 1, com: [0.2, 0, 0], inertia: {zz: 0.1}}
+points: {tip: {frame: three, at: [0.7, 0, 0]}, anchor: {at: [0.8, 0.1, 0]}}
+loops: {loop: {type: point, between: [tip, anchor]}}
+inputs: {u: {joint: a}, idle: {torque_on: two, direction: [1, 0, 0]}}
+allocation: {limits: {u: [20, 30]}}
+outputs: [inverse_dynamics]
+"""
+    path = tmp_path / "plane.yaml"
+    path.write_text(text, encoding="utf-8")
+    result = generate(path, Options(parts=("python",), verify=False), lambda _: None)
+    assert "compare u with its limits" in result.files["python/plane.py"]
+    witness = Witness(text, {"a": 2.2, "b": -1.9, "c": -1.7})
+    walker = witness.walker()
+    visited, ranks = walker.states(witness.defaults(), 4)
+    assert len(visited) == 4
+    assert len(ranks.lengths) > ranks.constraints
+    # u alone moves the loop, and is what it has to be, within its limits or not
+    assert all(witness._known("inverse_dynamics", state, ranks) is not None for state in visited)

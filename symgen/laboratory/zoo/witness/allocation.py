@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from symgen.laboratory.zoo.witness.kkt import EquationValues, GenericRanks, internal_force
-from symgen.laboratory.zoo.witness.linear import Vector
+from symgen.laboratory.zoo.witness.linear import NOTHING, Vector
 
 # Of an internal force of norm 1, what rounding in balls leaves of an input that takes no part in it.
 NO_PART = 1e-30
@@ -42,7 +43,13 @@ def limits_of(
 
 def is_directed(at: EquationValues, ranks: GenericRanks) -> bool:
     """Whether an internal force has one direction with a sign of its own, which limits do not take away."""
-    return len(at.control[0]) - ranks.actuation == 1 and ranks.constraints == len(at.rows)
+    return len(at.control[0]) - ranks.actuation == 1 and ranks.constraints == len(holding(at, ranks).rows)
+
+
+def holding(at: EquationValues, ranks: GenericRanks) -> EquationValues:
+    """The equations with rows that hold anything: of a loop in a plane those across it do not."""
+    lengths = ranks.lengths or [1.0] * len(at.rows)
+    return replace(at, rows=[row for row, length in zip(at.rows, lengths, strict=True) if length > NOTHING])
 
 
 def directed(

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from symgen.laboratory.zoo.witness.allocation import directed, is_directed, preloads
+from symgen.laboratory.zoo.witness.allocation import directed, holding, is_directed, preloads
 from symgen.laboratory.zoo.witness.fields import Floats
 from symgen.laboratory.zoo.witness.float_rows import normalized, null_space
 from symgen.laboratory.zoo.witness.kkt import EquationEvaluator, EquationValues, GenericRanks
@@ -99,5 +99,5 @@ class PinocchioAnswers:
         rank = self._ranks.actuation
         share = (right[:rank].T / sizes[:rank]) @ left[:, :rank].T @ free.T / weights[:, None]
         near = np.array(preloads(inputs, block, values, 0.0) or [0.0] * len(inputs))
-        u = near + share @ (load - control @ near)
-        return np.array([float(x) for x in directed(at, list(u), inputs, block, values, 1.0)]), share
+        u, held = near + share @ (load - control @ near), holding(at, self._ranks)
+        return np.array([float(x) for x in directed(held, list(u), inputs, block, values, 1.0)]), share

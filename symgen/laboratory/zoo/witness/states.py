@@ -23,6 +23,8 @@ REFINEMENTS, REFINED = 12, 1e-20
 CLOSED = 1e-12
 # what is left of rows on V, in lengths of these, and what is no length of a row
 ON_IT, NO_LENGTH = 1e-14, 1e-14
+# a share of parameters that shows how large they make a row
+MOVED = Fraction(1, 10**15)
 # of the largest coordinate: what is less after refinement to 30 digits is 0
 ROOT_AT_ZERO = 1e-30
 # a closed configuration that is refined moves less
@@ -113,9 +115,15 @@ class Walker:
         return kept, ranks
 
     def _regular(self, points: list[Any], parameters: Mapping[str, float]) -> tuple[GenericRanks, list[Any]]:
-        """The largest ranks of all, and the configurations that have them by far."""
+        """The largest ranks of all, and the configurations that have them by far.
+
+        Where a row all but vanishes at one of them, as where a linkage lies flat, rounding decides which way it points.
+        """
         values = [self.numbers(q, parameters) for q in points]
-        lengths = np.max([self.lengths(at) for at in values], axis=0, initial=0.0) if values else ()
+        lengths: Any = np.max([self.lengths(at) for at in values], axis=0, initial=0.0) if values else np.zeros(0)
+        whole = [bool((self.lengths(at) >= DEPENDENT * lengths).all()) for at in values]
+        points = [q for q, kept in zip(points, whole, strict=True) if kept]
+        values = [at for at, kept in zip(values, whole, strict=True) if kept]
         apart = [(self._apart(at), self._driven(at)) for at in values]
         rank = [max((int((both[of] > SAME).sum()) for both in apart), default=0) for of in (0, 1)]
         geometric = max((self._geometric_rank(at) for at in values), default=0)
@@ -297,12 +305,25 @@ class Walker:
     def _is_on(self, exact: Sequence[Any], fixed: Mapping[str, Any], geometric: int) -> bool:
         """Whether the rows are satisfied to the last digits of lengths in a file.
 
-        Next to singular poses the least of what they leave need not be 0.
+        Next to singular poses the least of what they leave need not be 0.  A row that hardly changes with coordinates,
+        such as that of a bar which stands across it, is as large as what parameters make of it.
         """
-        at = self._evaluate({**fixed, **dict(zip(self._system.coordinates, exact, strict=True))}, self._balls)
-        lengths = (max(abs(float(x)) for x in row) for row in at.rows[:geometric])
-        gaps = ((abs(float(x)), length) for x, length in zip(at.residual, lengths, strict=True))
-        return all(gap <= ON_IT * length or length < NO_LENGTH for gap, length in gaps)
+        values = {**fixed, **dict(zip(self._system.coordinates, exact, strict=True))}
+        at = self._evaluate(values, self._balls)
+        lengths = [max(abs(float(x)) for x in row) for row in at.rows[:geometric]]
+
+        def closed(sizes: Sequence[float]) -> bool:
+            gaps = zip(at.residual, lengths, sizes, strict=True)
+            return all(abs(float(x)) <= ON_IT * size or length < NO_LENGTH for x, length, size in gaps)
+
+        if closed(lengths):
+            return True
+        sizes, share = list(lengths), self._balls.number(MOVED)
+        for name in (name for name in fixed if name not in self._system.rate_names):
+            moved = self._evaluate({**values, name: values[name] * (1 + share)}, self._balls).residual
+            changes = (abs(float((x - y) / share)) for x, y in zip(moved, at.residual, strict=True))
+            sizes = [size + change for size, change in zip(sizes, changes, strict=True)]
+        return closed(sizes)
 
     def _geometric_rank(self, at: EquationValues) -> int:
         """The rank of the rows of loops."""

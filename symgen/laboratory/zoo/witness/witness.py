@@ -14,7 +14,7 @@ import yaml
 
 from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.draws.describe import Description
-from symgen.laboratory.zoo.witness.allocation import directed, is_directed, limits_of, members, preloads
+from symgen.laboratory.zoo.witness.allocation import directed, holding, is_directed, limits_of, members, preloads
 from symgen.laboratory.zoo.witness.coverage import Tally
 from symgen.laboratory.zoo.witness.fields import Balls, Floats, precision
 from symgen.laboratory.zoo.witness.generated import ARGUMENTS, Answer, Target, targets
@@ -364,7 +364,7 @@ class Witness:
             limits = limits_of(inputs, block, values)
             u = nearest_within(along(at, parts)[0], u, by_input, limits, len(inputs) - ranks.actuation)
         else:
-            u = directed(at, u, inputs, block, values, one)
+            u = directed(holding(at, ranks), u, inputs, block, values, one)
         # where the inputs reach nothing, u is a plain 0
         u = [x + 0 * one for x in u]
         return Truth(u, min((*parts.pivots, *pivots), default=1.0))
