@@ -22,7 +22,7 @@ from symgen.generation.draft import REJECTED, Draft
 from symgen.generation.results import AUTO, Options
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.methods.quantity import scalars
-from symgen.model.quantities import MAIN
+from symgen.model.quantities import MAIN, MOTIONS
 from symgen.quantities.alternatives import TIERS, Alternative, Alternatives, grouped
 from symgen.quantities.everything import (
     OPERATIONS_TRIED,
@@ -55,9 +55,9 @@ LONGEST_WEIGHED = 6_000
 WIDENED = 3
 # Counted cost of the longest of them.
 LONGEST_WIDENED = 40_000
-# Counted cost of all long methods together that are tried for a quantity before twice the digits are: the rest may do
-# with fewer digits, but each takes a dozen seconds to be derived and measured.
-LONG_TRIED = 50_000
+# Counted cost of all long methods together that are tried for a quantity, or for accelerations and multipliers, before
+# twice the digits are: the rest may do with fewer digits, but each takes seconds to be derived and measured.
+LONG_TRIED = 40_000
 
 
 class Fallback:
@@ -251,8 +251,12 @@ class Fallback:
         """One tier after the other, until what was tried counts so many operations."""
         for tier in range(TIERS):
             candidates = self._candidates(draft, quantity, tier, expected, MARGIN)
-            while self._operations[quantity] <= operations and (one := next(candidates, None)) is not None:
+            while self._tried_long(quantity) <= operations and (one := next(candidates, None)) is not None:
                 yield one
+
+    def _tried_long(self, quantity: str) -> int:
+        """Counted cost of the long methods tried for a quantity; accelerations and multipliers count together."""
+        return sum(self._operations[name] for name in (MOTIONS if quantity in MOTIONS else (quantity,)))
 
     def _candidates(self, draft: Draft, quantity: str, tier: int, expected: Expected, most: float) -> Iterator[Passing]:
         """Those of a tier that are left, measured; what fails is noted.  Up to an error of `most` they are taken."""
