@@ -117,7 +117,8 @@ class Draft:
         kernels = {scalar: program.kernels[0] for scalar, program in programs.items()}
         if not wide:
             return kernels
-        from symgen.ir.pairs.wide import widened, with_sharp_thresholds  # few models need it
+        from symgen.ir.pairs.sharp_thresholds import with_sharp_thresholds  # few models need these
+        from symgen.ir.pairs.wide import widened
 
         by_scalar = {scalar: kernels[scalar] for scalar in scalars}
         if "float32" in wide:

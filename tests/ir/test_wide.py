@@ -30,7 +30,8 @@ from symgen.ir.kernel import (
     Status,
 )
 from symgen.ir.lifted import Lifted, same_kernel
-from symgen.ir.pairs.wide import LOWERED, widened, with_sharp_thresholds
+from symgen.ir.pairs.sharp_thresholds import LOWERED, with_sharp_thresholds
+from symgen.ir.pairs.wide import widened
 from symgen.ir.pairs.wide_angles import MOST_PARTS
 from symgen.ir.pairs.wide_functions import WIDE, wide_function
 from symgen.ir.sincos import sincos
