@@ -9,7 +9,6 @@ of what is cancelled (the symmetry of Chaplygin systems: Bloch, Nonholonomic Mec
 from __future__ import annotations
 
 import math
-import random
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from itertools import islice, permutations
@@ -19,7 +18,7 @@ from symgen.mechanics.system import System
 from symgen.methods.method import counted_weight
 from symgen.methods.quantity import Quantity, scalars
 from symgen.records import dataclass
-from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.evaluate import Evaluator, inner_point
 from symgen.symbolic.hidden_zeros import ROUNDING_OF_ZEROS
 from symgen.symbolic.identity import same_values
 from symgen.symbolic.matrix import Vector
@@ -58,10 +57,7 @@ class _TurnedNumbers:
 
     def __init__(self, mechanics: System, outputs: Vector) -> None:
         self._mechanics, self._count, self._evaluate = mechanics, len(outputs), Evaluator(outputs)
-        held = reached(outputs)
-        self.size = len(held)
-        names = (str(node.payload) for node in held if node.op == "symbol")
-        self._point = {name: random.Random(name).uniform(0.1, 0.9) for name in names}
+        self.size, self._point = len(reached(outputs)), inner_point(outputs)
         self._here = self._evaluate(self._point)
 
     def may_turn(self, heading: _Heading) -> bool:

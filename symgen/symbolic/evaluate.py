@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import operator
+import random
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 
@@ -14,7 +15,7 @@ from symgen.diagnostics import SymgenBug
 from symgen.runtime.effort import spend
 from symgen.symbolic.angles.sines import cosine, sine
 from symgen.symbolic.scalar import Scalar
-from symgen.symbolic.traverse import topological
+from symgen.symbolic.traverse import reached, topological
 
 FUNCTIONS: dict[str, Callable[..., float]] = {
     "sqrt": math.sqrt,
@@ -42,6 +43,12 @@ FUNCTIONS: dict[str, Callable[..., float]] = {
     "max": max,
     "ratio_or_zero": lambda a, b: a / b if b else 0.0,
 }
+
+
+def inner_point(scalars: Sequence[Scalar]) -> dict[str, float]:
+    """Numbers at random for the symbols of scalars, inside the domains of most functions; the same for each name."""
+    names = (str(node.payload) for node in reached(scalars) if node.op == "symbol")
+    return {name: random.Random(name).uniform(0.1, 0.9) for name in names}
 
 
 class Evaluator:

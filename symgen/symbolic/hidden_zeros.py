@@ -7,14 +7,12 @@ wrong number where the whole result is 0.  Double precision finds what may be 0,
 
 from __future__ import annotations
 
-import random
 from collections.abc import Sequence
 
-from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.evaluate import Evaluator, inner_point
 from symgen.symbolic.exact import ExactValues, holding_roots
 from symgen.symbolic.identity import POINTS_OF_SIGNS
 from symgen.symbolic.scalar import Scalar
-from symgen.symbolic.traverse import reached
 
 # What rounding may leave of a 0 among numbers about 1; more than that is worth no exact value.
 ROUNDING_OF_ZEROS = 1e-6
@@ -44,8 +42,5 @@ def _zeros(scalars: Sequence[Scalar], seed: int) -> list[Scalar]:
 
 
 def _floats(scalars: Sequence[Scalar]) -> Sequence[float]:
-    """Values at a random point that lies inside the domains of most functions; NaN elsewhere."""
-    if not scalars:
-        return ()
-    names = [str(node.payload) for node in reached(scalars) if node.op == "symbol"]
-    return Evaluator(scalars)({name: random.Random(name).uniform(0.1, 0.9) for name in names})
+    """Values at a point at random; NaN where they have none."""
+    return Evaluator(scalars)(inner_point(scalars)) if scalars else ()

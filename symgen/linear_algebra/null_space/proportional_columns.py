@@ -8,7 +8,6 @@ rounding errors of it, and what loads the constraints, such as weights, would co
 
 from __future__ import annotations
 
-import random
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import cached_property
@@ -18,10 +17,9 @@ from symgen.linear_algebra.guards import Guard
 from symgen.linear_algebra.null_space.null_spaces import HouseholderSpace, Restriction
 from symgen.linear_algebra.null_space.pivoted import reflected
 from symgen.records import dataclass
-from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.evaluate import Evaluator, inner_point
 from symgen.symbolic.matrix import Matrix, Vector, identity, transpose
 from symgen.symbolic.scalar import Graph, Scalar
-from symgen.symbolic.traverse import reached
 
 # What rounding may leave of a ratio.
 ROUNDING_OF_RATIOS = 1e-9
@@ -119,8 +117,7 @@ def _values(columns: Sequence[Vector]) -> list[list[float]]:
     flat = [entry for column in columns for entry in column]
     if not flat:
         return []
-    names = [str(node.payload) for node in reached(flat) if node.op == "symbol"]
-    at = Evaluator(flat)({name: random.Random(name).uniform(0.1, 0.9) for name in names})
+    at = Evaluator(flat)(inner_point(flat))
     r = len(columns[0])
     return [list(at[start : start + r]) for start in range(0, len(at), r)]
 
