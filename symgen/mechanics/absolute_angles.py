@@ -53,6 +53,15 @@ class AbsoluteAngles:
                 result[parent] = result[parent] - f[j]
         return tuple(result)
 
+    def forces_of_relative(self, f: Vector) -> Vector:
+        """Generalized forces of q, or derivatives by q, from those of y: S^-T f."""
+        result = list(f)
+        for j, parent in enumerate(self.parents):
+            while parent is not None:
+                result[parent] = result[parent] + f[j]
+                parent = self.parents[parent]
+        return tuple(result)
+
 
 def absolute_angles(q: Vector, constraint_jacobian: Matrix) -> AbsoluteAngles:
     """The coordinates that occur in the angles of B only together with another one, which becomes their parent.

@@ -64,6 +64,12 @@ _GIVEN_MOTIONS = (
     "velocity_from_measured", "acceleration_from_measured", "velocity_from_task", "acceleration_from_task",
 )  # fmt: skip
 _GRADIENTS = ("inverse_dynamics_gradient", "forward_dynamics_gradient", "inverse_dynamics_hessian_product")
+_JACOBIANS = (
+    "inverse_dynamics_jacobian", "inverse_dynamics_parameter_jacobian", "forward_dynamics_jacobian",
+    "multipliers_jacobian",
+)  # fmt: skip
+_OF_MOTIONS = ("forward_dynamics_jacobian", "forward_dynamics_gradient", "multipliers_jacobian")
+_OF_U = tuple(name for name in (*_JACOBIANS, *_GRADIENTS) if name not in _OF_MOTIONS)
 _WEIGHTED = ("weighted_pseudoinverse", "weighted_nullspace_projector")
 
 # Of methods that count alike the first is taken.
@@ -90,7 +96,10 @@ METHODS: tuple[MethodRow, ...] = (
     _method("householder", _PROJECTOR, "projector", "HOUSEHOLDER", Use.ASKED),
     _method("closed", _GIVEN_PLACES, "given.closed", "CLOSED"),
     _method("legs", _GIVEN_MOTIONS, "given.legs", "BY_LEGS"),
-    _method("weighted_jacobian", _GRADIENTS, "weighted_jacobian", "WEIGHTED_JACOBIAN", Use.SPARE),
+    _method("implicit", _OF_U, "derivatives.of_inputs", "IMPLICIT"),
+    _method("implicit", _OF_MOTIONS, "derivatives.of_motions", "IMPLICIT"),
+    _method("differentiated", _JACOBIANS, "derivatives.differentiated", "DIFFERENTIATED", Use.SPARE),
+    _method("weighted_jacobian", _GRADIENTS, "derivatives.differentiated", "DIFFERENTIATED", Use.SPARE),
     _method("schur_qr", _WEIGHTED, "forward_dynamics.weighted_projection", "SCHUR_QR", Use.SPARE),
     _method("articulated", _WEIGHTED, "forward_dynamics.weighted_projection", "ARTICULATED", Use.SPARE),
 )

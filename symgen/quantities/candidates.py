@@ -13,6 +13,7 @@ from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.mechanics.system import System
 from symgen.methods.admission import Validity
 from symgen.methods.derivation import Derivation
+from symgen.methods.derivatives.differentiated import FUNCTIONS, derivatives
 from symgen.methods.forward_dynamics.absolute import brought_back, in_absolute_angles
 from symgen.methods.forward_dynamics.minor_motion import CANCELLATION_WORTH, LARGEST_DELTA
 from symgen.methods.forward_dynamics.motion import Motion
@@ -26,29 +27,17 @@ from symgen.methods.system import MethodInput
 from symgen.methods.table import Use
 from symgen.methods.table import methods as methods_of
 from symgen.model.model import Model
-from symgen.model.quantities import DIRECTION, MOTIONS, PARTITION, TASK_OPEN, TASK_RATES, WEIGHT_ARGUMENTS
+from symgen.model.quantities import MAIN, MOTIONS, PARTITION, TASK_OPEN, TASK_RATES
 from symgen.quantities.catalogue import BY_NAME, CatalogueEntry, by_blocks, derive, derived_from, sizes
 from symgen.quantities.everything import WorkBudget
 from symgen.runtime.activity import working
 from symgen.runtime.effort import TooLongError, at_most, worth_trying
-from symgen.symbolic.calculus import derivative_along, jacobian
-from symgen.symbolic.matrix import dot, flatten
 from symgen.symbolic.traverse import cost
 
 ABSOLUTE = "householder in absolute angles"
 # What derivation.json calls methods that need no null space.
 ARTICULATED = "articulated inertias"
 TITLES = {BY_FRAMES: ARTICULATED}
-# What is the derivative of what.
-SLOPES = {
-    "inverse_dynamics_jacobian": INPUTS,
-    "inverse_dynamics_gradient": INPUTS,
-    "inverse_dynamics_hessian_product": INPUTS,
-    "inverse_dynamics_parameter_jacobian": INPUTS,
-    "forward_dynamics_jacobian": MOTIONS[0],
-    "forward_dynamics_gradient": MOTIONS[0],
-    "multipliers_jacobian": MOTIONS[1],
-}
 MOST_WORTH = 1 + CANCELLATION_WORTH
 VALID = Validity(0, 0, (), "along null spaces only ranks are divided by")
 
@@ -62,7 +51,7 @@ class Candidates:
         self._system = MethodInput(mechanics, generic)
         self._methods, self._everything = methods, everything
         self._derivations = derivations(mechanics, generic)
-        wanted = {*asked, *(SLOPES[name] for name in asked if name in SLOPES)}
+        wanted = {*asked, *(FUNCTIONS[name] for name in asked if name in FUNCTIONS)}
         moving = [name for name in MOTIONS if name in wanted]
         with working("articulated inertias"):
             self._alone = {name: self._without_null_space(name) for name in moving}
@@ -72,9 +61,9 @@ class Candidates:
 
     def cheapest(self, entry: CatalogueEntry) -> tuple[Candidate, Mapping[str, int]] | None:
         """The one that is taken, and the counted cost of all by title; None where each takes too long."""
-        made = self._of(entry) if entry.outputs is not None or entry.name in MOTIONS else {}
-        if entry.name in SLOPES:
-            made |= self._differentiated(entry, SLOPES[entry.name])
+        # first, because beside nodes that others are made of, equal functions would take their place
+        made = self._differentiated(entry, FUNCTIONS[entry.name]) if entry.name in FUNCTIONS else {}
+        made = self._of(entry, min(map(_counted, made.values()), default=None)) | made
         if not made:
             return None
         minors = made.get("minors")
@@ -88,8 +77,11 @@ class Candidates:
         )
         return taken.candidate, taken.costs
 
-    def _of(self, entry: CatalogueEntry) -> dict[str, Candidate]:
-        alone = self._alone.get(entry.name) or self._by_methods(entry.name)
+    def _of(self, entry: CatalogueEntry, known: int | None) -> dict[str, Candidate]:
+        """By methods and along null spaces, beside one of `known` cost if there is any."""
+        alone = self._alone.get(entry.name) or self._by_methods(entry.name, known)
+        if entry.outputs is None and entry.name not in MOTIONS:
+            return self._brought(alone)
         # where minors are not listed, no other method is derived to be counted: they grow faster than these
         if alone and self._generic.r > 0 and self._generic.delta > LARGEST_DELTA:
             return self._brought(alone)
@@ -128,20 +120,12 @@ class Candidates:
         if quantity == INPUTS:
             chosen = self._methods.choose(quantity)
             one = None if isinstance(chosen, str) else replace(chosen[0], derived=derived_on(graph, chosen[0]))
-            by = seen.parameters if "parameters" in entry.row.sizes else seen.motion
         else:
             best = self.cheapest(BY_NAME[quantity])
             one = None if best is None else best[0]
-            by = (*seen.q, *seen.qd, *seen.u)
         if one is None:
             return {}
-        values = one.derived.outputs
-        if weights := seen.further(*(name for name in WEIGHT_ARGUMENTS if name in entry.row.arguments)):
-            values = tuple(dot(graph, one, values) for one in weights)
-        outputs = flatten(jacobian(graph, values, by))
-        if DIRECTION in entry.row.arguments:
-            (direction,) = seen.further(DIRECTION)
-            outputs = tuple(derivative_along(graph, outputs, dict(zip(by, direction, strict=True))))
+        outputs = derivatives(seen, entry.name, one.derived.outputs, swept=True)
         shape = entry.shape(sizes(seen.model, self._generic))
         derived = replace(one.derived, name=entry.name, shape=shape, outputs=outputs)
         return {one.title: Candidate(self._system, derived, along=one.title)}
@@ -165,12 +149,17 @@ class Candidates:
                     made[name] = replace(one, along=TITLES.get(name, name))
         return {made[name].along: made[name] for name in names if name in made}
 
-    def _by_methods(self, quantity: str) -> dict[str, Candidate]:
+    def _by_methods(self, quantity: str, known: int | None) -> dict[str, Candidate]:
         """What is not derived along null spaces alone, by methods that are chosen by themselves."""
-        if BY_NAME[quantity].outputs is None:
+        if quantity in MAIN:
             return {}
-        made = ((row.name, self._methods.candidate(quantity, row.name)) for row in methods_of(quantity, Use.CHOSEN))
-        return {name: replace(one, along=name) for name, one in made if isinstance(one, Candidate)}
+        made: dict[str, Candidate] = {}
+        for row in methods_of(quantity, Use.CHOSEN):
+            with suppress(TooLongError), nullcontext() if known is None else at_most(worth_trying(known)):
+                one = self._methods.candidate(quantity, row.name)
+                if isinstance(one, Candidate):
+                    made[row.name] = replace(one, along=row.name)
+        return made
 
     def _brought(self, made: dict[str, Candidate]) -> dict[str, Candidate]:
         """The same on the graph of the other quantities."""

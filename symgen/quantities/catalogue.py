@@ -10,11 +10,11 @@ from symgen.linear_algebra.null_space.null_spaces import rests_on_rank
 from symgen.mechanics.genericity import Genericity
 from symgen.methods.actuator_coordinates import actuator_bias, actuator_mass_matrix, actuator_velocity
 from symgen.methods.derivation import Derivation
+from symgen.methods.derivatives.variations import constraint_variations
 from symgen.methods.given.functions import GivenBy, measured, task
 from symgen.methods.given.least_motion import LeastMotion
 from symgen.methods.quantity import Quantity, is_fixed
 from symgen.methods.redundancy.utilisation import utilisation
-from symgen.methods.variations import constraint_variations
 from symgen.model.availability import lacking
 from symgen.model.model import Model
 from symgen.model.quantities import QUANTITIES, QuantityRow

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +13,9 @@ import pytest
 import shipped
 from numpy.typing import NDArray
 
-from symgen.mechanics.genericity import parameter_values
+from symgen.mechanics.genericity import genericity, parameter_values
 from symgen.mechanics.system import System
+from symgen.methods.derivatives.differentiated import FUNCTIONS
 from symgen.methods.method import Candidate
 from symgen.methods.selection import Methods
 from symgen.model.load import load_model
@@ -26,6 +28,7 @@ from symgen.symbolic.traverse import reached
 from symgen.verify.reference.reference import Reference, State
 
 Array = NDArray[np.float64]
+GRADIENTS = ("inverse_dynamics_gradient", "forward_dynamics_gradient", "inverse_dynamics_hessian_product")
 ALL = ("inverse_dynamics_jacobian", "forward_dynamics_jacobian", "constraint_variations")
 # A cart with a pendulum, driven at the cart, damped.
 PENDULUM = """
@@ -170,7 +173,48 @@ def test_second_derivatives_of_a_pendulum_by_hand(tmp_path: Path) -> None:
     assert values(derive_quantities(model, (name,)), point)[name] == pytest.approx(np.array(by_hand), rel=1e-13)
 
 
-GRADIENTS = ("inverse_dynamics_gradient", "forward_dynamics_gradient", "inverse_dynamics_hessian_product")
+@pytest.mark.parametrize(
+    "name", ["rapkm_2rrr_rr", "front_car", "delta", "slider_crank", "tilted_four_bar", "scara", "chain4"]
+)
+@pytest.mark.parametrize("quantity", sorted(FUNCTIONS))
+def test_equations_and_the_steps_that_solve_them_have_the_same_derivatives(name: str, quantity: str) -> None:
+    """At numbers, beside the constraints too: neither holds a rule that the other has."""
+    model = shipped.model(name)
+    if quantity == "multipliers_jacobian" and not model.constraints:
+        return
+    methods = Methods(model, genericity(System(model)))
+    by_equations = methods.candidate(quantity, "implicit")
+    spare = "weighted_jacobian" if quantity in GRADIENTS else "differentiated"
+    by_steps = methods.candidate(quantity, spare)
+    assert isinstance(by_equations, Candidate)
+    assert isinstance(by_steps, Candidate)
+    assert by_equations.derived.shape == by_steps.derived.shape
+    dice = random.Random(f"{name} {quantity}")
+    outputs = [one.derived.outputs for one in (by_equations, by_steps)]
+    names = {str(node.payload) for one in outputs for node in reached(one) if node.op == "symbol"}
+    values = {one: dice.uniform(0.4, 1.2) for one in sorted(names)}
+    first, second = (np.array(Evaluator(one)(values)) for one in outputs)
+    assert np.abs(second).max() > 0
+    assert np.allclose(first, second, rtol=1e-9, atol=1e-9 * np.abs(second).max())
+
+
+def test_what_stands_still_is_not_in_the_derivatives() -> None:
+    """Symbols that were held or loaded while equations were differentiated have values in the end."""
+    model = shipped.model("rapkm_2rrr_rr")
+    methods = Methods(model, genericity(System(model)))
+    for quantity in FUNCTIONS:
+        one = methods.candidate(quantity, "implicit")
+        assert isinstance(one, Candidate)
+        names = {str(node.payload) for node in reached(one.derived.outputs) if node.op == "symbol"}
+        assert not {name for name in names if " " in name}
+
+
+def test_several_internal_forces_are_left_to_the_steps() -> None:
+    model = shipped.model("rapkm_2rrr_rr")
+    fourth = replace(model.inputs[0], name="fourth")
+    wider = replace(model, inputs=(*model.inputs, fourth))
+    answer = Methods(wider, genericity(System(wider))).candidate("inverse_dynamics_jacobian", "implicit")
+    assert answer == "several inputs are redundant"
 
 
 @pytest.mark.parametrize("quantity", GRADIENTS)

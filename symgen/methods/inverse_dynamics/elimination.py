@@ -37,29 +37,48 @@ class LinearEquation:
     right: Scalar
 
 
+@dataclass(frozen=True, slots=True)
+class _Turn:
+    """Two unknowns that were replaced by their components along and across (cosine, sine)."""
+
+    first: int
+    second: int
+    cosine: Scalar
+    sine: Scalar
+
+
+@dataclass(frozen=True, slots=True)
+class _Solved:
+    """An unknown that a row was solved for."""
+
+    name: int
+    value: Scalar
+
+
 class Elimination:
     """The rows and unknowns that are left; `core` and `names` after `reduce`.
 
     Unknowns are numbered: multipliers first, then the inputs, then sums of multipliers.
     """
 
-    def __init__(self, mechanics: System) -> None:
+    def __init__(self, mechanics: System, force: Vector | None = None) -> None:
         self._mechanics = mechanics
         self._graph: Graph = mechanics.graph
-        rows, force = mechanics.constraint_jacobian, mechanics.balance
+        rows, force = mechanics.constraint_jacobian, mechanics.balance if force is None else force
         # u does not depend on the lengths of the rows of B: the numbers that their terms have are left out
         numbers = [usual_number(x for x in row if not x.is_zero) for row in rows]
         primitive = [tuple(divided(self._graph, x, k) for x in row) for row, k in zip(rows, numbers, strict=True)]
-        columns = [*self._cancelled(primitive), *mechanics.inputs]
-        self.inputs = range(len(rows), len(columns))
+        self.columns: tuple[Vector, ...] = (*self._cancelled(primitive), *mechanics.inputs)
+        self.inputs = range(len(rows), len(self.columns))
         self.core = [
-            LinearEquation({j: column[i] for j, column in enumerate(columns) if not column[i].is_zero}, force[i])
+            LinearEquation({j: column[i] for j, column in enumerate(self.columns) if not column[i].is_zero}, force[i])
             for i in range(mechanics.n)
         ]
-        self._unknowns = len(columns)
+        self._unknowns = len(self.columns)
         self._points: dict[int, LinearEquation] = {}
         self._explicit: list[tuple[int, LinearEquation]] = []
         self._tested: list[Scalar] = []
+        self._steps: list[_Turn | _Solved] = []
         self._moments = [[self.core[j] for j in angles] for angles, _ in mechanics.turnings]
         self.multipliers_alone: Matrix = ()
         self._nonzero = {
@@ -95,13 +114,30 @@ class Elimination:
 
     def values(self, core: dict[int, Scalar], homogeneous: bool) -> Vector:
         """The inputs for given unknowns of the core, with right-hand sides or without."""
+        unknowns = self._with_explicit(core, homogeneous)
+        return tuple(unknowns.get(j, self._graph.zero) for j in self.inputs)
+
+    def all_values(self, core: dict[int, Scalar], homogeneous: bool) -> Vector:
+        """A value for each of `columns`: the multipliers before they were turned and solved for, and the inputs."""
+        zero = self._graph.zero
+        unknowns = self._with_explicit(core, homogeneous)
+        for step in reversed(self._steps):
+            if isinstance(step, _Turn):
+                x, y = (unknowns.get(name, zero) for name in (step.first, step.second))
+                unknowns[step.first] = step.cosine * x - step.sine * y
+                unknowns[step.second] = step.sine * x + step.cosine * y
+            else:
+                unknowns[step.name] = zero if homogeneous else step.value
+        return tuple(unknowns.get(j, zero) for j in range(len(self.columns)))
+
+    def _with_explicit(self, core: dict[int, Scalar], homogeneous: bool) -> dict[int, Scalar]:
         unknowns = dict(core)
         for name, row in reversed(self._explicit):
             others = {j: c for j, c in row.coefficients.items() if j != name}
             pivot = row.coefficients[name]
             value = self._rest(others, unknowns, row, homogeneous)
             unknowns[name] = value if pivot.is_one else value * (1 / pivot)
-        return tuple(unknowns.get(j, self._graph.zero) for j in self.inputs)
+        return unknowns
 
     def lengths(self) -> tuple[Scalar, ...]:
         """The factors of pivots that depend on coordinates, each of them once."""
@@ -200,6 +236,7 @@ class Elimination:
     def _turn_unknowns(self, j: int, k: int, f: Scalar, g: Scalar) -> None:
         """(x_j, x_k) = (f x_j' - g x_k', g x_j' + f x_k'), and likewise the rows of the sums x_j and x_k."""
         zero = self._graph.zero
+        self._steps.append(_Turn(j, k, f, g))
         for row in (*self.core, *(row for _, row in self._explicit), *self._points.values()):
             a, b = row.coefficients.get(j, zero), row.coefficients.get(k, zero)
             self._put(row, j, a * f + b * g)
@@ -335,6 +372,8 @@ class Elimination:
             self._explicit.append((name, row))
         # the reciprocal of a length serves every row that is divided by it
         value = row.right if pivot.is_one else row.right * (1 / pivot)
+        if name not in self.inputs:
+            self._steps.append(_Solved(name, value))
         for other in (*self.core, *(row for _, row in self._explicit)):
             if other is row:
                 continue

@@ -1,0 +1,1 @@
+"""Derivatives of u, q_ddot and lambda."""
