@@ -54,10 +54,17 @@ class RoundingErrors:
 
         `given` holds the arguments and the parameters `p`, a row for each state.  d is that of the kernel itself for
         arguments and parameters; what literals of the model add is left out, so that this is more than there is rather
-        than less.  With `tangents` (n x n, onto those of V) it is what they do that move along V alone, parameters
-        staying as they are, where that is less: beside V, where rows depend on each other, a kernel may be another
-        function than what it stands for.  Along V coordinates move together, and one that all but vanishes by more than
-        a share of itself.
+        than less.  With `tangents` it is the last of the three units `with_both` gives.
+        """
+        own, whole, along = self.with_both(given, tangents)
+        return own, whole if tangents is None else along
+
+    def with_both(self, given: Mapping[str, Lanes], tangents: Lanes | None) -> tuple[Lanes, Lanes, Lanes]:
+        """The errors, their units, and the units of `tangents` (n x n, onto those of V) where those are less.
+
+        d is then what arguments do that move along V alone, parameters staying as they are: beside V, where rows depend
+        on each other, a kernel may be another function than what it stands for.  Along V coordinates move together, and
+        one that all but vanishes by more than a share of itself.
         """
         count = len(next(iter(given.values())))
         with np.errstate(all="ignore"):
@@ -65,11 +72,15 @@ class RoundingErrors:
             outputs = [values[place] for place in self._outputs]
             own, slopes = self._shares(values, count)
             inputs = self._of_inputs(values, slopes, count)
+            size = np.sqrt(sum(x * x for x in outputs))
+            whole = size + LARGEST_OF_EIGHT * np.sqrt(inputs)
+            along = whole
             if tangents is not None:
                 inputs = np.fmin(inputs, self._along(values, slopes, tangents))
-            unit = np.sqrt(sum(x * x for x in outputs)) + LARGEST_OF_EIGHT * np.sqrt(inputs)
-            regular &= np.isfinite(unit) & (unit > 0) & np.isfinite(own)
-        return np.sqrt(np.where(regular, own, 0.0)), np.where(regular, unit, np.inf)
+                along = size + LARGEST_OF_EIGHT * np.sqrt(inputs)
+            regular &= np.isfinite(along) & (along > 0) & np.isfinite(own)
+        own = np.sqrt(np.where(regular, own, 0.0))
+        return own, np.where(regular, whole, np.inf), np.where(regular, along, np.inf)
 
     def indefinite(self, given: Mapping[str, Lanes]) -> Lanes:
         """Where a pivot of masses is below 0, by more than rounding leaves of one that is 0."""

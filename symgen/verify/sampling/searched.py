@@ -51,16 +51,30 @@ MEASURED = 4
 @dataclass(frozen=True)
 class _Estimates:
     """States, the rounding errors that are estimated there, the unit of d + eps |y| for a roundoff of 1, and where
-    nothing speaks against a regular state: elsewhere errors are 0, others would take the places of these."""
+    nothing speaks against a regular state: elsewhere errors are 0, others would take the places of these.
+
+    Where rows depend on each other there are two units, one of them along V.  d of the reference is near the one for
+    some machines and near the other for others: worst states of both are looked at.
+    """
 
     states: Nearby
-    units: Lanes
-    unit: Lanes
+    own: Lanes
+    units: tuple[Lanes, ...]
     regular: Lanes
 
     def __add__(self, other: _Estimates) -> _Estimates:
-        pairs = (self.units, other.units), (self.unit, other.unit), (self.regular, other.regular)
-        return _Estimates(joined(self.states, other.states), *map(np.concatenate, pairs))
+        own, regular = (np.concatenate(pair) for pair in ((self.own, other.own), (self.regular, other.regular)))
+        units = tuple(np.concatenate(pair) for pair in zip(self.units, other.units, strict=True))
+        return _Estimates(joined(self.states, other.states), own, units, regular)
+
+    def in_units(self, errors: Lanes) -> list[Lanes]:
+        """Errors, for a roundoff of 1, at regular states."""
+        return [np.where(self.regular, errors / unit, 0.0) for unit in self.units]
+
+    @property
+    def estimated(self) -> list[Lanes]:
+        """What rounding may do, in each unit."""
+        return self.in_units(self.own)
 
 
 class WorstStateSearch:
@@ -78,20 +92,22 @@ class WorstStateSearch:
             self._add(kernel, errors, self._estimated(kernel, errors))
 
     def _add(self, kernel: Kernel, errors: RoundingErrors, made: _Estimates) -> None:
-        samples = self._brought(kernel, made.states, made.units, SETTLED)
+        samples = self._brought(kernel, made.states, made.estimated, SETTLED)
         chosen = self._worst_of(kernel, errors, samples) if len(samples) > JUDGED else samples
         if "float32" in self._expected.scalars:
             # beside those that estimates tell of, not in their places
-            chosen += self._brought(kernel, made.states, _measured(kernel, made), MEASURED)
+            lost = lost_in_float32(kernel, made.states.parts) / float(UNIT_ROUNDOFF["float32"])
+            chosen += self._brought(kernel, made.states, made.in_units(lost), MEASURED)
         known = self._states[kernel.name]
         known += [sample for sample in dict.fromkeys(chosen) if sample not in known]
 
-    def _brought(self, kernel: Kernel, states: Nearby, units: Lanes, count: int) -> list[Sample]:
-        """The worst of them that leave a doubt, where they can be brought onto V."""
+    def _brought(self, kernel: Kernel, states: Nearby, units: Sequence[Lanes], count: int) -> list[Sample]:
+        """So many of the worst in each unit that leave a doubt, where they can be brought onto V."""
         settling = self._settling(kernel.name)
-        doubtful = (place for place in _worst(units, count) if units[place] > DOUBTFUL)
+        doubtful = (place for ranked in units for place in _worst(ranked, count) if ranked[place] > DOUBTFUL)
         tried = (
-            settling.sample(states.state(place), bool(states.admissible[place]), kernel.name) for place in doubtful
+            settling.sample(states.state(place), bool(states.admissible[place]), kernel.name)
+            for place in dict.fromkeys(doubtful)
         )
         return [sample for sample in tried if sample is not None]
 
@@ -101,13 +117,15 @@ class WorstStateSearch:
         Estimates are what rounding may do; what it does is measured beside twice the digits, or beside float64.
         """
         states = of_samples(samples)
-        unit = errors.with_units(states.parts, self._tangents(states))[1]
+        _, *units = errors.with_both(states.parts, self._tangents(states))
         double, single = ([rounded(sample, scalar).state for sample in samples] for scalar in UNIT_ROUNDOFF)
         made, exact = (outcomes(one, None, "float64", double) for one in (kernel, paired(kernel, "float64")))
         short, long = (outcomes(kernel, None, scalar, single) for scalar in ("float32", "float64"))
         apart = _apart(made, exact), _apart(short, long)
-        worst = zip(*(_worst(off / unit, len(samples)).tolist() for off in apart), strict=True)
-        return [samples[place] for place in islice(dict.fromkeys(chain.from_iterable(worst)), JUDGED)]
+        units = units[: self._count_of_units]
+        rankings = [_worst(off / unit, len(samples)).tolist() for unit in units for off in apart]
+        worst = dict.fromkeys(chain.from_iterable(zip(*rankings, strict=True)))
+        return [samples[place] for place in islice(worst, JUDGED * len(units))]
 
     def largest(self, kernel: Kernel, sincos: Function | None, scalar: Scalar) -> float:
         """The largest error with status 0, in units of d + eps |y*|, at the states that were found for its quantity.
@@ -146,8 +164,10 @@ class WorstStateSearch:
         least = self._settling(kernel.name).measures
         made = self._units(errors, states, least, kernel.name in MAIN)
         going = min(self._affordable(KEPT * DIRECTIONS), max(count, DIRECTIONS))
-        for step in range(STEPS_FURTHER if made.units.max() > DOUBTFUL else 0):
-            worst = made.states.only(_worst(made.units, KEPT))
+        for step in range(STEPS_FURTHER if max(units.max() for units in made.estimated) > DOUBTFUL else 0):
+            rankings = [_worst(units, KEPT).tolist() for units in made.estimated]
+            places = islice(dict.fromkeys(chain.from_iterable(zip(*rankings, strict=True))), KEPT)
+            worst = made.states.only(np.array(list(places)))
             starts = worst.only(np.arange(len(worst)).repeat(DIRECTIONS)[:going])
             further = self._surroundings.moved(starts, f"{kernel.name} {step}")
             if len(further):
@@ -156,13 +176,17 @@ class WorstStateSearch:
 
     def _tangents(self, states: Nearby) -> Lanes | None:
         """Of V, where rows depend on each other."""
+        return self._surroundings.tangents(states) if self._count_of_units > 1 else None
+
+    @cached_property
+    def _count_of_units(self) -> int:
         reference = self._expected.reference
-        return self._surroundings.tangents(states) if reference.ranks.constraints < reference.system.r else None
+        return 1 + (reference.ranks.constraints < reference.system.r)
 
     def _units(self, errors: RoundingErrors, states: Nearby, least: Sequence[float], together: bool) -> _Estimates:
-        own, unit = errors.with_units(states.parts, self._tangents(states))
+        own, *units = errors.with_both(states.parts, self._tangents(states))
         regular = (self._surroundings.measures(states, together) >= least).all(axis=1)
-        return _Estimates(states, np.where(regular, own / unit, 0.0), unit, regular)
+        return _Estimates(states, own, tuple(units[: self._count_of_units]), regular)
 
     @property
     def _surroundings(self) -> Surroundings:
@@ -202,12 +226,6 @@ class WorstStateSearch:
         """For other quantities, and for the main ones."""
         reference, samples = self._expected.reference, self._expected.drawn
         return Settling(reference, samples), Settling(reference, samples, NEARER)
-
-
-def _measured(kernel: Kernel, made: _Estimates) -> Lanes:
-    """What float32 loses at states, in units, however large the estimates are."""
-    units = lost_in_float32(kernel, made.states.parts) / (made.unit * float(UNIT_ROUNDOFF["float32"]))
-    return np.where(made.regular, units, 0.0)
 
 
 def _worst(units: Lanes, count: int) -> Lanes:

@@ -202,6 +202,33 @@ FAR_DETOUR = straight(
 )
 
 
+@pytest.mark.parametrize(("rows", "count"), [("", 1), (", again: 3*y - 3*l*sin(a)", 2)])
+def test_where_rows_depend_the_worst_states_in_either_unit_are_looked_at(rows: str, count: int) -> None:
+    """x + 10^4 (l^2 - x^2 - y^2) + 10^6 l - 10^6 l at a ladder's feet: along V that is x, beside V anything."""
+    model = load_text(LADDER.replace("wall: y - l*sin(a)", "wall: y - l*sin(a)" + rows), "ladder.yaml")
+    x, y, length = Local("x"), Local("y"), Local("l")
+    kernel = straight(
+        Statement(("x2",), "mul", (x, x)),
+        Statement(("y2",), "mul", (y, y)),
+        Statement(("l2",), "mul", (length, length)),
+        Statement(("both",), "add", (Local("x2"), Local("y2"))),
+        Statement(("off",), "sub", (Local("l2"), Local("both"))),
+        Statement(("far",), "mul", (Literal(Fraction(10**4)), Local("off"))),
+        Statement(("farther",), "mul", (BIG, length)),
+        Statement(("near",), "add", (Local("far"), Local("farther"))),
+        Statement(("less",), "sub", (Local("near"), Local("farther"))),
+        Statement(("sum",), "add", (x, Local("less"))),
+    )
+    kernel = replace(kernel, name="inverse_dynamics", loads=(*kernel.loads, Load("y", "q", 1), Load("l", "p", 0)))
+    kernel = replace(kernel, loads=tuple(load for load in kernel.loads if load.local != "a"))
+    search = WorstStateSearch(Expected(model, ["inverse_dynamics"], 16, lambda _: None))
+    made = search._estimated(kernel, RoundingErrors(kernel))
+    brought = search._brought(kernel, made.states, made.estimated, 4)
+    alone = [search._brought(kernel, made.states, [units], 4) for units in made.estimated]
+    assert len(alone) == len(set(map(tuple, alone))) == count
+    assert list(dict.fromkeys(sample for samples in alone for sample in samples)) == brought
+
+
 def test_lengths_without_a_range_are_looked_at_further_out() -> None:
     """[-1, 1] is taken for granted there, which nobody said; a range that is given is kept."""
     worst = {}
@@ -209,7 +236,7 @@ def test_lengths_without_a_range_are_looked_at_further_out() -> None:
         model = load_text(CART.replace("x: {unit: m", "x: {unit: m" + bounds), "cart.yaml")
         expected = Expected(model, ["inverse_dynamics"], 16, lambda _: None)
         made = WorstStateSearch(expected)._estimated(FAR_DETOUR, RoundingErrors(FAR_DETOUR))
-        worst[bounds] = made.states.parts["q"][:, 0], made.units.max()
+        worst[bounds] = made.states.parts["q"][:, 0], made.estimated[0].max()
     near, largest = worst[", range: [-1, 1]"]
     assert np.abs(near).max() < 1.02
     assert largest < FACTOR
