@@ -53,7 +53,7 @@ class _HeldEquations:
     guards: tuple[Guard, ...]
 
 
-class _ImplicitDerivatives:
+class _ImplicitInputs:
     """J_u, its product with weights, and what follows from that."""
 
     def build(self, workspace: Workspace, quantity: str) -> Candidate | str:
@@ -155,4 +155,4 @@ def _by_the_model(mechanics: System, row: Vector) -> Vector:
     return tuple(x for k in range(0, 3 * n, n) for x in change.forces_of_relative(row[k : k + n]))
 
 
-IMPLICIT: Method = _ImplicitDerivatives()
+IMPLICIT: Method = _ImplicitInputs()

@@ -84,7 +84,7 @@ class _Loaded:
         return rho, tuple(x + y for x, y in zip(lifted, bias, strict=True))
 
 
-class _ImplicitDerivatives(ByTheorem):
+class _ImplicitMotions(ByTheorem):
     """J_a, J_lambda and w^T J_a."""
 
     theorem = "it divides by what q_ddot divides by"
@@ -162,4 +162,4 @@ def _with_loads(model: Model) -> Model:
     return replace(model, inputs=(*model.inputs, *loads))
 
 
-IMPLICIT: Method = _ImplicitDerivatives()
+IMPLICIT: Method = _ImplicitMotions()

@@ -38,7 +38,7 @@ class LinearEquation:
 
 
 @dataclass(frozen=True, slots=True)
-class _Turn:
+class _TurnedUnknowns:
     """Two unknowns that were replaced by their components along and across (cosine, sine)."""
 
     first: int
@@ -48,7 +48,7 @@ class _Turn:
 
 
 @dataclass(frozen=True, slots=True)
-class _Solved:
+class _SolvedUnknown:
     """An unknown that a row was solved for."""
 
     name: int
@@ -78,7 +78,7 @@ class Elimination:
         self._points: dict[int, LinearEquation] = {}
         self._explicit: list[tuple[int, LinearEquation]] = []
         self._tested: list[Scalar] = []
-        self._steps: list[_Turn | _Solved] = []
+        self._steps: list[_TurnedUnknowns | _SolvedUnknown] = []
         self._moments = [[self.core[j] for j in angles] for angles, _ in mechanics.turnings]
         self.multipliers_alone: Matrix = ()
         self._nonzero = {
@@ -122,7 +122,7 @@ class Elimination:
         zero = self._graph.zero
         unknowns = self._with_explicit(core, homogeneous)
         for step in reversed(self._steps):
-            if isinstance(step, _Turn):
+            if isinstance(step, _TurnedUnknowns):
                 x, y = (unknowns.get(name, zero) for name in (step.first, step.second))
                 unknowns[step.first] = step.cosine * x - step.sine * y
                 unknowns[step.second] = step.sine * x + step.cosine * y
@@ -236,7 +236,7 @@ class Elimination:
     def _turn_unknowns(self, j: int, k: int, f: Scalar, g: Scalar) -> None:
         """(x_j, x_k) = (f x_j' - g x_k', g x_j' + f x_k'), and likewise the rows of the sums x_j and x_k."""
         zero = self._graph.zero
-        self._steps.append(_Turn(j, k, f, g))
+        self._steps.append(_TurnedUnknowns(j, k, f, g))
         for row in (*self.core, *(row for _, row in self._explicit), *self._points.values()):
             a, b = row.coefficients.get(j, zero), row.coefficients.get(k, zero)
             self._put(row, j, a * f + b * g)
@@ -373,7 +373,7 @@ class Elimination:
         # the reciprocal of a length serves every row that is divided by it
         value = row.right if pivot.is_one else row.right * (1 / pivot)
         if name not in self.inputs:
-            self._steps.append(_Solved(name, value))
+            self._steps.append(_SolvedUnknown(name, value))
         for other in (*self.core, *(row for _, row in self._explicit)):
             if other is row:
                 continue
