@@ -17,6 +17,7 @@ from symgen.methods.spaces import SPACES
 from symgen.methods.table import Use, methods
 from symgen.model.model import Model
 from symgen.model.quantities import MOTIONS
+from symgen.quantities.candidates import ARTICULATED
 from symgen.quantities.catalogue import BY_NAME, derive
 from symgen.quantities.finish import complete, with_groups
 from symgen.quantities.row_units import in_ordinary_units
@@ -71,7 +72,7 @@ class Alternatives:
         The one that counts least comes first.  Methods that take much longer to derive than the one taken is are given
         up, and named in `too_long`; so are refined ones and those of last resort where that one is long itself.
         """
-        same = taken.method if taken.title in ("minors", "householder", taken.method) else ""
+        same = taken.method if taken.title in ("minors", "householder", taken.method, ARTICULATED) else ""
         cost_taken = dict(taken.costs)[taken.title]
         names = _names(quantity, tier)
         if cost_taken > LONGEST_OF_LAST_RESORT:

@@ -18,6 +18,7 @@ from symgen.model.load import load_text
 from symgen.model.model import Model
 from symgen.model.quantities import MOTIONS
 from symgen.quantities.alternatives import Alternatives
+from symgen.quantities.select import Choice
 from symgen.symbolic.evaluate import Evaluator
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import measured
@@ -190,3 +191,11 @@ def test_heavy_bodies_at_the_end_of_light_links() -> None:
     assert largest(motion, "articulated_by_bodies") < 8
     assert largest(motion, BY_FRAMES) > 100
     assert largest(QUANTITIES[0], BY_FRAMES) < 8
+
+
+def test_what_was_rejected_under_its_title_is_not_tried_again_by_its_name() -> None:
+    """Articulated inertias are a method of their own, and take as long to be rejected a second time."""
+    choice = Choice(MOTIONS[0], "articulated inertias", (("articulated inertias", 2000),), "articulated")
+    names = {one.choice.title for one in others(SPACE).of(MOTIONS[0], choice, 0)}
+    assert names
+    assert "articulated" not in names

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from symgen.model.load import load_text
+from symgen.verify.expected import Expected
 from symgen.verify.reference.reference import Reference, State
 from symgen.verify.tolerance import PERTURBATIONS, _set_apart, _signs, expectations
 
@@ -89,3 +90,43 @@ def test_any_two_numbers_move_together_and_apart() -> None:
         made = expectations(reference, start, ["configuration_from_task"], "float64", str(seed))
         units.append(made["configuration_from_task"].unit)
     assert max(units) < 3 * min(units)
+
+
+# Three links that end at a pin, which stands twice in the file, and one more whose task leaves directions open.
+TWICE = """\
+model: twice
+joints:
+  j_1: {type: revolute, axis: z, coordinate: a}
+  j_2: {type: revolute, parent: j_1, at: [0.4, 0, 0], axis: z, coordinate: b}
+  j_3: {type: revolute, parent: j_2, at: [0.7, 0, 0], axis: z, coordinate: c}
+  j_4: {type: revolute, parent: j_3, at: [0.51, 0, 0], axis: z, coordinate: d}
+bodies:
+  j_1: {mass: 1.9, inertia: {zz: 0.1}}
+  j_2: {mass: 1.1, inertia: {zz: 0.1}}
+  j_3: {mass: 0.7, inertia: {zz: 0.1}}
+  j_4: {mass: 0.3, inertia: {zz: 0.1}}
+points:
+  tip_0: {frame: j_3, at: [0.51, 0, 0]}
+  pin_0: {at: [0.93, 0.77, 0]}
+  tip_1: {frame: j_3, at: [0.51, 0, 0]}
+  pin_1: {at: [0.93, 0.77, 0]}
+loops:
+  loop_0: {type: point, between: [tip_0, pin_0]}
+  loop_1: {type: point, between: [tip_1, pin_1]}
+inputs: {u: {joint: a}}
+task: {height: 0.51*sin(c + d)}
+outputs: [configuration_from_task]
+configuration: {a: 0.1, b: 0.5, c: 0.6, d: 1.1}
+"""
+
+
+@pytest.mark.parametrize("scalar", ["float64", "float32"])
+def test_loops_that_stand_twice_have_a_unit_of_error(scalar: str) -> None:
+    """Their numbers moved apart no configuration closes both, and there would be no value beside any state."""
+    model = load_text(TWICE, "twice.yaml")
+    expected = Expected(model, ["configuration_from_task"], 8, lambda _: None)
+    assert len(expected.values(scalar)) == len(expected.samples(scalar)) == 8
+    eps = 2.0**-24 if scalar == "float32" else 2.0**-53
+    for made in expected.values(scalar):
+        (one,) = made.values()
+        assert eps * one.size < one.unit < 1e4 * eps * one.size

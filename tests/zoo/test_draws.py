@@ -13,6 +13,7 @@ import yaml
 from symgen.diagnostics import ModelError
 from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.draws.describe import MISTAKE, Description
+from symgen.laboratory.zoo.draws.draw_energy import _surplus
 from symgen.laboratory.zoo.draws.endings import MAIN, independent
 from symgen.laboratory.zoo.draws.families import FAMILIES, draw
 from symgen.laboratory.zoo.draws.sketch import Sketch
@@ -136,3 +137,17 @@ def test_a_mistake_on_purpose_is_in_the_file() -> None:
     for drawn in mistaken:
         with pytest.raises(ModelError):
             load_text(drawn.text, "zoo.yaml")
+
+
+def test_rows_in_other_units_are_not_added_up() -> None:
+    """A row that says once more what two others say has a unit, as the file's own checks ask for."""
+    units = {"gear": "rad", "other_gear": "rad", "close": "m", "rod": "m**2"}
+    added = []
+    for number in range(200):
+        sketch = Sketch(Dice("surplus", number), "planar_energies")
+        sketch.block("constraints")["geometric"] = {name: f"row_{name}" for name in units}
+        _surplus(sketch, units)
+        rows = sketch.blocks["constraints"]["geometric"].values()
+        added += [{name for name in units if f"row_{name}" in row} for row in rows if " + " in row]
+    assert added
+    assert all(len({units[name] for name in names}) == 1 for names in added)

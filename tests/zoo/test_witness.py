@@ -18,9 +18,11 @@ from symgen.laboratory.zoo.witness import states
 from symgen.laboratory.zoo.witness.expressions import FUNCTIONS, NotReadError, read_expression
 from symgen.laboratory.zoo.witness.fields import Balls, Floats, precision
 from symgen.laboratory.zoo.witness.generated import Answer, Target
+from symgen.laboratory.zoo.witness.kkt import GenericRanks
 from symgen.laboratory.zoo.witness.linear import basis
 from symgen.laboratory.zoo.witness.mechanics import equations
 from symgen.laboratory.zoo.witness.reader import SystemReader
+from symgen.laboratory.zoo.witness.states import FloatState
 from symgen.laboratory.zoo.witness.tape import NodeProgram, NodeTape
 from symgen.laboratory.zoo.witness.witness import Witness
 from symgen.pipeline import generate
@@ -438,6 +440,26 @@ configuration: {a: 0.4, b: 0.3, x: 0.644217687237691}
             units.append(judged.units)
         right, wrong = units
         assert right <= 1 < wrong
+
+
+@pytest.mark.parametrize(("off", "known"), [(0.0, ("float64", "float32")), (1e-9, ("float32",)), (1e-3, ())])
+def test_where_rows_that_depend_on_v_differ_there_is_no_truth(off: float, known: tuple[str, ...]) -> None:
+    """Two sheets touch along x = y = 0: beside it the second row is another one, and which is left out decides."""
+    text = """model: touching
+coordinates: {x: {unit: m}, y: {unit: m}, z: {unit: m}}
+kinetic_energy: (x_dot**2 + y_dot**2 + z_dot**2)/2
+constraints: {geometric: {floor: y, hill: y + x**2/2}}
+outputs: [forward_dynamics]
+configuration: {x: 0, y: 0, z: 0}
+"""
+    witness, ranks = Witness(text), GenericRanks(1, 0, (1.0, 1.0), 1)
+    state = FloatState((off, 0.0, 0.3), (0.0, 0.0, 0.4), (), (), ())
+    judged = []
+    for scalar in ("float64", "float32"):
+        target = Target("made up", scalar, ("forward_dynamics",), (), lambda *_: Answer(0, (0.0, 0.0, 0.0)))
+        if witness.compare(target, "forward_dynamics", state, ranks) is not None:
+            judged.append(scalar)
+    assert tuple(judged) == known
 
 
 def test_what_steps_leave_of_a_root_at_0_is_0() -> None:

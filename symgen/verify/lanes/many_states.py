@@ -7,8 +7,8 @@ statements has a few hundred such groups.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, TypeAlias
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -27,7 +27,7 @@ from symgen.ir.kernel import (
 )
 from symgen.ir.last_kernels import LastKernels
 from symgen.verify.given import loaded
-from symgen.verify.lanes.lane_arithmetic import TYPES, LaneArithmetic, Lanes, number
+from symgen.verify.lanes.lane_arithmetic import TYPES, VECTORISED, LaneArithmetic, Lanes, number
 
 _Places: TypeAlias = Any
 
@@ -87,9 +87,15 @@ class _KernelRun:
     def _block(self, block: _BlockPlan) -> Lanes:
         """The first status of each state."""
         values = self._values
-        for group in block.groups:
-            made = self._arithmetic.apply(group.operation, [values.take(places, 0) for places in group.operands])
-            for places, result in zip(group.targets, made, strict=True):
+        for operation, operands, targets in block.groups:
+            vectorised = VECTORISED.get(operation)
+            # places are in range: nothing has to be looked at before rows are taken
+            if vectorised is not None and len(operands) == 2:
+                a, b = operands
+                values[targets[0]] = vectorised(values.take(a, 0, None, "clip"), values.take(b, 0, None, "clip"))
+                continue
+            made = self._arithmetic.apply(operation, [values.take(places, 0, None, "clip") for places in operands])
+            for places, result in zip(targets, made, strict=True):
                 values[places] = result
         status = np.zeros(self._count, dtype=int)
         for check in block.checks:
@@ -105,8 +111,7 @@ class _KernelRun:
         return np.where(failed, np.where(first == 0, check.status, first), 0)
 
 
-@dataclass(frozen=True)
-class _StatementGroup:
+class _StatementGroup(NamedTuple):
     """Statements of one operation: places of their first operands, of their second ones; likewise targets, which stand
     one after the other."""
 
@@ -131,7 +136,8 @@ class _BlockPlan:
 
 
 class _Plan:
-    """Where values stand, and what runs together: numbers have negative places, they stand behind all else."""
+    """Where values stand, and what runs together: numbers stand behind all else, at negative places until all are
+    known."""
 
     def __init__(self, kernel: Kernel) -> None:
         # of each place, how many groups of its block come before it at least
@@ -142,8 +148,9 @@ class _Plan:
         self._placed: dict[int, int] = {}
         self.loaded = {load.local: place for place, load in enumerate(kernel.loads)}
         known = dict(self.loaded)
-        self.blocks = [self._block(block, known) for block in kernel.blocks]
+        blocks = [self._block(block, known) for block in kernel.blocks]
         self.outputs = [self._place(output, known) for output in kernel.outputs]
+        self.blocks = [_from_the_front(block, self.rows) for block in blocks]
 
     @property
     def rows(self) -> int:
@@ -210,6 +217,19 @@ class _Plan:
         first = None if check.first is None else self._block(check.first, dict(known))
         value, limit = self._place(check.value, known), self._place(check.limit, known)
         return _CheckPlan(check.status, check.inclusive, value, limit, first)
+
+
+def _from_the_front(block: _BlockPlan, rows: int) -> _BlockPlan:
+    """The same with places that are not negative."""
+    groups = tuple(
+        _StatementGroup(operation, tuple(np.where(places < 0, places + rows, places) for places in operands), targets)
+        for operation, operands, targets in block.groups
+    )
+    checks = tuple(
+        check if check.first is None else replace(check, first=_from_the_front(check.first, rows))
+        for check in block.checks
+    )
+    return _BlockPlan(groups, checks)
 
 
 # Every step looks at all kernels of a model in turn: short ones stay until the next.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 
@@ -32,14 +33,15 @@ def planar_energies(dice: Dice) -> Description:
     sketch.inlined = dice.chance(0.35)
     links = _tree(sketch, dice.whole(1, dice.choice((3, 5, 8, 12))))
     loops = min(dice.weighted({0: 4, 1: 4, 2: 3, 3: 2, 4: 1.5}), (len(links) - 1) // 2)
+    units = dict[str, str]()
     if dice.chance(0.06):
         # what cannot move is refused
         for link in links:
-            sketch.row(f"hold_{link.coordinate}", link.coordinate)
+            units[sketch.row(f"hold_{link.coordinate}", link.coordinate)] = "m" if link.slides else "rad"
     for index in range(loops):
-        sketch.that_moves(partial(_loop, sketch, links, index), oddly=0.15)
+        sketch.that_moves(partial(_loop, sketch, links, index, units), oddly=0.15)
     _potentials(sketch, links)
-    _surplus(sketch)
+    _surplus(sketch, units)
     _inputs(sketch, links)
     return finish(sketch)
 
@@ -130,8 +132,11 @@ def joined(terms: list[str]) -> str:
     return text
 
 
-def _loop(sketch: Sketch, links: list[DrawnLink], index: int) -> int:
-    """One loop more: a tip at the ground, on a line, on another tip, or at the end of a rod; how many rows it has."""
+def _loop(sketch: Sketch, links: list[DrawnLink], index: int, units: dict[str, str]) -> int:
+    """One loop more: a tip at the ground, on a line, on another tip, or at the end of a rod; how many rows it has.
+
+    `units` are those of rows by name.
+    """
     dice = sketch.dice
     # a chain that is long enough to move when it is closed, and now and then any
     least = 1 if dice.chance(0.07) else 3
@@ -143,18 +148,19 @@ def _loop(sketch: Sketch, links: list[DrawnLink], index: int) -> int:
     kind = dice.weighted({"ground": 4, "line": 3, "meet": 2, "rod": 2, "angle": 1})
     match kind:
         case "ground":
-            sketch.row(f"close_{index}_x", x)
-            sketch.row(f"close_{index}_y", y)
+            units[sketch.row(f"close_{index}_x", x)] = "m"
+            units[sketch.row(f"close_{index}_y", y)] = "m"
         case "line":
             slope = dice.choice(("0", "0", "0.5", "1"))
-            sketch.row(f"guide_{index}", y if slope == "0" else f"{y} - {slope}*{x}")
+            units[sketch.row(f"guide_{index}", y if slope == "0" else f"{y} - {slope}*{x}")] = "m"
         case "meet":
             # the other point is carried along at a fixed offset across both: a pin on a plate
-            sketch.row(f"pin_{index}_x", f"{x} - {other[0]}")
-            sketch.row(f"pin_{index}_y", f"{y} - {other[1]}")
+            units[sketch.row(f"pin_{index}_x", f"{x} - {other[0]}")] = "m"
+            units[sketch.row(f"pin_{index}_y", f"{y} - {other[1]}")] = "m"
         case "rod":
             text = f"({x} - {other[0]})**2 + ({y} - {other[1]})**2"
-            sketch.row(f"rod_{index}", f"sqrt({text})" if dice.chance(0.3) else text)
+            is_length = dice.chance(0.3)
+            units[sketch.row(f"rod_{index}", f"sqrt({text})" if is_length else text)] = "m" if is_length else "m**2"
         case _:
             slides = dice.chance(0.3)
             alike = [link.coordinate for link in links if link.slides == slides]
@@ -165,7 +171,9 @@ def _loop(sketch: Sketch, links: list[DrawnLink], index: int) -> int:
             one, two = dice.sample(alike, 2)
             ratio = dice.choice(("1", "2", "-3", "0.5"))
             sketch.mark("coupling")
-            sketch.row(f"gear_{index}", f"{one} - {ratio}*{two}" if ratio[0] != "-" else f"{one} + {ratio[1:]}*{two}")
+            text = f"{one} - {ratio}*{two}" if ratio[0] != "-" else f"{one} + {ratio[1:]}*{two}"
+            slides = any(link.slides for link in links if link.coordinate == one)
+            units[sketch.row(f"gear_{index}", text)] = "m" if slides else "rad"
     if kind != "angle":
         sketch.mark("loop in the plane")
     return 2 if kind in ("ground", "meet") else 1
@@ -193,16 +201,17 @@ def _potentials(sketch: Sketch, links: list[DrawnLink]) -> None:
             sketch.block("applied_forces")[link.coordinate] = force
 
 
-def _surplus(sketch: Sketch) -> None:
-    """Rows that say once more what others say."""
+def _surplus(sketch: Sketch, units: Mapping[str, str]) -> None:
+    """Rows that say once more what others say; what is in other units has no sum with them."""
     dice = sketch.dice
     rows = (sketch.blocks.get("constraints") or {}).get("geometric") or {}
     if not rows or not dice.chance(0.15):
         return
     name = dice.choice(list(rows))
     text = rows[name]
-    if len(rows) > 1 and dice.chance(0.5):
-        other = dice.choice([each for each in rows if each != name])
+    others = [each for each in rows if each != name and units[each] == units[name]]
+    if len(rows) > 1 and dice.chance(0.5) and others:
+        other = dice.choice(others)
         text = f"({text}) + {dice.choice(('2', '0.5', '1'))}*({rows[other]})"
     else:
         text = f"{dice.choice(('2', '-1', '1e-6', '1e6', '1'))}*({text})"

@@ -12,6 +12,7 @@ from typing import Any
 
 from symgen.laboratory.zoo.witness.fields import settled
 from symgen.laboratory.zoo.witness.linear import (
+    NOTHING,
     Matrix,
     Vector,
     basis,
@@ -96,17 +97,22 @@ def onto_rows(rows: Matrix, residual: Vector, rank: int) -> Vector:
 
 @dataclass(frozen=True)
 class DirectionSplit:
-    """The directions that the rows hold and those that they leave free; `pivots` tell how far the rows are apart."""
+    """The directions that the rows hold and those that they leave free; `pivots` tell how far the rows are apart, and
+    `stray` how far rows that depend on the others are from doing so, in their own length."""
 
     held: Matrix
     free: Matrix
     pivots: list[float]
+    stray: float
 
 
 def split(at: EquationValues, rank: int, one: Any) -> DirectionSplit:
     """Of the constraints at a state."""
     held, pivots = basis(at.rows, rank)
-    return DirectionSplit(held, complement(held, at.n, one), pivots)
+    free = complement(held, at.n, one)
+    lengths = [(size(row), size(times(free, row))) for row in at.rows]
+    stray = max((rest / length for length, rest in lengths if length > NOTHING), default=0.0)
+    return DirectionSplit(held, free, pivots, stray)
 
 
 def along(at: EquationValues, parts: DirectionSplit) -> tuple[Matrix, list[float]]:

@@ -32,10 +32,14 @@ class CheckResult:
 
 @dataclass(frozen=True)
 class Truth:
-    """A quantity at a state, and how well the state determines it, 0 to 1."""
+    """A quantity at a state, and how well the state determines it, 0 to 1.
+
+    `stray` is how far rows that depend on others are from doing so: two truths may be so far apart.
+    """
 
     value: list[Any]
     clear: float
+    stray: float
 
 
 @dataclass(frozen=True)

@@ -47,6 +47,9 @@ KNOWN = 1e-40
 EPS = {"float64": 2.0**-53, "float32": 2.0**-24}
 # a status is a failure where rows, inputs and masses are further apart than this
 CERTAIN = {"float64": 1e-4, "float32": 2e-2}
+# Roundings by which rows that depend on V may differ at a state that is rounded: where two sheets of V touch along a
+# whole motion they differ by more than the state is off V, and what is left of the one that is left out decides.
+STRAY = 1e3
 LARGEST = {"float64": 1e280, "float32": 1e30}
 # the part of a state that a result is as long as
 RESULTS = {"inverse_dynamics": "u", "forward_dynamics": "qdd"}
@@ -233,7 +236,7 @@ class Witness:
                 return JudgedResult(answer.status, math.inf if wrong else 0.0, math.inf if wrong else 0.0, 0.0, False)
             except ZeroDivisionError:  # so near to a drop of rank that these digits do not tell it from one
                 return None
-            if truth is None:
+            if truth is None or truth.stray > STRAY * EPS[scalar]:
                 return None
             answer = target.call(quantity, self._at_runtime(given), len(truth.value))
             exact = [float(x.mid()) for x in truth.value]
@@ -344,8 +347,8 @@ class Witness:
             return None
         clear = min((*parts.pivots, *pivots[-1:]), default=1.0)
         if quantity == "forward_dynamics":
-            return Truth(accelerations, clear)
-        return Truth([multipliers[index] for index in self._rows], clear)
+            return Truth(accelerations, clear, parts.stray)
+        return Truth([multipliers[index] for index in self._rows], clear, parts.stray)
 
     def _inputs(
         self, at: Any, parts: DirectionSplit, accelerations: list[Any], ranks: GenericRanks, values: Mapping[str, Any]
@@ -367,7 +370,7 @@ class Witness:
             u = directed(holding(at, ranks), u, inputs, block, values, one)
         # where the inputs reach nothing, u is a plain 0
         u = [x + 0 * one for x in u]
-        return Truth(u, min((*parts.pivots, *pivots), default=1.0))
+        return Truth(u, min((*parts.pivots, *pivots), default=1.0), parts.stray)
 
 
 def _sign(dice: Dice) -> int:
