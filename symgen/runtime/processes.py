@@ -10,7 +10,7 @@ import os
 import signal
 import threading
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
@@ -18,6 +18,9 @@ from symgen.runtime import guardian
 
 if TYPE_CHECKING:  # most commands start no tool
     import subprocess
+
+# Seconds after which a killed tool is asked for by other means.
+PATIENCE = 0.2
 
 _running: set[subprocess.Popen[bytes]] = set()
 _ending = False
@@ -121,7 +124,7 @@ def stop(process: subprocess.Popen[bytes]) -> None:
     """Ends a tool with everything that it started; nothing where it has ended."""
     if process.poll() is None:
         _kill(process)
-        process.wait()
+        _await_killed(process)
     if process in _running:
         _running.discard(process)
         guardian.forget(process.pid)
@@ -140,6 +143,24 @@ def begin() -> None:
     """A run begins: tools may be started."""
     global _ending
     _ending = False
+
+
+def _await_killed(process: subprocess.Popen[bytes]) -> None:
+    """Waits for a tool that was killed.
+
+    A handler of a signal may raise in `Popen.wait` between taking its lock and what lets go of it (CPython 3.11): then
+    every later wait is for that lock, and the tool is asked for here.
+    """
+    from subprocess import TimeoutExpired
+
+    while process.returncode is None:
+        try:
+            process.wait(PATIENCE)
+        except TimeoutExpired:
+            with suppress(ChildProcessError):  # another thread has asked, and is about to say
+                done, status = os.waitpid(process.pid, os.WNOHANG)
+                if done:
+                    process.returncode = os.waitstatus_to_exitcode(status)
 
 
 def _name(process: subprocess.Popen[bytes]) -> str:

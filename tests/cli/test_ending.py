@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -13,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from symgen.cli.main import main
+from symgen.runtime import processes
 from symgen.runtime.processes import ToolError, run
 from symgen.verify.running import compile as compiling
 
@@ -242,3 +244,15 @@ def test_the_same_signal_once_more_does_not_kill_a_process_that_ends() -> None:
         [sys.executable, "-c", code.replace("process_ends=True", "")], capture_output=True, text=True, check=False
     )
     assert (done.returncode, done.stdout) == (-signal.SIGHUP, "")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="elsewhere processes have no such lock")
+def test_a_lock_that_nobody_lets_go_of_holds_no_run() -> None:
+    """A signal whose handler raises while a tool is waited for may leave it so."""
+    process = processes.start(["sleep", "60"])
+    process._waitpid_lock.acquire()
+    stopping = threading.Thread(target=processes.stop, args=(process,), daemon=True)
+    stopping.start()
+    stopping.join(20)
+    assert not stopping.is_alive()
+    assert process.returncode == -signal.SIGKILL
