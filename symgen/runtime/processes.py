@@ -20,7 +20,7 @@ if TYPE_CHECKING:  # most commands start no tool
     import subprocess
 
 # Seconds after which a killed tool is asked for by other means.
-PATIENCE = 0.2
+LOCK_PATIENCE = 0.2
 
 _running: set[subprocess.Popen[bytes]] = set()
 _ending = False
@@ -155,7 +155,7 @@ def _await_killed(process: subprocess.Popen[bytes]) -> None:
 
     while process.returncode is None:
         try:
-            process.wait(PATIENCE)
+            process.wait(LOCK_PATIENCE)
         except TimeoutExpired:
             with suppress(ChildProcessError):  # another thread has asked, and is about to say
                 done, status = os.waitpid(process.pid, os.WNOHANG)
