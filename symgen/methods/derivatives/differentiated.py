@@ -33,7 +33,7 @@ FUNCTIONS = {
 
 def derivatives(mechanics: System, quantity: str, values: Vector, swept: bool) -> Vector:
     """A derivative of a function with these `values`; weights are `swept` through it, or multiply its Jacobian."""
-    graph, row = mechanics.graph, ROWS[quantity]
+    graph = mechanics.graph
     by = _symbols(mechanics, quantity)
     weights = _weights(mechanics, quantity)
     if weights and swept:
@@ -42,10 +42,16 @@ def derivatives(mechanics: System, quantity: str, values: Vector, swept: bool) -
     outputs = flatten(slopes)
     if weights and not swept:
         outputs = tuple(dot(graph, one, column) for one in weights for column in zip(*slopes, strict=True))
-    if DIRECTION in row.arguments:
-        (direction,) = mechanics.further(DIRECTION)
-        outputs = tuple(derivative_along(graph, outputs, dict(zip(by, direction, strict=True))))
-    return outputs
+    return along_direction(mechanics, quantity, outputs)
+
+
+def along_direction(mechanics: System, quantity: str, outputs: Vector) -> Vector:
+    """Their derivative along v_x, where the quantity is one along a direction."""
+    if DIRECTION not in ROWS[quantity].arguments:
+        return outputs
+    (direction,) = mechanics.further(DIRECTION)
+    along = dict(zip(_symbols(mechanics, quantity), direction, strict=True))
+    return tuple(derivative_along(mechanics.graph, outputs, along))
 
 
 def _weights(mechanics: System, quantity: str) -> Matrix:

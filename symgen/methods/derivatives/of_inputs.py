@@ -16,6 +16,7 @@ from dataclasses import replace
 from symgen.linear_algebra.guards import Guard
 from symgen.mechanics.system import System
 from symgen.methods.admission import Validity
+from symgen.methods.derivatives.differentiated import along_direction
 from symgen.methods.derivatives.held_equations import all_slopes, weighted_slopes
 from symgen.methods.inverse_dynamics.core_equations import CoreEquations, core_equations
 from symgen.methods.inverse_dynamics.elimination import Elimination
@@ -29,10 +30,10 @@ from symgen.methods.inverse_dynamics.forces_eliminated import (
 from symgen.methods.method import Candidate, Method, solved_for_u
 from symgen.methods.system import MethodInput
 from symgen.methods.workspace import Workspace
-from symgen.model.quantities import DIRECTION, ROWS, FurtherName
+from symgen.model.quantities import ROWS, FurtherName
 from symgen.records import dataclass
-from symgen.symbolic.calculus import derivative_along, gradient, jacobian
-from symgen.symbolic.matrix import Matrix, Vector, dot, flatten, identity, matvec
+from symgen.symbolic.calculus import gradient, jacobian
+from symgen.symbolic.matrix import Matrix, Vector, dot, flatten, identity, matvec, subtract_vectors, transpose
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import substitute
 
@@ -118,11 +119,7 @@ def _held_equations(mechanics: System, core: CoreEquations, forces: Vector, weig
 
 
 def _residuals(force: Vector, columns: tuple[Vector, ...], unknowns: Vector) -> Vector:
-    graph = unknowns[0].graph
-    return tuple(
-        x - graph.sum(unknown * column[k] for unknown, column in zip(unknowns, columns, strict=True))
-        for k, x in enumerate(force)
-    )
+    return subtract_vectors(force, matvec(unknowns[0].graph, transpose(columns, len(force)), unknowns))
 
 
 def _derivatives(
@@ -138,10 +135,7 @@ def _derivatives(
     rows = slopes.with_values(graph, equations.held).rows
     if quantity != _BY_PARAMETERS:
         rows = tuple(_by_the_model(mechanics, row) for row in rows)
-    outputs = back.scalars(flatten(rows))
-    if DIRECTION in ROWS[quantity].arguments:
-        (direction,) = mechanics.further(DIRECTION)
-        outputs = tuple(derivative_along(graph, outputs, dict(zip(system.mechanics.motion, direction, strict=True))))
+    outputs = along_direction(system.mechanics, quantity, back.scalars(flatten(rows)))
     one = solved_for_u(system, outputs, back.guards(equations.guards), own)
     shape = (len(by),) if is_weighted else (mechanics.m, len(by))
     return replace(one, derived=replace(one.derived, name=quantity, shape=shape))

@@ -28,7 +28,7 @@ from symgen.model.model import Input, Model
 from symgen.model.quantities import MOTIONS, ROWS, FurtherName
 from symgen.records import dataclass
 from symgen.symbolic.calculus import derivative_along, jacobian
-from symgen.symbolic.matrix import Matrix, Vector, flatten, matmul, matvec, transpose
+from symgen.symbolic.matrix import Matrix, Vector, flatten, matmul, matvec, subtract_vectors, transpose
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import substitute
 
@@ -49,7 +49,7 @@ class _Loaded:
     def by(self) -> Vector:
         """q, q_dot and u."""
         mechanics = self.mechanics
-        return (*mechanics.q, *mechanics.qd, *mechanics.u[: mechanics.m - mechanics.n])
+        return (*mechanics.q, *mechanics.qd, *mechanics.u[: -mechanics.n])
 
     @property
     def held(self) -> dict[Scalar, Scalar]:
@@ -69,19 +69,17 @@ class _Loaded:
     def residuals(self) -> tuple[Vector, Vector]:
         """rho (n) and kappa (r)."""
         mechanics, graph = self.mechanics, self.mechanics.graph
-        rows, held = mechanics.constraint_jacobian, self.held_multipliers
-        inputs = [*zip(mechanics.u, mechanics.inputs, strict=True)][: mechanics.m - mechanics.n]
-        rho = tuple(
-            x
-            + graph.sum(y * row[k] for y, row in zip(held, rows, strict=True))
-            - graph.sum(u * column[k] for u, column in inputs)
-            for k, x in enumerate(mechanics.balance)
-        )
+        unloaded = (*mechanics.u[: -mechanics.n], *(graph.zero for _ in self.loads))
+        rho = subtract_vectors(mechanics.balance, matvec(graph, mechanics.control_matrix, unloaded))
         if not mechanics.r:
             return rho, ()
-        bias = mechanics.constraint_acceleration_bias(mechanics.qd)
-        lifted = matvec(graph, rows, mechanics.qdd)
-        return rho, tuple(x + y for x, y in zip(lifted, bias, strict=True))
+        rows, bias = mechanics.constraint_jacobian, mechanics.constraint_acceleration_bias(mechanics.qd)
+        pressed = matvec(graph, transpose(rows, mechanics.n), self.held_multipliers)
+        along = matvec(graph, rows, mechanics.qdd)
+        return (
+            tuple(x + y for x, y in zip(rho, pressed, strict=True)),
+            tuple(x + y for x, y in zip(along, bias, strict=True)),
+        )
 
 
 class _ImplicitMotions(ByTheorem):

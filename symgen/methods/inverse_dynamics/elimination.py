@@ -22,6 +22,7 @@ from fractions import Fraction
 from symgen.linear_algebra.balance import along_rates, multipliers_alone
 from symgen.linear_algebra.null_space.null_spaces import LONGEST_PRODUCT
 from symgen.mechanics.system import System
+from symgen.methods.inverse_dynamics.taken_back import SolvedUnknown, Step, TurnedUnknowns, taken_back
 from symgen.symbolic.matrix import Matrix, Vector, dot
 from symgen.symbolic.passes.factoring import LONGEST_CANCELLED
 from symgen.symbolic.polynomials.content import divided, usual_number
@@ -35,24 +36,6 @@ class LinearEquation:
 
     coefficients: dict[int, Scalar]
     right: Scalar
-
-
-@dataclass(frozen=True, slots=True)
-class _TurnedUnknowns:
-    """Two unknowns that were replaced by their components along and across (cosine, sine)."""
-
-    first: int
-    second: int
-    cosine: Scalar
-    sine: Scalar
-
-
-@dataclass(frozen=True, slots=True)
-class _SolvedUnknown:
-    """An unknown that a row was solved for."""
-
-    name: int
-    value: Scalar
 
 
 class Elimination:
@@ -78,7 +61,7 @@ class Elimination:
         self._points: dict[int, LinearEquation] = {}
         self._explicit: list[tuple[int, LinearEquation]] = []
         self._tested: list[Scalar] = []
-        self._steps: list[_TurnedUnknowns | _SolvedUnknown] = []
+        self._steps: list[Step] = []
         self._moments = [[self.core[j] for j in angles] for angles, _ in mechanics.turnings]
         self.multipliers_alone: Matrix = ()
         self._nonzero = {
@@ -120,14 +103,7 @@ class Elimination:
     def all_values(self, core: dict[int, Scalar], homogeneous: bool) -> Vector:
         """A value for each of `columns`: the multipliers before they were turned and solved for, and the inputs."""
         zero = self._graph.zero
-        unknowns = self._with_explicit(core, homogeneous)
-        for step in reversed(self._steps):
-            if isinstance(step, _TurnedUnknowns):
-                x, y = (unknowns.get(name, zero) for name in (step.first, step.second))
-                unknowns[step.first] = step.cosine * x - step.sine * y
-                unknowns[step.second] = step.sine * x + step.cosine * y
-            else:
-                unknowns[step.name] = zero if homogeneous else step.value
+        unknowns = taken_back(self._steps, self._with_explicit(core, homogeneous), zero, homogeneous)
         return tuple(unknowns.get(j, zero) for j in range(len(self.columns)))
 
     def _with_explicit(self, core: dict[int, Scalar], homogeneous: bool) -> dict[int, Scalar]:
@@ -236,7 +212,7 @@ class Elimination:
     def _turn_unknowns(self, j: int, k: int, f: Scalar, g: Scalar) -> None:
         """(x_j, x_k) = (f x_j' - g x_k', g x_j' + f x_k'), and likewise the rows of the sums x_j and x_k."""
         zero = self._graph.zero
-        self._steps.append(_TurnedUnknowns(j, k, f, g))
+        self._steps.append(TurnedUnknowns(j, k, f, g))
         for row in (*self.core, *(row for _, row in self._explicit), *self._points.values()):
             a, b = row.coefficients.get(j, zero), row.coefficients.get(k, zero)
             self._put(row, j, a * f + b * g)
@@ -373,7 +349,7 @@ class Elimination:
         # the reciprocal of a length serves every row that is divided by it
         value = row.right if pivot.is_one else row.right * (1 / pivot)
         if name not in self.inputs:
-            self._steps.append(_SolvedUnknown(name, value))
+            self._steps.append(SolvedUnknown(name, value))
         for other in (*self.core, *(row for _, row in self._explicit)):
             if other is row:
                 continue
