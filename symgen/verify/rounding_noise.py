@@ -16,7 +16,7 @@ import numpy as np
 
 from symgen.ir.kernel import UNIT_ROUNDOFF, Function, Kernel
 from symgen.verify.lanes.lane_arithmetic import Lanes
-from symgen.verify.lanes.many_states import run_lanes
+from symgen.verify.lanes.many_states import run_together
 from symgen.verify.single_precision import distances
 
 # Of every number that is given, the share that a state is moved by: more than it is rounded by, and so little that
@@ -33,11 +33,10 @@ def noise_in_units(
 ) -> Lanes:
     """The noise of a kernel in float64 at each state in units of d + eps |y|, d by its slopes; 0 where it refuses."""
     dice, eps = random.Random(kernel.name), float(UNIT_ROUNDOFF["float64"])
-    status, here = run_lanes(kernel, sincos, "float64", given)
+    asides = [one for _ in range(lines) for one in _aside(given, dice)]
+    (status, here), *ends = run_together(kernel, sincos, "float64", [given, *asides])
     changes = noise = np.zeros(len(status))
-    for _ in range(lines):
-        above, below = _aside(given, dice)
-        (refused, up), (lost, down) = (run_lanes(kernel, sincos, "float64", one) for one in (above, below))
+    for (refused, up), (lost, down) in zip(ends[::2], ends[1::2], strict=True):
         known = status + refused + lost == 0
         with np.errstate(all="ignore"):
             slope = distances(up, down) / 2 * (eps / NOISE_STEP)

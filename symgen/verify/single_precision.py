@@ -13,7 +13,7 @@ import numpy as np
 
 from symgen.ir.kernel import UNIT_ROUNDOFF, Kernel, Program, Scalar
 from symgen.verify.lanes.lane_arithmetic import Lanes
-from symgen.verify.lanes.many_states import run_lanes
+from symgen.verify.lanes.many_states import run_lanes, run_together
 
 TYPES: tuple[Scalar, Scalar] = ("float64", "float32")
 # Changes of what is given, of which d is the largest effect.
@@ -36,14 +36,15 @@ def units_in_float32(kernel: Kernel, programs: Mapping[Scalar, Program], given: 
     """
     sincos, single_sincos = (programs[s].sincos if "float32" in programs else None for s in TYPES)
     single = in_single_precision(given)
-    unknown, exact = run_lanes(kernel, sincos, "float64", single, numbers="float32")
-    refused, made = run_lanes(kernel, single_sincos, "float32", single)
     eps, dice = float(UNIT_ROUNDOFF["float32"]), random.Random(kernel.name)
+    moved = [
+        {name: rows * _factors(rows.shape[1], eps, dice) for name, rows in single.items()} for _ in range(CHANGES)
+    ]
+    (unknown, exact), *others = run_together(kernel, sincos, "float64", [single, *moved], numbers="float32")
+    refused, made = run_lanes(kernel, single_sincos, "float32", single)
     unit = eps * distances(exact, np.zeros_like(exact))
     changes = np.zeros_like(unit)
-    for _ in range(CHANGES):
-        moved = {name: rows * _factors(rows.shape[1], eps, dice) for name, rows in single.items()}
-        beside, changed = run_lanes(kernel, sincos, "float64", moved, numbers="float32")
+    for beside, changed in others:
         changes = np.maximum(changes, np.where(beside == 0, distances(changed, exact), 0.0))
     with np.errstate(all="ignore"):
         units = np.where(refused, np.inf, distances(made, exact) / (unit + changes))

@@ -212,8 +212,8 @@ class Fallback:
         here = Passing(largest, tuple(kernels), taken, kernels)
         self._seen[quantity].add(digest(kernels))
         most = cost(scalars(taken.derived)).weight * (1 + MARGIN_WORTH)
-        for one in self._candidates(draft, quantity, 0, expected, largest / 2):
-            if one.scalars == here.scalars and 2 * one.largest <= here.largest and one.alternative.cost <= most:
+        for one in self._candidates(draft, quantity, 0, expected, largest / 2, most):
+            if one.scalars == here.scalars and 2 * one.largest <= here.largest:
                 return self._in_place_of(draft, here, one)
             if "float64" in one.scalars:
                 self._passing[quantity].append(one)
@@ -258,15 +258,20 @@ class Fallback:
         """Counted cost of the long methods tried for a quantity; accelerations and multipliers count together."""
         return sum(self._operations[name] for name in (MOTIONS if quantity in MOTIONS else (quantity,)))
 
-    def _candidates(self, draft: Draft, quantity: str, tier: int, expected: Expected, most: float) -> Iterator[Passing]:
-        """Those of a tier that are left, measured; what fails is noted.  Up to an error of `most` they are taken."""
+    def _candidates(
+        self, draft: Draft, quantity: str, tier: int, expected: Expected, most: float, longest: float | Fraction = inf
+    ) -> Iterator[Passing]:
+        """Those of a tier that are left, measured; what fails is noted.  Up to an error of `most` they are taken.
+
+        Those that count more operations than the `longest` stay for later.
+        """
         if self._options.methods.get(quantity, AUTO) != AUTO or self._alternatives is None:
             return
         if (quantity, tier) not in self._left:
             self._progress(f"other methods of {quantity}")
             self._left[quantity, tier] = deque(self._alternatives.of(quantity, draft.choice(quantity), tier))
         left = self._left[quantity, tier]
-        while left:
+        while left and left[0].cost <= longest:
             other = left.popleft()
             self._progress(f"another method of {quantity}, {other.choice.title}")
             kernels = draft.kernels_along(other, tuple(draft.kernels(quantity)))
