@@ -171,8 +171,8 @@ its templates in `templates/<name>`, and its name in `symgen/registered.py`. The
 - `statements`: how the language spells an operation, a choice, a sine and cosine, a check. The walk over the statements
   is that of `symgen/backends/statements.py`.
 - `backend`: `BACKEND`, which are the functions that make files of a program (its *variants*, such as kernels for many
-  states), what these files are called, for which scalar types they are made, and the backend whose files verification
-  runs for it.
+  states), what these files are called, for which scalar types they are made, what stands once around all of them, and
+  the backend whose files verification runs for it.
 
 Names of values come from `symgen/backends/locals.py`, numbers from `literals.py`, what is said of a model and of its
 kernels from `about.py` and `quantities.py` there. `tests/backends/test_registered.py` holds every registered backend

@@ -9,7 +9,7 @@ Nothing else knows of it; its templates lie in the folder of its name in `templa
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
 from typing import TypeAlias
 
@@ -19,6 +19,7 @@ from symgen.model.model import Model
 from symgen.records import dataclass
 
 Emit: TypeAlias = Callable[[Model, Program], dict[str, str]]
+Around: TypeAlias = Callable[[Model, Sequence[Program]], dict[str, str]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +39,8 @@ class Backend:
 
     Each of `variants` prints a file for each of `extensions`, by `paths`.  They are made of the program of each scalar
     type that is asked for, or of the one in float64 alone.  `verified_as` names the backend whose files are run for its
-    own: another one where the same kernels are judged by those.
+    own: another one where the same kernels are judged by those.  Files lie in `folder` (empty: that of the name), and
+    `stem` is what they are called before the dot.  What is made once of all programs stands `around` them.
     """
 
     name: str
@@ -47,11 +49,14 @@ class Backend:
     extensions: tuple[str, ...]
     verified_as: str
     of_each_scalar: bool = True
+    folder: str = ""
+    stem: Callable[[str, Scalar, str], str] = file_stem
+    around: Around | None = None
 
     def paths(self, model: Model, scalar: Scalar, ending: str = "") -> tuple[str, ...]:
         """Where the files of a variant are, under the folder of a model, in the order of extensions."""
-        stem = file_stem(model.c_name, scalar, ending)
-        return tuple(f"{self.name}/{stem}{extension}" for extension in self.extensions)
+        stem = self.stem(model.c_name, scalar, ending)
+        return tuple(f"{self.folder or self.name}/{stem}{extension}" for extension in self.extensions)
 
     def programs(self, programs: Mapping[Scalar, Program], scalars: tuple[Scalar, ...]) -> list[Program]:
         """Those that files are made of."""

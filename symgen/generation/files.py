@@ -27,7 +27,10 @@ def sources_of(draft: Draft, options: Options) -> dict[str, str]:
     sources: dict[str, str] = {}
     for name in (name for name in BACKENDS if name in needed):
         made = backend(name)
-        for program in made.programs(draft.written, options.scalars):
+        programs = made.programs(draft.written, options.scalars)
+        if made.around is not None:
+            sources |= made.around(draft.model, programs)
+        for program in programs:
             kind = f" in {program.scalar}" if made.of_each_scalar else ""
             for variant in each(f"{made.language}{kind}", made.variants):
                 sources |= variant.emit(draft.model, program)

@@ -55,6 +55,9 @@ def test_prints_its_files_into_its_folder_and_can_be_asked_for(name: str) -> Non
     assert all(path.startswith(f"{name}/") for files in texts.values() for path in files)
     for ending, files in texts.items():
         assert not files or tuple(files) == made.paths(model, program.scalar, ending)
+    beside = {} if made.around is None else made.around(model, [program])
+    assert all(path.startswith(f"{name}/") for path in beside)
+    assert not beside.keys() & {path for files in texts.values() for path in files}
     assert parts(name) == (name,)
 
 

@@ -133,7 +133,7 @@ def test_verify_needs_a_compiler(
         ["verify", "no_such.yaml"],
         ["explain", "no_such.yaml"],
         [SKATE, "--scalar", "float16"],
-        [SKATE, "--only", "rust"],
+        [SKATE, "--only", "fortran"],
         [SKATE, "--states", "7"],
         [SKATE, "--outputs", ","],
         [SKATE, "--unknown"],
@@ -171,7 +171,7 @@ def test_a_word_that_is_no_file_is_told_with_what_was_meant(
     ("arguments", "message"),
     [
         (["--states", "many"], "'many' is no whole number from 8 up"),
-        (["--only", "c,rust"], "'rust' is none of c, python"),
+        (["--only", "c,fortran"], "'fortran' is none of c, python"),
         (["--outputs", " , "], "expected names separated by commas"),
     ],
 )
