@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import operator
 from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias
 
@@ -95,16 +94,18 @@ def _ratio_or_zero(a: Lanes, b: Lanes) -> Lanes:
     return np.where(b == 0, b.dtype.type(0), np.divide(a, b))
 
 
-# Operations whose bits are those of every IEEE machine.
-VECTORISED: dict[OperationName, Callable[..., Lanes]] = {
-    "add": operator.add,
-    "sub": operator.sub,
-    "mul": operator.mul,
+# Operations whose bits are those of every IEEE machine: those that write their results where these are wanted, and all.
+UFUNCS: dict[OperationName, Callable[..., Lanes]] = {
+    "add": np.add,
+    "sub": np.subtract,
+    "mul": np.multiply,
     "div": np.divide,
-    "neg": operator.neg,
+    "neg": np.negative,
     "abs": np.abs,
     "sqrt": np.sqrt,
     "copysign": np.copysign,
+}
+VECTORISED: dict[OperationName, Callable[..., Lanes]] = UFUNCS | {
     "ratio_or_zero": _ratio_or_zero,
     "min": lambda a, b: np.where(a < b, a, b),
     "max": lambda a, b: np.where(a > b, a, b),

@@ -27,12 +27,12 @@ from symgen.ir.kernel import (
 )
 from symgen.ir.last_kernels import LastKernels
 from symgen.verify.given import loaded
-from symgen.verify.lanes.lane_arithmetic import TYPES, VECTORISED, LaneArithmetic, Lanes, number
+from symgen.verify.lanes.lane_arithmetic import TYPES, UFUNCS, LaneArithmetic, Lanes, number
 
 _Places: TypeAlias = Any
 
-# Numbers of several sets of states that are held at a time: more gain nothing.
-NUMBERS_TOGETHER = 4_000_000
+# Numbers that are worked out at a time: fewer take as long, and more do not stay in the cache.
+NUMBERS_AT_ONCE = 2_000_000
 
 
 def run_many(
@@ -59,8 +59,20 @@ def run_lanes(
     `given` has a row for each state.  With `numbers` the literals are those of this scalar type, so that they make no
     difference between the types.
     """
+    count = len(next(iter(given.values())))
+    at_once = max(1, NUMBERS_AT_ONCE // (len(kernel.statements) + 1))
+    parts = [slice(start, start + at_once) for start in range(0, count, at_once)] or [slice(0)]
     with np.errstate(all="ignore"):
-        return _KernelRun(kernel, sincos, scalar, given, numbers or scalar).outcomes()
+        ends = [
+            _KernelRun(
+                kernel, sincos, scalar, {name: rows[part] for name, rows in given.items()}, numbers or scalar
+            ).outcomes()
+            for part in parts
+        ]
+    if len(ends) == 1:
+        return ends[0]
+    status, outputs = zip(*ends, strict=True)
+    return np.concatenate(status), np.concatenate(outputs)
 
 
 def run_together(
@@ -76,7 +88,7 @@ def run_together(
     as one.
     """
     count = len(next(iter(sets[0].values())))
-    held = max(1, NUMBERS_TOGETHER // ((len(kernel.statements) + 1) * max(1, count)))
+    held = max(1, NUMBERS_AT_ONCE // ((len(kernel.statements) + 1) * max(1, count)))
     ends: list[tuple[Lanes, Lanes]] = []
     for start in range(0, len(sets), held):
         part = sets[start : start + held]
@@ -114,11 +126,10 @@ class _KernelRun:
         """The first status of each state."""
         values = self._values
         for operation, operands, targets in block.groups:
-            vectorised = VECTORISED.get(operation)
             # places are in range: nothing has to be looked at before rows are taken
-            if vectorised is not None and len(operands) == 2:
-                a, b = operands
-                values[targets[0]] = vectorised(values.take(a, 0, None, "clip"), values.take(b, 0, None, "clip"))
+            if (function := UFUNCS.get(operation)) is not None:
+                read = [values.take(places, 0, None, "clip") for places in operands]
+                function(*read, out=values[targets[0]])
                 continue
             made = self._arithmetic.apply(operation, [values.take(places, 0, None, "clip") for places in operands])
             for places, result in zip(targets, made, strict=True):
