@@ -9,7 +9,7 @@ CAMPAIGN_FILES := $(CAMPAIGN:%=models/%.yaml)
 MODELS := $(wildcard models/*.yaml)
 MECHANISMS := $(filter-out $(CAMPAIGN_FILES),$(MODELS))
 
-.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms bench-derivatives generation stress skipping passes constants trig zoo zoo-case zoo-sweeps docs api lock robots jax
+.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms bench-derivatives generation stress skipping passes constants trig zoo zoo-case zoo-sweeps docs api site lock robots jax
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -130,6 +130,11 @@ docs: $(VENV)/installed
 api: $(VENV)/installed
 	$(BIN)/python tools/api_reference.py build/api
 
+# The pages of the documentation as a site: open build/site/html/index.html.
+site: $(VENV)/installed
+	$(BIN)/pip install --quiet --require-hashes --requirement docs/site.lock
+	$(BIN)/python tools/site_pages.py
+
 # One lock for every platform and Python from 3.11 on; editables is what the build backend needs for `pip install -e`.
 lock: $(VENV)/installed
 	$(BIN)/pip install --quiet uv
@@ -142,6 +147,9 @@ lock: $(VENV)/installed
 	printf 'jax\n' | $(BIN)/uv pip compile --quiet --python-version 3.11 --python-platform x86_64-manylinux_2_28 \
 	    --generate-hashes --constraint requirements.lock --no-emit-package numpy --no-emit-package scipy --no-header \
 	    --no-annotate --no-emit-index-url --no-emit-find-links --output-file tests/backends/jax.lock -
+	printf 'mkdocs-material\nmkdocstrings[python]\n' | $(BIN)/uv pip compile --quiet --universal --python-version 3.11 \
+	    --generate-hashes --constraint requirements.lock --no-header --no-annotate --no-emit-index-url \
+	    --no-emit-find-links --output-file docs/site.lock -
 
 # Pinocchio and published robot descriptions, witnesses of the mechanisms: wheels for Linux and Python 3.11.
 robots: $(VENV)/installed
