@@ -25,7 +25,7 @@ from symgen.backends.rust.reserved import crate_name
 from symgen.backends.scalars import C_TYPE, SUFFIX
 from symgen.generation.results import Options
 from symgen.ir.interpret import Interpreter
-from symgen.ir.kernel import Block, Kernel, Load, Local, Program, Scalar, Status
+from symgen.ir.kernel import Block, Check, Kernel, Load, Local, Program, Scalar, Status
 from symgen.ir.library_trig import with_library_trig
 from symgen.ir.pairs.wide import widened
 from symgen.pipeline import generate
@@ -248,6 +248,30 @@ def test_a_whole_model_without_a_complaint(tool: Callable[[str], str], tmp_path:
     long = replace(shipped.programs("rapkm_2rrr_rr")["float64"], kernels=(longest,))
     rust_crates.crate(shipped.model("rapkm_2rrr_rr"), {"float64": long}, tmp_path)
     rust_crates.cargo(tool("cargo"), "build", "--quiet", folder=made)
+
+
+@pytest.mark.toolchain
+@pytest.mark.slow
+def test_statements_that_could_be_written_otherwise(tool: Callable[[str], str], tmp_path: Path) -> None:
+    """As they come of numbers that are rounded to 1, -1 or 0 in a scalar type."""
+    one, none = handmade.literal("1"), handmade.literal("0")
+    statements = (
+        handmade.op("a", "mul", handmade.literal("-1"), "x"),
+        handmade.op("b", "mul", "a", one),
+        handmade.op("c", "add", "b", none),
+        handmade.op("d", "sub", "c", "c"),
+        handmade.op("e", "div", "theta", "theta"),
+        handmade.op("f", "neg", "d"),
+        handmade.op("g", "neg", "f"),
+        handmade.op("h", "mul", "e", handmade.literal("3.14159265358979323846")),
+        handmade.op("k", "sub", none, "g"),
+    )
+    check = Check(Status.MASS_RANK, Local("h"), handmade.literal("-0.5"))
+    outputs = tuple(map(Local, "bchk"))
+    kernel = replace(toy({}), blocks=(Block(statements, (check,)),), outputs=outputs, shape=(2, 2))
+    programs = {scalar: Program(scalar, None, (kernel,)) for scalar in shipped.SCALARS}
+    made = rust_crates.crate(handmade.model(), programs, tmp_path)
+    rust_crates.cargo(tool("cargo"), "clippy", "--quiet", folder=made)
 
 
 AWKWARD = """
