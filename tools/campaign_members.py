@@ -30,7 +30,7 @@ PRODUCT = ("symgen", "templates", "models", "pyproject.toml", LOCK)
 # how results are told.
 BY_BYTES = (
     *("symgen/model", "symgen/symbolic", "symgen/ir", "symgen/linear_algebra", "symgen/mechanics", "symgen/methods"),
-    *("symgen/quantities", "symgen/lowering", "symgen/backends"),
+    *("symgen/quantities", "symgen/lowering", "symgen/backends", "symgen/registered.py"),
 )
 TELLING = ("symgen/output", "symgen/report", "symgen/terminal.py", "symgen/cli")
 # A minute of two cores: always the same random systems, beside those that CI draws anew.

@@ -53,28 +53,19 @@ class FloatGradients:
             own = [(k, columns[k]) for k in reached if k in columns]
             self._ways.append((place[output], steps, own))
 
-    def at(self, point: Mapping[str, float]) -> FloatsAt | None:
-        """The outputs at a point; None where one has no value."""
+    def __call__(self, point: Mapping[str, float]) -> tuple[list[float], list[Row]] | None:
+        """The outputs and their slopes; None where one has no value."""
         known = self._evaluate(point)
         values = [known[place] for place in self._outputs]
-        return FloatsAt(values, known, self._ways) if all(map(math.isfinite, values)) else None
-
-
-class FloatsAt:
-    """The values of outputs at a point, and what their slopes are made of."""
-
-    __slots__ = ("_known", "_ways", "values")
-
-    def __init__(self, values: list[float], known: list[float], ways: Sequence[_Way]) -> None:
-        self.values, self._known, self._ways = values, known, ways
-
-    def slopes(self) -> list[Row] | None:
-        """A row for each output; None where one has no value."""
+        if not all(map(math.isfinite, values)):
+            return None
         try:
-            rows = [_slopes(way, self._known) for way in self._ways]
+            rows = [_slopes(way, known) for way in self._ways]
         except (ArithmeticError, ValueError):
             return None
-        return rows if all(math.isfinite(value) for row in rows for value in row.values()) else None
+        if not all(math.isfinite(value) for row in rows for value in row.values()):
+            return None
+        return values, rows
 
 
 def _slopes(way: _Way, known: Sequence[float]) -> Row:

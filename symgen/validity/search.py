@@ -130,11 +130,10 @@ class ZeroSearch:
     ) -> tuple[Point, float] | None:
         """Where the way from a start ends close to a zero, and the scalar's usual size."""
         at = {name: float(value) for name, value in point.items()}
-        here = evaluate.at(at)
-        slopes = None if here is None else here.slopes()
-        if here is None or slopes is None:
+        state = evaluate(at)
+        if state is None:
             return None
-        values = here.values
+        values, slopes = state
         sizes.append(max(map(abs, values[rows:])))
         usual = sorted(sizes)[len(sizes) // 2] or 1.0
         weights = [1.0] * rows + [1 / usual] * (len(values) - rows)
@@ -158,18 +157,13 @@ class ZeroSearch:
                     lower, upper = limits[k]
                     moved = at[names[k]] - (upper - lower) * share
                     trial[names[k]] = moved if names[k] in self._angles else min(max(moved, lower), upper)
-                fresh = evaluate.at(trial)
+                fresh = evaluate(trial)
                 if fresh is None:
                     return None
-            fresh_size = math.inf
-            if fresh is not None:
-                fresh_size = max(abs(v) * w for v, w in zip(fresh.values, weights, strict=True))
+            fresh_size = math.inf if fresh is None else max(abs(v) * w for v, w in zip(fresh[0], weights, strict=True))
             slow = slow + 1 if fresh_size > STALLED * size else 0
             if fresh is not None and fresh_size < size:
-                slopes = fresh.slopes()
-                if slopes is None:
-                    return None
-                at, values, size, damping = trial, fresh.values, fresh_size, damping / 10
+                at, (values, slopes), size, damping = trial, fresh, fresh_size, damping / 10
             elif size <= NEAR:
                 break
             else:

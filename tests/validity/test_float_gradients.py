@@ -23,10 +23,9 @@ def test_values_and_slopes_are_those_in_40_digits() -> None:
         p * p,
     ]
     point = {"x": 0.7, "y": 0.4, "p": -1.3}
-    there = FloatGradients(outputs, ("x", "y")).at(point)
-    assert there is not None
-    values, rows = there.values, there.slopes()
-    assert rows is not None
+    values_and_rows = FloatGradients(outputs, ("x", "y"))(point)
+    assert values_and_rows is not None
+    values, rows = values_and_rows
     exact, slopes = PreciseEvaluator(outputs).gradients({k: precise(v) for k, v in point.items()}, ("x", "y"))
     assert values == pytest.approx([float(value) for value in exact], rel=1e-13)
     for row, wanted in zip(rows, slopes, strict=True):
@@ -38,5 +37,5 @@ def test_where_a_function_has_no_value_there_are_none() -> None:
     graph = Graph()
     x = graph.symbol("x")
     evaluate = FloatGradients([graph.function("log", (x,))], ("x",))
-    assert evaluate.at({"x": -1.0}) is None
-    assert evaluate.at({"x": 2.0}) is not None
+    assert evaluate({"x": -1.0}) is None
+    assert evaluate({"x": 2.0}) is not None
