@@ -30,12 +30,19 @@ def page(tmp_path: Path) -> Page:
 @pytest.mark.toolchain
 def test_the_controller_follows_the_circle(page: Page, tool: Callable[[str], str]) -> None:
     tool("cc")
-    generate, desk, core = page.blocks("sh")
+    generate, desk, _ = page.blocks("sh")
     page.run("sh", "-ec", generate)
     printed = page.run("sh", "-ec", desk).stdout
     (said,) = re.findall(r"prints `([^`]+)`", page.text)
     assert printed == f"{said}\n"
+
+
+@pytest.mark.slow
+@pytest.mark.toolchain
+def test_the_controller_is_built_for_the_core(page: Page, tool: Callable[[str], str]) -> None:
     tool("arm-none-eabi-gcc")
+    generate, _, core = page.blocks("sh")
+    page.run("sh", "-ec", f"{generate.strip()} --only c --no-verify")
     assert page.run("sh", "-ec", core).stderr == ""
     assert {path.name for path in page.folder.glob("*.o")} == {"control.o", "leg_f.o"}
 

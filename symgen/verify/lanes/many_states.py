@@ -82,20 +82,11 @@ def run_together(
     sets: Sequence[Mapping[str, Lanes]],
     numbers: Scalar | None = None,
 ) -> list[tuple[Lanes, Lanes]]:
-    """What `run_lanes` has for each set of as many states, with the same bits.
-
-    An operation on few states takes hardly longer than one on several times as many: as many sets as may be held run
-    as one.
-    """
-    count = len(next(iter(sets[0].values())))
-    held = max(1, NUMBERS_AT_ONCE // ((len(kernel.statements) + 1) * max(1, count)))
-    ends: list[tuple[Lanes, Lanes]] = []
-    for start in range(0, len(sets), held):
-        part = sets[start : start + held]
-        given = {name: np.concatenate([one[name] for one in part]) for name in part[0]}
-        status, outputs = run_lanes(kernel, sincos, scalar, given, numbers)
-        ends += zip(np.split(status, len(part)), np.split(outputs, len(part)), strict=True)
-    return ends
+    """What `run_lanes` has for each set of as many states, with the same bits: it takes hardly longer for many states
+    than for a few."""
+    given = {name: np.concatenate([one[name] for one in sets]) for name in sets[0]}
+    ends = run_lanes(kernel, sincos, scalar, given, numbers)
+    return [*zip(*(np.split(end, len(sets)) for end in ends), strict=True)]
 
 
 class _KernelRun:
