@@ -7,7 +7,7 @@ because several quantities are evaluated along a projected velocity rather than 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 from symgen.mechanics.absolute_angles import AbsoluteAngles
 from symgen.mechanics.christoffel import by_products_of_rates
@@ -88,9 +88,9 @@ class System:
 
     @cached_property
     def working_gravity(self) -> Vector3:
-        """The acceleration of gravity for recursions over the joints; 0 where no weight works (on another graph)."""
-        zero, working = self.graph.zero, System(self.model).bodies.weights_work
-        return self.bodies.gravity if working else (zero, zero, zero)
+        """The acceleration of gravity for recursions over the joints; 0 where no weight works."""
+        zero = self.graph.zero
+        return self.bodies.gravity if _weights_work(self.model) else (zero, zero, zero)
 
     def further(self, *arguments: FurtherName) -> tuple[Vector, ...]:
         """The entries of arguments beside q, qd, qdd and u: of a task and of weights."""
@@ -398,3 +398,9 @@ class System:
         """C q_dot + Q - Q_a."""
         conservative = self._conservative_force(tuple(self.graph.zero for _ in self.q))
         return tuple(f - a for f, a in zip(conservative, self.applied_force, strict=True))
+
+
+@lru_cache(maxsize=1)
+def _weights_work(model: Model) -> bool:
+    """Whether a weight loads any coordinate; on a graph of its own, once for all systems of a model."""
+    return System(model).bodies.weights_work

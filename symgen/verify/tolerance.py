@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import random
 import struct
+from bisect import bisect_left, insort
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -197,17 +198,32 @@ def _signs(reference: Reference, state: State, generator: random.Random) -> list
     parts = (*state.parts, reference.literals())
     count = sum(map(len, parts))
     drawn = [[generator.getrandbits(1) for _ in range(count)] for _ in range(PERTURBATIONS)]
+    # of each number a bit for each perturbation
+    moves = [sum(sign << k for k, sign in enumerate(signs)) for signs in zip(*drawn, strict=True)]
     begin = 0
     for part in parts:
         sizes = [abs(float(x)) for x in part]
-        for j in range(len(part)):
-            for i in (i for i in range(j) if sizes[j] and isclose(sizes[i], sizes[j], rel_tol=ALIKE)):
-                for one in (0, 1):
-                    ways = [signs for signs in drawn if signs[begin + i] == one]
-                    if ways and all(signs[begin + j] == one for signs in ways):
-                        ways[0][begin + j] = 1 - one
+        for j, alike in enumerate(_earlier_alike(sizes)):
+            own = moves[begin + j]
+            for i in alike:
+                outwards = moves[begin + i]
+                inwards = outwards ^ 2**PERTURBATIONS - 1
+                if inwards and not own & inwards:
+                    own ^= inwards & -inwards
+                if outwards and own & outwards == outwards:
+                    own ^= outwards & -outwards
+            moves[begin + j] = own
         begin += len(part)
-    return drawn
+    return [[move >> k & 1 for move in moves] for k in range(PERTURBATIONS)]
+
+
+def _earlier_alike(sizes: Sequence[float]) -> Iterator[list[int]]:
+    """Of each number the places of those before it that are as large, in order; none of what is 0."""
+    before: list[tuple[float, int]] = []
+    for j, size in enumerate(sizes):
+        near = before[bisect_left(before, (size * (1 - 2 * ALIKE),)) : bisect_left(before, (size * (1 + 2 * ALIKE),))]
+        yield sorted(i for other, i in near if isclose(other, size, rel_tol=ALIKE)) if size else []
+        insort(before, (size, j))
 
 
 def _set_apart(drawn: Sequence[Sequence[int]], generator: random.Random) -> list[list[int]]:

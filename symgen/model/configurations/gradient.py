@@ -49,36 +49,49 @@ class Gradients:
 
     def of(self, expression: Expression) -> Dual:
         """Value and gradient; ArithmeticError or ValueError outside the domain."""
-        match expression:
-            case Number(value=literal):
-                return self.numbers.rational(literal), {}
-            case Pi():
-                return self.numbers.pi, {}
-            case Name(name=name):
-                return self._name(name)
-            case Negation(operand=operand):
-                value, gradient = self.of(operand)
-                return -value, _scaled(gradient, -1.0)
-            case Binary(operator=operator, left=left, right=right):
-                return _binary(operator, self.of(left), self.of(right))
-            case Power(base=base, exponent=exponent):
-                value, gradient = self.of(base)
-                power = self.numbers.power
-                if not gradient:
-                    return power(value, exponent), {}
-                slope = self.numbers.rational(exponent) * power(value, exponent - 1)
-                return power(value, exponent), _scaled(gradient, slope)
-            case Call(function="atan2", arguments=(first, second)):
-                (y, dy), (x, dx) = self.of(first), self.of(second)
-                square = x * x + y * y
-                return self.numbers.functions["atan2"](y, x), _combined(dy, x / square, dx, -y / square)
-            case Call(function=function, arguments=arguments):
-                value, gradient = self.of(arguments[0])
-                known = self.numbers.functions
-                slope = _DERIVATIVES[function](known, value) if gradient else 0.0
-                return known[function](value), _scaled(gradient, slope)
+        return _BY_KIND[expression.__class__](self, expression)
 
-    def _name(self, name: str) -> Dual:
+    def number(self, number: Number) -> Dual:
+        """A literal."""
+        return self.numbers.rational(number.value), {}
+
+    def pi(self, _: Pi) -> Dual:
+        """The constant."""
+        return self.numbers.pi, {}
+
+    def negation(self, negation: Negation) -> Dual:
+        """What has the other sign."""
+        value, gradient = self.of(negation.operand)
+        return -value, _scaled(gradient, -1.0)
+
+    def binary(self, binary: Binary) -> Dual:
+        """Sums, products and quotients."""
+        return _BINARY[binary.operator](*self.of(binary.left), *self.of(binary.right))
+
+    def power(self, power: Power) -> Dual:
+        """A power with a number."""
+        value, gradient = self.of(power.base)
+        exponent, raised = power.exponent, self.numbers.power
+        if not gradient:
+            return raised(value, exponent), {}
+        slope = self.numbers.rational(exponent) * raised(value, exponent - 1)
+        return raised(value, exponent), _scaled(gradient, slope)
+
+    def call(self, call: Call) -> Dual:
+        """A function."""
+        known = self.numbers.functions
+        if call.function == "atan2":
+            (y, dy), (x, dx) = map(self.of, call.arguments)
+            square = x * x + y * y
+            return known["atan2"](y, x), _combined(dy, x / square, dx, -y / square)
+        value, gradient = self.of(call.arguments[0])
+        if not gradient:
+            return known[call.function](value), {}
+        return known[call.function](value), _scaled(gradient, _DERIVATIVES[call.function](known, value))
+
+    def name(self, given: Name) -> Dual:
+        """A coordinate, a parameter, a component or a definition."""
+        name = given.name
         if name in self.index:
             return self._values[name], {self.index[name]: 1.0}
         if self._components is not None and is_component(name):
@@ -102,27 +115,34 @@ class Gradients:
                 self._known[name] = error
 
 
-def _binary(operator: str, left: Dual, right: Dual) -> Dual:
-    (a, da), (b, db) = left, right
-    match operator:
-        case "+":
-            return a + b, _combined(da, 1.0, db, 1.0)
-        case "-":
-            return a - b, _combined(da, 1.0, db, -1.0)
-        case "*":
-            return a * b, _combined(da, b, db, a)
-        case _:
-            return a / b, _combined(da, 1 / b, db, -a / (b * b))
+_Gradient: TypeAlias = dict[int, float]
+_BY_KIND: Mapping[type, Callable[..., Dual]] = {
+    Number: Gradients.number,
+    Pi: Gradients.pi,
+    Name: Gradients.name,
+    Negation: Gradients.negation,
+    Binary: Gradients.binary,
+    Power: Gradients.power,
+    Call: Gradients.call,
+}
+_BINARY: Mapping[str, Callable[[float, _Gradient, float, _Gradient], Dual]] = {
+    "+": lambda a, da, b, db: (a + b, _combined(da, 1.0, db, 1.0)),
+    "-": lambda a, da, b, db: (a - b, _combined(da, 1.0, db, -1.0)),
+    "*": lambda a, da, b, db: (a * b, _combined(da, b, db, a)),
+    "/": lambda a, da, b, db: (a / b, _combined(da, 1 / b, db, -a / (b * b))),
+}
 
 
-def _scaled(gradient: dict[int, float], factor: float) -> dict[int, float]:
-    return {index: factor * value for index, value in gradient.items()}
+def _scaled(gradient: _Gradient, factor: float) -> _Gradient:
+    return {index: factor * value for index, value in gradient.items()} if gradient else gradient
 
 
-def _combined(a: dict[int, float], alpha: float, b: dict[int, float], beta: float) -> dict[int, float]:
+def _combined(a: _Gradient, alpha: float, b: _Gradient, beta: float) -> _Gradient:
+    if not a:
+        return _scaled(b, beta)
     if not b:
         return a if alpha == 1.0 else _scaled(a, alpha)
-    result = _scaled(a, alpha)
+    result = dict(a) if alpha == 1.0 else _scaled(a, alpha)
     for index, value in b.items():
         result[index] = result.get(index, 0.0) + beta * value
     return result

@@ -108,15 +108,16 @@ def solve_gram(rows: Sequence[Row], right: Sequence[float], damping: float) -> l
             touching.setdefault(j, []).append(i)
     gram: list[Row] = [{i: damping} for i in range(len(rows))]
     for j, these in touching.items():
-        for i in these:
-            own, factor = gram[i], rows[i][j]
-            for k in these:
-                own[k] = own.get(k, 0.0) + factor * rows[k][j]
+        entries = [(i, rows[i][j]) for i in these]
+        for i, factor in entries:
+            own = gram[i]
+            for k, entry in entries:
+                own[k] = own.get(k, 0.0) + factor * entry
     values = list(right)
     left = set(range(len(rows)))
     taken: list[tuple[int, float, Row]] = []
     while left:
-        k = min(left, key=lambda i: (len(gram[i]), i))
+        k = min([(len(gram[i]), i) for i in left])[1]
         left.remove(k)
         row = gram[k]
         pivot = row.pop(k)

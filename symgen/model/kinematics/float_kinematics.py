@@ -124,9 +124,17 @@ class FloatKinematics:
             momenta = [self._arithmetic.combination(zip(row, twist.angular, strict=True)) for row in rows]
             pairs = [(self._arithmetic.combination([(mass, v)]), v) for v in linear]
             for momentum, rate in (*pairs, *zip(momenta, twist.angular, strict=True)):
+                along = sorted(rate.items())
                 for i, a in momentum.items():
-                    for j, b in rate.items():
-                        matrix[i][j] += a * b
+                    row = matrix[i]
+                    for j, b in along:
+                        if j > i:
+                            break
+                        row[j] += a * b
+        # that is what stands left of the diagonal
+        for i, row in enumerate(matrix):
+            for j in range(i):
+                matrix[j][i] = row[j]
         return matrix
 
 

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
-from symgen.verify.lanes.lane_arithmetic import Lanes
+from symgen.verify.lanes.lane_arithmetic import UFUNCS, Lanes
+from symgen.verify.lanes.portable_lanes import applied, sines
 from symgen.verify.reference.arithmetic.tape import Replay
 
-FUNCTIONS: dict[str, Callable[..., Lanes]] = {
-    "add": np.add, "sub": np.subtract, "mul": np.multiply, "div": np.divide, "neg": np.negative, "pow": np.power,
-    "sin": np.sin, "cos": np.cos, "tan": np.tan, "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan,
-    "atan2": np.arctan2, "sqrt": np.sqrt, "exp": np.exp, "log": np.log, "sinh": np.sinh, "cosh": np.cosh,
-    "tanh": np.tanh,
-}  # fmt: skip
+SINES = ("sin", "cos")
 
 
 class LaneReplay:
@@ -25,10 +22,10 @@ class LaneReplay:
         self._constants = np.array(replay.constants.floats())[:, None]
         self._inputs, self._outputs = places.inputs, np.array(places.outputs, dtype=int)
         first = len(self._constants) + len(self._inputs)
-        self._groups: list[tuple[Callable[..., Lanes], slice, list[Lanes]]] = []
+        self._groups: list[tuple[Any, slice, list[Lanes]]] = []
         for operation, *operands in places.groups:
             read = [np.array(rows) for rows in operands if rows is not None]
-            self._groups.append((FUNCTIONS[operation], slice(first, first + len(read[0])), read))
+            self._groups.append((operation, slice(first, first + len(read[0])), read))
             first += len(read[0])
         self._count = first
 
@@ -39,6 +36,12 @@ class LaneReplay:
         registers[:first] = self._constants
         for place, source in enumerate(self._inputs, first):
             registers[place] = inputs[source]
-        for function, made, read in self._groups:
-            function(*(registers.take(rows, 0) for rows in read), out=registers[made])
+        for operation, made, read in self._groups:
+            given = [registers.take(rows, 0) for rows in read]
+            if operation in SINES:
+                registers[made] = sines(*given)[SINES.index(operation)]
+            elif (function := UFUNCS.get(operation)) is not None:
+                function(*given, out=registers[made])
+            else:
+                registers[made] = applied(operation, given)
         return registers[self._outputs]

@@ -13,6 +13,7 @@ import numpy as np
 
 from symgen.verify.lanes.lane_arithmetic import Lanes
 from symgen.verify.lanes.lane_replay import LaneReplay
+from symgen.verify.lanes.small_matrices import inverses, products, pseudoinverses, times
 from symgen.verify.reference.configurations.manifold import ROUNDED_DIRECTION
 from symgen.verify.reference.configurations.parts import Part
 from symgen.verify.reference.system import ReferenceSystem
@@ -21,7 +22,7 @@ from symgen.verify.reference.system import ReferenceSystem
 LANE_STEPS = 12
 # Of rows of length 1: what is left of a loop that needs no further step.
 CLOSED_IN_LANES = 1e-11
-# Of the largest singular value: rows depend on each other.
+# Of the longest row: rows depend on each other.
 DEPENDENT = 1e-8
 # Entries of (J J')^-1, for rows of length 1, that leave a step of Newton's method half of its digits.
 FAR_FROM_DEPENDENT = 1e6
@@ -133,12 +134,12 @@ class LoopsInLanes:
 def _newton_step(rows: Lanes, gaps: Lanes) -> Lanes:
     """J^+ g of each state, for rows of length 1: by J J' where these are far from dependent, which is far shorter."""
     across = np.swapaxes(rows, 1, 2)
-    gram = rows @ across
+    gram = products(rows, across)
     # what rounding leaves of rows that depend on each other is no pivot
-    inverse = np.linalg.inv(gram + 1e-14 * np.eye(gram.shape[1]))
+    inverse = inverses(gram + 1e-14 * np.eye(gram.shape[1]))
     step = times(across, times(inverse, gaps))
     dependent = ~(np.abs(inverse).max(axis=(1, 2), initial=0.0) < FAR_FROM_DEPENDENT)
-    step[dependent] = times(np.linalg.pinv(rows[dependent], rcond=DEPENDENT), gaps[dependent])
+    step[dependent] = times(pseudoinverses(rows[dependent], DEPENDENT), gaps[dependent])
     return step
 
 
@@ -147,12 +148,12 @@ def _damped_step(rows: Lanes, gaps: Lanes, damping: Lanes) -> Lanes:
     usable = np.isfinite(rows).all(axis=(1, 2)) & np.isfinite(gaps).all(axis=1) & (damping < 1e10)
     rows, gaps = np.where(usable[:, None, None], rows, 0.0), np.where(usable[:, None], gaps, 0.0)
     across = np.swapaxes(rows, 1, 2)
-    gram = rows @ across
+    gram = products(rows, across)
     count = gram.shape[1]
     shift = np.maximum(damping * np.trace(gram, axis1=1, axis2=2) / count, 1e-30)
     # what rounding leaves of rows that depend on each other is no pivot
     shift = np.where(usable, np.maximum(shift, 1e-14), 1.0)
-    return times(across, np.linalg.solve(gram + shift[:, None, None] * np.eye(count), gaps[:, :, None])[:, :, 0])
+    return times(across, times(inverses(gram + shift[:, None, None] * np.eye(count)), gaps))
 
 
 def _in_own_units(rows: Lanes, gaps: Lanes) -> tuple[Lanes, Lanes]:
@@ -172,8 +173,3 @@ def lengths_of(rows: Lanes) -> Lanes:
     lengths = np.linalg.norm(rows, axis=2, keepdims=True)
     largest = lengths.max(axis=1, keepdims=True, initial=0.0)
     return np.where(lengths > 2.0**ROUNDED_DIRECTION * largest, lengths, np.where(largest > 0, largest, 1.0))
-
-
-def times(matrices: Lanes, vectors: Lanes) -> Lanes:
-    """Products, state by state."""
-    return np.einsum("kij,kj->ki", matrices, vectors)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from math import comb
 
 import numpy as np
@@ -153,8 +152,9 @@ def lost_together(parts: Sequence[RankedPart], blocks: Sequence[tuple[Lanes, Lan
 
 def _sum_of_minors(count: int, sizes: Sequence[Lanes], rank: int) -> Lanes:
     """Of the squares of so many singular values, all products of `rank`, summed."""
-    sums = [np.ones(count), *(np.zeros(count) for _ in range(rank))]
+    sums = np.zeros((rank + 1, count))
+    sums[0] = 1
     for made in sizes:
         for square in (made * made).T:
-            sums = [sums[0], *(x + square * before for before, x in pairwise(sums))]
+            sums[1:] += square * sums[:-1]
     return sums[rank]

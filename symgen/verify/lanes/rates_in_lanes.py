@@ -7,8 +7,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from symgen.verify.lanes.lane_arithmetic import Lanes
-from symgen.verify.lanes.loops_in_lanes import DEPENDENT, LoopsInLanes, lengths_of, times
+from symgen.verify.lanes.loops_in_lanes import DEPENDENT, LoopsInLanes, lengths_of
 from symgen.verify.lanes.ranks_in_lanes import RankedPart, matrices
+from symgen.verify.lanes.small_matrices import pseudoinverses, times
 from symgen.verify.reference.system import ReferenceSystem
 
 # A step of differences along the rates, in radians and metres a unit of time.
@@ -38,7 +39,7 @@ class RatesInLanes:
             good &= np.isfinite(made).all(axis=(1, 2))
         lengths = [lengths_of(made) for made in rows]
         units = [_finite(made / length) for made, length in zip(rows, lengths, strict=True)]
-        inverses = [np.linalg.pinv(unit, rcond=DEPENDENT) for unit in units]
+        inverses = [pseudoinverses(unit, DEPENDENT) for unit in units]
         for part, unit, inverse in zip(self._parts, units, inverses, strict=True):
             these = list(part.coordinates)
             qd[:, these] -= times(inverse, times(unit, qd[:, these]))

@@ -63,6 +63,23 @@ class Configuration:
         return self.written_mass * vector + self.jacobian.mass_times(vector, self.weights.entries())
 
 
+class _Matrix:
+    """Where the entries of a matrix stand that are not always 0: of a long chain most of them are."""
+
+    def __init__(self, rows: int, columns: int, entries: Sequence[Register], zero: Register) -> None:
+        self._rows, self._columns = rows, columns
+        filled = [place for place, register in enumerate(entries) if register != zero]
+        self.registers = [entries[place] for place in filled]
+        self._places = [divmod(place, columns) for place in filled]
+
+    def of(self, values: Sequence[Any]) -> Any:
+        """The matrix with these entries."""
+        made = arb_mat(self._rows, self._columns)
+        for place, value in zip(self._places, values, strict=True):
+            made[place] = value
+        return made
+
+
 class ReferenceSystem:
     """The model as replays."""
 
@@ -88,9 +105,11 @@ class ReferenceSystem:
             self._slopes(potential),
             weights_of(model.mechanism, self._translation(0, 0)),
         ]
-        self._shapes = ((n, n), (r, n), (self.r_geometric, 1), (n, m), (n, 1), (len(blocks[5]), 1))
+        shapes = ((n, n), (r, n), (self.r_geometric, 1), (n, m), (n, 1), (len(blocks[5]), 1))
+        self._matrices = [_Matrix(*shape, block, self._tape.zero) for shape, block in zip(shapes, blocks, strict=True)]
+        self._written_mass, self._weights = blocks[0], blocks[5]
         self._set_parts(blocks)
-        self._at_configuration = [x for block in blocks for x in block]
+        self._at_configuration = [x for matrix in self._matrices for x in matrix.registers]
         self._jacobian = replay_of(self._tape, self._bodies.needed(self.heavy))
         self.geometry_replay = replay_of(self._tape, [*blocks[2], *blocks[1][: self.r_geometric * n]])
         self.matrices_replay = replay_of(self._tape, [*blocks[1], *blocks[3]])
@@ -100,9 +119,9 @@ class ReferenceSystem:
         values = self._configuration.run([*q, *([None] * self.n), *parameters, *literals])
         matrices = []
         start = 0
-        for rows, columns in self._shapes:
-            end = start + rows * columns
-            matrices.append(arb_mat(rows, columns, values[start:end]))
+        for matrix in self._matrices:
+            end = start + len(matrix.registers)
+            matrices.append(matrix.of(values[start:end]))
             start = end
         mass, constraints, residual, control, gradient, weights = matrices
         known = values[start:] if self.has_jacobians_at_hand else None
@@ -159,11 +178,7 @@ class ReferenceSystem:
     @cached_property
     def masses_replay(self) -> Replay:
         """The energy that is written out (n x n), masses and inertias of bodies, their Jacobians part by part."""
-        shapes = [rows * columns for rows, columns in self._shapes]
-        weights = self._at_configuration[sum(shapes[:-1]) :]
-        return replay_of(
-            self._tape, [*self._at_configuration[: shapes[0]], *weights, *self._bodies.needed(self.heavy)]
-        )
+        return replay_of(self._tape, [*self._written_mass, *self._weights, *self._bodies.needed(self.heavy)])
 
     @cached_property
     def rates(self) -> MatrixRates:

@@ -21,6 +21,7 @@ from symgen.verify.lanes.loops_in_lanes import DEPENDENT, LoopsInLanes, lengths_
 from symgen.verify.lanes.masses_in_lanes import MassesInLanes
 from symgen.verify.lanes.ranks_in_lanes import is_regular, matrices, measures, ranked_parts
 from symgen.verify.lanes.rates_in_lanes import RatesInLanes
+from symgen.verify.lanes.small_matrices import products, pseudoinverses
 from symgen.verify.reference.parameter_values import default_parameters
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.sampling.plain_values import values_at
@@ -287,7 +288,9 @@ class Surroundings:
                 made = np.concatenate((made, masses.shares(q, p)[:, None]), axis=1)
             inside = ((q >= self._low - beyond) & (q <= self._high + beyond)).all(axis=1)
             good = shut.all(axis=1) & inside & (made >= low).all(axis=1)
-            return q, np.where(good, np.sqrt(made[lanes, which]), np.nan)
+            # in seven digits: what is led there does not depend on the last bits of decompositions
+            distance = np.sqrt(made[lanes, which]).astype(np.float32).astype(float)
+            return q, np.where(good, distance, np.nan)
 
         with np.errstate(all="ignore"):
             now = far(q)[1]
@@ -315,7 +318,7 @@ class Surroundings:
         for part, (rows, _) in zip(self._parts, blocks, strict=True):
             unit = np.nan_to_num(rows / lengths_of(rows))
             these = np.array(part.coordinates)
-            projectors[:, these[:, None], these] -= np.linalg.pinv(unit, rcond=DEPENDENT) @ unit
+            projectors[:, these[:, None], these] -= products(pseudoinverses(unit, DEPENDENT), unit)
         return projectors
 
     def moved(self, states: Nearby, seed: str) -> Nearby:

@@ -12,6 +12,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from flint import arb
+
 from symgen.verify.reference.arithmetic.linear import determinant, solve
 from symgen.verify.reference.configurations.parts import Part, parts, piece, placed
 
@@ -26,6 +28,8 @@ class Driven:
 
     def inputs(self, load: Any) -> Any:
         """u (m x 1) of least |N (tau - M u)| for tau (n x 1)."""
+        if not self.rows.nrows():
+            return self._along_inputs(load)
         across = self.rows.transpose()
         rest, held = self._beside_inputs(load), self._beside_inputs(across)
         multipliers = solve(self.rows * held, self.rows * rest)
@@ -33,6 +37,8 @@ class Driven:
 
     def share(self) -> Any:
         """det(M~'M~)/det(M'M), which is det(B R B')/det(B B')."""
+        if not self.rows.nrows():
+            return arb(1)
         across = self.rows.transpose()
         return determinant(self.rows * self._beside_inputs(across)) / determinant(self.rows * across)
 
