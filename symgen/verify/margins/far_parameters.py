@@ -33,6 +33,7 @@ from symgen.verify.margins.far_states import (
     SIDES,
     FarStates,
 )
+from symgen.verify.powers_of_ten import power_of_ten
 from symgen.verify.reference.reference import ReferenceValueError, State
 from symgen.verify.rounding_noise import noise_in_units
 from symgen.verify.running.compile import Outcome
@@ -202,7 +203,7 @@ class _Bounds:
         lossy = np.maximum(*self._losses(self._far.states.shifted([(read[0], 1.0)], starts))) > UNITS_LOST / 2
         for at in range(0, len(sides), held):
             part = sides[at : at + held]
-            given = self._far.states.shifted([(k, 10.0 ** (sign * FURTHEST)) for k, sign in part], starts)
+            given = self._far.states.shifted([(k, power_of_ten(sign * FURTHEST)) for k, sign in part], starts)
             by_type = [units.reshape(len(part), -1) for units in self._losses(given)]
             for units in by_type:
                 units[:, lossy] = 0.0

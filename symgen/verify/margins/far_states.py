@@ -14,6 +14,7 @@ from symgen.verify.lanes.loops_in_lanes import CLOSED_IN_LANES, LoopsInLanes
 from symgen.verify.lanes.ranks_in_lanes import is_regular, matrices, ranked_parts
 from symgen.verify.lanes.rates_in_lanes import RatesInLanes
 from symgen.verify.margins.far_errors import Far, joined
+from symgen.verify.powers_of_ten import power_of_ten
 from symgen.verify.sampling.nearby import joined as joined_states
 from symgen.verify.sampling.nearby import of_samples
 from symgen.verify.sampling.task_ahead import TaskInLanes
@@ -87,7 +88,7 @@ class FarStates:
         which, place = np.array([row[:2] for row in rows], dtype=int).reshape(-1, 2).T
         far = np.array([row[2] for row in rows])
         given = {name: values[place] for name, values in self._starts.items()}
-        given["p"][np.arange(len(which)), which] *= 10.0**far
+        given["p"][np.arange(len(which)), which] *= power_of_ten(far)
         for row, (parameter, start, power) in enumerate(rows):
             if parameter in self._moving:
                 given["q"][row] = self._closed[0][(*_step(power), self._moving[parameter], start)]
@@ -110,7 +111,7 @@ class FarStates:
         """The parameters that move configurations: beside other values the loops are open."""
         q, p = self._starts["q"][:1], self._starts["p"][:1]
         count = p.shape[1]
-        moved = [p * np.where(np.eye(count, dtype=bool), 10.0 ** (sign * QUARTER), 1.0) for sign in SIDES]
+        moved = [p * np.where(np.eye(count, dtype=bool), power_of_ten(sign * QUARTER), 1.0) for sign in SIDES]
         with np.errstate(all="ignore"):
             still = [self._loops.shut(q.repeat(count, axis=0), one, CLOSED_IN_LANES) for one in moved]
         return frozenset(np.flatnonzero(~np.logical_and(*still)).tolist())
@@ -141,7 +142,7 @@ class FarStates:
             for step in range(steps):
                 power, place = QUARTER * (step + 1), np.tile(np.arange(count), len(led))
                 p = starts["p"][place]
-                p[np.arange(len(place)), np.array(leading)[led].repeat(count)] *= 10.0 ** (sign * power)
+                p[np.arange(len(place)), np.array(leading)[led].repeat(count)] *= power_of_ten(sign * power)
                 q, closed = self._newton(q, p)
                 for look in (self._loops.damped, self._further) if power.is_integer() else ():
                     still = np.flatnonzero(~closed)

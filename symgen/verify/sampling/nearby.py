@@ -22,6 +22,7 @@ from symgen.verify.lanes.masses_in_lanes import MassesInLanes
 from symgen.verify.lanes.ranks_in_lanes import is_regular, matrices, measures, ranked_parts
 from symgen.verify.lanes.rates_in_lanes import RatesInLanes
 from symgen.verify.lanes.small_matrices import products, pseudoinverses
+from symgen.verify.powers_of_ten import power_of_ten
 from symgen.verify.reference.parameter_values import default_parameters
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
 from symgen.verify.sampling.plain_values import values_at
@@ -174,7 +175,7 @@ class Surroundings:
         dice = random.Random("aligned")
         places = np.array([dice.choice(angles) for _ in range(count)])
         before = start.parts["q"][np.arange(count), places]
-        off = np.array([dice.choice((-1, 1)) * 10.0 ** -dice.uniform(*OFF) for _ in range(count)])
+        off = np.array([dice.choice((-1, 1)) * power_of_ten(-dice.uniform(*OFF)) for _ in range(count)])
         held = (places, np.round(before / QUARTER) * QUARTER + off)
         with np.errstate(all="ignore"):
             q, _ = self._loops.newton(start.parts["q"], start.parts["p"], held)
@@ -185,7 +186,7 @@ class Surroundings:
         """So many samples that all but rest, where what cancels of weights and of inputs is all there is."""
         start = self.samples.only(np.arange(count) % len(self.samples))
         dice = random.Random("resting")
-        pace = np.array([10.0 ** -dice.uniform(*SLOWER) for _ in range(count)])[:, None]
+        pace = np.array([power_of_ten(-dice.uniform(*SLOWER)) for _ in range(count)])[:, None]
         slow = {name: start.parts[name] * pace for name in ("qd", "qdd", "u")}
         with np.errstate(all="ignore"):
             return self._settled(Nearby({**start.parts, **slow}, start.admissible, start.origins), start.parts["q"])
@@ -196,7 +197,7 @@ class Surroundings:
         if not self._driven_by_itself:
             return start.only(slice(0))
         dice = random.Random("hardly driven")
-        little = np.array([10.0 ** -dice.uniform(*HARDLY_ANY_INPUT) for _ in range(len(start))])[:, None]
+        little = np.array([power_of_ten(-dice.uniform(*HARDLY_ANY_INPUT)) for _ in range(len(start))])[:, None]
         u = self.samples.parts["u"][start.origins] * little
         return Nearby({**start.parts, "u": u}, start.admissible, start.origins)
 
@@ -231,7 +232,7 @@ class Surroundings:
         small = (np.abs(q) < SMALL * self._widths) & (q != 0)
         places = np.flatnonzero(small.any(axis=1)).repeat(NEXT_TO_ZERO)
         states, small = states.only(places), small[places]
-        share = np.array([10.0 ** -(1 + k % NEXT_TO_ZERO + dice.random()) for k in range(len(places))])
+        share = np.array([power_of_ten(-(1 + k % NEXT_TO_ZERO + dice.random())) for k in range(len(places))])
         q = np.where(small, states.parts["q"] * share[:, None], states.parts["q"])
         with np.errstate(all="ignore"):
             q, shut = self._loops.newton(q, states.parts["p"])
@@ -345,7 +346,7 @@ class Surroundings:
         if not afresh:
             return np.abs(start.parts["u"]).max(axis=1, initial=0.0)[:, None]
         dice = random.Random("inputs")
-        little = np.array([10.0 ** -dice.uniform(*LITTLE_INPUT) for _ in range(len(start))])
+        little = np.array([power_of_ten(-dice.uniform(*LITTLE_INPUT)) for _ in range(len(start))])
         whole = np.arange(len(start)) // len(self.samples) // 2 % 2 == 0
         return self._inputs[start.origins] * np.where(whole, 1.0, little)[:, None]
 
