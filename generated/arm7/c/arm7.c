@@ -1107,7 +1107,7 @@ arm7_status arm7_forward_dynamics(const double q[7], const double qd[7], const d
         return ARM7_PARAMETER_RANGE;
     }
     const double m_2 = p->m_2;
-    if (ARM7_RARELY(!(22000.0 >= m_2))) {
+    if (ARM7_RARELY(!(40000.0 >= m_2))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_zz2 = p->I_zz2;

@@ -2913,7 +2913,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             rest += 2300.0 >= d_3 ? 0.0 : 1.0;
             rest += 4.0 >= d_5 ? 0.0 : 1.0;
             rest += 2.2 >= d_7 ? 0.0 : 1.0;
-            rest += 22000.0 >= m_2 ? 0.0 : 1.0;
+            rest += 40000.0 >= m_2 ? 0.0 : 1.0;
             rest += 500.0 >= I_zz2 ? 0.0 : 1.0;
             rest += 940.0 >= m_3 ? 0.0 : 1.0;
             rest += 1.6 >= c_x3 ? 0.0 : 1.0;

@@ -714,7 +714,7 @@ arm7_status arm7_forward_dynamics_prepared(const double q[7], const double qd[7]
         return ARM7_PARAMETER_RANGE;
     }
     const double m_2 = p->value[4];
-    if (ARM7_RARELY(!(22000.0 >= m_2))) {
+    if (ARM7_RARELY(!(40000.0 >= m_2))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_zz2 = p->value[8];

@@ -896,7 +896,7 @@ arm7_status arm7_forward_dynamics_sc(const arm7_trig *sc, const double q[7], con
         return ARM7_PARAMETER_RANGE;
     }
     const double m_2 = p->m_2;
-    if (ARM7_RARELY(!(22000.0 >= m_2))) {
+    if (ARM7_RARELY(!(40000.0 >= m_2))) {
         return ARM7_PARAMETER_RANGE;
     }
     const double I_zz2 = p->I_zz2;

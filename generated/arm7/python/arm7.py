@@ -28,7 +28,7 @@ singularity            0      0      0      0      0      0
 
 Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:
   inverse_dynamics 0.041 <= d_5, I_zz2 <= 280, m_4 <= 48
-  forward_dynamics d_3 <= 2300, d_5 <= 4, d_7 <= 2.2, m_2 <= 22000
+  forward_dynamics d_3 <= 2300, d_5 <= 4, d_7 <= 2.2, m_2 <= 40000
   forward_dynamics I_zz2 <= 500, m_3 <= 940, c_x3 <= 1.6, c_z3 <= 5600
   forward_dynamics I_xx3 <= 94, I_yy3 <= 48, I_zz3 <= 3700, m_4 <= 480
   forward_dynamics c_x4 <= 1.1, c_y4 <= 1.7, I_xx4 <= 48, I_yy4 <= 24
@@ -1211,7 +1211,7 @@ def forward_dynamics(q: ArrayLike, qd: ArrayLike, u: ArrayLike, p: Parameters = 
         status = _first(status, ~np.asarray(2300.0 >= d_3), 6)
         status = _first(status, ~np.asarray(4.0 >= d_5), 6)
         status = _first(status, ~np.asarray(2.2 >= d_7), 6)
-        status = _first(status, ~np.asarray(22000.0 >= m_2), 6)
+        status = _first(status, ~np.asarray(40000.0 >= m_2), 6)
         status = _first(status, ~np.asarray(500.0 >= I_zz2), 6)
         status = _first(status, ~np.asarray(940.0 >= m_3), 6)
         status = _first(status, ~np.asarray(1.6 >= c_x3), 6)

@@ -1559,6 +1559,9 @@ delta_status delta_acceleration_from_measured(const double q[6], const double qd
         return DELTA_PARAMETER_RANGE;
     }
     const double l_2 = p->l_2;
+    if (DELTA_RARELY(!(l_2 >= 2.4e-08))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     if (DELTA_RARELY(!(8.5 >= l_2))) {
         return DELTA_PARAMETER_RANGE;
     }
@@ -4810,7 +4813,7 @@ delta_status delta_forward_dynamics(const double q[6], const double qd[6], const
         return DELTA_PARAMETER_RANGE;
     }
     const double J_a = p->J_a;
-    if (DELTA_RARELY(!(1.1 >= J_a))) {
+    if (DELTA_RARELY(!(3.5 >= J_a))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double m_p = p->m_p;
@@ -5390,6 +5393,11 @@ delta_status delta_multipliers(const double q[6], const double qd[6], const doub
     if (DELTA_RARELY(!(5.0 >= m_r))) {
         return DELTA_PARAMETER_RANGE;
     }
+    const double g = p->g;
+    const double size_of_g = fabs(g);
+    if (DELTA_RARELY(!(980000.0 >= size_of_g))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const double a_1 = q[0];
     const double t1 = fabs(a_1);
     const double a_3 = q[2];
@@ -5732,7 +5740,6 @@ delta_status delta_multipliers(const double q[6], const double qd[6], const doub
     const double t251 = t246 + t250;
     const double t252 = t114 + t251;
     const double t253 = t192 * t252;
-    const double g = p->g;
     const double t339 = g * t188;
     const double t209 = t195 * t208;
     const double t214 = t24 * t209;

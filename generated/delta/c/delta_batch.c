@@ -902,7 +902,7 @@ size_t delta_forward_dynamics_batch(size_t count, size_t stride, const double *q
             const double t468 = t189 * t467;
             double rest = (t459 - t459) * t465 * t468 + (t476 - t476) * t484 * t492;
             rest += m_a >= 0.03 ? 0.0 : 1.0;
-            rest += 1.1 >= J_a ? 0.0 : 1.0;
+            rest += 3.5 >= J_a ? 0.0 : 1.0;
             rest += 30.0 >= m_p ? 0.0 : 1.0;
             rest += 0.88 >= J_m ? 0.0 : 1.0;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
@@ -974,6 +974,7 @@ size_t delta_multipliers_batch(size_t count, size_t stride, const double *q, con
     const double m_p = p->m_p;
     const double J_m = p->J_m;
     const double g = p->g;
+    const double size_of_g = fabs(g);
     const double t36 = 0.5 * r;
     const double t174 = 0.5 * m_r;
     const double t173 = 0.25 * m_a;
@@ -1486,6 +1487,7 @@ size_t delta_multipliers_batch(size_t count, size_t stride, const double *q, con
             double rest = (t461 - t461) * t458 * t452;
             rest += 20.0 >= m_a ? 0.0 : 1.0;
             rest += 5.0 >= m_r ? 0.0 : 1.0;
+            rest += 980000.0 >= size_of_g ? 0.0 : 1.0;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
             rest += 100000.0 >= t2 ? 0.0 : 1.0;
             rest += 100000.0 >= t3 ? 0.0 : 1.0;

@@ -889,7 +889,7 @@ size_t delta_forward_dynamics_batch_f(size_t count, size_t stride, const float *
             const float t467 = t399 - t466;
             const float t468 = t189 * t467;
             float rest = (t459 - t459) * t465 * t468 + (t476 - t476) * t484 * t492;
-            rest += 1.1f >= J_a ? 0.0f : 1.0f;
+            rest += 3.5f >= J_a ? 0.0f : 1.0f;
             rest += 0.88f >= J_m ? 0.0f : 1.0f;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
             rest += 100.0f >= t2 ? 0.0f : 1.0f;

@@ -166,7 +166,7 @@ delta_status delta_configuration_from_measured_f(const float q_m[3], const float
         return DELTA_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;
-    if (DELTA_RARELY_F(!(l_2 >= 2.4e-06f))) {
+    if (DELTA_RARELY_F(!(l_2 >= 0.00076f))) {
         return DELTA_PARAMETER_RANGE;
     }
     if (DELTA_RARELY_F(!(8.5f >= l_2))) {
@@ -1360,7 +1360,7 @@ static DELTA_APART_F delta_status delta_velocity_from_measured_f_cause(const flo
 
 delta_status delta_velocity_from_measured_f(const float q[6], const float qd_m[3], const delta_params_f *p, float qd_found[6]) {
     const float l_2 = p->l_2;
-    if (DELTA_RARELY_F(!(l_2 >= 1.4e-05f))) {
+    if (DELTA_RARELY_F(!(l_2 >= 4.3e-05f))) {
         return DELTA_PARAMETER_RANGE;
     }
     if (DELTA_RARELY_F(!(8.5f >= l_2))) {
@@ -1548,7 +1548,7 @@ delta_status delta_velocity_from_measured_f(const float q[6], const float qd_m[3
 
 delta_status delta_acceleration_from_measured_f(const float q[6], const float qd_m[3], const float qdd_m[3], const delta_params_f *p, float qdd_found[6]) {
     const float l_2 = p->l_2;
-    if (DELTA_RARELY_F(!(l_2 >= 2.4e-05f))) {
+    if (DELTA_RARELY_F(!(l_2 >= 4.3e-05f))) {
         return DELTA_PARAMETER_RANGE;
     }
     if (DELTA_RARELY_F(!(8.5f >= l_2))) {
@@ -4816,7 +4816,7 @@ delta_status delta_inverse_dynamics_f(const float q[6], const float qd[6], const
 
 delta_status delta_forward_dynamics_f(const float q[6], const float qd[6], const float u[3], const delta_params_f *p, float qdd[6]) {
     const float J_a = p->J_a;
-    if (DELTA_RARELY_F(!(1.1f >= J_a))) {
+    if (DELTA_RARELY_F(!(3.5f >= J_a))) {
         return DELTA_PARAMETER_RANGE;
     }
     const float J_m = p->J_m;

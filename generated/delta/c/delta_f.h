@@ -33,14 +33,14 @@
  * (changes of sign are not counted)
  *
  * Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:
- *   configuration_from_measured r <= 0.7, 2.4e-06 <= l_2 <= 8.5
- *   velocity_from_measured 1.4e-05 <= l_2 <= 8.5
- *   acceleration_from_measured 2.4e-05 <= l_2 <= 8.5
+ *   configuration_from_measured r <= 0.7, 0.00076 <= l_2 <= 8.5
+ *   velocity_from_measured 4.3e-05 <= l_2 <= 8.5
+ *   acceleration_from_measured 4.3e-05 <= l_2 <= 8.5
  *   configuration_from_task 0.0045 <= l_1, l_2 <= 15
  *   velocity_from_task 2.4e-07 <= l_2
  *   acceleration_from_task 2.4e-07 <= l_2
  *   inverse_dynamics l_1 <= 3.5, 0.076 <= l_2 <= 8.5
- *   forward_dynamics J_a <= 1.1, J_m <= 0.88
+ *   forward_dynamics J_a <= 3.5, J_m <= 0.88
  *   multipliers m_a <= 20, m_r <= 5
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

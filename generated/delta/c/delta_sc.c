@@ -442,7 +442,7 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
         return DELTA_PARAMETER_RANGE;
     }
     const double J_a = p->J_a;
-    if (DELTA_RARELY(!(1.1 >= J_a))) {
+    if (DELTA_RARELY(!(3.5 >= J_a))) {
         return DELTA_PARAMETER_RANGE;
     }
     const double m_p = p->m_p;
@@ -1003,6 +1003,11 @@ delta_status delta_multipliers_sc(const delta_trig *sc, const double q[6], const
     if (DELTA_RARELY(!(5.0 >= m_r))) {
         return DELTA_PARAMETER_RANGE;
     }
+    const double g = p->g;
+    const double size_of_g = fabs(g);
+    if (DELTA_RARELY(!(980000.0 >= size_of_g))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const double r = p->r;
     const double t36 = 0.5 * r;
     const double x = q[3];
@@ -1326,7 +1331,6 @@ delta_status delta_multipliers_sc(const delta_trig *sc, const double q[6], const
     const double t251 = t246 + t250;
     const double t252 = t114 + t251;
     const double t253 = t192 * t252;
-    const double g = p->g;
     const double t339 = g * t188;
     const double t209 = t195 * t208;
     const double t214 = t24 * t209;

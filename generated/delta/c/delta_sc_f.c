@@ -436,7 +436,7 @@ delta_status delta_inverse_dynamics_sc_f(const delta_trig_f *sc, const float q[6
 
 delta_status delta_forward_dynamics_sc_f(const delta_trig_f *sc, const float q[6], const float qd[6], const float u[3], const delta_params_f *p, float qdd[6]) {
     const float J_a = p->J_a;
-    if (DELTA_RARELY_F(!(1.1f >= J_a))) {
+    if (DELTA_RARELY_F(!(3.5f >= J_a))) {
         return DELTA_PARAMETER_RANGE;
     }
     const float J_m = p->J_m;

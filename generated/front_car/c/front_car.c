@@ -1616,7 +1616,7 @@ front_car_status front_car_minimal_coriolis_matrix(const double q[4], const doub
         return FRONT_CAR_PARAMETER_RANGE;
     }
     const double Theta_1 = p->Theta_1;
-    if (FRONT_CAR_RARELY(!(710000.0 >= Theta_1))) {
+    if (FRONT_CAR_RARELY(!(400000000.0 >= Theta_1))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
     const double phi = q[3];

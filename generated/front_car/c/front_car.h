@@ -55,7 +55,7 @@
  * Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:
  *   projected_mass_matrix 0.57 <= L, 50 <= m_1, Theta_1 <= 40000
  *   projected_coriolis_matrix 0.11 <= L <= 40
- *   minimal_coriolis_matrix 0.57 <= L, Theta_1 <= 710000
+ *   minimal_coriolis_matrix 0.57 <= L, Theta_1 <= 4e+08
  *   actuator_bias m_2 <= 2000
  *   forward_dynamics 0.11 <= L
  *   multipliers 0.11 <= L

@@ -1825,7 +1825,7 @@ front_car_status front_car_admissible_velocity_f(const float q[4], const float q
 
 front_car_status front_car_admissible_acceleration_f(const float q[4], const float qd[4], const float qdd[4], const front_car_params_f *p, float qdd_admissible[4]) {
     const float L = p->L;
-    if (FRONT_CAR_RARELY_F(!(710000.0f >= L))) {
+    if (FRONT_CAR_RARELY_F(!(400000.0f >= L))) {
         return FRONT_CAR_PARAMETER_RANGE;
     }
     const float theta = q[2];

@@ -57,7 +57,7 @@
  *   projected_mass_matrix 0.57 <= L, 50 <= m_1, Theta_1 <= 40000
  *   projected_coriolis_matrix 0.11 <= L <= 40
  *   minimal_coriolis_matrix 0.32 <= L <= 7.1e+07
- *   admissible_acceleration L <= 710000
+ *   admissible_acceleration L <= 400000
  *   actuator_bias m_2 <= 2000
  *   forward_dynamics 0.11 <= L
  *   multipliers 0.11 <= L

@@ -55,7 +55,7 @@ singularity                          12     23      5      1      2      0
 Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:
   projected_mass_matrix 0.57 <= L, 50 <= m_1, Theta_1 <= 40000
   projected_coriolis_matrix 0.11 <= L <= 40
-  minimal_coriolis_matrix 0.57 <= L, Theta_1 <= 710000
+  minimal_coriolis_matrix 0.57 <= L, Theta_1 <= 4e+08
   actuator_bias m_2 <= 2000
   forward_dynamics 0.11 <= L
   multipliers 0.11 <= L
@@ -1528,7 +1528,7 @@ def minimal_coriolis_matrix(q: ArrayLike, qd: ArrayLike, p: Parameters = PARAMET
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         status = _first(status, ~np.asarray(L >= 0.57), 6)
-        status = _first(status, ~np.asarray(710000.0 >= Theta_1), 6)
+        status = _first(status, ~np.asarray(400000000.0 >= Theta_1), 6)
         t1 = np.abs(phi)
         t2 = np.abs(theta)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)

@@ -3001,7 +3001,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse(const double q[6], con
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY(!(1.6 >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY(!(0.94 >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double m_1 = p->m_1;
@@ -3020,7 +3020,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse(const double q[6], con
     if (RAPKM_2RRR_RR_RARELY(!(J_2 >= 1.1e-05))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY(!(1.7 >= J_2))) {
+    if (RAPKM_2RRR_RR_RARELY(!(0.1 >= J_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double J_motor = p->J_motor;
@@ -3950,9 +3950,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector(const double q[6
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double J_2 = p->J_2;
-    if (RAPKM_2RRR_RR_RARELY(!(J_2 >= 1.1e-05))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     if (RAPKM_2RRR_RR_RARELY(!(1.7 >= J_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
@@ -5767,6 +5764,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix(const double q[6], cons
     if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const double l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
     if (RAPKM_2RRR_RR_RARELY(!(170.0 >= size_of_m_payload))) {
@@ -5813,7 +5814,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix(const double q[6], cons
     const double t10 = cosine[1];
     const double t20 = t7 * t10;
     const double t21 = t19 + t20;
-    const double l_2 = p->l_2;
     const double t22 = l_2 * t21;
     const double t23 = t22 * t22;
     const double t24 = l_1 * t7;
@@ -8565,10 +8565,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix(const double q[6], const 
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    const double m_2 = p->m_2;
-    if (RAPKM_2RRR_RR_RARELY(!(m_2 >= 8.9e-07))) {
-        return RAPKM_2RRR_RR_PARAMETER_RANGE;
-    }
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
     if (RAPKM_2RRR_RR_RARELY(!(10.0 >= size_of_m_payload))) {
@@ -8700,6 +8696,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix(const double q[6], const 
     const double t160 = t159 * t79;
     const double t169 = t168 * t104;
     const double t176 = t79 * t175;
+    const double m_2 = p->m_2;
     const double t83 = m_2 * t19;
     const double t84 = 0.5 * t83;
     const double t85 = t14 * t84;
@@ -18631,7 +18628,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_task(const double q[6], con
 rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics(const double q[6], const double qd[6], const double qdd[6], const rapkm_2rrr_rr_params *p, double u[3]) {
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
-    if (RAPKM_2RRR_RR_RARELY(!(170.0 >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY(!(310.0 >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double a_1 = q[0];

@@ -72,16 +72,16 @@
  *   constraint_pseudoinverse 0.015 <= l_1
  *   nullspace_projector 0.015 <= l_1, l_2 <= 3
  *   nullspace_projector_dot 0.015 <= l_1
- *   weighted_pseudoinverse 0.015 <= l_1, l_2 <= 1.6, 0.0051 <= m_1, m_2 <= 10
- *   weighted_pseudoinverse 1.1e-05 <= J_1, 1.1e-05 <= J_2 <= 1.7, 1.1e-05 <= J_motor, |m_payload| <= 1700
- *   weighted_nullspace_projector 0.015 <= l_1 <= 3, l_2 <= 3, m_2 <= 10, 1.1e-05 <= J_2 <= 1.7
+ *   weighted_pseudoinverse 0.015 <= l_1, l_2 <= 0.94, 0.0051 <= m_1, m_2 <= 10
+ *   weighted_pseudoinverse 1.1e-05 <= J_1, 1.1e-05 <= J_2 <= 0.1, 1.1e-05 <= J_motor, |m_payload| <= 1700
+ *   weighted_nullspace_projector 0.015 <= l_1 <= 3, l_2 <= 3, m_2 <= 10, J_2 <= 1.7
  *   weighted_nullspace_projector |m_payload| <= 10
  *   projected_control_matrix 0.015 <= l_1
  *   projected_control_pseudoinverse 0.015 <= l_1
  *   orthogonal_complement l_2 <= 1600
- *   projected_mass_matrix 0.015 <= l_1, |m_payload| <= 170
+ *   projected_mass_matrix 0.015 <= l_1, l_2 <= 3, |m_payload| <= 170
  *   projected_coriolis_matrix 0.015 <= l_1 <= 3, |m_payload| <= 10
- *   minimal_mass_matrix 0.015 <= l_1, l_2 <= 3, 8.9e-07 <= m_2, |m_payload| <= 10
+ *   minimal_mass_matrix 0.015 <= l_1, l_2 <= 3, |m_payload| <= 10
  *   minimal_coriolis_matrix 0.015 <= l_1 <= 3, l_2 <= 3, |m_payload| <= 170
  *   minimal_control_matrix l_2 <= 1600
  *   admissible_velocity 0.015 <= l_1, l_2 <= 3
@@ -92,7 +92,7 @@
  *   acceleration_from_measured 0.015 <= l_1 <= 3, l_2 <= 3
  *   configuration_from_task l_1 <= 53, l_2 <= 3
  *   acceleration_from_task l_2 <= 3
- *   inverse_dynamics |m_payload| <= 170
+ *   inverse_dynamics |m_payload| <= 310
  *   forward_dynamics m_1 <= 1700, J_1 <= 17, J_2 <= 170, J_motor <= 170
  *   forward_dynamics |m_payload| <= 10
  *   multipliers J_2 <= 0.1, |m_payload| <= 17

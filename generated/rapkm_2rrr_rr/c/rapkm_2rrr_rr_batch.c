@@ -321,7 +321,7 @@ size_t rapkm_2rrr_rr_inverse_dynamics_batch(size_t count, size_t stride, const d
             const double t161 = t41 * t156;
             const double t162 = t138 - t161;
             double rest = (t158 - t158) * t160 * t162;
-            rest += 170.0 >= size_of_m_payload ? 0.0 : 1.0;
+            rest += 310.0 >= size_of_m_payload ? 0.0 : 1.0;
             rest += 100000.0 >= t7 ? 0.0 : 1.0;
             rest += 100000.0 >= t8 ? 0.0 : 1.0;
             rest += 100000.0 >= t9 ? 0.0 : 1.0;

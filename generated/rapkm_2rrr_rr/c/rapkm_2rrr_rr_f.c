@@ -3010,7 +3010,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse_f(const float q[6], co
     if (RAPKM_2RRR_RR_RARELY_F(!(J_2 >= 1.1e-05f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY_F(!(1.7f >= J_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(0.1f >= J_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float J_motor = p->J_motor;
@@ -16453,7 +16453,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_task_jacobian_f(const float q[6], const rapkm
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_task_f(const float x_t[2], const float q[6], const rapkm_2rrr_rr_params_f *p, float q_found[6]) {
     const float l_1 = p->l_1;
-    if (RAPKM_2RRR_RR_RARELY_F(!(300.0f >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(53.0f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;

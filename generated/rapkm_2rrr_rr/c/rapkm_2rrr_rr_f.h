@@ -73,7 +73,7 @@
  *   nullspace_projector 0.015 <= l_1, l_2 <= 3
  *   nullspace_projector_dot 0.015 <= l_1
  *   weighted_pseudoinverse 0.015 <= l_1 <= 53, l_2 <= 1.6, 0.0051 <= m_1, m_2 <= 10
- *   weighted_pseudoinverse 1.1e-05 <= J_1, 1.1e-05 <= J_2 <= 1.7, 1.1e-05 <= J_motor, |m_payload| <= 1700
+ *   weighted_pseudoinverse 1.1e-05 <= J_1, 1.1e-05 <= J_2 <= 0.1, 1.1e-05 <= J_motor, |m_payload| <= 1700
  *   weighted_nullspace_projector 0.015 <= l_1 <= 3, l_2 <= 3, m_2 <= 10, J_2 <= 1.7
  *   weighted_nullspace_projector |m_payload| <= 10
  *   projected_control_matrix 0.015 <= l_1 <= 53, l_2 <= 5.3
@@ -90,7 +90,7 @@
  *   configuration_from_measured l_1 <= 3, l_2 <= 3
  *   velocity_from_measured 0.015 <= l_1 <= 53, l_2 <= 3
  *   acceleration_from_measured 0.015 <= l_1 <= 3, l_2 <= 3
- *   configuration_from_task l_1 <= 300, l_2 <= 160
+ *   configuration_from_task l_1 <= 53, l_2 <= 160
  *   acceleration_from_task l_2 <= 3
  *   inverse_dynamics |m_payload| <= 310
  *   forward_dynamics l_2 <= 3, m_1 <= 1700, m_2 <= 56000, J_1 <= 17

@@ -190,7 +190,7 @@ rapkm_2rrr_rr_prepared rapkm_2rrr_rr_prepare(const rapkm_2rrr_rr_params *p) {
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_prepared(const double q[6], const double qd[6], const double qdd[6], const rapkm_2rrr_rr_prepared *p, double u[3]) {
     const double size_of_m_payload = p->value[1];
-    if (RAPKM_2RRR_RR_RARELY(!(170.0 >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY(!(310.0 >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double a_1 = q[0];

@@ -50,7 +50,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_sc(const rapkm_2rrr_rr_trig 
     (void)q;
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
-    if (RAPKM_2RRR_RR_RARELY(!(170.0 >= size_of_m_payload))) {
+    if (RAPKM_2RRR_RR_RARELY(!(310.0 >= size_of_m_payload))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double sin_a_1 = sc->sin_a_1;

@@ -71,16 +71,16 @@ Beyond these bounds of parameters results would lose digits; they have the statu
   constraint_pseudoinverse 0.015 <= l_1
   nullspace_projector 0.015 <= l_1, l_2 <= 3
   nullspace_projector_dot 0.015 <= l_1
-  weighted_pseudoinverse 0.015 <= l_1, l_2 <= 1.6, 0.0051 <= m_1, m_2 <= 10
-  weighted_pseudoinverse 1.1e-05 <= J_1, 1.1e-05 <= J_2 <= 1.7, 1.1e-05 <= J_motor, |m_payload| <= 1700
-  weighted_nullspace_projector 0.015 <= l_1 <= 3, l_2 <= 3, m_2 <= 10, 1.1e-05 <= J_2 <= 1.7
+  weighted_pseudoinverse 0.015 <= l_1, l_2 <= 0.94, 0.0051 <= m_1, m_2 <= 10
+  weighted_pseudoinverse 1.1e-05 <= J_1, 1.1e-05 <= J_2 <= 0.1, 1.1e-05 <= J_motor, |m_payload| <= 1700
+  weighted_nullspace_projector 0.015 <= l_1 <= 3, l_2 <= 3, m_2 <= 10, J_2 <= 1.7
   weighted_nullspace_projector |m_payload| <= 10
   projected_control_matrix 0.015 <= l_1
   projected_control_pseudoinverse 0.015 <= l_1
   orthogonal_complement l_2 <= 1600
-  projected_mass_matrix 0.015 <= l_1, |m_payload| <= 170
+  projected_mass_matrix 0.015 <= l_1, l_2 <= 3, |m_payload| <= 170
   projected_coriolis_matrix 0.015 <= l_1 <= 3, |m_payload| <= 10
-  minimal_mass_matrix 0.015 <= l_1, l_2 <= 3, 8.9e-07 <= m_2, |m_payload| <= 10
+  minimal_mass_matrix 0.015 <= l_1, l_2 <= 3, |m_payload| <= 10
   minimal_coriolis_matrix 0.015 <= l_1 <= 3, l_2 <= 3, |m_payload| <= 170
   minimal_control_matrix l_2 <= 1600
   admissible_velocity 0.015 <= l_1, l_2 <= 3
@@ -91,7 +91,7 @@ Beyond these bounds of parameters results would lose digits; they have the statu
   acceleration_from_measured 0.015 <= l_1 <= 3, l_2 <= 3
   configuration_from_task l_1 <= 53, l_2 <= 3
   acceleration_from_task l_2 <= 3
-  inverse_dynamics |m_payload| <= 170
+  inverse_dynamics |m_payload| <= 310
   forward_dynamics m_1 <= 1700, J_1 <= 17, J_2 <= 170, J_motor <= 170
   forward_dynamics |m_payload| <= 10
   multipliers J_2 <= 0.1, |m_payload| <= 17
@@ -2836,12 +2836,12 @@ def weighted_pseudoinverse(q: ArrayLike, p: Parameters = PARAMETERS) -> NDArray[
         J_motor = np.float64(p.J_motor)
         m_payload = np.float64(p.m_payload)
         status = _first(status, ~np.asarray(l_1 >= 0.015), 6)
-        status = _first(status, ~np.asarray(1.6 >= l_2), 6)
+        status = _first(status, ~np.asarray(0.94 >= l_2), 6)
         status = _first(status, ~np.asarray(m_1 >= 0.0051), 6)
         status = _first(status, ~np.asarray(10.0 >= m_2), 6)
         status = _first(status, ~np.asarray(J_1 >= 1.1e-05), 6)
         status = _first(status, ~np.asarray(J_2 >= 1.1e-05), 6)
-        status = _first(status, ~np.asarray(1.7 >= J_2), 6)
+        status = _first(status, ~np.asarray(0.1 >= J_2), 6)
         status = _first(status, ~np.asarray(J_motor >= 1.1e-05), 6)
         size_of_m_payload = np.abs(m_payload)
         status = _first(status, ~np.asarray(1700.0 >= size_of_m_payload), 6)
@@ -3707,7 +3707,6 @@ def weighted_nullspace_projector(q: ArrayLike, p: Parameters = PARAMETERS) -> ND
         status = _first(status, ~np.asarray(3.0 >= l_1), 6)
         status = _first(status, ~np.asarray(3.0 >= l_2), 6)
         status = _first(status, ~np.asarray(10.0 >= m_2), 6)
-        status = _first(status, ~np.asarray(J_2 >= 1.1e-05), 6)
         status = _first(status, ~np.asarray(1.7 >= J_2), 6)
         size_of_m_payload = np.abs(m_payload)
         status = _first(status, ~np.asarray(10.0 >= size_of_m_payload), 6)
@@ -5323,6 +5322,7 @@ def projected_mass_matrix(q: ArrayLike, p: Parameters = PARAMETERS) -> NDArray[n
         J_motor = np.float64(p.J_motor)
         m_payload = np.float64(p.m_payload)
         status = _first(status, ~np.asarray(l_1 >= 0.015), 6)
+        status = _first(status, ~np.asarray(3.0 >= l_2), 6)
         size_of_m_payload = np.abs(m_payload)
         status = _first(status, ~np.asarray(170.0 >= size_of_m_payload), 6)
         t1 = np.abs(a_2)
@@ -7997,7 +7997,6 @@ def minimal_mass_matrix(q: ArrayLike, p: Parameters = PARAMETERS) -> NDArray[np.
         m_payload = np.float64(p.m_payload)
         status = _first(status, ~np.asarray(l_1 >= 0.015), 6)
         status = _first(status, ~np.asarray(3.0 >= l_2), 6)
-        status = _first(status, ~np.asarray(m_2 >= 8.9e-07), 6)
         size_of_m_payload = np.abs(m_payload)
         status = _first(status, ~np.asarray(10.0 >= size_of_m_payload), 6)
         t1 = np.abs(a_1)
@@ -17463,7 +17462,7 @@ def inverse_dynamics(q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, p: Parameters 
         J_motor = np.float64(p.J_motor)
         m_payload = np.float64(p.m_payload)
         size_of_m_payload = np.abs(m_payload)
-        status = _first(status, ~np.asarray(170.0 >= size_of_m_payload), 6)
+        status = _first(status, ~np.asarray(310.0 >= size_of_m_payload), 6)
         t1 = a_1 + b_1
         t2 = a_2 + b_2
         t3 = t1 - t2
