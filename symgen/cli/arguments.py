@@ -15,6 +15,7 @@ from symgen.model.expressions.names import did_you_mean, nearest
 # States that a user may ask for at least: with fewer a verification would say too little.
 FEWEST_ASKED_FOR = 8
 USUAL = "inverse_dynamics"
+SHELLS = ("bash", "zsh", "fish")
 # Names that methods once had.
 FORMER = {(USUAL, "range"): "elimination"}
 UNKNOWN = "unrecognized arguments: "  # how argparse begins

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import gc
 import os
 import sys
@@ -13,6 +14,7 @@ from pathlib import Path
 
 from symgen import __version__
 from symgen.cli.arguments import (
+    SHELLS,
     add_generation,
     add_method,
     add_models,
@@ -22,8 +24,9 @@ from symgen.cli.arguments import (
     names,
     parts,
 )
+from symgen.cli.command import Command
 from symgen.cli.linearizing import add_linearization, explain_linear_system
-from symgen.cli.measuring import bench, simulate, stress, target
+from symgen.cli.measuring import BENCH, SIMULATE, STRESS, TARGET
 from symgen.cli.outcome import DONE, MODEL_WRONG, WRONG_USE, check_present, check_writable, guarded
 from symgen.cli.signals import EndedError, signals_end_the_run
 from symgen.generation.results import ALL_PARTS, LINEARIZATION, PARTS, Options, Result, WrongUseError
@@ -53,6 +56,7 @@ _EPILOG = """commands:
   symgen new NAME                   a commented model to start from
   symgen explain MODEL.yaml [NAME]  closed forms and structure in the terminal
   symgen schema                     JSON Schema of model files, for editors
+  symgen completion SHELL           what bash, zsh or fish complete words by
 
 examples:
   symgen models/front_car.yaml
@@ -82,7 +86,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if given and not command:
             _check_command(given[0])
         with signals_end_the_run(process_ends=arguments is None):
-            code = _COMMANDS[command](rest) if command else _generate(rest)
+            code = (_COMMANDS[command] if command else _GENERATE)(rest)
             sys.stdout.flush()
         if arguments is None:
             # the interpreter looks for cycles once more at its end, to free what the process gives back anyway
@@ -135,7 +139,7 @@ def _complain(message: str) -> int:
     return WRONG_USE
 
 
-def _generate(arguments: list[str]) -> int:
+def _generate_parser() -> argparse.ArgumentParser:
     purpose = "Verified, globally valid inverse dynamics of constrained mechanical systems."
     parser = make_parser("symgen", purpose, _EPILOG)
     add_models(parser)
@@ -159,7 +163,10 @@ def _generate(arguments: list[str]) -> int:
         help="write nothing; exit 1 and list what differs from the disk (no verification)",
     )
     parser.add_argument("--version", action="version", version=f"symgen {__version__}")
-    given = parser.parse_args(arguments)
+    return parser
+
+
+def _generate(given: argparse.Namespace) -> int:
     options = Options(
         outputs=given.outputs,
         scalars=_SCALARS[given.scalar],
@@ -179,13 +186,16 @@ def _generate(arguments: list[str]) -> int:
     return _each_model(given.models, options, given.quiet, lambda result: finish(result, given.out, given.quiet))
 
 
-def _verify(arguments: list[str]) -> int:
+def _verify_parser() -> argparse.ArgumentParser:
     parser = make_parser(
         "symgen verify", "Compiles the C, runs C and Python against the reference, writes the certificate."
     )
     add_models(parser)
     add_generation(parser)
-    given = parser.parse_args(arguments)
+    return parser
+
+
+def _verify(given: argparse.Namespace) -> int:
     from symgen.verify.running.compile import find_compiler
 
     if find_compiler() is None:
@@ -198,7 +208,7 @@ def _verify(arguments: list[str]) -> int:
     )
 
 
-def _explain(arguments: list[str]) -> int:
+def _explain_parser() -> argparse.ArgumentParser:
     parser = make_parser("symgen explain", "Closed forms, structure, and what is skipped and why.")
     parser.add_argument("model", metavar="MODEL.yaml", type=Path, help="model file")
     parser.add_argument(
@@ -210,8 +220,10 @@ def _explain(arguments: list[str]) -> int:
     add_linearization(parser)
     add_method(parser)
     add_out(parser, "takes what verification led to from DIR/<model>/ (default: generated)")
-    given = parser.parse_args(arguments)
+    return parser
 
+
+def _explain(given: argparse.Namespace) -> int:
     check_present([given.model])
     if given.quantity == LINEARIZATION:
         return guarded(lambda: explain_linear_system(given.model, given.start, given.lqr))
@@ -228,8 +240,11 @@ def _explain(arguments: list[str]) -> int:
     return guarded(explain)
 
 
-def _schema(arguments: list[str]) -> int:
-    make_parser("symgen schema", "Prints the JSON Schema of model files.").parse_args(arguments)
+def _schema_parser() -> argparse.ArgumentParser:
+    return make_parser("symgen schema", "Prints the JSON Schema of model files.")
+
+
+def _schema(_: argparse.Namespace) -> int:
     import json
 
     from symgen.model.file.schema import json_schema
@@ -238,25 +253,44 @@ def _schema(arguments: list[str]) -> int:
     return DONE
 
 
-def _new(arguments: list[str]) -> int:
+def _new_parser() -> argparse.ArgumentParser:
     parser = make_parser("symgen new", "Writes NAME.yaml, a commented model to start from.")
     parser.add_argument("name", metavar="NAME", help="the model's name, a C identifier")
-    given = parser.parse_args(arguments)
+    return parser
+
+
+def _new(given: argparse.Namespace) -> int:
     from symgen.cli.starting_model import write_starting_model
 
     print(f"written: {write_starting_model(given.name, Path())}")
     return DONE
 
 
-_COMMANDS: dict[str, Callable[[list[str]], int]] = {
-    "verify": _verify,
-    "bench": bench,
-    "stress": stress,
-    "target": target,
-    "simulate": simulate,
-    "new": _new,
-    "explain": _explain,
-    "schema": _schema,
+def _completion_parser() -> argparse.ArgumentParser:
+    parser = make_parser("symgen completion", "Prints a script by which a shell completes words behind symgen.")
+    parser.add_argument("shell", choices=SHELLS, help=f"{', '.join(SHELLS)}")
+    return parser
+
+
+def _completion(given: argparse.Namespace) -> int:
+    from symgen.cli.completion import script
+
+    parsers = {name: command.parser() for name, command in {"": _GENERATE, **_COMMANDS}.items()}
+    print(script(given.shell, parsers), end="")
+    return DONE
+
+
+_GENERATE = Command(_generate_parser, _generate)
+_COMMANDS = {
+    "verify": Command(_verify_parser, _verify),
+    "bench": BENCH,
+    "stress": STRESS,
+    "target": TARGET,
+    "simulate": SIMULATE,
+    "new": Command(_new_parser, _new),
+    "explain": Command(_explain_parser, _explain),
+    "schema": Command(_schema_parser, _schema),
+    "completion": Command(_completion_parser, _completion),
 }
 
 

@@ -1,7 +1,4 @@
-"""The commands that measure models: bench, stress, target, simulate.
-
-Each takes what stands behind its name on the command line and returns the exit code.
-"""
+"""The commands that measure models: bench, stress, target, simulate."""
 
 from __future__ import annotations
 
@@ -19,11 +16,12 @@ from symgen.cli.arguments import (
     two_weights,
     values,
 )
+from symgen.cli.command import Command
 from symgen.cli.outcome import each_file
 from symgen.terminal import Progress
 
 
-def bench(arguments: list[str]) -> int:
+def _bench_parser() -> argparse.ArgumentParser:
     """Run time against error of C and Python, beside other tools."""
     parser = make_parser("symgen bench", "Run time against error of C and Python, beside other tools on the same work.")
     add_models(parser)
@@ -39,8 +37,10 @@ def bench(arguments: list[str]) -> int:
         "--derivatives", action="store_true", help="the derivatives of u alone, beside those of CasADi and Pinocchio"
     )
     add_quiet(parser)
-    given = parser.parse_args(arguments)
+    return parser
 
+
+def _bench(given: argparse.Namespace) -> int:
     def one(path: Path, progress: Progress) -> int:
         from symgen.laboratory.bench.command import run_bench, run_derivative_bench, run_mechanism_bench
 
@@ -53,7 +53,7 @@ def bench(arguments: list[str]) -> int:
     return each_file(given.models, given.out, given.quiet, one)
 
 
-def stress(arguments: list[str]) -> int:
+def _stress_parser() -> argparse.ArgumentParser:
     """Errors near singularities, for extreme values and over a long run."""
     parser = make_parser(
         "symgen stress",
@@ -65,8 +65,10 @@ def stress(arguments: list[str]) -> int:
         "--steps", metavar="N", type=int, default=1_000_000, help="steps of the long run, 0 for none (default: 1000000)"
     )
     add_quiet(parser)
-    given = parser.parse_args(arguments)
+    return parser
 
+
+def _stress(given: argparse.Namespace) -> int:
     def one(path: Path, progress: Progress) -> int:
         from symgen.laboratory.stress.command import run_stress
 
@@ -75,9 +77,9 @@ def stress(arguments: list[str]) -> int:
     return each_file(given.models, given.out, given.quiet, one)
 
 
-def target(arguments: list[str]) -> int:
+def _target_parser() -> argparse.ArgumentParser:
     """The C on emulated microcontrollers."""
-    from symgen.laboratory.target.cores import BY_NAME, CORES
+    from symgen.laboratory.target.cores import BY_NAME
 
     parser = make_parser(
         "symgen target",
@@ -90,7 +92,12 @@ def target(arguments: list[str]) -> int:
     )
     add_out(parser)
     add_quiet(parser)
-    given = parser.parse_args(arguments)
+    return parser
+
+
+def _target(given: argparse.Namespace) -> int:
+    from symgen.laboratory.target.cores import CORES
+
     cores = [core for core in CORES if core.name in given.cpu or "all" in given.cpu]
 
     def one(path: Path, progress: Progress) -> int:
@@ -101,7 +108,7 @@ def target(arguments: list[str]) -> int:
     return each_file(given.models, given.out, given.quiet, one)
 
 
-def simulate(arguments: list[str]) -> int:
+def _simulate_parser() -> argparse.ArgumentParser:
     """Motion from a consistent start."""
     parser = make_parser("symgen simulate", "Integrates a model from a consistent start: CSV, chart and animation.")
     add_models(parser)
@@ -114,7 +121,10 @@ def simulate(arguments: list[str]) -> int:
     _add_tracking(parser)
     add_out(parser)
     add_quiet(parser)
-    given = parser.parse_args(arguments)
+    return parser
+
+
+def _simulate(given: argparse.Namespace) -> int:
     if given.track is not None:
         return _track(given)
 
@@ -156,3 +166,9 @@ def _track(given: argparse.Namespace) -> int:
         return run_tracking(path, given.out, loop, max(1, given.frames or 200), given.start, given.quiet, progress)
 
     return each_file(given.models, given.out, given.quiet, one)
+
+
+BENCH = Command(_bench_parser, _bench)
+STRESS = Command(_stress_parser, _stress)
+TARGET = Command(_target_parser, _target)
+SIMULATE = Command(_simulate_parser, _simulate)
