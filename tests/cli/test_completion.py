@@ -131,6 +131,6 @@ def test_every_command_and_option_is_there(folder: Path, capsys: pytest.CaptureF
     for command in in_bash(folder, "") - {"car.yaml", "arm.urdf", "out"}:
         with pytest.raises(SystemExit):
             cli.main([command, "--help"])
-        told = capsys.readouterr().out
-        options = {word.strip("[,]") for word in told.split() if word.strip("[,]").startswith("--")}
+        text = capsys.readouterr().out
+        options = {word.strip("[,]") for word in text.split() if word.strip("[,]").startswith("--")}
         assert options <= in_bash(folder, command, "--"), command
