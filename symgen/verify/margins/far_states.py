@@ -53,18 +53,24 @@ class FarStates:
         self._rates = RatesInLanes(self._system, self._parts, self._loops)
 
     def led(
-        self, steps: Sequence[tuple[int, float]], states: int, chosen: Mapping[tuple[int, int], Lanes] = NONE_CHOSEN
+        self,
+        steps: Sequence[tuple[int, float]],
+        states: int,
+        chosen: Mapping[tuple[int, int], Lanes] = NONE_CHOSEN,
+        led: int = 0,
     ) -> Far:
         """States with one parameter far away, for each step (which, and by what power of ten) as far as loops close.
 
-        On a side of a parameter, `chosen` starts come before others.
+        On a side of a parameter, `chosen` starts come before others.  Of those that move configurations as many as are
+        `led` count, where these are more.
         """
         rows = []
         for which, power in steps:
             places = self._places(which, power)
             first = chosen.get((which, 1 if power > 0 else -1), NO_PLACES)
             places = np.concatenate((first[np.isin(first, places)], places[~np.isin(places, first)]))
-            rows += [(which, place, power) for place in places[:states].tolist()]
+            most = max(states, led) if which in self._moving else states
+            rows += [(which, place, power) for place in places[:most].tolist()]
         system = self._system
         held = max(1, NUMBERS_HELD // (system.n * (system.n + system.m + system.r)))
         return joined([self._at(rows[start : start + held]) for start in range(0, max(1, len(rows)), held)])

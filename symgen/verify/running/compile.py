@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 # -O1 takes half the time of -O2; the bits are the same at every level (tests/verify/test_levels.py).
 FLAGS = ("-std=c99", "-O1", "-ffp-contract=off", "-fPIC", "-shared")
 # Characters of a model's C in one scalar type.  At -O1 a megabyte takes 4 s and 130 MB, several times as much where it
-# is one function: registers for 0.4 MB of one take 15 s and 470 MB.  Beyond this it is translated as it stands, in 0.5 s
-# and 50 MB a megabyte, and one type after the other.
+# is one function: registers for 0.4 MB of one take 15 s and 470 MB.  Beyond this it is translated as it stands, a
+# megabyte in 0.5 s and 50 MB, and one type after the other.
 LARGE = 500_000
 PLAIN = ("-O0",)
 # Seconds for a megabyte, on a machine of 2020 that does nothing else.
