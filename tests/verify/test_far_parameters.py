@@ -25,8 +25,8 @@ from symgen.verify.expected import Expected
 from symgen.verify.interpreted import outcomes
 from symgen.verify.lanes.lane_arithmetic import Lanes
 from symgen.verify.margins.far_errors import Far, FarErrors
-from symgen.verify.margins.far_parameters import FAR_STATES, FarParameters
-from symgen.verify.margins.far_states import FarStates
+from symgen.verify.margins.far_parameters import BEFORE_A_LOSS, FAR_STATES, UNITS_LOST, FarParameters
+from symgen.verify.margins.far_states import FAR_STARTS, FURTHEST, QUARTER, FarStates
 from symgen.verify.reference.reference import State
 from symgen.verify.sampling.plain_values import values_at
 from symgen.verify.tolerance import FACTOR, expectations
@@ -121,7 +121,20 @@ def test_what_is_divided_by_is_bounded_below(expected: Expected) -> None:
     bound = bounds_by_name(expected, kernel)["d"]
     assert bound.high is None
     assert bound.low is not None
-    assert 1e-6 < bound.low < 1e-1
+    names = [parameter.name for parameter in expected.reference.model.parameters]
+    states, d, m = FarStates(expected), names.index("d"), names.index(MASS)
+
+    def hidden(power: float) -> float:
+        """What c m loses at most, of its own size, in roundoffs: as many times as large is what it is added to."""
+        given = states.led([(d, -power)], FAR_STARTS).given
+        a, c = given["qd"][:, 0], given["qd"][:, 2]
+        return float(np.abs(a / (1000 * given["p"][:, d]) / (c * given["p"][:, m])).max())
+
+    lost = next(power for power in np.arange(QUARTER, FURTHEST, QUARTER) if hidden(power) > UNITS_LOST)
+    assert lost > 1
+    # a power of ten before it, and no closer than that to what is in the file, in two digits upwards
+    nearest = 1.1 * 10.0 ** -max(lost - BEFORE_A_LOSS, 1.0)
+    assert nearest <= bound.low <= 1.1 * nearest
 
 
 def test_what_few_states_lose_is_bounded(expected: Expected) -> None:
@@ -357,6 +370,18 @@ inputs: {u_1: {joint: s_1}, u_2: {joint: s_2}}
 outputs: [multipliers]
 configuration: {theta: -1.9}
 """
+
+
+def test_all_starts_that_a_length_leads_are_looked_at(expected: Expected) -> None:
+    """Of a length that moves the loop nobody knows before which start is worst; of a mass a few chosen ones do."""
+    names = [parameter.name for parameter in expected.reference.model.parameters]
+    states = FarStates(expected)
+    assert names.index("d") in states.leading
+    assert MASS not in {names[k] for k in states.leading}
+    led = states.led([(names.index("d"), 0.25), (names.index(MASS), 1.0)], FAR_STATES, led=FAR_STARTS)
+    of_length, of_mass = (led.parameters == names.index(name) for name in ("d", MASS))
+    assert of_mass.sum() == FAR_STATES
+    assert of_length.sum() == states.led([(names.index("d"), 0.25)], FAR_STARTS).parameters.size > FAR_STATES
 
 
 def test_states_far_away_satisfy_the_constraints_there(tmp_path: Path) -> None:
