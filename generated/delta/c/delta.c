@@ -1369,6 +1369,10 @@ static DELTA_APART delta_status delta_velocity_from_measured_cause(const double 
 }
 
 delta_status delta_velocity_from_measured(const double q[6], const double qd_m[3], const delta_params *p, double qd_found[6]) {
+    const double r = p->r;
+    if (DELTA_RARELY(!(0.39 >= r))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const double l_2 = p->l_2;
     if (DELTA_RARELY(!(8.5 >= l_2))) {
         return DELTA_PARAMETER_RANGE;
@@ -1392,7 +1396,6 @@ delta_status delta_velocity_from_measured(const double q[6], const double qd_m[3
     double sine[4];
     double cosine[4];
     delta_sincos_group(3, angle, sine, cosine);
-    const double r = p->r;
     const double t10 = 0.5 * r;
     const double x = q[3];
     const double t11 = x - t10;
@@ -4614,6 +4617,10 @@ static DELTA_APART delta_status delta_inverse_dynamics_cause(const double q[6], 
 
 delta_status delta_inverse_dynamics(const double q[6], const double qd[6], const double qdd[6], const delta_params *p, double u[3]) {
     (void)qd;
+    const double r = p->r;
+    if (DELTA_RARELY(!(0.39 >= r))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const double l_2 = p->l_2;
     if (DELTA_RARELY(!(l_2 >= 0.00043))) {
         return DELTA_PARAMETER_RANGE;
@@ -4641,7 +4648,6 @@ delta_status delta_inverse_dynamics(const double q[6], const double qd[6], const
     double cosine[4];
     delta_sincos_group(3, angle, sine, cosine);
     const double R = p->R;
-    const double r = p->r;
     const double t12 = R - r;
     const double l_1 = p->l_1;
     const double t9 = cosine[2];
@@ -4808,6 +4814,10 @@ delta_status delta_inverse_dynamics(const double q[6], const double qd[6], const
 }
 
 delta_status delta_forward_dynamics(const double q[6], const double qd[6], const double u[3], const delta_params *p, double qdd[6]) {
+    const double R = p->R;
+    if (DELTA_RARELY(!(R >= 1.5e-08))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const double m_a = p->m_a;
     if (DELTA_RARELY(!(m_a >= 0.03))) {
         return DELTA_PARAMETER_RANGE;
@@ -4850,7 +4860,6 @@ delta_status delta_forward_dynamics(const double q[6], const double qd[6], const
     const double l_1 = p->l_1;
     const double t9 = cosine[2];
     const double t100 = l_1 * t9;
-    const double R = p->R;
     const double t101 = R + t100;
     const double t102 = 0.5 * t101;
     const double t104 = t36 - t102;

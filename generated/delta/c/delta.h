@@ -34,10 +34,11 @@
  *
  * Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:
  *   configuration_from_measured r <= 0.7, l_2 <= 8.5
- *   velocity_from_measured l_2 <= 8.5
+ *   velocity_from_measured r <= 0.39, l_2 <= 8.5
  *   acceleration_from_measured r <= 0.39, 2.4e-08 <= l_2 <= 8.5
- *   inverse_dynamics 0.00043 <= l_2 <= 8.5
- *   forward_dynamics 0.03 <= m_a, J_a <= 3.5, m_p <= 30, J_m <= 0.88
+ *   inverse_dynamics r <= 0.39, 0.00043 <= l_2 <= 8.5
+ *   forward_dynamics 1.5e-08 <= R, 0.03 <= m_a, J_a <= 3.5, m_p <= 30
+ *   forward_dynamics J_m <= 0.88
  *   multipliers m_a <= 20, m_r <= 5, |g| <= 980000
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

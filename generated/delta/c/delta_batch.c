@@ -297,6 +297,7 @@ size_t delta_inverse_dynamics_batch(size_t count, size_t stride, const double *q
             const double t325 = t319 * t324;
             const double t326 = t314 - t325;
             double rest = (t290 - t290) * t311 * t326;
+            rest += 0.39 >= r ? 0.0 : 1.0;
             rest += l_2 >= 0.00043 ? 0.0 : 1.0;
             rest += 8.5 >= l_2 ? 0.0 : 1.0;
             rest += 100000.0 >= t1 ? 0.0 : 1.0;
@@ -901,6 +902,7 @@ size_t delta_forward_dynamics_batch(size_t count, size_t stride, const double *q
             const double t467 = t399 - t466;
             const double t468 = t189 * t467;
             double rest = (t459 - t459) * t465 * t468 + (t476 - t476) * t484 * t492;
+            rest += R >= 1.5e-08 ? 0.0 : 1.0;
             rest += m_a >= 0.03 ? 0.0 : 1.0;
             rest += 3.5 >= J_a ? 0.0 : 1.0;
             rest += 30.0 >= m_p ? 0.0 : 1.0;

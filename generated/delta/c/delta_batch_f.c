@@ -284,6 +284,7 @@ size_t delta_inverse_dynamics_batch_f(size_t count, size_t stride, const float *
             const float t325 = t319 * t324;
             const float t326 = t314 - t325;
             float rest = (t290 - t290) * t311 * t326;
+            rest += 0.7f >= r ? 0.0f : 1.0f;
             rest += 3.5f >= l_1 ? 0.0f : 1.0f;
             rest += l_2 >= 0.076f ? 0.0f : 1.0f;
             rest += 8.5f >= l_2 ? 0.0f : 1.0f;
@@ -348,6 +349,7 @@ size_t delta_forward_dynamics_batch_f(size_t count, size_t stride, const float *
     const float m_p = p->m_p;
     const float J_m = p->J_m;
     const float g = p->g;
+    const float l_2 = p->l_2;
     const float t36 = 0.5f * r;
     const float t174 = 0.5f * m_r;
     const float t173 = 0.25f * m_a;
@@ -889,6 +891,7 @@ size_t delta_forward_dynamics_batch_f(size_t count, size_t stride, const float *
             const float t467 = t399 - t466;
             const float t468 = t189 * t467;
             float rest = (t459 - t459) * t465 * t468 + (t476 - t476) * t484 * t492;
+            rest += l_2 >= 1.4e-07f ? 0.0f : 1.0f;
             rest += 3.5f >= J_a ? 0.0f : 1.0f;
             rest += 0.88f >= J_m ? 0.0f : 1.0f;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;
@@ -960,6 +963,7 @@ size_t delta_multipliers_batch_f(size_t count, size_t stride, const float *q, co
     const float m_p = p->m_p;
     const float J_m = p->J_m;
     const float g = p->g;
+    const float l_2 = p->l_2;
     const float t36 = 0.5f * r;
     const float t174 = 0.5f * m_r;
     const float t173 = 0.25f * m_a;
@@ -1470,6 +1474,7 @@ size_t delta_multipliers_batch_f(size_t count, size_t stride, const float *q, co
             const float t460 = t454 - t459;
             const float t461 = t195 * t460;
             float rest = (t461 - t461) * t458 * t452;
+            rest += l_2 >= 1.4e-07f ? 0.0f : 1.0f;
             rest += 20.0f >= m_a ? 0.0f : 1.0f;
             rest += 5.0f >= m_r ? 0.0f : 1.0f;
             rest += 100.0f >= t1 ? 0.0f : 1.0f;

@@ -1359,6 +1359,10 @@ static DELTA_APART_F delta_status delta_velocity_from_measured_f_cause(const flo
 }
 
 delta_status delta_velocity_from_measured_f(const float q[6], const float qd_m[3], const delta_params_f *p, float qd_found[6]) {
+    const float r = p->r;
+    if (DELTA_RARELY_F(!(0.39f >= r))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const float l_2 = p->l_2;
     if (DELTA_RARELY_F(!(l_2 >= 4.3e-05f))) {
         return DELTA_PARAMETER_RANGE;
@@ -1385,7 +1389,6 @@ delta_status delta_velocity_from_measured_f(const float q[6], const float qd_m[3
     float sine[4];
     float cosine[4];
     delta_sincos_group_f(3, angle, sine, cosine);
-    const float r = p->r;
     const float t10 = 0.5f * r;
     const float x = q[3];
     const float t11 = x - t10;
@@ -1547,6 +1550,10 @@ delta_status delta_velocity_from_measured_f(const float q[6], const float qd_m[3
 }
 
 delta_status delta_acceleration_from_measured_f(const float q[6], const float qd_m[3], const float qdd_m[3], const delta_params_f *p, float qdd_found[6]) {
+    const float r = p->r;
+    if (DELTA_RARELY_F(!(0.39f >= r))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const float l_2 = p->l_2;
     if (DELTA_RARELY_F(!(l_2 >= 4.3e-05f))) {
         return DELTA_PARAMETER_RANGE;
@@ -1573,7 +1580,6 @@ delta_status delta_acceleration_from_measured_f(const float q[6], const float qd
     float sine[4];
     float cosine[4];
     delta_sincos_group_f(3, angle, sine, cosine);
-    const float r = p->r;
     const float t10 = 0.5f * r;
     const float x = q[3];
     const float t11 = x - t10;
@@ -2041,8 +2047,11 @@ delta_status delta_configuration_from_task_f(const float x_t[3], const float q[6
     if (DELTA_RARELY_F(!(l_1 >= 0.0045f))) {
         return DELTA_PARAMETER_RANGE;
     }
+    if (DELTA_RARELY_F(!(3.5f >= l_1))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const float l_2 = p->l_2;
-    if (DELTA_RARELY_F(!(15.0f >= l_2))) {
+    if (DELTA_RARELY_F(!(8.5f >= l_2))) {
         return DELTA_PARAMETER_RANGE;
     }
     const float a_1 = q[0];
@@ -4618,6 +4627,10 @@ static DELTA_APART_F delta_status delta_inverse_dynamics_f_cause(const float q[6
 
 delta_status delta_inverse_dynamics_f(const float q[6], const float qd[6], const float qdd[6], const delta_params_f *p, float u[3]) {
     (void)qd;
+    const float r = p->r;
+    if (DELTA_RARELY_F(!(0.7f >= r))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const float l_1 = p->l_1;
     if (DELTA_RARELY_F(!(3.5f >= l_1))) {
         return DELTA_PARAMETER_RANGE;
@@ -4649,7 +4662,6 @@ delta_status delta_inverse_dynamics_f(const float q[6], const float qd[6], const
     float cosine[4];
     delta_sincos_group_f(3, angle, sine, cosine);
     const float R = p->R;
-    const float r = p->r;
     const float t12 = R - r;
     const float t9 = cosine[2];
     const float t18 = l_1 * t9;
@@ -4815,6 +4827,10 @@ delta_status delta_inverse_dynamics_f(const float q[6], const float qd[6], const
 }
 
 delta_status delta_forward_dynamics_f(const float q[6], const float qd[6], const float u[3], const delta_params_f *p, float qdd[6]) {
+    const float l_2 = p->l_2;
+    if (DELTA_RARELY_F(!(l_2 >= 1.4e-07f))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const float J_a = p->J_a;
     if (DELTA_RARELY_F(!(3.5f >= J_a))) {
         return DELTA_PARAMETER_RANGE;
@@ -5386,6 +5402,10 @@ delta_status delta_forward_dynamics_f(const float q[6], const float qd[6], const
 }
 
 delta_status delta_multipliers_f(const float q[6], const float qd[6], const float u[3], const delta_params_f *p, float lambda_B[3]) {
+    const float l_2 = p->l_2;
+    if (DELTA_RARELY_F(!(l_2 >= 1.4e-07f))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const float m_a = p->m_a;
     if (DELTA_RARELY_F(!(20.0f >= m_a))) {
         return DELTA_PARAMETER_RANGE;

@@ -400,6 +400,10 @@ static DELTA_APART delta_status delta_inverse_dynamics_prepared_cause(const doub
 
 delta_status delta_inverse_dynamics_prepared(const double q[6], const double qd[6], const double qdd[6], const delta_prepared *p, double u[3]) {
     (void)qd;
+    const double r = p->value[1];
+    if (DELTA_RARELY(!(0.39 >= r))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const double l_2 = p->value[4];
     if (DELTA_RARELY(!(l_2 >= 0.00043))) {
         return DELTA_PARAMETER_RANGE;

@@ -387,6 +387,10 @@ static DELTA_APART_F delta_status delta_inverse_dynamics_prepared_f_cause(const 
 
 delta_status delta_inverse_dynamics_prepared_f(const float q[6], const float qd[6], const float qdd[6], const delta_prepared_f *p, float u[3]) {
     (void)qd;
+    const float r = p->value[1];
+    if (DELTA_RARELY_F(!(0.7f >= r))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const float l_1 = p->value[2];
     if (DELTA_RARELY_F(!(3.5f >= l_1))) {
         return DELTA_PARAMETER_RANGE;

@@ -262,6 +262,10 @@ static DELTA_APART delta_status delta_inverse_dynamics_sc_cause(const delta_trig
 
 delta_status delta_inverse_dynamics_sc(const delta_trig *sc, const double q[6], const double qd[6], const double qdd[6], const delta_params *p, double u[3]) {
     (void)qd;
+    const double r = p->r;
+    if (DELTA_RARELY(!(0.39 >= r))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const double l_2 = p->l_2;
     if (DELTA_RARELY(!(l_2 >= 0.00043))) {
         return DELTA_PARAMETER_RANGE;
@@ -270,7 +274,6 @@ delta_status delta_inverse_dynamics_sc(const delta_trig *sc, const double q[6], 
         return DELTA_PARAMETER_RANGE;
     }
     const double R = p->R;
-    const double r = p->r;
     const double t12 = R - r;
     const double l_1 = p->l_1;
     const double cos_a_2 = sc->cos_a_2;
@@ -437,6 +440,10 @@ delta_status delta_inverse_dynamics_sc(const delta_trig *sc, const double q[6], 
 }
 
 delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], const double qd[6], const double u[3], const delta_params *p, double qdd[6]) {
+    const double R = p->R;
+    if (DELTA_RARELY(!(R >= 1.5e-08))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const double m_a = p->m_a;
     if (DELTA_RARELY(!(m_a >= 0.03))) {
         return DELTA_PARAMETER_RANGE;
@@ -460,7 +467,6 @@ delta_status delta_forward_dynamics_sc(const delta_trig *sc, const double q[6], 
     const double l_1 = p->l_1;
     const double cos_a_3 = sc->cos_a_3;
     const double t100 = l_1 * cos_a_3;
-    const double R = p->R;
     const double t101 = R + t100;
     const double t102 = 0.5 * t101;
     const double t104 = t36 - t102;

@@ -257,6 +257,10 @@ static DELTA_APART_F delta_status delta_inverse_dynamics_sc_f_cause(const delta_
 
 delta_status delta_inverse_dynamics_sc_f(const delta_trig_f *sc, const float q[6], const float qd[6], const float qdd[6], const delta_params_f *p, float u[3]) {
     (void)qd;
+    const float r = p->r;
+    if (DELTA_RARELY_F(!(0.7f >= r))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const float l_1 = p->l_1;
     if (DELTA_RARELY_F(!(3.5f >= l_1))) {
         return DELTA_PARAMETER_RANGE;
@@ -269,7 +273,6 @@ delta_status delta_inverse_dynamics_sc_f(const delta_trig_f *sc, const float q[6
         return DELTA_PARAMETER_RANGE;
     }
     const float R = p->R;
-    const float r = p->r;
     const float t12 = R - r;
     const float cos_a_2 = sc->cos_a_2;
     const float t18 = l_1 * cos_a_2;
@@ -435,6 +438,10 @@ delta_status delta_inverse_dynamics_sc_f(const delta_trig_f *sc, const float q[6
 }
 
 delta_status delta_forward_dynamics_sc_f(const delta_trig_f *sc, const float q[6], const float qd[6], const float u[3], const delta_params_f *p, float qdd[6]) {
+    const float l_2 = p->l_2;
+    if (DELTA_RARELY_F(!(l_2 >= 1.4e-07f))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const float J_a = p->J_a;
     if (DELTA_RARELY_F(!(3.5f >= J_a))) {
         return DELTA_PARAMETER_RANGE;
@@ -987,6 +994,10 @@ delta_status delta_forward_dynamics_sc_f(const delta_trig_f *sc, const float q[6
 }
 
 delta_status delta_multipliers_sc_f(const delta_trig_f *sc, const float q[6], const float qd[6], const float u[3], const delta_params_f *p, float lambda_B[3]) {
+    const float l_2 = p->l_2;
+    if (DELTA_RARELY_F(!(l_2 >= 1.4e-07f))) {
+        return DELTA_PARAMETER_RANGE;
+    }
     const float m_a = p->m_a;
     if (DELTA_RARELY_F(!(20.0f >= m_a))) {
         return DELTA_PARAMETER_RANGE;

@@ -34,10 +34,11 @@ singularity                      56    107     13      3      3      0
 
 Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:
   configuration_from_measured r <= 0.7, l_2 <= 8.5
-  velocity_from_measured l_2 <= 8.5
+  velocity_from_measured r <= 0.39, l_2 <= 8.5
   acceleration_from_measured r <= 0.39, 2.4e-08 <= l_2 <= 8.5
-  inverse_dynamics 0.00043 <= l_2 <= 8.5
-  forward_dynamics 0.03 <= m_a, J_a <= 3.5, m_p <= 30, J_m <= 0.88
+  inverse_dynamics r <= 0.39, 0.00043 <= l_2 <= 8.5
+  forward_dynamics 1.5e-08 <= R, 0.03 <= m_a, J_a <= 3.5, m_p <= 30
+  forward_dynamics J_m <= 0.88
   multipliers m_a <= 20, m_r <= 5, |g| <= 980000
 
 Every function takes arrays with any leading axes (one state each) and the parameters `p`. A single state that is
@@ -1166,6 +1167,7 @@ def velocity_from_measured(q: ArrayLike, qd_m: ArrayLike, p: Parameters = PARAME
         r = np.float64(p.r)
         l_1 = np.float64(p.l_1)
         l_2 = np.float64(p.l_2)
+        status = _first(status, ~np.asarray(0.39 >= r), 6)
         status = _first(status, ~np.asarray(8.5 >= l_2), 6)
         t1 = np.abs(a_3)
         t2 = np.abs(a_2)
@@ -4265,6 +4267,7 @@ def inverse_dynamics(q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, p: Parameters 
         J_m = np.float64(p.J_m)
         g = np.float64(p.g)
         l_2 = np.float64(p.l_2)
+        status = _first(status, ~np.asarray(0.39 >= r), 6)
         status = _first(status, ~np.asarray(l_2 >= 0.00043), 6)
         status = _first(status, ~np.asarray(8.5 >= l_2), 6)
         t1 = np.abs(a_1)
@@ -4635,6 +4638,7 @@ def forward_dynamics(q: ArrayLike, qd: ArrayLike, u: ArrayLike, p: Parameters = 
         m_p = np.float64(p.m_p)
         J_m = np.float64(p.J_m)
         g = np.float64(p.g)
+        status = _first(status, ~np.asarray(R >= 1.5e-08), 6)
         status = _first(status, ~np.asarray(m_a >= 0.03), 6)
         status = _first(status, ~np.asarray(3.5 >= J_a), 6)
         status = _first(status, ~np.asarray(30.0 >= m_p), 6)

@@ -3938,7 +3938,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_nullspace_projector(const double q[6
     if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY(!(1.6 >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double l_2 = p->l_2;
@@ -4773,6 +4773,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_matrix(const double q[6], c
     if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const double l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_3 = q[2];
     const double b_3 = q[5];
     const double t1 = a_3 + b_3;
@@ -4810,7 +4814,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_matrix(const double q[6], c
     double sine[6];
     double cosine[6];
     rapkm_2rrr_rr_sincos_group(6, angle, sine, cosine);
-    const double l_2 = p->l_2;
     const double t13 = cosine[1];
     const double t22 = l_2 * t13;
     const double t12 = sine[1];
@@ -5314,6 +5317,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_pseudoinverse(const double 
     if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const double l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_2 = q[1];
     const double b_2 = q[4];
     const double t1 = a_2 + b_2;
@@ -5351,7 +5358,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_pseudoinverse(const double 
     double sine[6];
     double cosine[6];
     rapkm_2rrr_rr_sincos_group(6, angle, sine, cosine);
-    const double l_2 = p->l_2;
     const double t15 = cosine[2];
     const double t22 = l_2 * t15;
     const double t16 = sine[3];
@@ -6637,6 +6643,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix(const double q[6], 
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const double l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double m_payload = p->m_payload;
     const double size_of_m_payload = fabs(m_payload);
     if (RAPKM_2RRR_RR_RARELY(!(10.0 >= size_of_m_payload))) {
@@ -6683,7 +6693,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix(const double q[6], 
     const double t10 = cosine[1];
     const double t20 = t7 * t10;
     const double t21 = t19 + t20;
-    const double l_2 = p->l_2;
     const double t22 = l_2 * t21;
     const double t23 = t22 * t22;
     const double t24 = l_1 * t7;
@@ -20652,6 +20661,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_singularity(const double q[6], const rapkm_2r
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const double l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const double a_2 = q[1];
     const double b_2 = q[4];
     const double t1 = a_2 + b_2;
@@ -20691,7 +20704,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_singularity(const double q[6], const rapkm_2r
     rapkm_2rrr_rr_sincos_group(6, angle, sine, cosine);
     const double t10 = sine[0];
     const double t22 = l_1 * t10;
-    const double l_2 = p->l_2;
     const double t12 = sine[1];
     const double t23 = l_2 * t12;
     const double t24 = t22 + t23;

@@ -2987,7 +2987,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_weighted_pseudoinverse_f(const float q[6], co
     if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY_F(!(53.0f >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(30.0f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;
@@ -4763,11 +4763,11 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_matrix_f(const float q[6], 
     if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY_F(!(53.0f >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(30.0f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(5.3f >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_3 = q[2];
@@ -5314,7 +5314,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_pseudoinverse_f(const float
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY_F(!(5.3f >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float a_2 = q[1];
@@ -5593,6 +5593,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_control_pseudoinverse_f(const float
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float F_B[12]) {
+    const float l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(30.0f >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float l_2 = p->l_2;
     if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -5656,7 +5660,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_orthogonal_complement_f(const float q[6], con
     float sine[12];
     float cosine[12];
     rapkm_2rrr_rr_sincos_group_f(9, angle, sine, cosine);
-    const float l_1 = p->l_1;
     const float t37 = l_1 * l_2;
     const float t25 = sine[3];
     const float t34 = cosine[7];
@@ -5770,6 +5773,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix_f(const float q[6], con
     if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const float l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float m_payload = p->m_payload;
     const float size_of_m_payload = fabsf(m_payload);
     if (RAPKM_2RRR_RR_RARELY_F(!(170.0f >= size_of_m_payload))) {
@@ -5816,7 +5823,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_mass_matrix_f(const float q[6], con
     const float t10 = cosine[1];
     const float t20 = t7 * t10;
     const float t21 = t19 + t20;
-    const float l_2 = p->l_2;
     const float t22 = l_2 * t21;
     const float t23 = t22 * t22;
     const float t24 = l_1 * t7;
@@ -6640,6 +6646,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    const float l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float m_payload = p->m_payload;
     const float size_of_m_payload = fabsf(m_payload);
     if (RAPKM_2RRR_RR_RARELY_F(!(10.0f >= size_of_m_payload))) {
@@ -6686,7 +6696,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_coriolis_matrix_f(const float q[6],
     const float t10 = cosine[1];
     const float t20 = t7 * t10;
     const float t21 = t19 + t20;
-    const float l_2 = p->l_2;
     const float t22 = l_2 * t21;
     const float t23 = t22 * t22;
     const float t24 = l_1 * t7;
@@ -8564,6 +8573,9 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_mass_matrix_f(const float q[6], const
     if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    if (RAPKM_2RRR_RR_RARELY_F(!(30.0f >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float l_2 = p->l_2;
     if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -9856,6 +9868,10 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_applied_force_f(const float q[6], con
 }
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float M_bar[6]) {
+    const float l_1 = p->l_1;
+    if (RAPKM_2RRR_RR_RARELY_F(!(30.0f >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float l_2 = p->l_2;
     if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -9903,7 +9919,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix_f(const float q[6], co
     float sine[8];
     float cosine[8];
     rapkm_2rrr_rr_sincos_group_f(6, angle, sine, cosine);
-    const float l_1 = p->l_1;
     const float t24 = l_1 * l_2;
     const float t14 = sine[1];
     const float t17 = cosine[2];
@@ -15050,7 +15065,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_measured_f(const float q[6], co
     if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
-    if (RAPKM_2RRR_RR_RARELY_F(!(53.0f >= l_1))) {
+    if (RAPKM_2RRR_RR_RARELY_F(!(30.0f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const float l_2 = p->l_2;
@@ -20685,6 +20700,13 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_singularity_f(const float q[6], const rapkm_2
     if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
+    if (RAPKM_2RRR_RR_RARELY_F(!(300000.0f >= l_1))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
+    const float l_2 = p->l_2;
+    if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
+        return RAPKM_2RRR_RR_PARAMETER_RANGE;
+    }
     const float a_2 = q[1];
     const float b_2 = q[4];
     const float t1 = a_2 + b_2;
@@ -20724,7 +20746,6 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_singularity_f(const float q[6], const rapkm_2
     rapkm_2rrr_rr_sincos_group_f(6, angle, sine, cosine);
     const float t10 = sine[0];
     const float t22 = l_1 * t10;
-    const float l_2 = p->l_2;
     const float t12 = sine[1];
     const float t23 = l_2 * t12;
     const float t24 = t22 + t23;
