@@ -312,7 +312,7 @@ def test_a_long_alternative_has_its_numbers_grouped_once_its_worst_states_speak_
 
 @pytest.mark.parametrize(
     ("factor", "wide"),
-    [(28, ["float64"]), pytest.param(34, ["float64", "float32"], marks=pytest.mark.campaign)],
+    [(30, ["float64"]), pytest.param(34, ["float64", "float32"], marks=pytest.mark.campaign)],
 )
 def test_types_that_need_nearly_all_take_twice_the_digits(
     yoke: Path, monkeypatch: pytest.MonkeyPatch, factor: int, wide: list[str]
