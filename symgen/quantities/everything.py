@@ -15,13 +15,13 @@ from symgen.model.quantities import MAIN
 from symgen.runtime.effort import SCALAR, TooLongError, at_most, done, worth_trying
 
 # Counted cost of all quantities together: what takes under a minute to derive, to verify and to compile.
-OPERATIONS_OF_ALL = 30_000
+OPERATIONS_OF_ALL = 20_000
 # Counted cost of one quantity by a method that loses digits: with twice as many it takes some twenty times as long.
 WIDE_OPERATIONS = 2_000
 # The same for accelerations and multipliers, which may take more of that than the others.
 WIDE_MAIN_OPERATIONS = 10_000
 # Counted cost of all methods together that are tried for quantities which verification rejects and nobody asked for.
-OPERATIONS_TRIED = 25_000
+OPERATIONS_TRIED = 16_000
 # Scalars that are made by one method for one quantity before the others are tried.
 SCALARS_OF_A_METHOD = 150_000
 # Scalars that are made by all methods for all quantities together.

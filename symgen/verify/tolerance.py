@@ -28,7 +28,7 @@ from symgen.model.expressions.expression import Pi
 from symgen.verify.reference.arithmetic.linear import norm
 from symgen.verify.reference.arithmetic.tape import ball, precision
 from symgen.verify.reference.quantities import ITERATED
-from symgen.verify.reference.reference import Reference, ReferenceValueError, State
+from symgen.verify.reference.reference import VANISHING, Reference, ReferenceValueError, State
 
 # Units of error that a correct kernel may be away.
 FACTOR = 16.0
@@ -126,7 +126,9 @@ def _estimates(
         with precision(bits):
             moved, literals = perturbed(reference, state, scalar, signs, whole)
         made = reference.matrices(moved, names, bits, literals)
-        vague = any(_radius(made[name]) > KNOWN * eps * sizes[name] > 0 for name in names)
+        # what vanishes has no digits that more of them would show
+        seen = (name for name in names if sizes[name] > VANISHING)
+        vague = any(_radius(made[name]) > KNOWN * eps * sizes[name] for name in seen)
         return values(names, signs, whole, 2 * bits) if vague and bits < MOST_PERTURBED else made
 
     drawn = _signs(reference, state, generator)

@@ -25,7 +25,7 @@ from symgen.verify.expected import Expected
 from symgen.verify.interpreted import outcomes
 from symgen.verify.lanes.lane_arithmetic import Lanes
 from symgen.verify.margins.far_errors import Far, FarErrors
-from symgen.verify.margins.far_parameters import BEFORE_A_LOSS, FAR_STATES, UNITS_LOST, FarParameters
+from symgen.verify.margins.far_parameters import BEFORE_A_LOSS, FAR_STATES, MOST, MOST_OF_ALL, UNITS_LOST, FarParameters
 from symgen.verify.margins.far_states import FAR_STARTS, FURTHEST, QUARTER, FarStates
 from symgen.verify.reference.reference import State
 from symgen.verify.sampling.plain_values import values_at
@@ -107,6 +107,26 @@ def test_what_hides_the_rest_is_bounded_above(expected: Expected) -> None:
     assert bound.low is None
     assert bound.high is not None
     assert 1e2 < bound.high < 1e5
+
+
+def test_many_long_kernels_share_what_three_may_take(expected: Expected) -> None:
+    """And what one of many loses is found all the same."""
+    far = FarParameters(expected)
+    double = Statement(("s",), "add", (Local("m"), Local("m")))
+    short, long = straight(double), straight(*[replace(double, targets=(f"s{k}",)) for k in range(20_000)])
+    assert far.share([short] * 40) == far.share([long] * (MOST_OF_ALL // MOST)) == 1
+    assert far.share([long] * 12 + [short]) == pytest.approx(MOST_OF_ALL / MOST / 12, rel=1e-3)
+    assert far.share([]) == 1
+    hiding = straight(
+        Statement(("s",), "mul", (Local("m"), Literal(Fraction(1, 1000)))),
+        Statement(("ma",), "mul", (Local("s"), Local("a"))),
+        Statement(("cd",), "mul", (Local("c"), Local("d"))),
+        Statement(("sum",), "add", (Local("cd"), Local("ma"))),
+        Statement(("y",), "sub", (Local("sum"), Local("ma"))),
+    )
+    programs = {scalar: Program(scalar, None, (hiding,)) for scalar in SCALARS}
+    made = far.bounds(dict.fromkeys(SCALARS, hiding), programs, share=far.share([hiding, *[long] * 12]))
+    assert MASS in {bound.parameter for bound in made["float32"]}
 
 
 def test_what_is_divided_by_is_bounded_below(expected: Expected) -> None:

@@ -10,8 +10,8 @@ import pytest
 
 from symgen.model.load import load_text
 from symgen.verify.expected import Expected
-from symgen.verify.reference.reference import Reference, State
-from symgen.verify.tolerance import PERTURBATIONS, _set_apart, _signs, expectations
+from symgen.verify.reference.reference import REFERENCE_BITS, VANISHING, Reference, State
+from symgen.verify.tolerance import PERTURBATIONS, PERTURBED_BITS, _set_apart, _signs, expectations
 
 # Two cranks that a rod of the length of their distance keeps at one angle: its rows depend on each other there.
 CRANKS = """\
@@ -46,6 +46,24 @@ def test_numbers_of_equal_size_move_apart_both_ways(beside: float) -> None:
         known = made["inverse_dynamics_residual"]
         # what is 0 on the constraints is within the tolerance
         assert known.in_units(known.distance([0.0, 0.0])) < 1
+
+
+def test_what_vanishes_is_worked_out_with_no_more_digits(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of one direction that is driven nothing is left, and no number of digits shows a share of that."""
+    text = CRANKS.replace("x: l*cos(a) - l*cos(b)", "x: sin(a) + l*b").replace("    y: l*sin(a) - l*sin(b)\n", "")
+    reference = Reference(load_text(text.replace("a: -1.1, b: -1.1", "a: 0, b: 0"), "cranks.yaml"))
+    used: set[int] = set()
+    matrices = Reference.matrices
+
+    def counted(self: Reference, at: State, names: list[str], bits: int, *literals: list[object]) -> dict[str, object]:
+        used.add(bits)
+        return matrices(self, at, names, bits, *literals)
+
+    monkeypatch.setattr(Reference, "matrices", counted)
+    residual, inputs = "inverse_dynamics_residual", "inverse_dynamics"
+    known = expectations(reference, state(-1.1, -0.9), [residual, inputs], "float64", "")
+    assert known[residual].size < VANISHING < known[inputs].size
+    assert max(used - {REFERENCE_BITS}) == PERTURBED_BITS
 
 
 def test_literals_of_equal_value_move_apart_both_ways() -> None:

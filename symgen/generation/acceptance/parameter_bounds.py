@@ -22,7 +22,8 @@ class ParameterBounds:
         far = FarParameters(expected)
 
         def look(draft: Draft, name: str, kernels: Mapping[Scalar, Kernel]) -> dict[Scalar, tuple[Bound, ...]]:
-            made = far.bounds(kernels, draft.programs, _plain(draft, name))
+            share = far.share(draft.programs["float64"].kernels)
+            made = far.bounds(kernels, draft.programs, _plain(draft, name), share)
             return {scalar: bounds for scalar, bounds in made.items() if bounds}
 
         self._known = OncePerKernel[tuple[Bound, ...]](look)

@@ -8,7 +8,7 @@ than there is: within a power of ten, the reference has to find the loss too.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain, islice
@@ -54,8 +54,8 @@ FAR_STATES = 8
 CHOSEN_AMONG, CHOSEN_AT = 24, (4, 9)
 # States at which quarters of a power are looked at: the worst far away are not the worst close by.
 CLOSER_STATES = 256
-# Numbers that are worked out for the powers of one kernel.
-MOST = 20_000_000
+# Numbers that are worked out for one look at a kernel, and for one at each kernel of a model together: three long ones.
+MOST, MOST_OF_ALL = 20_000_000, 60_000_000
 # Units of an estimate that count as lost: other states than these lose twice as much, and more.
 UNITS_LOST = FACTOR / 2
 # As many numbers as a statement of a kernel that works with pairs counts for.
@@ -80,18 +80,36 @@ class FarParameters:
         self.states = FarStates(expected)
 
     def bounds(
-        self, kernels: Mapping[Scalar, Kernel], programs: Mapping[Scalar, Program], plain: Kernel | None = None
+        self,
+        kernels: Mapping[Scalar, Kernel],
+        programs: Mapping[Scalar, Program],
+        plain: Kernel | None = None,
+        share: float = 1.0,
     ) -> dict[Scalar, tuple[Bound, ...]]:
         """The bounds for the kernels of one quantity: of parameters that they read, or that say where loops close.
 
-        `plain` is the one in float64 without pairs of numbers where that works with them.
+        `plain` is the one in float64 without pairs of numbers where that works with them; `share` is what is afforded
+        of the numbers of a look.
         """
-        double = kernels["float64"]
-        read = {load.index for load in double.loads if load.argument == "p"} | self.states.leading
+        read = self._read(kernels["float64"])
         if not read:
             return {}
-        with working(f"how far parameters of {double.name} may be"):
-            return _Bounds(self, kernels, programs, plain).of(sorted(read))
+        with working(f"how far parameters of {kernels['float64'].name} may be"):
+            return _Bounds(self, kernels, programs, plain, int(share * MOST)).of(read)
+
+    def share(self, kernels: Iterable[Kernel]) -> float:
+        """What each of the kernels of a model in float64 is afforded of what its looks may take.
+
+        A model of forty quantities would take forty times as long as one of one.
+        """
+        starts = FAR_STARTS + NEAR_STARTS + MODE_STARTS
+        wanted = (len(one.statements) * len(self._read(one)) * len(SIDES) * starts for one in kernels)
+        total = sum(min(MOST, numbers) for numbers in wanted)
+        return min(1.0, MOST_OF_ALL / total) if total else 1.0
+
+    def _read(self, kernel: Kernel) -> list[int]:
+        """The places of the parameters that it reads, or that say where loops close."""
+        return sorted({load.index for load in kernel.loads if load.argument == "p"} | self.states.leading)
 
     def bound(self, parameter: int, low: float | None, high: float | None) -> Bound | None:
         """A parameter may be by these powers of ten below and above the values that it has in the verification.
@@ -132,7 +150,9 @@ class _Bounds:
         kernels: Mapping[Scalar, Kernel],
         programs: Mapping[Scalar, Program],
         plain: Kernel | None,
+        most: int,
     ) -> None:
+        self._most = most
         self._far, self._kernels, self._programs = far, kernels, programs
         self._errors = FarErrors(kernels, programs, plain)
         self._plain = plain or kernels["float64"]
@@ -170,7 +190,7 @@ class _Bounds:
 
     def _as_many(self, states: int, steps: int) -> int:
         """States on both sides of so many steps, fewer for long kernels."""
-        return max(1, min(states, MOST // (self._work * steps * len(SIDES))))
+        return max(1, min(states, self._most // (self._work * steps * len(SIDES))))
 
     def _chosen(self, read: Sequence[int], states: int) -> dict[tuple[int, int], Lanes]:
         """On each side of a parameter the starts at which most is lost far away, half of the states that are looked at.

@@ -34,6 +34,8 @@ Exact: TypeAlias = int | float | Fraction | Any
 REFERENCE_BITS = 256
 # Decimal digits of a result, relative to its size.
 REFERENCE_DIGITS = 50
+# Results with norms and radii below this vanish.
+VANISHING = 10.0 ** -(REFERENCE_DIGITS + 10)
 # Binary digits that it goes up to, doubling them, where a state needs them.
 MOST_BITS = 4096
 # Times the working precision, where a matrix cannot be told from one of lower rank.
@@ -181,4 +183,4 @@ def _accurate(matrix: Any) -> bool:
     """Whether the radii leave 50 digits of the norm, or 60 digits absolutely for a result that vanishes."""
     size = square(matrix)
     error = float(size.rad())
-    return error <= 10.0**-REFERENCE_DIGITS * float(size) or float(size) + error <= 10.0 ** -(2 * REFERENCE_DIGITS + 20)
+    return error <= 10.0**-REFERENCE_DIGITS * float(size) or float(size) + error <= VANISHING**2
