@@ -15,7 +15,7 @@ from symgen.model.quantities import MAIN
 from symgen.runtime.effort import SCALAR, TooLongError, at_most, done, worth_trying
 
 # Counted cost of all quantities together: what takes under a minute to derive, to verify and to compile.
-OPERATIONS_OF_ALL = 20_000
+OPERATIONS_OF_ALL = 25_000
 # Counted cost of one quantity by a method that loses digits: with twice as many it takes some twenty times as long.
 WIDE_OPERATIONS = 2_000
 # The same for accelerations and multipliers, which may take more of that than the others.

@@ -37,7 +37,7 @@ from symgen.verify.tolerance import FACTOR, Expectation, expectations
 # States drawn; fewer of long kernels, so that no more numbers are held at a time.
 DRAWN, ALIGNED, IN_MODES, RESTING, FURTHER_OUT, TOWARDS, HARDLY_DRIVEN = 512, 256, 256, 128, 256, 256, 64
 # Numbers that are held at a time; of long kernels fewer states are looked at together.
-NUMBERS = 2_000_000
+NUMBERS = 4_000_000
 # Of the worst of them, how many go further, in how many directions, and how often.
 KEPT, DIRECTIONS, STEPS_FURTHER = 32, 8, 3
 # Units; what is estimated counts every rounding with all that it may do, and d for less than it is.
