@@ -24,8 +24,17 @@ from symgen.pipeline import generate
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import outcomes
 from symgen.verify.lanes.lane_arithmetic import Lanes
+from symgen.verify.margins import far_parameters
 from symgen.verify.margins.far_errors import Far, FarErrors
-from symgen.verify.margins.far_parameters import BEFORE_A_LOSS, FAR_STATES, MOST, MOST_OF_ALL, UNITS_LOST, FarParameters
+from symgen.verify.margins.far_parameters import (
+    BEFORE_A_LOSS,
+    FAR_STATES,
+    MOST,
+    MOST_OF_OTHERS,
+    UNITS_LOST,
+    FarParameters,
+    _Bounds,
+)
 from symgen.verify.margins.far_states import FAR_STARTS, FURTHEST, QUARTER, FarStates
 from symgen.verify.reference.reference import State
 from symgen.verify.sampling.plain_values import values_at
@@ -109,24 +118,26 @@ def test_what_hides_the_rest_is_bounded_above(expected: Expected) -> None:
     assert 1e2 < bound.high < 1e5
 
 
-def test_many_long_kernels_share_what_three_may_take(expected: Expected) -> None:
-    """And what one of many loses is found all the same."""
+def test_other_long_kernels_share_what_three_may_take(expected: Expected, monkeypatch: pytest.MonkeyPatch) -> None:
+    """And u, accelerations and multipliers are looked at in full beside them."""
     far = FarParameters(expected)
     double = Statement(("s",), "add", (Local("m"), Local("m")))
-    short, long = straight(double), straight(*[replace(double, targets=(f"s{k}",)) for k in range(20_000)])
-    assert far.share([short] * 40) == far.share([long] * (MOST_OF_ALL // MOST)) == 1
-    assert far.share([long] * 12 + [short]) == pytest.approx(MOST_OF_ALL / MOST / 12, rel=1e-3)
+    main, long = straight(double), straight(*[replace(double, targets=(f"s{k}",)) for k in range(20_000)])
+    short, other = (replace(kernel, name="mass_matrix") for kernel in (main, long))
+    assert far.share([long] * 40) == far.share([short] * 40) == far.share([other] * (MOST_OF_OTHERS // MOST)) == 1
+    assert far.share([other] * 12 + [long, short]) == pytest.approx(MOST_OF_OTHERS / MOST / 12, rel=1e-3)
     assert far.share([]) == 1
-    hiding = straight(
-        Statement(("s",), "mul", (Local("m"), Literal(Fraction(1, 1000)))),
-        Statement(("ma",), "mul", (Local("s"), Local("a"))),
-        Statement(("cd",), "mul", (Local("c"), Local("d"))),
-        Statement(("sum",), "add", (Local("cd"), Local("ma"))),
-        Statement(("y",), "sub", (Local("sum"), Local("ma"))),
-    )
-    programs = {scalar: Program(scalar, None, (hiding,)) for scalar in SCALARS}
-    made = far.bounds(dict.fromkeys(SCALARS, hiding), programs, share=far.share([hiding, *[long] * 12]))
-    assert MASS in {bound.parameter for bound in made["float32"]}
+    afforded: list[int] = []
+
+    def noted(*given: object) -> _Bounds:
+        afforded.append(int(str(given[-1])))
+        return _Bounds(*given)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(far_parameters, "_Bounds", noted)
+    for kernel in (main, short):
+        programs = {scalar: Program(scalar, None, (kernel,)) for scalar in SCALARS}
+        far.bounds(dict.fromkeys(SCALARS, kernel), programs, share=0.25)
+    assert afforded == [MOST, MOST // 4]
 
 
 def test_what_is_divided_by_is_bounded_below(expected: Expected) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 from dataclasses import replace
 from pathlib import Path
 
@@ -252,35 +251,6 @@ def test_a_mistake_that_was_not_told_is_kept_with_the_mistake(tmp_path: Path) ->
     description, verdict = draw(1, 0, "geared"), DrawVerdict(FAILED, UNREPORTED)
     assert shrunk(description, verdict, tmp_path / "small.yaml", 80) == description
     assert case_of(description, verdict).expected == REFUSED
-
-
-@pytest.mark.parametrize(("jobs", "runs"), [(1, 1), (2, 2)])
-def test_what_takes_too_long_beside_another_draw_is_judged_alone(
-    jobs: int, runs: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    beside: list[bool] = []
-
-    def timed(*_: object) -> JudgedDraw:
-        beside.append(_another_may_run(tmp_path))
-        late = DrawVerdict(FAILED, "time") if len(beside) == 1 else DrawVerdict(FAILED, "internal error")
-        return JudgedDraw(late, 61.0, 1.0)
-
-    monkeypatch.setattr(campaign, "judge", timed)
-    record, _ = one_draw(Campaign(1, tmp_path, "disc", jobs=jobs), 0)
-    assert record.kind == ("time" if jobs == 1 else "internal error")
-    assert beside == [True, False][:runs]
-
-
-def _another_may_run(folder: Path) -> bool:
-    """Whether another draw of the campaign could begin now."""
-    if not (folder / "turns").exists():
-        return True
-    with (folder / "turns").open() as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
-        except BlockingIOError:
-            return False
-    return True
 
 
 def test_a_draw_that_ends_well_leaves_nothing(ends, tmp_path: Path, monkeypatch) -> None:

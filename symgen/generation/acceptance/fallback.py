@@ -50,9 +50,7 @@ NARROW, NARROWEST = FACTOR * 3 / 4, FACTOR * 7 / 8
 MARGIN_WORTH = Fraction(1, 2)
 # Counted cost of the longest kernels for which another method is looked for where theirs passes with half of what is
 # allowed: each takes seconds, and seldom has half of the error.
-LONGEST_WEIGHED = 1_500
-# The same for u, q_ddot and lambda.
-LONGEST_WEIGHED_MAIN = 6_000
+LONGEST_WEIGHED = 6_000
 # Methods that are tried once more with twice the digits.
 WIDENED = 3
 # Counted cost of the longest of them.
@@ -104,10 +102,8 @@ class Fallback:
                 if quantity in self._weighed or self._is_given_up(draft, quantity):
                     continue
                 counted = cost(scalars(draft.taken(quantity).derived)).weight
-                narrow, longest = (
-                    (NARROW, LONGEST_WEIGHED_MAIN) if quantity in MAIN else (NARROWEST, LONGEST_WEIGHED)
-                )
-                if largest > narrow or (largest > MARGIN and counted <= longest):
+                narrow = NARROW if quantity in MAIN else NARROWEST
+                if largest > narrow or (largest > MARGIN and counted <= LONGEST_WEIGHED):
                     before, made = made, self._with_margin(made, quantity, largest, expected)
                     if made is before and largest > narrow:
                         made = self._with_digits(made, quantity, largest, narrow, expected)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 import shutil
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from itertools import islice
 from multiprocessing import get_context
@@ -39,7 +37,7 @@ Recorded = TypeVar("Recorded")
 class Campaign:
     """Which draws, where their files go, how many runs a failing one is made small in (0: not at all).
 
-    The small one is kept as a case in `cases`, or beside the draw's own files.  So many `jobs` run at a time.
+    The small one is kept as a case in `cases`, or beside the draw's own files.
     """
 
     seed: int
@@ -47,7 +45,6 @@ class Campaign:
     family: str = ""
     shrinking: int = 0
     cases: Path | None = None
-    jobs: int = 1
 
 
 def write(description: Description, model: Path) -> None:
@@ -117,12 +114,7 @@ def one_draw(campaign: Campaign, index: int) -> tuple[DrawRecord, str]:
     """A draw from its number to its record, and a line about it."""
     description = draw(campaign.seed, index, campaign.family)
     model = campaign.folder / f"{campaign.seed}_{index}" / "zoo.yaml"
-    with _turn(campaign, alone=False):
-        ended = judge(description, model)
-    if ended.verdict.kind == "time" and campaign.jobs > 1:
-        # beside another one a process takes up to half as much CPU time again as by itself
-        with _turn(campaign, alone=True):
-            ended = judge(description, model)
+    ended = judge(description, model)
     verdict = ended.verdict
     record = DrawRecord(
         campaign.seed, index, description.family, verdict.ending, verdict.kind, verdict.signature,
@@ -141,17 +133,6 @@ def one_draw(campaign: Campaign, index: int) -> tuple[DrawRecord, str]:
         kept.write_text(case_of(small, verdict).text, encoding="utf-8")
         line += f"; kept as {kept}"
     return record, f"{record.seed}:{index} {record.family}: {' '.join(line.split())}"
-
-
-@contextmanager
-def _turn(campaign: Campaign, alone: bool) -> Iterator[None]:
-    """While this lasts other draws of a campaign run beside, or none does."""
-    if campaign.jobs == 1:
-        yield
-        return
-    with (campaign.folder / "turns").open("w") as file:
-        fcntl.flock(file, fcntl.LOCK_EX if alone else fcntl.LOCK_SH)
-        yield
 
 
 def run_campaign(

@@ -70,7 +70,7 @@ def main() -> int:
         _show("Pinocchio is not installed (`make robots`): trees are compared with the zoo's own witness alone")
         if os.environ.get("SYMGEN_REQUIRE_TOOLS"):
             return 1
-    campaign = Campaign(given.seed, given.out, given.family, given.shrink, given.cases, given.jobs)
+    campaign = Campaign(given.seed, given.out, given.family, given.shrink, given.cases)
     indices = range(given.first, given.first + given.draws)
     if given.sweeps:
         return _sweep(campaign, indices, path, given)

@@ -18,6 +18,7 @@ import numpy as np
 
 from symgen.ir.bounded import Bound
 from symgen.ir.kernel import Kernel, Program, Scalar
+from symgen.model.quantities import MAIN
 from symgen.runtime.activity import working
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import outcomes
@@ -54,8 +55,9 @@ FAR_STATES = 8
 CHOSEN_AMONG, CHOSEN_AT = 24, (4, 9)
 # States at which quarters of a power are looked at: the worst far away are not the worst close by.
 CLOSER_STATES = 256
-# Numbers that are worked out for one look at a kernel, and for one at each kernel of a model together: three long ones.
-MOST, MOST_OF_ALL = 20_000_000, 60_000_000
+# Numbers that are worked out for one look at a kernel, and for one at each kernel of a model but those of u, q_ddot and
+# lambda together: as many as three long ones take.
+MOST, MOST_OF_OTHERS = 20_000_000, 60_000_000
 # Units of an estimate that count as lost: other states than these lose twice as much, and more.
 UNITS_LOST = FACTOR / 2
 # As many numbers as a statement of a kernel that works with pairs counts for.
@@ -89,23 +91,25 @@ class FarParameters:
         """The bounds for the kernels of one quantity: of parameters that they read, or that say where loops close.
 
         `plain` is the one in float64 without pairs of numbers where that works with them; `share` is what is afforded
-        of the numbers of a look.
+        of the numbers of a look.  u, q_ddot and lambda are looked at in full.
         """
         read = self._read(kernels["float64"])
         if not read:
             return {}
-        with working(f"how far parameters of {kernels['float64'].name} may be"):
-            return _Bounds(self, kernels, programs, plain, int(share * MOST)).of(read)
+        name = kernels["float64"].name
+        with working(f"how far parameters of {name} may be"):
+            return _Bounds(self, kernels, programs, plain, MOST if name in MAIN else int(share * MOST)).of(read)
 
     def share(self, kernels: Iterable[Kernel]) -> float:
-        """What each of the kernels of a model in float64 is afforded of what its looks may take.
+        """What each of the other kernels of a model in float64 is afforded of what its looks may take.
 
         A model of forty quantities would take forty times as long as one of one.
         """
         starts = FAR_STARTS + NEAR_STARTS + MODE_STARTS
-        wanted = (len(one.statements) * len(self._read(one)) * len(SIDES) * starts for one in kernels)
+        others = (one for one in kernels if one.name not in MAIN)
+        wanted = (len(one.statements) * len(self._read(one)) * len(SIDES) * starts for one in others)
         total = sum(min(MOST, numbers) for numbers in wanted)
-        return min(1.0, MOST_OF_ALL / total) if total else 1.0
+        return min(1.0, MOST_OF_OTHERS / total) if total else 1.0
 
     def _read(self, kernel: Kernel) -> list[int]:
         """The places of the parameters that it reads, or that say where loops close."""
