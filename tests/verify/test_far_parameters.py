@@ -24,7 +24,6 @@ from symgen.pipeline import generate
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import outcomes
 from symgen.verify.lanes.lane_arithmetic import Lanes
-from symgen.verify.margins import far_parameters
 from symgen.verify.margins.far_errors import Far, FarErrors
 from symgen.verify.margins.far_parameters import (
     BEFORE_A_LOSS,
@@ -129,11 +128,11 @@ def test_other_long_kernels_share_what_three_may_take(expected: Expected, monkey
     assert far.share([]) == 1
     afforded: list[int] = []
 
-    def noted(*given: object) -> _Bounds:
-        afforded.append(int(str(given[-1])))
-        return _Bounds(*given)  # type: ignore[arg-type]
+    def noted(search: _Bounds, _: object) -> dict[Scalar, tuple[Bound, ...]]:
+        afforded.append(search._most)
+        return {}
 
-    monkeypatch.setattr(far_parameters, "_Bounds", noted)
+    monkeypatch.setattr(_Bounds, "of", noted)
     for kernel in (main, short):
         programs = {scalar: Program(scalar, None, (kernel,)) for scalar in SCALARS}
         far.bounds(dict.fromkeys(SCALARS, kernel), programs, share=0.25)
