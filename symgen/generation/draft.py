@@ -125,6 +125,13 @@ class Draft:
             by_scalar["float32"] = with_sharp_thresholds(kernels["float32"], kernels["float64"])
         return {scalar: widened(one, scalar) if scalar in wide else one for scalar, one in by_scalar.items()}
 
+    def plain_kernel(self, alternative: Alternative, kernels: Mapping[Scalar, Kernel]) -> Kernel:
+        """The kernel in float64 that works with plain numbers, of an alternative with these kernels."""
+        if "float64" not in alternative.choice.wide:
+            return kernels["float64"]
+        plain = replace(alternative, choice=replace(alternative.choice, wide=()))
+        return self.kernels_along(plain, ("float64",))["float64"]
+
     def along(self, alternative: Alternative, kernels: Mapping[Scalar, Kernel]) -> Draft:
         """The draft with a quantity by another method, by kernels of `kernels_along`."""
         name, derivations = alternative.choice.quantity, self.derivations

@@ -8,6 +8,7 @@ from math import comb
 from symgen.linear_algebra.blocks import ConnectedComponent, ConstraintBlock, components, named
 from symgen.mechanics.genericity import Genericity, configurations, rank
 from symgen.mechanics.system import System
+from symgen.mechanics.workless_forces import workless_forces
 from symgen.model.expressions.names import counted
 from symgen.model.model import ConstraintRow
 from symgen.records import dataclass
@@ -52,6 +53,7 @@ def analyse(mechanics: System, generic: Genericity) -> Structure:
     decisions = (
         *_constraint_decisions(mechanics, generic, free, blocks, dependent),
         *_force_decisions(mechanics),
+        *_borne_forces(mechanics, generic),
         *_input_decisions(mechanics, generic),
         *_shared_work(mechanics),
     )
@@ -142,6 +144,15 @@ def _force_decisions(mechanics: System) -> Iterator[Decision]:
         yield from _zeros("potential forces", mechanics.potential_force)
     if not mechanics.model.has_applied_forces:
         yield Decision("applied forces", "the model declares none")
+
+
+def _borne_forces(mechanics: System, generic: Genericity) -> Iterator[Decision]:
+    """Weights and forces that the rows bear in every configuration."""
+    workless = workless_forces(mechanics, generic)
+    if workless:
+        others = bool(workless.terms) + len(workless.forces) + len(workless.loads)
+        parts = [*(["weights"] if workless.weights else []), *([counted(others, "force")] if others else [])]
+        yield Decision(f"{' and '.join(parts)} in u and q̈", "constraints bear them whatever the configuration")
 
 
 def _inertia_decisions(mechanics: System) -> Iterator[Decision]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from symgen.mechanics.genericity import Genericity, configurations
 from symgen.mechanics.system import System
+from symgen.mechanics.workless_forces import without_workless_forces, workless_forces
 from symgen.methods.derivation import Derivation
 from symgen.methods.spaces import along_minors
 from symgen.methods.system import MethodInput
@@ -48,6 +49,12 @@ class Workspace:
         """The derivation along minors, which also tells where ranks drop."""
         system = self.fresh()
         return along_minors(system.mechanics, system.generic)
+
+    @cached_property
+    def relieved(self) -> Workspace:
+        """Of what does not depend on forces that the rows bear: without these, or the same where there are none."""
+        workless = workless_forces(System(self.model), self.generic)
+        return Workspace(without_workless_forces(self.model, workless), self.generic) if workless else self
 
     @cached_property
     def points(self) -> list[dict[str, float]]:

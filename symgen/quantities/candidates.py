@@ -11,6 +11,7 @@ from functools import partial
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.mechanics.system import System
+from symgen.mechanics.workless_forces import WITHOUT_WORKLESS
 from symgen.methods.admission import Validity
 from symgen.methods.derivation import Derivation
 from symgen.methods.derivatives.differentiated import FUNCTIONS, derivatives
@@ -26,7 +27,6 @@ from symgen.methods.spaces import derivations
 from symgen.methods.system import MethodInput
 from symgen.methods.table import Use
 from symgen.methods.table import methods as methods_of
-from symgen.model.model import Model
 from symgen.model.quantities import MAIN, MOTIONS, PARTITION, TASK_OPEN, TASK_RATES
 from symgen.quantities.catalogue import BY_NAME, CatalogueEntry, by_blocks, derive, derived_from, sizes
 from symgen.quantities.everything import WorkBudget
@@ -50,14 +50,17 @@ class Candidates:
         self._mechanics, self._generic = mechanics, generic
         self._system = MethodInput(mechanics, generic)
         self._methods, self._everything = methods, everything
-        self._derivations = derivations(mechanics, generic)
+        relieved = methods.workspace.relieved.model
+        self._own = _NullSpaces(mechanics, generic)
+        self._relieved = self._own if relieved is methods.workspace.model else _NullSpaces(System(relieved), generic)
         wanted = {*asked, *(FUNCTIONS[name] for name in asked if name in FUNCTIONS)}
         moving = [name for name in MOTIONS if name in wanted]
         with working("articulated inertias"):
             self._alone = {name: self._without_null_space(name) for name in moving}
-        need = moving and not any(self._alone.values()) and not model.rough
-        self._absolute = _in_absolute_angles(model, generic) if need else None
-        self._motions: dict[str, dict[str, Motion]] = {}
+        if moving and not any(self._alone.values()) and not model.rough:
+            for name in moving:
+                self._along_spaces(name).look_for_absolute_angles()
+        self._motions: dict[Derivation, dict[str, Motion]] = {}
 
     def cheapest(self, entry: CatalogueEntry) -> tuple[Candidate, Mapping[str, int]] | None:
         """The one that is taken, and the counted cost of all by title; None where each takes too long."""
@@ -85,30 +88,40 @@ class Candidates:
         # where minors are not listed, no other method is derived to be counted: they grow faster than these
         if alone and self._generic.r > 0 and self._generic.delta > LARGEST_DELTA:
             return self._brought(alone)
-        if entry.name in MOTIONS and self._absolute is not None:
-            one = self._along(entry, ABSOLUTE, self._absolute)
-            back = brought_back(self._mechanics.graph, self._absolute.mechanics, one.derived)
+        spaces = self._along_spaces(entry.name)
+        if entry.name in MOTIONS and spaces.absolute is not None:
+            one = self._along(entry, ABSOLUTE, spaces.absolute)
+            back = brought_back(self._mechanics.graph, spaces.absolute.mechanics, one.derived)
             return {ABSOLUTE: replace(one, derived=back)}
         along = {
             space: partial(self._along, entry, space, derivation)
-            for space, derivation in self._derivations.items()
+            for space, derivation in spaces.derivations.items()
             if space != "blocks" or by_blocks(entry)
         }
         # a tree has articulated inertias; what goes without them may take as long as they are worth, and no longer
         least = min(map(_counted, alone.values()), default=None)
         return {**self._everything.derived(entry.name, along, least), **self._brought(alone)}
 
+    def _along_spaces(self, quantity: str) -> _NullSpaces:
+        """What a quantity is derived along: without the forces that it does not depend on."""
+        return self._relieved if quantity in WITHOUT_WORKLESS else self._own
+
     def _along(self, entry: CatalogueEntry, space: str, derivation: Derivation) -> Candidate:
         """A quantity along a null space, q_ddot and lambda by the method that counts least there."""
         if entry.name not in MOTIONS:
-            return Candidate(self._system, derive(entry, derivation), along=space)
-        if space not in self._motions:
-            self._motions[space] = motions_along(derivation)
-        made = [self._moving(entry, name, derivation, one) for name, one in self._motions[space].items()]
+            return self._here(Candidate(self._system, derive(entry, derivation), along=space), derivation)
+        if derivation not in self._motions:
+            self._motions[derivation] = motions_along(derivation)
+        made = [self._moving(entry, name, derivation, one) for name, one in self._motions[derivation].items()]
         # a basis is normwise accurate in the units that B is given in, and loses what masses and lengths are apart by:
         # it is left for systems in which G is definite along the constraints only
         best, _ = cheapest(made, self._validity, lambda one: (one.method == "nullspace", self._weight(one)))
-        return replace(best, along=space)
+        return self._here(replace(best, along=space), derivation)
+
+    def _here(self, one: Candidate, derivation: Derivation) -> Candidate:
+        """On the graph of the other quantities, but for what is brought back from other coordinates."""
+        elsewhere = derivation.graph is not self._mechanics.graph and derivation.mechanics.change is None
+        return replace(one, derived=moved(self._mechanics.graph, one.derived)) if elsewhere else one
 
     def _moving(self, entry: CatalogueEntry, name: str, derivation: Derivation, motion: Motion) -> Candidate:
         derived = derived_from(entry, derivation, motion.part(entry.name), lambda _: motion.guards)
@@ -176,7 +189,7 @@ class Candidates:
         cancels = self._generic.rank < self._generic.r or (of_task and self._mechanics.model.task_leaves.rates > 0)
         if cancels or not 0 < _counted(minors) <= FACTORING_LIMIT:
             return None
-        kept = self._derivations["minors"].whole
+        kept = self._own.derivations["minors"].whole
         outputs = self._mechanics.factoring.shorten(minors.derived.outputs, kept)
         return replace(minors, derived=replace(minors.derived, outputs=outputs), along="factored")
 
@@ -193,11 +206,21 @@ def _counted(one: Candidate) -> int:
     return cost(scalars(one.derived)).weight
 
 
-def _in_absolute_angles(model: Model, generic: Genericity) -> Derivation | None:
-    """The derivation of q_ddot and lambda along reflections in absolute angles, on a graph of its own.
+class _NullSpaces:
+    """What quantities of one system are derived along: null spaces on its graph, or reflections in absolute angles."""
 
-    Taken where angles are relative and minors too many: the rounding errors of G in relative angles grow with the
-    length of a chain.
-    """
-    seen = in_absolute_angles(model) if model.constraints and generic.delta > LARGEST_DELTA else None
-    return None if seen is None else Derivation(seen, generic, reflected_rows(seen, generic))
+    def __init__(self, mechanics: System, generic: Genericity) -> None:
+        self._model, self._generic = mechanics.model, generic
+        self.derivations = derivations(mechanics, generic)
+        self.absolute: Derivation | None = None
+
+    def look_for_absolute_angles(self) -> None:
+        """Reflections in absolute angles for q_ddot and lambda, on a graph of their own, where they are to be had.
+
+        Taken where angles are relative and minors too many: the rounding errors of G in relative angles grow with the
+        length of a chain.
+        """
+        if self.absolute is None and self._model.constraints and self._generic.delta > LARGEST_DELTA:
+            seen = in_absolute_angles(self._model)
+            if seen is not None:
+                self.absolute = Derivation(seen, self._generic, reflected_rows(seen, self._generic))

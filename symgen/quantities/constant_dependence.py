@@ -7,11 +7,12 @@ enough once one more tells nothing new.  Rows that depend on each other on the c
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from itertools import count
 from typing import TypeAlias
 
+from symgen.linear_algebra.residue_rows import ReducedRows, with_row
 from symgen.symbolic.angles.circle import FIELD
 from symgen.symbolic.exact import ExactValues
 from symgen.symbolic.matrix import Matrix
@@ -29,7 +30,7 @@ def numbers_of_dependent_rows(rows: Matrix, factors: Sequence[Fraction]) -> tupl
     """
     prime = FIELD.prime
     scales = [FIELD.number(1 / factor) or 0 for factor in factors]
-    known: dict[int, list[int]] = {}
+    known: dict[int, Sequence[int]] = {}
     for seed in count():
         values = ExactValues(seed)([entry for row in rows for entry in row])
         whole = [value for value in values if isinstance(value, int)]
@@ -38,7 +39,8 @@ def numbers_of_dependent_rows(rows: Matrix, factors: Sequence[Fraction]) -> tupl
         columns, before = len(values) // len(rows), len(known)
         by_row = [whole[start : start + columns] for start in range(0, len(whole), columns)]
         for column in zip(*by_row, strict=True):
-            known = _with(known, [scale * value % prime for scale, value in zip(scales, column, strict=True)], prime)
+            scaled = [scale * value % prime for scale, value in zip(scales, column, strict=True)]
+            known = with_row(known, scaled, prime)
         if len(known) == before:
             break
     vectors = [[_fraction(x, prime) for x in vector] for vector in _null_space(known, len(rows), prime)]
@@ -58,25 +60,7 @@ def projector(basis: Sequence[Numbers]) -> tuple[Numbers, ...]:
     return tuple(map(tuple, made))
 
 
-def _with(pivots: Mapping[int, list[int]], equation: Sequence[int], prime: int) -> dict[int, list[int]]:
-    """Equations in reduced form, by the places of their leading ones, and one more if it does not follow from them."""
-    rest = list(equation)
-    for place, row in pivots.items():
-        share = rest[place]
-        if share:
-            rest = [(x - share * y) % prime for x, y in zip(rest, row, strict=True)]
-    if not any(rest):
-        return dict(pivots)
-    leading = next(k for k, x in enumerate(rest) if x)
-    inverse = pow(rest[leading], -1, prime)
-    rest = [x * inverse % prime for x in rest]
-    reduced = {
-        place: [(x - row[leading] * y) % prime for x, y in zip(row, rest, strict=True)] for place, row in pivots.items()
-    }
-    return {**reduced, leading: rest}
-
-
-def _null_space(pivots: Mapping[int, list[int]], size: int, prime: int) -> list[list[int]]:
+def _null_space(pivots: ReducedRows, size: int, prime: int) -> list[list[int]]:
     """A basis of what satisfies all of them, one residue 1 and others 0 where nothing is determined."""
     basis = []
     for free in (k for k in range(size) if k not in pivots):

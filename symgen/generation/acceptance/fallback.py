@@ -17,7 +17,7 @@ from math import inf
 
 from symgen.diagnostics import SymgenBug
 from symgen.generation.acceptance.passing import Passing, digest, remedy
-from symgen.generation.acceptance.worst_errors import Kernels, WorstErrors, faults_at_worst, plain_kernel
+from symgen.generation.acceptance.worst_errors import Kernels, WorstErrors, faults_at_worst
 from symgen.generation.draft import REJECTED, Draft
 from symgen.generation.results import AUTO, Options
 from symgen.ir.kernel import Kernel, Scalar
@@ -287,7 +287,7 @@ class Fallback:
             return one
         before = one.scalars
         # of long ones grouping takes longer than looking for their worst states
-        one = self._at_its_worst(draft, one, plain_kernel(one.alternative, one.kernels), expected)
+        one = self._at_its_worst(draft, one, draft.plain_kernel(one.alternative, one.kernels), expected)
         if one.scalars != before:
             return one
         whole = grouped(one.alternative)
@@ -351,7 +351,7 @@ class Fallback:
                     continue
                 worst = max(worst, record.largest)
             passed[scalar] = kernel
-        plain = plain_kernel(one, kernels) if one.grouped else None
+        plain = draft.plain_kernel(one, kernels) if one.grouped and "float64" in passed else None
         return self._at_its_worst(draft, Passing(worst, tuple(passed), one, kernels), plain, expected)
 
     def _at_its_worst(self, draft: Draft, one: Passing, plain: Kernel | None, expected: Expected) -> Passing:

@@ -23,7 +23,9 @@ class ParameterBounds:
 
         def look(draft: Draft, name: str, kernels: Mapping[Scalar, Kernel]) -> dict[Scalar, tuple[Bound, ...]]:
             share = far.share(draft.programs["float64"].kernels)
-            made = far.bounds(kernels, draft.programs, _plain(draft, name), share)
+            taken = draft.taken(name)
+            plain = draft.plain_kernel(taken, kernels) if "float64" in taken.choice.wide else None
+            made = far.bounds(kernels, draft.programs, plain, share)
             return {scalar: bounds for scalar, bounds in made.items() if bounds}
 
         self._known = OncePerKernel[tuple[Bound, ...]](look)
@@ -31,12 +33,3 @@ class ParameterBounds:
     def of(self, draft: Draft) -> Draft:
         """The draft with the bounds of its kernels."""
         return replace(draft, bounds=self._known.of(draft, (kernel.name for kernel in draft.program.kernels)))
-
-
-def _plain(draft: Draft, quantity: str) -> Kernel | None:
-    """The kernel in float64 without pairs of numbers, of a quantity that works with them there."""
-    taken = draft.taken(quantity)
-    if "float64" not in taken.choice.wide:
-        return None
-    taken = replace(taken, choice=replace(taken.choice, wide=()))
-    return draft.kernels_along(taken, ("float64",))["float64"]

@@ -7,7 +7,6 @@ from typing import TypeAlias
 
 from symgen.generation.draft import Draft
 from symgen.ir.kernel import Kernel, Scalar
-from symgen.quantities.alternatives import Alternative
 from symgen.records import dataclass
 from symgen.verify.certificate import Certificate, Fault
 from symgen.verify.comparison import INACCURATE
@@ -58,7 +57,8 @@ class WorstErrors:
                 continue
             self._progress(f"verifying: where {quantity} is worst")
             judged = {scalar: kernel for scalar, kernel in kernels.items() if scalar in expected.scalars}
-            errors = self.at_worst(draft, judged, plain_kernel(draft.taken(quantity), kernels)) if judged else {}
+            plain = draft.plain_kernel(draft.taken(quantity), kernels)
+            errors = self.at_worst(draft, judged, plain) if judged else {}
             self.keep(quantity, kernels, max(errors.values(), default=0.0))
             if faults := faults_at_worst(quantity, errors):
                 by_quantity[quantity] = faults
@@ -89,7 +89,3 @@ def faults_at_worst(quantity: str, errors: Mapping[Scalar, float]) -> tuple[Faul
     what = f"{INACCURATE} {{:.3g}} times d + eps |y*| at a state searched for, {FACTOR:g} is allowed"
     return tuple(Fault(what.format(error), quantity, scalar) for scalar, error in errors.items() if error > FACTOR)
 
-
-def plain_kernel(one: Alternative, kernels: Kernels) -> Kernel | None:
-    """The kernel of plain numbers among those of an alternative: where it is worst is looked for."""
-    return None if "float64" in one.choice.wide else kernels["float64"]

@@ -83,10 +83,14 @@ class WorstStateSearch:
     def __init__(self, expected: Expected) -> None:
         self._expected = expected
         self._states: defaultdict[str, list[Sample]] = defaultdict(list)
+        self._looked_at: defaultdict[str, list[Kernel]] = defaultdict(list)
         self._values: dict[tuple[str, int, Scalar], Expectation | None] = {}
 
     def look(self, kernel: Kernel) -> None:
-        """Adds the worst states of a kernel of plain numbers."""
+        """Adds the worst states of a kernel of plain numbers, once."""
+        if kernel in (looked_at := self._looked_at[kernel.name]):
+            return
+        looked_at.append(kernel)
         with working("estimates beside samples"):
             errors = RoundingErrors(kernel)
             self._add(kernel, errors, self._estimated(kernel, errors))
