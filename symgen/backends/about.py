@@ -170,5 +170,10 @@ def unit_text(unit: str | None) -> str:
     return f"[{unit}]" if unit else ""
 
 
+def symbol_text(unit: str | None, description: str) -> str:
+    """A unit in brackets and a description, where there are any."""
+    return " ".join(part for part in (unit_text(unit), description) if part)
+
+
 def _symbol(place: str, name: str, unit: str | None, description: str) -> str:
-    return "  " + " ".join(part for part in (place, name, unit_text(unit), description) if part)
+    return "  " + " ".join(part for part in (place, name, symbol_text(unit, description)) if part)

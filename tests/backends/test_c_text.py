@@ -45,7 +45,7 @@ def test_header_tells_symbols_units_renaming_and_operations() -> None:
     assert " *   q[1] theta [rad] heading\n" in header
     assert " *   I is I_\n" in header
     assert re.search(r"\* inverse_dynamics +2 +3 +2 +1 +1 +0\n", header)
-    assert "double I_; /* [kg*m^2] a name that complex.h defines; default 0.26 */" in header
+    assert "double I_; /**< [kg*m^2] a name that complex.h defines; default 0.26 */" in header
 
 
 def test_no_parameter_gives_one_unused_member() -> None:

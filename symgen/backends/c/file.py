@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from symgen.backends.c.functions import CFunctionView
+from symgen.backends.c.identity import IdentityView
 from symgen.backends.c.names import guard
 from symgen.backends.c.pairs import PairsView, pairs_view
 from symgen.backends.c.steps import StepsView, steps_view
@@ -25,11 +26,15 @@ class StructView:
 
 @dataclass(frozen=True, slots=True)
 class StatusView:
-    """The type of statuses: what guards its definition, its name, and enumerators with values and meanings."""
+    """The type of statuses: what guards its definition, its name, and enumerators with values and meanings.
+
+    `identity` is what else the files of a model have in common.
+    """
 
     guard: str
     name: str
     values: tuple[tuple[str, int, str], ...]
+    identity: IdentityView
 
 
 @dataclass(frozen=True, slots=True)

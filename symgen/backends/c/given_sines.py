@@ -37,7 +37,7 @@ def emit_c_sc(model: Model, program: Program) -> dict[str, str]:
         SINES_GIVEN,
         tuple(line.format(header=f"{file_stem(model.c_name, program.scalar)}.h") for line in _ABOUT),
         tuple(functions),
-        StructView(struct, _members(model, made)),
+        StructView(struct, _members(model, made), "Sines and cosines of coordinates."),
     )
     return files(view)
 
@@ -46,4 +46,4 @@ def _members(model: Model, made: list[GivenTrig]) -> tuple[str, ...]:
     """Sine and cosine of every coordinate that a kernel asks for, in the order of q."""
     indices = sorted({load.index for one in made for load in one.coordinates})
     halves = ((half, index, model.coordinates[index].name) for index in indices for half in ("sin", "cos"))
-    return tuple(f"{half}_{name}; /* {c_comment(f'{half}({name}), q[{index}]')} */" for half, index, name in halves)
+    return tuple(f"{half}_{name}; /**< {c_comment(f'{half}({name}), q[{index}]')} */" for half, index, name in halves)

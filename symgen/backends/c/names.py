@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from symgen.backends.c.causes import cause_names
+from symgen.backends.c.identity import identity_names
 from symgen.backends.c.pairs import pair_names
 from symgen.backends.c.reserved import is_taken
 from symgen.backends.c.steps import local_names
@@ -37,6 +38,11 @@ def guard(stem: str) -> str:
     return f"{macro_name(stem)}_H"
 
 
+def defined_macro(model: Model) -> str:
+    """The macro that says that what both scalar types have in common is defined."""
+    return f"{macro_name(model.c_name)}_MODEL_DEFINED"
+
+
 def c_names(model: Model, program: Program) -> Names:
     """Every name of the program's C for one state."""
     return names_in_file(model, program, _own_names(model, program))
@@ -63,7 +69,7 @@ def names_in_file(model: Model, program: Program, own: Iterable[str]) -> Names:
 
 def _own_names(model: Model, program: Program) -> set[str]:
     own = {global_name(model.c_name, program.scalar, kind) for kind in ("params", "default_params")}
-    own |= {f"{model.c_name}_status", f"{macro_name(model.c_name)}_STATUS_DEFINED"}
+    own |= {f"{model.c_name}_status", defined_macro(model), *identity_names(model)}
     return own | _of_functions(model, program, "")
 
 

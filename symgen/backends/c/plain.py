@@ -12,11 +12,12 @@ from symgen.backends.about import (
     status_meaning,
     statuses_of,
     symbol_lines,
-    unit_text,
+    symbol_text,
 )
 from symgen.backends.c.file import StatusView, StructView, file_view, files
 from symgen.backends.c.functions import CFunctionView, kernel_function
-from symgen.backends.c.names import c_names, global_name, status_name
+from symgen.backends.c.identity import identity_view
+from symgen.backends.c.names import c_names, defined_macro, global_name, status_name
 from symgen.backends.c.statements import c_literal
 from symgen.backends.comments import c_comment, c_comment_lines, indent_of
 from symgen.backends.defaults import default_values
@@ -24,7 +25,6 @@ from symgen.backends.locals import Names
 from symgen.backends.quantities import meaning
 from symgen.ir.kernel import Program
 from symgen.model.model import Model
-from symgen.naming import macro_name
 from symgen.records import dataclass
 
 _RULES = (
@@ -47,7 +47,7 @@ def emit_c(model: Model, program: Program) -> dict[str, str]:
     params = global_name(model.c_name, program.scalar, "params")
     members = _members(model, program, names)
     default = CFunctionView(
-        (),
+        ("The values of the model file.",),
         f"{params} {global_name(model.c_name, program.scalar, 'default_params')}(void)",
         (f"{params} p;", *(f"p.{member.name} = {member.default};" for member in members), "return p;"),
     )
@@ -62,11 +62,12 @@ def emit_c(model: Model, program: Program) -> dict[str, str]:
         "",
         (*_about(model, program, names), "", _RULES),
         (default, *functions),
-        StructView(params, tuple(f"{member.name}; /* {member.comment} */" for member in members)),
+        StructView(params, tuple(f"{member.name}; /**< {member.comment} */" for member in members), "Parameters."),
         StatusView(
-            f"{macro_name(model.c_name)}_STATUS_DEFINED",
+            defined_macro(model),
             f"{model.c_name}_status",
             tuple((status_name(model, s), int(s), status_meaning(s, model)) for s in statuses_of(model)),
+            identity_view(model),
         ),
     )
     return files(view)
@@ -96,7 +97,7 @@ def _members(model: Model, program: Program, names: Names) -> tuple[_Member, ...
     members = []
     for parameter in model.parameters:
         default = c_literal(program.scalar, values[parameter.name]).strip("()")
-        about = " ".join(part for part in (unit_text(parameter.unit), parameter.description) if part)
+        about = symbol_text(parameter.unit, parameter.description)
         comment = c_comment(f"{about}; default {default}" if about else f"default {default}")
         members.append(_Member(names.members[parameter.name], comment, default))
     zero = c_literal(program.scalar, Fraction(0))

@@ -43,7 +43,8 @@ def emit_c_prepared(model: Model, program: Program) -> dict[str, str]:
         about = f"{meaning(kernel)}; {now} operations instead of {before[kernel.name]}"
         return kernel_function(model, program, kernel, placed, about, given, PREPARED)
 
-    made = CFunctionView((), f"{struct} {make}(const {params} *p)", _lines(model, program, prepared, names, struct))
+    about = ("What the parameters determine, worked out once.",)
+    made = CFunctionView(about, f"{struct} {make}(const {params} *p)", _lines(model, program, prepared, names, struct))
     view = file_view(
         model,
         replace(program, kernels=prepared.kernels),
@@ -52,8 +53,8 @@ def emit_c_prepared(model: Model, program: Program) -> dict[str, str]:
         (made, *map(function, prepared.kernels)),
         StructView(
             struct,
-            (f"value[{len(prepared.values)}];",),
-            "What the parameters determine; its contents are of no use elsewhere.",
+            (f"value[{len(prepared.values)}]; /**< in no order that a caller can use */",),
+            "What the parameters determine.",
         ),
     )
     # the functions of one angle at a time are those that the lines of `prepare` call

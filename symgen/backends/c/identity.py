@@ -1,0 +1,90 @@
+"""What a header says of its model beside functions: how many entries arguments have, which is which, and which model.
+
+Both scalar types of a model have it, so it is guarded like the type of statuses.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+
+from symgen import __version__
+from symgen.backends.about import symbol_text
+from symgen.backends.comments import c_comment
+from symgen.model.model import Model
+from symgen.naming import macro_name
+from symgen.records import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """The entries of some arguments or of a result: enumerators with values and what is said of each."""
+
+    arguments: str
+    size: str
+    entries: tuple[tuple[str, int, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class IdentityView:
+    """The version of symgen and the model's text by their macros, and the places of coordinates, inputs and others."""
+
+    version_macro: str
+    version: str
+    hash_macro: str
+    model_hash: str
+    places: tuple[Places, ...]
+    text_function: str
+
+
+def identity_view(model: Model) -> IdentityView:
+    """Of a model."""
+    prefix = macro_name(model.c_name)
+    return IdentityView(
+        version_macro=f"{prefix}_SYMGEN_VERSION",
+        version=__version__,
+        hash_macro=f"{prefix}_MODEL_HASH",
+        model_hash=model.text_hash,
+        places=tuple(_places(model, prefix)),
+        text_function=status_text_name(model),
+    )
+
+
+def status_text_name(model: Model) -> str:
+    """The function that says what a status means."""
+    return f"{model.c_name}_status_text"
+
+
+def identity_names(model: Model) -> set[str]:
+    """The global names of all that."""
+    view = identity_view(model)
+    names = {view.version_macro, view.hash_macro, view.text_function}
+    for one in view.places:
+        names |= {one.size, *(name for name, _, _ in one.entries)}
+    return names
+
+
+def _places(model: Model, prefix: str) -> Iterator[Places]:
+    coordinates = [(c.name, symbol_text(c.unit, c.description or c.name)) for c in model.coordinates]
+    rows = [row.name for kind in ("geometric", "nonholonomic") for row in model.constraints if row.kind == kind]
+    by_name = dict(coordinates)
+    arguments: tuple[tuple[str, str, Iterable[tuple[str, str]]], ...] = (
+        ("Q", "q, qd and qdd", coordinates),
+        ("U", "inputs", ((i.name, symbol_text(i.unit, i.description or i.name)) for i in model.inputs)),
+        ("LAMBDA", "multipliers", ((name, f"of the row {name}") for name in rows)),
+        ("QM", "q_m, qd_m and qdd_m", ((name, by_name[name]) for name in model.measured)),
+        ("XT", "x_t, xd_t and xdd_t", ((x.name, x.name) for x in model.task)),
+    )
+    for letter, what, entries in arguments:
+        named = list(entries)
+        if named:
+            ends = _endings([name for name, _ in named])
+            members = ((f"{prefix}_{letter}_{end}", text) for end, (_, text) in zip(ends, named, strict=True))
+            places = tuple((name, place, c_comment(text)) for place, (name, text) in enumerate(members))
+            yield Places(what, f"{prefix}_SIZE_{letter}", places)
+
+
+def _endings(names: Sequence[str]) -> list[str]:
+    """Names in capitals; as they stand where two are the same in capitals."""
+    counts = Counter(name.upper() for name in names)
+    return [name.upper() if counts[name.upper()] == 1 else name for name in names]
