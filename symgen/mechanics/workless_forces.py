@@ -60,15 +60,13 @@ class WorklessForces:
 def workless_forces(mechanics: System, generic: Genericity) -> WorklessForces:
     """Those of a system in the coordinates of its model; none where friction grows with what the rows bear.
 
-    Nothing is said where the rows lose rank on the constraints: off these more of them are independent.
+    Nothing is said where rows lose rank on the constraints: off these more of them are independent.
     """
     model = mechanics.model
     weighs, stores = model.mechanism.gravity != NO_VECTOR, model.potential_energy != ZERO
-    if not generic.r or model.rough or not generic.rank_is_identical:
+    if not generic.r or model.rough or not (weighs or stores or model.has_applied_forces):
         return WorklessForces()
-    if not (weighs or stores or model.has_applied_forces):
-        return WorklessForces()
-    borne = _Borne(mechanics)
+    borne = _Borne(mechanics, generic.rank)
     names = [c.name for c in model.coordinates]
     axes = [tuple(mechanics.graph.const(int(c.coordinate == name)) for name in names) for c in model.applied_forces]
     return WorklessForces(
@@ -93,10 +91,10 @@ def without_workless_forces(model: Model, workless: WorklessForces) -> Model:
 
 
 class _Borne:
-    """The forces that are sums of rows, at points in a prime field."""
+    """The forces that are sums of rows, at points in a prime field where these have the rank that they have on V."""
 
-    def __init__(self, mechanics: System) -> None:
-        self._rows = mechanics.constraint_jacobian
+    def __init__(self, mechanics: System, rank: int) -> None:
+        self._rows, self._rank = mechanics.constraint_jacobian, rank
         self._points: list[tuple[ReducedRows | None, ExactValues]] = []
 
     def is_one(self, force: Vector) -> bool:
@@ -108,7 +106,7 @@ class _Borne:
         return False
 
     def _each(self) -> Iterator[tuple[ReducedRows | None, ExactValues]]:
-        """The points, with the rows there in reduced form; None where their values are not in the field."""
+        """The points, with the rows there in reduced form; None where these are of no use."""
         for seed in range(MOST_POINTS):
             if seed == len(self._points):
                 values = ExactValues(seed, signs=False)
@@ -121,7 +119,7 @@ class _Borne:
             if (whole := _whole(values, row)) is None:
                 return None
             reduced = with_row(reduced, whole, FIELD.prime)
-        return reduced
+        return reduced if len(reduced) == self._rank else None
 
 
 def _whole(point: ExactValues, vector: Vector) -> list[int] | None:

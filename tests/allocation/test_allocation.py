@@ -385,7 +385,7 @@ def test_settings_are_the_last_members_of_the_struct() -> None:
     assert names[-4:] == added
     header = emit_c(made.model, made.program())["c/rapkm_2rrr_rr.h"]
     for name, value in zip(added, ("1.0", "0.2", "-0.2", "0.4"), strict=True):
-        assert header.split(f" {name}; /* ")[1].split(" */")[0].endswith(f"default {value}")
+        assert header.split(f" {name}; /**< ")[1].split(" */")[0].endswith(f"default {value}")
 
 
 def test_no_set_of_subsets_is_empty_of_weights() -> None:

@@ -34,8 +34,8 @@ def test_header_and_module_say_how_inputs_are_shared() -> None:
     for text in (header, module):
         assert "How inverse_dynamics shares the work among the inputs:" in text
         assert "within limit_*, as far as the internal force alone can keep u there" in text
-    assert "double weight_left; /* weight of left in the norm of the inputs; default 2.0 */" in header
-    assert "double limit_right_lower; /* lower limit of right; default -1.0 */" in header
+    assert "double weight_left; /**< weight of left in the norm of the inputs; default 2.0 */" in header
+    assert "double limit_right_lower; /**< lower limit of right; default -1.0 */" in header
     assert "    preload: float = 0.5  # preload, internal force" in module
 
 

@@ -17,7 +17,7 @@ from symgen.records import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class Places:
+class EntryPlaces:
     """The entries of some arguments or of a result: enumerators with values and what is said of each."""
 
     arguments: str
@@ -33,7 +33,7 @@ class IdentityView:
     version: str
     hash_macro: str
     model_hash: str
-    places: tuple[Places, ...]
+    places: tuple[EntryPlaces, ...]
     text_function: str
 
 
@@ -64,7 +64,7 @@ def identity_names(model: Model) -> set[str]:
     return names
 
 
-def _places(model: Model, prefix: str) -> Iterator[Places]:
+def _places(model: Model, prefix: str) -> Iterator[EntryPlaces]:
     coordinates = [(c.name, symbol_text(c.unit, c.description or c.name)) for c in model.coordinates]
     rows = [row.name for kind in ("geometric", "nonholonomic") for row in model.constraints if row.kind == kind]
     by_name = dict(coordinates)
@@ -81,7 +81,7 @@ def _places(model: Model, prefix: str) -> Iterator[Places]:
             ends = _endings([name for name, _ in named])
             members = ((f"{prefix}_{letter}_{end}", text) for end, (_, text) in zip(ends, named, strict=True))
             places = tuple((name, place, c_comment(text)) for place, (name, text) in enumerate(members))
-            yield Places(what, f"{prefix}_SIZE_{letter}", places)
+            yield EntryPlaces(what, f"{prefix}_SIZE_{letter}", places)
 
 
 def _endings(names: Sequence[str]) -> list[str]:
