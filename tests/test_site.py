@@ -43,6 +43,7 @@ class Loaded(HTMLParser):
             self.sources.add(given["href"] or "")
 
 
+@pytest.mark.campaign
 @pytest.mark.toolchain
 @pytest.mark.slow
 @pytest.mark.usefixtures("mkdocs")
@@ -82,6 +83,7 @@ def small(folder: Path, text: str) -> Path:
     return folder
 
 
+@pytest.mark.campaign
 @pytest.mark.toolchain
 @pytest.mark.slow
 @pytest.mark.usefixtures("mkdocs")

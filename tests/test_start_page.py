@@ -30,6 +30,7 @@ def test_the_first_machine(tmp_path: Path, tool: Callable[[str], str]) -> None:
     assert (tmp_path / "generated/lift/simulation.csv").is_file()
 
 
+@pytest.mark.campaign
 @pytest.mark.slow
 @pytest.mark.toolchain
 def test_a_robot_with_a_loop(tmp_path: Path, tool: Callable[[str], str]) -> None:

@@ -55,6 +55,7 @@ def given(make: Callable[[], Model]) -> tuple[Alternatives, Expected]:
     return Alternatives(model, genericity(System(model)), None), Expected(model, QUANTITIES, 16, lambda _: None)
 
 
+@pytest.mark.campaign
 @pytest.mark.slow
 @pytest.mark.parametrize("quantity", QUANTITIES)
 @pytest.mark.parametrize("make", [hanging_chain, beam_on_three_cranks])

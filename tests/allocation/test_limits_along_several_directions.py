@@ -159,6 +159,7 @@ def test_so_they_are_at_a_hundred_thousand_states(directions: int, tmp_path: Pat
     compared(directions, 25_000, tmp_path)
 
 
+@pytest.mark.campaign
 @pytest.mark.toolchain
 @pytest.mark.parametrize("directions", CASES)
 def test_float32_decides_the_same(directions: int, tool: Callable[[str], str], tmp_path: Path) -> None:
@@ -241,6 +242,7 @@ def test_what_takes_no_part_is_not_brought_to_its_limit_by_roundings(others: str
     assert min(seen.values()) > 10
 
 
+@pytest.mark.campaign
 def test_kernels_pass_verification_and_say_what_they_refuse(tmp_path: Path) -> None:
     from symgen.cli.main import main
 

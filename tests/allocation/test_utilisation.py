@@ -115,6 +115,7 @@ def test_it_is_the_value_of_the_linear_program(name: str, tmp_path: Path) -> Non
         assert float(shares[k, 0]) == pytest.approx(wanted, rel=1e-8)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("name", ["thrusters", "skid", "stage"])
 def test_witness_and_reference_agree(name: str) -> None:
     made = system(name)
@@ -154,6 +155,7 @@ def test_inputs_that_the_motion_determines_have_a_share_too() -> None:
     assert load_text(f"{text}{block}outputs: [utilisation]\n", "one.yaml").notices == ()
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(
     "name", sparing(["one axis", "skid", "five drives", "stage", "alike"], ("five drives", "stage"))
 )

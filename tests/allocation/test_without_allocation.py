@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import allocation_models as models
+import pytest
 
 from symgen.cli.main import main
 from symgen.generation.acceptance.recorded import as_recorded
@@ -29,6 +30,7 @@ def test_preferred_values_too() -> None:
     assert replace(made, text_hash="") == replace(load_text(models.SKID, "m.yaml"), text_hash="")
 
 
+@pytest.mark.campaign
 def test_bounds_of_what_is_set_aside_are_set_aside(tmp_path: Path) -> None:
     """A verification may have bounded weights and limits, which other tools and methods know nothing of."""
     path = tmp_path / "plate.yaml"

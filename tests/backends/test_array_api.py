@@ -212,6 +212,7 @@ _NAMES = "xp like status entries p_ Status Parameters PARAMETERS index count ran
 NAMES = _NAMES.split()
 
 
+@pytest.mark.campaign
 def test_names_of_a_model_and_of_the_module_do_not_meet(tmp_path: Path) -> None:
     """Parameters called as what the module uses, and by other names; only what is asked for is written."""
 

@@ -145,6 +145,7 @@ int main(void) {{
 """
 
 
+@pytest.mark.campaign
 @pytest.mark.toolchain
 @pytest.mark.slow
 @pytest.mark.parametrize("scalar", shipped.SCALARS)
@@ -230,6 +231,7 @@ def test_square_roots_without_the_standard_library(tool: Callable[[str], str], t
         assert bits(values) == bits([float(root)] if status == 0 else []), x
 
 
+@pytest.mark.campaign
 @pytest.mark.toolchain
 @pytest.mark.slow
 def test_a_whole_model_without_a_complaint(tool: Callable[[str], str], tmp_path: Path) -> None:
@@ -327,6 +329,7 @@ def test_sines_of_the_library_need_the_standard_one() -> None:
     assert "no_std" not in emit_crate(model, [program])["rust/src/lib.rs"]
 
 
+@pytest.mark.campaign
 @pytest.mark.toolchain
 @pytest.mark.slow
 def test_the_page_says_what_its_program_prints(tool: Callable[[str], str], tmp_path: Path) -> None:

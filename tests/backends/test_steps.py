@@ -112,6 +112,7 @@ def test_c(tool: Callable[[str], str], tmp_path: Path, name: str, scalar: Scalar
                 assert status is not Status.OK or same(outputs[:, place].astype(float).tolist(), entries)
 
 
+@pytest.mark.campaign
 @pytest.mark.slow
 @pytest.mark.parametrize("name", MODELS)
 def test_python(tmp_path: Path, name: str) -> None:

@@ -7,7 +7,7 @@ import pty
 import select
 import subprocess
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import pytest
@@ -49,8 +49,8 @@ def in_fish(folder: Path, line: str) -> set[str]:
     return {offered.partition("\t")[0] for offered in made.stdout.splitlines()}
 
 
-def in_zsh(folder: Path, line: str) -> str:
-    """What a line becomes when the tabulator is hit, which completes what is common to all that fits."""
+def in_zsh(folder: Path, lines: Iterable[str]) -> list[str]:
+    """What each line becomes when the tabulator is hit, which completes what is common to all that fits."""
     process, terminal = pty.fork()
     if process == 0:
         os.chdir(folder)
@@ -58,14 +58,16 @@ def in_zsh(folder: Path, line: str) -> str:
     begin = "autoload -Uz compinit; compinit -u -D; source script.zsh; unsetopt zle_bracketed_paste; echo rea''dy\n"
     os.write(terminal, begin.encode())
     _read_until(terminal, "ready")
-    # the line is taken as it is completed, and printed
-    os.write(terminal, b"bindkey '^X' take; take() { print -r -- \"<$BUFFER>\" }; zle -N take; echo se''t\n")
+    # a line is completed by one key, and then taken as it is, printed and let go
+    take = "take() { zle expand-or-complete; print -r -- \"<$BUFFER>\"; BUFFER= }; zle -N take; bindkey '^X' take"
+    os.write(terminal, f"{take}; echo se''t\n".encode())
     _read_until(terminal, "set")
-    os.write(terminal, f"{line}\t".encode())
-    time.sleep(1)
-    os.write(terminal, b"\x18")
     try:
-        return _read_until(terminal, ">").rpartition("<")[2].partition(">")[0]
+        made = []
+        for line in lines:
+            os.write(terminal, f"{line}\x18".encode())
+            made.append(_read_until(terminal, ">").rpartition("<")[2].partition(">")[0])
+        return made
     finally:
         os.close(terminal)
         os.waitpid(process, 0)
@@ -109,21 +111,18 @@ def test_fish_offers_the_same(folder: Path, tool: Callable[[str], str]) -> None:
     assert "out/" in in_fish(folder, "symgen car.yaml --out ")
 
 
-@pytest.mark.parametrize(
-    ("line", "completed"),
-    [
-        ("symgen verify --tr", "symgen verify --trig "),
-        ("symgen verify --trig l", "symgen verify --trig libm "),
-        ("symgen simu", "symgen simulate "),
-        ("symgen verify c", "symgen verify car.yaml "),
-        # another one may follow
-        ("symgen car.yaml --only c,py", "symgen car.yaml --only c,python,"),
-        ("symgen explain car.yaml nullspace_projector_d", "symgen explain car.yaml nullspace_projector_dot "),
-    ],
-)
-def test_zsh_offers_the_same(folder: Path, tool: Callable[[str], str], line: str, completed: str) -> None:
+def test_zsh_offers_the_same(folder: Path, tool: Callable[[str], str]) -> None:
     tool("zsh")
-    assert in_zsh(folder, line) == completed
+    completed = {
+        "symgen verify --tr": "symgen verify --trig ",
+        "symgen verify --trig l": "symgen verify --trig libm ",
+        "symgen simu": "symgen simulate ",
+        "symgen verify c": "symgen verify car.yaml ",
+        # another one may follow
+        "symgen car.yaml --only c,py": "symgen car.yaml --only c,python,",
+        "symgen explain car.yaml nullspace_projector_d": "symgen explain car.yaml nullspace_projector_dot ",
+    }
+    assert dict(zip(completed, in_zsh(folder, completed), strict=True)) == completed
 
 
 def test_every_command_and_option_is_there(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

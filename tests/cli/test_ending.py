@@ -113,6 +113,7 @@ def test_a_signal_ends_compilers_and_says_what_was_written(
         assert not (tmp_path / "out/hanging").exists()
 
 
+@pytest.mark.campaign
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="processes are looked up in /proc")
 def test_a_run_that_is_killed_leaves_no_compiler(tmp_path: Path) -> None:
     marks = tmp_path / "marks"

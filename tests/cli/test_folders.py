@@ -215,6 +215,7 @@ def _dying(limit: int, writer: int) -> None:
         setattr(os, name, counted(getattr(os, name)))
 
 
+@pytest.mark.campaign
 def test_a_run_killed_anywhere_leaves_what_the_next_start_mends(tmp_path: Path) -> None:
     """The folder then holds all earlier files or all new ones, and those of the user, and nothing else."""
     write_files(tmp_path / "whole", OLD)
@@ -279,6 +280,7 @@ with folder_lock(Path(sys.argv[1]), print):
 """
 
 
+@pytest.mark.campaign
 def test_a_lock_is_waited_for_told_and_free_after_death(tmp_path: Path) -> None:
     holder = subprocess.Popen([sys.executable, "-c", HOLDING, str(tmp_path)], stdout=subprocess.PIPE, text=True)
     assert holder.stdout is not None

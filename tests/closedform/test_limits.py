@@ -90,6 +90,7 @@ loops:
 """
 
 
+@pytest.mark.campaign
 def test_minors_of_many_pages_are_not_printed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     # rods in space, behind oblique axes: few minors, each of them pages long
     path = tmp_path / "wedged.yaml"

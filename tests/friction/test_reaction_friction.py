@@ -116,6 +116,7 @@ def _cross(a: Any, b: Any) -> float:
     return float(a[0] * b[1] - a[1] * b[0])
 
 
+@pytest.mark.campaign
 def test_inputs_are_those_of_each_body_cut_free(tmp_path: Path) -> None:
     made = module(system(), tmp_path)
     machine = SliderCrank(made.PARAMETERS)
@@ -129,6 +130,7 @@ def test_inputs_are_those_of_each_body_cut_free(tmp_path: Path) -> None:
     assert np.median(shares) > 0.01  # friction counts
 
 
+@pytest.mark.campaign
 def test_accelerations_and_multipliers_under_these_inputs_are_those_of_the_motion(tmp_path: Path) -> None:
     made = module(system(), tmp_path)
     machine = SliderCrank(made.PARAMETERS)
@@ -150,6 +152,7 @@ def test_the_residual_is_what_given_inputs_lack(tmp_path: Path) -> None:
         assert more - rest == pytest.approx(-0.5 / u[0] * projected, rel=1e-9)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("scalar", ["float64", "float32"])
 def test_kernels_are_within_the_rounding_of_the_reference(scalar: Scalar) -> None:
     made = system()
@@ -205,6 +208,7 @@ def test_steps_that_are_too_few_are_a_status(scalar: Scalar, steps: int, settles
     assert status is (Status.OK if settles else Status.FRICTION_LOCK)
 
 
+@pytest.mark.campaign
 @pytest.mark.toolchain
 def test_c_returns_the_bits_of_python_and_the_status(tool: Callable[[str], str], tmp_path: Path) -> None:
     made = system()
@@ -254,6 +258,7 @@ def test_one_scalar_reaction_is_explicit(tmp_path: Path) -> None:
         assert got[0] == pytest.approx(u, rel=1e-10, abs=1e-12)
 
 
+@pytest.mark.campaign
 def test_methods_that_form_no_reactions_are_refused_by_name(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     from symgen.cli.main import main
 

@@ -86,6 +86,7 @@ def states(made: System, count: int, scalar: Scalar) -> list[object]:
     ]
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("scalar", ["float64", "float32"])
 @pytest.mark.parametrize("name", CASES)
 def test_kernels_agree_with_the_reference(name: str, scalar: Scalar) -> None:

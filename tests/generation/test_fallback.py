@@ -269,6 +269,7 @@ def test_what_passes_narrowly_takes_one_with_half_of_its_error(yoke: Path, monke
     assert result.certificate["passed"]
 
 
+@pytest.mark.campaign
 def test_a_loss_that_no_state_of_the_verification_meets_is_searched_for(
     yoke: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -286,6 +287,7 @@ def test_a_loss_that_no_state_of_the_verification_meets_is_searched_for(
     assert made(yoke).files["derivation.json"] == result.files["derivation.json"]
 
 
+@pytest.mark.campaign
 def test_a_long_alternative_has_its_numbers_grouped_once_its_worst_states_speak_for_it(
     yoke: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -332,6 +334,7 @@ def test_types_that_need_nearly_all_take_twice_the_digits(
     assert max(e["largest"] for e in errors if any(scalar in e["target"] for scalar in wide)) <= 1
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(("narrowest", "wide"), [(0.6, ["float64", "float32"]), (15.9, None)])
 def test_so_does_any_quantity_of_which_next_to_nothing_is_left(
     yoke: Path, monkeypatch: pytest.MonkeyPatch, narrowest: float, wide: list[str] | None
@@ -374,6 +377,7 @@ def test_what_passes_narrowly_at_a_state_searched_for_leaves_no_margin(
     assert max(e["largest"] for e in result.certificate["errors"] if e["quantity"] == "multipliers") <= 8
 
 
+@pytest.mark.campaign
 def test_the_method_taken_is_the_one_that_counts_least_of_those_that_pass(
     yoke: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -427,6 +431,7 @@ def test_what_no_method_passes_is_left_out_alone(
     assert "the files on disk are not" not in capsys.readouterr().err
 
 
+@pytest.mark.campaign
 def test_float32_works_with_twice_the_digits_where_it_alone_is_rejected(
     yoke: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -468,6 +473,7 @@ def test_float64_stays_where_float32_alone_is_rejected(
     assert cli.main([*common, "--scalar", "float64", "--out", str(tmp_path / "one")]) == 0
 
 
+@pytest.mark.campaign
 def test_check_takes_over_the_method_that_verification_led_to(
     yoke: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -480,6 +486,7 @@ def test_check_takes_over_the_method_that_verification_led_to(
     assert cli.main([*common, "--check"]) == 1
 
 
+@pytest.mark.campaign
 def test_where_every_method_loses_digits_one_works_with_twice_as_many(
     yoke: Path, usual: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -596,6 +603,7 @@ def test_what_all_leaves_out_is_no_longer_left_out_of_one_type(yoke: Path, monke
     assert made(yoke, replace(FAST, outputs=("all",))).left_out == ()
 
 
+@pytest.mark.campaign
 def test_a_method_that_was_asked_for_is_not_replaced(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     spoil_named(monkeypatch, cancelling)
     result = made(yoke, replace(FAST, methods={"multipliers": "kkt"}))

@@ -111,6 +111,7 @@ def test_wheels_and_cranks_that_turn_for_hours_are_verified_in_float32(text: str
     assert not any(kernel.get("twice_the_digits") for kernel in derivation["kernels"].values())
 
 
+@pytest.mark.campaign
 @pytest.mark.slow
 def test_what_loses_digits_at_great_angles_alone_has_twice_as_many(tmp_path: Path) -> None:
     """Within a turn every method of N_B keeps its digits."""

@@ -32,6 +32,7 @@ inputs: {u: {acts_on: {a: 1}}}
 """
 
 
+@pytest.mark.campaign
 def test_the_longest_are_left_out_where_all_together_are_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = derive_quantities(MODEL, ("all",))
     costs = {choice.quantity: dict(choice.costs)[choice.title] for choice in whole.choices}
@@ -62,6 +63,7 @@ def test_what_takes_too_long_to_derive_is_given_up_unless_it_is_named(monkeypatc
     assert not named.absent
 
 
+@pytest.mark.campaign
 def test_all_together_take_so_many_scalars_and_no_more(monkeypatch: pytest.MonkeyPatch) -> None:
     def taken(scalars: int) -> tuple[float, set[str], set[str]]:
         monkeypatch.setattr(everything, "SCALARS_OF_ALL", scalars)

@@ -100,6 +100,7 @@ def test_forces_of_twice_the_loops_are_a_few_times_the_work() -> None:
     assert many <= 2.6 * few
 
 
+@pytest.mark.campaign
 def test_states_of_twice_the_loops_are_a_few_times_the_work() -> None:
     """Loops that lead elsewhere are started anew alone: that all of them are regular at once is rare."""
 

@@ -118,6 +118,7 @@ def test_a_gear_in_a_long_chain_leaves_its_accelerations_to_the_links() -> None:
     assert done() - before < 3 * worth_trying(min(dict(choice.costs).values()))
 
 
+@pytest.mark.campaign
 def test_u_of_a_long_chain_takes_a_few_operations_a_link() -> None:
     few, many = (
         derive_quantities(load_text(chain(links), "chain.yaml"), ("inverse_dynamics",)).choices[0]

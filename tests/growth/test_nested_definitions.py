@@ -104,6 +104,7 @@ def test_a_mistake_in_units_is_found_below_many_lines() -> None:
         load_text(text, "nested.yaml")
 
 
+@pytest.mark.campaign
 def test_large_multiples_of_an_angle_take_few_steps() -> None:
     graph = Graph()
     angle = leaf = graph.symbol("x")

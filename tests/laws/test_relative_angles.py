@@ -90,6 +90,7 @@ def linkage(request: pytest.FixtureRequest) -> System:
     return system(request.param, OUTPUTS)
 
 
+@pytest.mark.campaign
 def test_no_kernel_asks_for_what_the_model_does_not_have(linkage: System) -> None:
     model = linkage.model
     known = {name for c in model.coordinates for name in (c.name, c.rate, c.acceleration)}

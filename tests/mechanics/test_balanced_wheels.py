@@ -96,6 +96,7 @@ def test_a_hub_that_sticks_out_turns_with_the_fork_alone(tmp_path: Path) -> None
     assert "swivel" in named
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("scalar", ["float64", "float32"])
 def test_a_sweeper_that_all_but_rests_is_answered_within_the_tolerance(scalar: Scalar, tmp_path: Path) -> None:
     path = tmp_path / "sweeper.yaml"

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import random
 
+import pytest
+
 from symgen.mechanics.never_zero import Definite
 from symgen.mechanics.system import System
 from symgen.model.load import load_text
@@ -28,6 +30,7 @@ def _definite() -> tuple[Definite, System]:
     return Definite(system), system
 
 
+@pytest.mark.campaign
 def test_entries_are_their_content_times_the_rest() -> None:
     shared = 0
     for seed in range(DRAWS):

@@ -86,6 +86,7 @@ def test_places_and_directions_seen_from_frames_that_move(rows: str, relative: b
     assert held.leaves
 
 
+@pytest.mark.campaign
 def test_long_loops_in_space_are_differentiated_joint_by_joint() -> None:
     """Ten oblique joints, closed by another one: a sweep through the whole loop for each row costs far more."""
     chain = "\n".join(

@@ -99,6 +99,7 @@ def test_damping() -> None:
     assert -M @ slopes(5, "qd") == pytest.approx(5 * C1, rel=1e-12, abs=1e-12)
 
 
+@pytest.mark.mechanisms
 def test_methods_that_float32_would_refuse_everywhere_are_told_apart() -> None:
     """Eight turns follow each other up to the front contact: sums of absolute terms exceed a determinant by 1e10.
 

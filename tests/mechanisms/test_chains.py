@@ -24,6 +24,7 @@ def derived(links: int, folder: Path, *outputs: str) -> Selection:
     return derive_quantities(load_model(path), outputs)
 
 
+@pytest.mark.mechanisms
 def test_u_grows_linearly(tmp_path: Path) -> None:
     weights = []
     for links in (8, 16, 32):

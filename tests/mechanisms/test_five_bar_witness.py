@@ -7,6 +7,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+import pytest
 import robot_packages
 from generated_python import generated_python
 from shipped import ROOT
@@ -89,6 +90,7 @@ def close(computed: Any, expected: Any) -> bool:
     return bool(np.abs(computed - expected).max() <= WITHIN * np.abs(expected).max())
 
 
+@pytest.mark.mechanisms
 def test_torques_of_the_drives() -> None:
     for q, qd, qdd, _ in states():
         _, B, _ = robot().loop(q, qd)

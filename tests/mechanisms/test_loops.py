@@ -187,6 +187,7 @@ def test_what_cannot_move_is_told() -> None:
     assert load_text(LOCKED.replace("cylindrical", "point"), "free.yaml").notices == ()
 
 
+@pytest.mark.mechanisms
 def test_gravity_that_the_loop_carries_leaves_no_rounding_in_a_slow_spin() -> None:
     """The spin at 1 mrad/s changes by 1e-6: a residue of gravity, eps times 10, would be all that is seen of it."""
     model = load_text(LOCKED, "locked.yaml")

@@ -92,6 +92,7 @@ def close(computed: Any, expected: Any) -> bool:
     return bool(np.abs(computed - expected).max() <= WITHIN * np.abs(expected).max())
 
 
+@pytest.mark.mechanisms
 @pytest.mark.parametrize("name", NAMES)
 def test_inverse_dynamics(name: str) -> None:
     model = tree(name).model

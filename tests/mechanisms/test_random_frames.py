@@ -343,6 +343,7 @@ def test_chains_about_axes_in_a_plane(seed: int) -> None:
     compared(Tree(seed, flat=True))
 
 
+@pytest.mark.mechanisms
 @pytest.mark.parametrize("seed", seeds(range(100, 105), 103))
 def test_chains_closed_at_a_point(seed: int) -> None:
     compared(Tree(seed, loop=True))

@@ -190,6 +190,7 @@ def compared(model: Model) -> float:
     return worst
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("name", NAMES)
 def test_shipped_mechanisms(name: str) -> None:
     assert compared(shipped.model(name)) < 1e-9

@@ -136,6 +136,7 @@ outputs: [multipliers_jacobian]
     assert matrix == pytest.approx(np.array([by_hand]), rel=1e-12, abs=1e-14)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("name", ["rapkm_2rrr_rr", "front_car", "rolling_disc", "delta", "double_pendulum"])
 def test_gradients_are_weighted_rows_of_jacobians(name: str) -> None:
     names = ("inverse_dynamics_gradient", "inverse_dynamics_jacobian"), (
@@ -198,6 +199,7 @@ def test_equations_and_the_steps_that_solve_them_have_the_same_derivatives(name:
     assert np.allclose(first, second, rtol=1e-9, atol=1e-9 * np.abs(second).max())
 
 
+@pytest.mark.campaign
 def test_what_stands_still_is_not_in_the_derivatives() -> None:
     """Symbols that were held or loaded while equations were differentiated have values in the end."""
     model = shipped.model("rapkm_2rrr_rr")
@@ -293,6 +295,7 @@ def test_changes_that_constraints_allow_keep_them(name: str) -> None:
         assert np.linalg.norm(after - before) < 1e-3 * np.linalg.norm(arbitrary)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("exponent", [2, 5, 8])
 def test_derivatives_keep_their_digits_where_coordinates_fail(exponent: int) -> None:
     """The links of an arm all but in line: derivatives of minimal coordinates lose eps/d^3 there, these no digit."""

@@ -80,6 +80,7 @@ def stacked(module: ModuleType, q: Array) -> Array:
     return np.concatenate((module.constraint_jacobian(q), slopes), axis=-2) if q.shape[-1] == 5 else slopes
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(
     "text",
     [ARM, pytest.param(RULER, marks=pytest.mark.slow), pytest.param(DEPENDENT, marks=pytest.mark.slow)],
@@ -104,6 +105,7 @@ def test_rates_are_the_least_and_null_motions_leave_the_task_still(text: str, tm
     assert np.allclose(np.trace(projector, axis1=1, axis2=2), open_, atol=1e-12, rtol=0)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(
     "text",
     [ARM, pytest.param(RULER, marks=pytest.mark.slow), pytest.param(DEPENDENT, marks=pytest.mark.slow)],

@@ -161,6 +161,7 @@ def test_pivots_that_are_no_numbers_are_searched_for_zeros() -> None:
     assert not methods.validity(replace(candidate, divisors=(sine,))).admitted
 
 
+@pytest.mark.campaign
 def test_rows_that_give_coordinates_cost_little() -> None:
     """Three legs leave three accelerations; every other method carries all six and the rows as well."""
     model = load_text(TRIPOD, "model.yaml")

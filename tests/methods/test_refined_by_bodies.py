@@ -144,6 +144,7 @@ def points(model: Model) -> list[dict[str, float]]:
     return states
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("method", ["articulated", "articulated_by_bodies"])
 @pytest.mark.parametrize("text", [PLANE, SPACE], ids=["plane", "space"])
 def test_rows_that_depend_on_each_other(text: str, method: str) -> None:
@@ -155,6 +156,7 @@ def test_rows_that_depend_on_each_other(text: str, method: str) -> None:
         assert one(point) == pytest.approx(other(point), rel=1e-9, abs=1e-8)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("method", ["articulated", "articulated_by_bodies"])
 @pytest.mark.parametrize("text", [HUNG, ALWAYS], ids=["hung", "always"])
 def test_rows_of_loops_beside_quaternions(text: str, method: str) -> None:
@@ -193,6 +195,7 @@ def test_heavy_bodies_at_the_end_of_light_links() -> None:
     assert largest(QUANTITIES[0], BY_FRAMES) < 8
 
 
+@pytest.mark.campaign
 def test_what_was_rejected_under_its_title_is_not_tried_again_by_its_name() -> None:
     """Articulated inertias are a method of their own, and take as long to be rejected a second time."""
     choice = Choice(MOTIONS[0], "articulated inertias", (("articulated inertias", 2000),), "articulated")

@@ -103,6 +103,7 @@ def test_position_velocity_and_jacobian_are_those_of_the_arm(tmp_path: Path) -> 
     assert np.allclose(module.task_jacobian(q) @ rate, slope, atol=1e-11, rtol=0)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("text", [ARM, FIVE_BAR], ids=["arm", "five-bar"])
 def test_rates_and_accelerations_are_those_of_the_motion(text: str, tmp_path: Path) -> None:
     module = kernels(text, tmp_path)

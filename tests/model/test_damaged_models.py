@@ -85,6 +85,7 @@ def test_damage_is_survived(name: str) -> None:
     assert spoiled > 50
 
 
+@pytest.mark.campaign
 @pytest.mark.slow
 def test_long_chains_of_definitions() -> None:
     chain = "\n".join(f"  d{i}: d{i - 1} + x_dot" for i in range(1, 600))

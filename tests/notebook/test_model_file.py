@@ -175,6 +175,7 @@ def test_a_robot_description_lies_beside_a_changed_model() -> None:
     assert model.resolved.outputs == ("inverse_dynamics",)
 
 
+@pytest.mark.campaign
 @pytest.mark.slow
 @pytest.mark.toolchain
 def test_generation_writes_what_the_command_writes(tmp_path: Path) -> None:

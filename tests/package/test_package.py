@@ -58,6 +58,7 @@ def test_single_headers_are_complete(
     run(tmp_path / "user")
 
 
+@pytest.mark.campaign
 def test_cmake_subdirectory(tool: Callable[[str], str], package: Path, tmp_path: Path) -> None:
     (tmp_path / "main.c").write_text(
         '#include "skate.h"\nint main(void) { return sizeof(skate_default_params()) > 0 ? 0 : 1; }\n'
@@ -73,6 +74,7 @@ def test_cmake_subdirectory(tool: Callable[[str], str], package: Path, tmp_path:
     assert all(all(flag in c["command"] for flag in FLAGS) for c in commands if "/src/skate" in c["file"])
 
 
+@pytest.mark.campaign
 def test_cross_build_with_cmake(tool: Callable[[str], str], package: Path, tmp_path: Path) -> None:
     core = "-mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16 -Os"
     compiler = tool("arm-none-eabi-gcc")
@@ -117,6 +119,7 @@ def test_platformio_packs_it(tool: Callable[[str], str], package: Path, tmp_path
     run(tool("pio"), "pkg", "pack", package, "-o", tmp_path / "skate.tar.gz")
 
 
+@pytest.mark.campaign
 def test_the_esp_registry_packs_it(tool: Callable[[str], str], package: Path, tmp_path: Path) -> None:
     run(tool("compote"), "component", "pack", "--name", "skate", "--project-dir", package, "--dest-dir", tmp_path)
     assert list(tmp_path.glob("skate_*.tgz"))

@@ -57,6 +57,7 @@ def test_the_main_way_needs_no_more(light: Path, tmp_path: Path) -> None:
     assert not (tmp_path / "skate" / "report").exists()
 
 
+@pytest.mark.campaign
 def test_what_is_asked_for_says_what_it_needs(light: Path, tmp_path: Path) -> None:
     model = str(ROOT / "models/skate.yaml")
     for arguments, module in (
@@ -72,6 +73,7 @@ def test_what_is_asked_for_says_what_it_needs(light: Path, tmp_path: Path) -> No
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.campaign
 def test_python_compiles_without_more(light: Path) -> None:
     code = (
         "import symgen, sys; car = symgen.load(sys.argv[1]).compile(['inverse_dynamics']); "

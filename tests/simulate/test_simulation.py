@@ -93,6 +93,7 @@ def test_rows_in_other_units_hold_as_well(out: Path, tmp_path: Path) -> None:
         assert [scaled[name] for name in angles] == pytest.approx([plain[name] for name in angles], abs=1e-8)
 
 
+@pytest.mark.campaign
 def test_a_start_at_a_singularity_is_refused(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = (MODELS / "slider_crank.yaml").read_text(encoding="utf-8")
     (out / "locked.yaml").write_text(text.replace("model: slider_crank", "model: locked"), encoding="utf-8")
@@ -109,6 +110,7 @@ def test_a_start_at_a_singularity_is_refused(out: Path, capsys: pytest.CaptureFi
     assert not (out / "locked").exists()
 
 
+@pytest.mark.campaign
 def test_kernels_that_verification_rejects_are_not_integrated(
     out: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -68,6 +68,7 @@ def error(folder: Path, model: str, name: str) -> float:
     return max(abs(row[f"{name}_planned"] - row[name]) for row in rows(folder, model))
 
 
+@pytest.mark.campaign
 def test_computed_torque_follows_and_another_mass_lags_by_what_theory_says(
     run: Callable[..., int], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -94,6 +95,7 @@ def test_a_delay_and_coarse_encoders_make_it_worse(run: Callable[..., int], tmp_
     assert error(tmp_path, "slide", "x") > 2.5 * fine
 
 
+@pytest.mark.campaign
 def test_drives_do_no_more_than_their_limits(
     run: Callable[..., int], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -81,6 +81,7 @@ def swept(model: Model, folder: Path, closest: int = CLOSEST, decades: Sequence[
 SWEPT = ["castors", *(pytest.param(name, marks=pytest.mark.campaign) for name in SYSTEMS if name != "castors")]
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("name", SWEPT)
 def test_float64_breaks_it_nowhere(name: str, tmp_path: Path) -> None:
     held = [one for one in swept(SYSTEMS[name](), tmp_path) if one.scalar == "float64"]
@@ -88,6 +89,7 @@ def test_float64_breaks_it_nowhere(name: str, tmp_path: Path) -> None:
     assert breaches(held) == ()
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("name", SWEPT)
 def test_float32_holds_it_towards_singular_sets_and_four_decades(name: str, tmp_path: Path) -> None:
     held = swept(SYSTEMS[name](), tmp_path, closest=12, decades=(1, 2, 4))

@@ -34,6 +34,7 @@ def slider_crank(tmp_path_factory: pytest.TempPathFactory) -> tuple[RunnableKern
     return RunnableKernels(model("slider_crank"), folder, (*PIECES, *STRESSED, *names)), folder
 
 
+@pytest.mark.campaign
 def test_powers_of_two_change_no_bit_of_the_inputs(slider_crank: tuple[RunnableKernels, Path], tmp_path: Path) -> None:
     scaled, failures = scaling(reference("slider_crank"), slider_crank[0], tmp_path)
     assert failures == ()
@@ -55,6 +56,7 @@ def test_no_odd_number_gives_an_odd_result_with_status_0(tmp_path: Path) -> None
     assert all(0 < one.answered < one.calls for one in counts)
 
 
+@pytest.mark.campaign
 @pytest.mark.toolchain
 def test_projections_keep_a_long_run_on_the_constraints(
     slider_crank: tuple[RunnableKernels, Path], tool: Callable[[str], str]

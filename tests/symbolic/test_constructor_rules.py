@@ -135,6 +135,7 @@ def test_constructors_keep_the_value(tree: object) -> None:
             assert value == pytest.approx(plain(tree, point), rel=1e-8, abs=1e-8)
 
 
+@pytest.mark.campaign
 @QUICK
 @given(st.lists(trees, min_size=1, max_size=3))
 def test_sharing_angles_keeps_the_values(forest: list[object]) -> None:

@@ -206,6 +206,7 @@ def _built(graph: Graph, tree: object) -> Scalar:
     raise TypeError(tree)
 
 
+@pytest.mark.campaign
 @QUICK
 @given(st.lists(trees, min_size=1, max_size=3))
 def test_constructors_are_identities(forest: list[object]) -> None:
@@ -214,6 +215,7 @@ def test_constructors_are_identities(forest: list[object]) -> None:
         same_values("the constructors", [*map(plain, forest)], [_built(graph, tree) for tree in forest])
 
 
+@pytest.mark.campaign
 @QUICK
 @given(st.lists(trees, min_size=2, max_size=4))
 def test_sharing_angles_is_an_identity(forest: list[object]) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import random
 
+import pytest
+
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.polynomials.nested_factors import nested_factors
 from symgen.symbolic.scalar import Graph, Scalar
@@ -40,6 +42,7 @@ def test_what_is_no_product_stays_whole() -> None:
         assert nested_factors(scalar, _fixed) == (scalar,)
 
 
+@pytest.mark.campaign
 def test_long_sums_are_no_deep_recursion() -> None:
     graph = Graph()
     a, b, *_ = map(graph.symbol, LETTERS)

@@ -70,6 +70,7 @@ def _drawn(seed: int) -> tuple[Graph, Scalar, dict[Scalar, int], int | Fraction]
     return graph, a, asked, draw.choice(NUMBERS)
 
 
+@pytest.mark.campaign
 def test_a_quotient_is_what_is_asked_for() -> None:
     held = other = 0
     for seed in range(DRAWS):
@@ -95,6 +96,7 @@ def test_a_product_is_its_monomial() -> None:
         assert graph.products.quotient(a, powers, coefficient).is_one
 
 
+@pytest.mark.campaign
 def test_divisors_that_are_no_factors_are_not_lost(monkeypatch: pytest.MonkeyPatch) -> None:
     """What is dropped there is noticed at once, and by the draws above."""
 

@@ -26,6 +26,7 @@ def page(tmp_path: Path) -> Page:
     return there
 
 
+@pytest.mark.firmware
 @pytest.mark.slow
 @pytest.mark.toolchain
 def test_the_controller_follows_the_circle(page: Page, tool: Callable[[str], str]) -> None:

@@ -77,6 +77,7 @@ def test_a_model_passes_with_the_same_bits_at_every_level(report: TargetReport) 
     assert "the same bits" in target_tables(report)
 
 
+@pytest.mark.firmware
 def test_the_package_passes_as_its_user_builds_it(report: TargetReport, tool: Callable[[str], str]) -> None:
     tool("cmake")
     cells = {c.scalar: c for c in report.cells if c.compiler == "package"}
@@ -145,6 +146,7 @@ def test_images_run_on_every_core(tool: Callable[[str], str], tmp_path: Path, na
     assert (image.parent / "o").read_bytes() == b"ok"
 
 
+@pytest.mark.firmware
 def test_fused_operations_would_be_noticed(tool: Callable[[str], str], tmp_path: Path) -> None:
     """Compiled against the rules (contraction), the bits differ: what the flags are for, and that a run can fail."""
     for name in ARM:

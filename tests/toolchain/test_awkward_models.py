@@ -57,6 +57,7 @@ def made(folder: Path, text: str) -> Path:
     return folder
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("compiler", ["gcc", "clang", "g++"])
 @pytest.mark.parametrize("text", [NAMES, FREE], ids=["names", "free"])
 def test_compiles_after_every_macro(tool: Callable[[str], str], tmp_path: Path, compiler: str, text: str) -> None:

@@ -243,6 +243,7 @@ def test_a_model_that_is_called_otherwise_is_told_so(tmp_path: Path) -> None:
     assert "rob_f_model" in message
 
 
+@pytest.mark.campaign
 def test_files_of_models_differ_but_for_capitals(neighbours: Path) -> None:
     """A disk without capitals holds `rob` or `Rob`, in folders of their own anyway."""
     stems = {name: {file.stem for file in (neighbours / name / "c").glob("*.h")} for name in SIDE_BY_SIDE}

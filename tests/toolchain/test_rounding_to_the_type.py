@@ -77,6 +77,7 @@ def _every(folder: Path) -> list[Path]:
     return paths
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("flags", [("-m32", "-O2"), ("-m32", "-std=c99"), ("-m32", "-mfpmath=387", "-msse2")])
 def test_x87_is_refused(gcc32: str, folder: Path, flags: tuple[str, ...]) -> None:
     for source in _every(folder):
@@ -85,6 +86,7 @@ def test_x87_is_refused(gcc32: str, folder: Path, flags: tuple[str, ...]) -> Non
         assert "-msse2 -mfpmath=sse" in made.stderr
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("flags", [("-mfpmath=387",), ("-mfpmath=sse+387",)])
 def test_x87_is_refused_on_64_bits(tool: Callable[[str], str], folder: Path, flags: tuple[str, ...]) -> None:
     gcc = _gcc_of_x86(tool)
@@ -94,12 +96,14 @@ def test_x87_is_refused_on_64_bits(tool: Callable[[str], str], folder: Path, fla
         assert "FLT_EVAL_METHOD" in made.stderr
 
 
+@pytest.mark.campaign
 def test_32_bits_with_sse_are_accepted_without_a_warning(gcc32: str, folder: Path) -> None:
     for source in _every(folder):
         made = _compiled(gcc32, source, *STRICT, *SSE, "-Wno-unused-function")
         assert made.returncode == 0, made.stderr
 
 
+@pytest.mark.campaign
 def test_numbers_of_double_precision_are_asked_for_where_there_are_any(
     tool: Callable[[str], str], folder: Path
 ) -> None:

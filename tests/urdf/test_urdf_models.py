@@ -267,6 +267,7 @@ outputs: [inverse_dynamics, forward_dynamics]
 """
 
 
+@pytest.mark.campaign
 @pytest.mark.slow
 def test_a_loop_in_the_model_file_closes_a_four_bar_verified_all_the_way(tmp_path: Path) -> None:
     model = load(tmp_path, FOUR_BAR, CLOSED)

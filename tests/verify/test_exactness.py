@@ -94,6 +94,7 @@ configuration: {a: -2.83, b: -2.83, c: -2.83, d: -2.83, e: -2.83}
 """
 
 
+@pytest.mark.campaign
 def test_pivots_that_are_equal_choose_by_what_is_known_best_and_are_the_same_with_twice_the_digits() -> None:
     model = load_text(HEADINGS, "headings.yaml")
     derivations = derive_quantities(model, ("nullspace_projector",), {"nullspace_projector": "householder"})

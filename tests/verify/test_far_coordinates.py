@@ -108,6 +108,7 @@ def test_where_masses_are_singular_out_of_a_range_a_coordinate_is_bounded() -> N
             assert after < FACTOR
 
 
+@pytest.mark.campaign
 def test_where_inputs_lose_a_direction_out_of_a_range_a_coordinate_is_bounded() -> None:
     """The chain stretches at 0, and u by minors loses digits there: the end that it comes from is bounded."""
     draft, _ = bounded(STRETCHED, "inverse_dynamics", "minor")
@@ -153,6 +154,7 @@ def test_a_loss_that_constraints_lead_back_into_the_ranges_bounds_nothing(monkey
     assert FarCoordinates(expected).bounds(draft.kernels("forward_dynamics"), draft.programs)["float64"] == ()
 
 
+@pytest.mark.campaign
 def test_bounds_of_coordinates_are_told_and_taken_up_again(tmp_path: Path) -> None:
     path = tmp_path / "top.yaml"
     path.write_text(TOP, encoding="utf-8")

@@ -101,6 +101,7 @@ def bounds_by_name(expected: Expected, kernel: Kernel, scalar: Scalar = "float64
     return {bound.parameter: bound for bound in FarParameters(expected).bounds(kernels, programs)[scalar]}
 
 
+@pytest.mark.campaign
 def test_what_hides_the_rest_is_bounded_above(expected: Expected) -> None:
     """(c d + m a / 1000) - m a / 1000 loses c d when m is large."""
     small = Statement(("s",), "mul", (Local("m"), Literal(Fraction(1, 1000))))
@@ -139,6 +140,7 @@ def test_other_long_kernels_share_what_three_may_take(expected: Expected, monkey
     assert afforded == [MOST, MOST // 4]
 
 
+@pytest.mark.campaign
 def test_what_is_divided_by_is_bounded_below(expected: Expected) -> None:
     """(c m + a / (1000 d)) - a / (1000 d) loses c m when d is small."""
     kernel = straight(
@@ -167,6 +169,7 @@ def test_what_is_divided_by_is_bounded_below(expected: Expected) -> None:
     assert nearest <= bound.low <= 1.1 * nearest
 
 
+@pytest.mark.campaign
 def test_what_few_states_lose_is_bounded(expected: Expected) -> None:
     """(c d + h) - h with h = m 1e-12 / ((a - a_13)^2 + 1e-12), which hides c d at the thirteenth state alone."""
     place = 12
@@ -201,6 +204,7 @@ def test_what_float32_does_not_hold_is_bounded(expected: Expected) -> None:
     assert bounds_by_name(expected, kernel, "float64") == {}
 
 
+@pytest.mark.campaign
 @pytest.mark.filterwarnings("error")
 def test_a_type_may_refuse_where_nothing_is_estimated(expected: Expected) -> None:
     """The squares of errors of m^18 are no numbers of float64 any more, m^18 none of float32."""
@@ -210,6 +214,7 @@ def test_a_type_may_refuse_where_nothing_is_estimated(expected: Expected) -> Non
     assert 10 < bound.high < 1e3
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(
     "status", [Status.MASS_RANK, Status.CONSTRAINT_RANK, Status.ACTUATION_RANK, Status.NOT_FINITE]
 )
@@ -227,6 +232,7 @@ def test_what_is_taken_for_none_beside_a_mass_is_bounded(expected: Expected, sca
     assert 1e5 < bound.high < 1e7
 
 
+@pytest.mark.campaign
 def test_pairs_of_float32_are_bounded_by_what_plain_numbers_lose(expected: Expected) -> None:
     """(c d + m m a) - m m a has as many digits more with pairs: of float64 the last of them go with a mass of 1e9."""
     plain = straight(
@@ -248,6 +254,7 @@ def test_pairs_of_float32_are_bounded_by_what_plain_numbers_lose(expected: Expec
     assert 1e2 < bound.high < 1e5
 
 
+@pytest.mark.campaign
 def test_plain_numbers_of_float32_beside_pairs_of_float64_are_bounded(expected: Expected) -> None:
     """One type alone may need twice the digits: (c d + m a) - m a in plain numbers loses a digit by each power of m."""
     plain = straight(
@@ -265,6 +272,7 @@ def test_plain_numbers_of_float32_beside_pairs_of_float64_are_bounded(expected: 
     assert bound.high < 1e2
 
 
+@pytest.mark.campaign
 def test_what_a_type_loses_further_away_does_not_move_the_bound_of_the_other(
     monkeypatch: pytest.MonkeyPatch, expected: Expected
 ) -> None:
@@ -332,6 +340,7 @@ def of_an_offset(*statements: Statement) -> Kernel:
     return Kernel(MULTIPLIERS, (), loads, (Block(statements, ()),), (Local(statements[-1].targets[0]),), (1,))
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("ends", ["[0, 1]", "[-1, 1]"])
 def test_a_range_that_includes_0_is_not_bounded_below(ends: str, tmp_path: Path) -> None:
     """(k + x - x) (d + x - x) loses what is small of both; a bound of k would refuse a part of its range."""
@@ -349,6 +358,7 @@ def test_a_range_that_includes_0_is_not_bounded_below(ends: str, tmp_path: Path)
     assert bound.low is not None
 
 
+@pytest.mark.campaign
 def test_what_is_0_at_every_state_has_no_bound(tmp_path: Path) -> None:
     """d + k + x - x loses d and k whatever they are."""
     large = Literal(Fraction(10**6))
@@ -362,6 +372,7 @@ def test_what_is_0_at_every_state_has_no_bound(tmp_path: Path) -> None:
     assert "k" not in bounds
 
 
+@pytest.mark.campaign
 def test_status_0_means_a_result_within_the_tolerance_however_large_the_mass(made: Result, expected: Expected) -> None:
     program = made.programs["float64"]
     kernel = next(one for one in program.kernels if one.name == MULTIPLIERS)
@@ -459,6 +470,7 @@ def test_a_bound_is_recorded_told_and_taken_up_again(made: Result, tmp_path: Pat
     assert again.written == made.programs
 
 
+@pytest.mark.campaign
 def test_a_type_that_is_left_out_has_no_bounds(crane: Path, expected: Expected) -> None:
     bounds = ParameterBounds(expected)
     draft = bounds.of(draft_of(load_model(crane), (MULTIPLIERS,), Options()))

@@ -39,6 +39,7 @@ def test_a_later_compiler_starts_when_it_is_asked(tool: Callable[[str], str], tm
     assert waiting.library().three() == 3
 
 
+@pytest.mark.campaign
 @pytest.mark.toolchain
 def test_the_certificate_is_the_same(monkeypatch: pytest.MonkeyPatch, tool: Callable[[str], str]) -> None:
     tool("cc")

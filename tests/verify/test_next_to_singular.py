@@ -7,6 +7,7 @@ from fractions import Fraction
 from functools import cache
 
 import numpy as np
+import pytest
 
 from symgen.generation.draft import Draft, draft_of
 from symgen.generation.results import Options
@@ -114,6 +115,7 @@ def units(kernel: Kernel, state: State) -> float | Status:
     return known.in_units(known.distance(made.entries))
 
 
+@pytest.mark.campaign
 def test_a_kernel_that_loses_digits_next_to_a_drop_has_a_status_there() -> None:
     """Further away, where the other states of a verification are, nothing changes."""
     draft, expected = lift()
@@ -128,6 +130,7 @@ def test_a_kernel_that_loses_digits_next_to_a_drop_has_a_status_there() -> None:
     assert all(isinstance(one, float) and one < FACTOR for one in after[1:])
 
 
+@pytest.mark.campaign
 def test_a_number_too_small_to_have_digits_is_a_status() -> None:
     """Beside what it is made of it is as large as ever: 1e-43 of float32, of which two bits are left."""
     name = "inverse_dynamics"
@@ -158,6 +161,7 @@ def test_configurations_around_0_are_met_where_no_direction_is_lost() -> None:
     assert np.abs(np.sin(q[:, 0]) - np.sin(q[:, 1]) + 0.25 / 0.16 * np.sin(q[:, 0] + q[:, 3])).max() < 1e-9
 
 
+@pytest.mark.campaign
 def test_pairs_of_float32_have_a_status_where_they_have_lost_all_digits() -> None:
     """Three inputs for one direction: what they do along it is as much as ever where the rows have none left of it."""
     name = "inverse_dynamics"

@@ -66,6 +66,7 @@ def test_functions_of_the_machine_take_no_part(monkeypatch: pytest.MonkeyPatch) 
     digest()
 
 
+@pytest.mark.campaign
 def test_an_older_processor_comes_to_the_same_bits() -> None:
     """Of libraries that choose what they run by the processor."""
     path = os.pathsep.join(sys.path)

@@ -138,6 +138,7 @@ configuration: {a: 0.1, b: 0.5, c: 0.6, d: 1.1}
 """
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("scalar", ["float64", "float32"])
 def test_loops_that_stand_twice_have_a_unit_of_error(scalar: str) -> None:
     """Their numbers moved apart no configuration closes both, and there would be no value beside any state."""

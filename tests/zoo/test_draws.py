@@ -101,6 +101,7 @@ def test_as_many_velocities_are_independent_as_there_are_degrees_of_freedom() ->
         assert len(independent(sketch)) == 2
 
 
+@pytest.mark.campaign
 def test_parallelograms_are_driven_at_their_own_cranks() -> None:
     """Whatever the coordinates are called."""
     for index in range(40):
@@ -129,6 +130,7 @@ def test_a_link_with_a_reserved_name_is_a_mistake() -> None:
     assert MISTAKE in drawn.marks
 
 
+@pytest.mark.campaign
 def test_a_mistake_on_purpose_is_in_the_file() -> None:
     """Whatever a family writes over the ends of files: a start at a singular pose keeps the name that is none, too."""
     mistaken = [drawn for index in range(50, 60) if MISTAKE in (drawn := draw(1360, index, "")).marks]

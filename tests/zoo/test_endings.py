@@ -79,6 +79,7 @@ def instead(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
     return use
 
 
+@pytest.mark.campaign
 def test_a_run_without_end_is_ended_with_its_children(instead, tmp_path: Path) -> None:
     child = "import subprocess, sys\nsubprocess.run([sys.executable, '-c', 'while True: pass'])\n"
     run = run_command(instead(child), tmp_path / "out", cpu=1)
@@ -93,6 +94,7 @@ def test_a_run_that_takes_too_much_memory_is_ended(instead, tmp_path: Path) -> N
     assert run.megabytes > 100
 
 
+@pytest.mark.campaign
 def test_memory_before_a_fork_counts_once(instead, tmp_path: Path) -> None:
     forked = "import os, time\nblock = bytearray(b'1') * 60_000_000\nos.fork()\ntime.sleep(1)\n"
     run = run_command(instead(forked), tmp_path / "out", megabytes=100)

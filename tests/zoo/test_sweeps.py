@@ -256,6 +256,7 @@ configuration: {t_1: 1.12, t_2: -1.87913, t_3: 1.12, t_4: -1.87913, t_5: 1.12}
 """
 
 
+@pytest.mark.campaign
 def test_inputs_of_dependent_rows_hold_the_rule_towards_a_dead_point() -> None:
     """Determinants that are 0 on V hold a rounding beside it: at a dead point they are as large as the others."""
     model = load_text(RING, "ring.yaml")

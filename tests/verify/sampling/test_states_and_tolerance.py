@@ -259,6 +259,7 @@ def test_distance_is_exact_where_floats_cancel() -> None:
     assert expectation.in_units(expectation.distance(worse)) > 16
 
 
+@pytest.mark.campaign
 def test_states_are_found_where_most_branches_hold_the_drive() -> None:
     """Of twelve four-bars in a row each may lie on a branch that stops those before it."""
     model = load_text(row_of_four_bars(12), "row.yaml")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from math import pi, sin
 
+import pytest
+
 from symgen.model.load import load_text
 from symgen.verify.reference.reference import Reference
 from symgen.verify.sampling.modes import modes
@@ -44,6 +46,7 @@ def _knees(quantity: str) -> list[float]:
     return [float(sample.state.q[4]) for sample in samples]
 
 
+@pytest.mark.campaign
 def test_states_on_a_branch_where_nothing_measured_moves_are_left_out() -> None:
     assert any(abs(sin(knee)) < 1e-9 for knee in _knees("inverse_dynamics"))
     assert all(abs(sin(knee)) > 1e-6 for knee in _knees("velocity_from_measured"))

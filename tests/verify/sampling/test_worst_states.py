@@ -285,6 +285,7 @@ def test_measures_in_lanes_are_those_of_the_reference(name: str) -> None:
         assert measured == pytest.approx(exact, rel=1e-9)
 
 
+@pytest.mark.campaign
 def test_of_directions_that_are_lost_together_the_least_counts() -> None:
     """Rows (1, 0, 0), (c, d, 0) and (c, 0, 2 d) lose two directions with d; with (0, 0, 1) for the last, one."""
     part = RankedPart(range(3), range(3), [], 3, 0)
@@ -304,6 +305,7 @@ def test_of_directions_that_are_lost_together_the_least_counts() -> None:
     assert 1 < min(ratios) <= max(ratios) < 1.005
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("name", ["three_rrr", "skate"])
 def test_states_are_led_towards_a_drop_of_rank_and_stay_above_the_least(name: str) -> None:
     """A platform towards where its drives do not hold it; row and drives of a skate never lose rank."""
@@ -368,6 +370,7 @@ outputs: [inverse_dynamics]
 """
 
 
+@pytest.mark.campaign
 def test_u_is_judged_nearer_to_singular_states_than_samples_are() -> None:
     """What every method loses beside straight legs is seen though no sample comes near; twice the digits hold."""
     model = load_text(LIFT, "lift.yaml")
@@ -408,6 +411,7 @@ outputs: [inverse_dynamics]
 """
 
 
+@pytest.mark.campaign
 def test_surplus_rows_hide_no_loss_of_digits() -> None:
     """The angle between the slides is given to a share of itself, and worked out of angles that are not small."""
     model = load_text(SLIDES, "slides.yaml")
@@ -446,6 +450,7 @@ outputs: [multipliers]
 """
 
 
+@pytest.mark.campaign
 def test_what_float32_loses_is_measured_where_next_to_nothing_drives() -> None:
     """What the spring leaves of a force that it does not load is all there is then; no estimate tells."""
     model = load_text(BOOM, "boom.yaml")
