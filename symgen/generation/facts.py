@@ -34,8 +34,7 @@ def _failing_methods(draft: Draft) -> tuple[tuple[str, str], ...]:
     remarks = list(invalid_methods(derivations, ()))
     if of_u is not None and methods is not None and of_u.validity.admitted:
         others = methods.failing() or of_u.failed
-        asked_for = "it is made if asked for (--method"
-        remarks += ((f"method {name} of u", f"{why}; {asked_for} {name})") for name, why in others)
+        remarks += ((f"method {name} of u", f"{why}; {_asked_for(f'--method {name}')}") for name, why in others)
     # articulated inertias are taken only where G is definite, and then no method fails
     moving = [choice.quantity for choice in derivations.choices if choice.method not in ("", BY_FRAMES)]
     if moving:
@@ -43,8 +42,12 @@ def _failing_methods(draft: Draft) -> tuple[tuple[str, str], ...]:
 
         for name, why in failing_motions(derivations.mechanics):
             asked = " ".join(f"--method {quantity}={name}" for quantity in moving)
-            remarks.append((f"method {name} of {' and '.join(moving)}", f"{why}; it is made if asked for ({asked})"))
+            remarks.append((f"method {name} of {' and '.join(moving)}", f"{why}; {_asked_for(asked)}"))
     return tuple(remarks)
+
+
+def _asked_for(options: str) -> str:
+    return f"it is made if asked for by `{options}`"
 
 
 def invalid_methods(derivations: Selection, failed: tuple[tuple[str, str], ...]) -> tuple[tuple[str, str], ...]:

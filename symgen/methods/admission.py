@@ -10,7 +10,7 @@ from symgen.methods.system import MethodInput
 from symgen.records import dataclass
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.transplant import transplanted
-from symgen.validity.formula import formula
+from symgen.validity.formula import formula, quoted
 from symgen.validity.proof import Proof
 from symgen.validity.resolution import distinguishable
 from symgen.validity.search import SEARCH_STARTS, ZeroSearch
@@ -56,7 +56,7 @@ class Validity:
     def explanation(self) -> str:
         """One sentence for the report, derivation.json and the terminal."""
         if self.singular:
-            places = " or ".join(f"{entry.where_zero} = 0" for entry in self.singular)
+            places = " or ".join(f"{quoted(entry.where_zero)} = 0" for entry in self.singular)
             return f"{FAILS} {places}, although B and M~ keep their ranks"
         if self.lost:
             return LOST

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from typing import TypeAlias
 
+from symgen.diagnostics import Mistake, Span
+from symgen.model.expressions.names import is_name
+from symgen.model.expressions.parser import parse_expression
+from symgen.model.file.source import ScalarNode
 from symgen.model.quantities import QUANTITIES
 from symgen.report.document import (
     Emphasis,
@@ -14,6 +19,7 @@ from symgen.report.document import (
     Paragraph,
     Text,
 )
+from symgen.report.mathematics.from_expression import expression_layout
 from symgen.report.mathematics.layout import (
     Accent,
     Fenced,
@@ -43,6 +49,31 @@ def say(pattern: str, *slots: Slot) -> Text:
         parts.append(slot if isinstance(slot, (str, InlineCode, Emphasis, FormulaReference)) else InlineMath(slot))
         parts.append(piece)
     return tuple(part for part in parts if part != "")
+
+
+# What messages quote, and projected matrices and their pseudoinverses, which they write in ASCII.
+_MARKED = re.compile(r"`([^`]+)`|\b([A-Z])~(\+?)")
+
+
+def worded(text: str) -> Text:
+    """A message in words, with what it quotes: formulas of the model language are set, all else is code."""
+    parts: list[Inline] = []
+    end = 0
+    for match in _MARKED.finditer(text):
+        quoted, letter, plus = match.groups()
+        parts += [text[end : match.start()], _projected(letter, plus) if quoted is None else _quoted(quoted)]
+        end = match.end()
+    return tuple(part for part in (*parts, text[end:]) if part != "")
+
+
+def _projected(letter: str, plus: str) -> InlineMath:
+    tilde = Accent(bold(letter), "tilde")
+    return InlineMath(pseudoinverse(tilde) if plus else tilde)
+
+
+def _quoted(text: str) -> InlineMath | InlineCode:
+    tree = None if is_name(text) else parse_expression(ScalarNode(text, Span(1, 1, 1), text, quoted=False))
+    return InlineCode(text) if tree is None or isinstance(tree, Mistake) else InlineMath(expression_layout(tree))
 
 
 def paragraph(pattern: str, *slots: Slot) -> Paragraph:

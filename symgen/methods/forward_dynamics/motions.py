@@ -30,7 +30,7 @@ from symgen.model.quantities import MOTIONS
 from symgen.records import dataclass
 from symgen.runtime.effort import TooLongError, at_most, worth_trying
 from symgen.validity.definiteness import Indefinite, indefinite
-from symgen.validity.formula import formula
+from symgen.validity.formula import formula, quoted
 
 # What `minor` is worth in operations where coordinates have several units: it alone does not add what has different
 # units up, as norms and reflections do (float32 q_ddot of a robot on wheels: 2 units of error in place of 24).
@@ -181,5 +181,5 @@ def _singular(mechanics: System, indefinite: Indefinite) -> Singular:
     coordinate = mechanics.model.coordinates[indefinite.coordinate].name
     pivot = f"the pivot of {coordinate} in G"
     if not indefinite.pivot.is_zero:
-        pivot += f", {formula(indefinite.pivot)}"
+        pivot += f", {quoted(formula(indefinite.pivot))}"
     return Singular(pivot, tuple((name, round(value, DECIMALS)) for name, value in indefinite.state))

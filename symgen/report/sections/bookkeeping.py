@@ -13,7 +13,7 @@ from symgen.report.document import (
     Table,
     Text,
 )
-from symgen.report.prose import SYMBOLS, paragraph, say
+from symgen.report.prose import SYMBOLS, paragraph, say, worded
 
 KINDS = {"add": "+ −", "mul": "×", "div": "÷", "sqrt": "√", "sincos": "sincos", "other": "other"}
 
@@ -22,7 +22,7 @@ def omissions(context: Context) -> Section:
     """Decisions of the generator with their reasons."""
     blocks: list[Block] = []
     if context.input.skipped:
-        rows = tuple((_quantity_or_text(what), say("{}", sentence(why))) for what, why in context.input.skipped)
+        rows = tuple((_quantity_or_text(what), worded(sentence(why))) for what, why in context.input.skipped)
         blocks += [
             paragraph("This system does not need everything the general theory provides:"),
             Table((say("What"), say("Why")), rows, (2, 3)),
@@ -30,7 +30,7 @@ def omissions(context: Context) -> Section:
     else:
         blocks.append(paragraph("Nothing was left out."))
     if context.input.notices:
-        blocks += [paragraph("Notices:"), Items(tuple(say("{}", sentence(text)) for text in context.input.notices))]
+        blocks += [paragraph("Notices:"), Items(tuple(worded(sentence(text)) for text in context.input.notices))]
     return Section(say("What was left out, and why"), tuple(blocks))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from symgen.report.content import ErrorRow, Verification
 from symgen.report.context import Context, sentence
 from symgen.report.document import Block, Figure, InlineCode, Section, Table
-from symgen.report.prose import paragraph, say
+from symgen.report.prose import paragraph, say, worded
 
 # Units of error: less than this is shown as less.
 SMALLEST_SHOWN = 1e-3
@@ -75,7 +75,7 @@ def _laws(measured: Verification) -> Table:
     targets = list(dict.fromkeys(target for target, _, _ in measured.invariants))
     values = {(target, law): value for target, law, value in measured.invariants}
     rows = tuple(
-        (say("{}", law), *(say("{}", values.get((target, law), "")) for target in targets))
+        (worded(law), *(say("{}", values.get((target, law), "")) for target in targets))
         for law in dict.fromkeys(law for _, law, _ in measured.invariants)
     )
     return Table(tuple(say("{}", heading) for heading in ("Law", *targets)), rows, (0, *(1 for _ in targets)))
