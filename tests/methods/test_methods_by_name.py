@@ -55,7 +55,7 @@ def test_a_singular_method_is_made_and_says_where_it_fails(tmp_path: Path, capsy
     assert singular["where_zero"] == "l_1*sin(b_2)*l_1*sin(b_3)"
     assert set(singular["for_example"]) >= {"a_1", "b_3"}
     assert main([RAPKM, *FEW[:-1], "--out", str(tmp_path), "--method", "nullspace"]) == 0
-    assert "this method is singular where l_1*sin(b_2)*l_1*sin(b_3) = 0" in capsys.readouterr().out
+    assert "this method is singular where `l_1*sin(b_2)*l_1*sin(b_3)` = 0" in capsys.readouterr().out
 
 
 def test_a_method_the_system_does_not_have(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -105,7 +105,7 @@ def test_a_method_of_accelerations_that_fails_says_where(tmp_path: Path, capsys:
     given = (str(file), "--only", "c", "--no-verify", "--out", str(tmp_path))
     assert main([*given, "--method", "forward_dynamics=schur_qr"]) == 0
     printed = " ".join(capsys.readouterr().out.split())
-    where = "this method is singular where the pivot of y in G, m*cos(turn)**2 = 0"
+    where = "this method is singular where the pivot of y in G, `m*cos(turn)**2` = 0"
     assert f"validity of forward_dynamics at every regular state method schur_qr: {where}" in printed
     derivation = json.loads((tmp_path / "massless" / "derivation.json").read_text())
     method = derivation["method_of_forward_dynamics"]
