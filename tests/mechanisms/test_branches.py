@@ -16,12 +16,14 @@ from symgen.diagnostics import ModelError
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Status
 from symgen.lowering.schedule import schedule
-from symgen.mechanics.genericity import genericity
+from symgen.mechanics.genericity import genericity, parameter_values
 from symgen.mechanics.system import System
 from symgen.model.configurations.assembly import ConfigurationRanks, RankedConfiguration
 from symgen.model.load import load_text
 from symgen.model.model import Model
 from symgen.quantities.select import derive_quantities
+from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.matrix import flatten
 from symgen.validity.search import ZeroSearch
 from symgen.verify.reference.reference import Reference
 
@@ -52,6 +54,23 @@ def test_equal_bars_hold_their_weight_on_the_branch_that_moves(count: int, scale
     assert inverse(model, held)[0] == Status.ACTUATION_RANK
     # all bars in line: where the branches meet
     assert inverse(model, [0.0] * model.n)[0] != Status.OK
+
+
+def test_what_turns_in_another_assembly_is_not_said_to_stand_still_for_ever() -> None:
+    model = load_text(row_of_four_bars(2), "row.yaml")
+    messages = [notice.message for notice in model.notices]
+    assert not any(" cannot move: " in message for message in messages)
+    (held,) = [message for message in messages if " cannot move in the configurations that were looked at: " in message]
+    assert held.startswith("`b2` ")
+    assert "hold b2 = 0 there" in held
+    # the last crank and its coupler fold back on the ground, and turn with the first two
+    folded = {"a0": 0.8, "a1": 0.8, "a2": math.pi, "b1": 0.0, "b2": 0.8 - math.pi}
+    mechanics = System(model)
+    rows = Evaluator(flatten(mechanics.constraint_jacobian))({**parameter_values(mechanics), **folded})
+    motion = {"a0": 1.0, "a1": 1.0, "a2": 0.0, "b1": 0.0, "b2": 1.0}
+    n = mechanics.n
+    moved = [sum(rows[i * n + j] * motion[c.name] for j, c in enumerate(model.coordinates)) for i in range(mechanics.r)]
+    assert moved == pytest.approx([0.0] * 4, abs=1e-12)
 
 
 def test_a_singular_start_and_a_branch_of_other_ranks_are_told() -> None:

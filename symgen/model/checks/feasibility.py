@@ -26,6 +26,11 @@ MORE_SAMPLES = 40
 # Coordinates of a configuration that a message lists.
 MOST_SHOWN = 6
 
+# What rounding leaves of a coordinate that is 0, at most.
+ROUNDING = 1e-12
+# How far beside the constraints rows are looked at, in rad or m: far enough for a rank to be another.
+BESIDE = 0.0371
+
 # In rad, or of half a range: a declared start that is moved by more is told.
 MOVED_FAR = 0.5
 
@@ -165,27 +170,61 @@ def _other_branches(mechanics: NumericSystem, assembly: Assembly, span: Span | N
 def _shown(mechanics: NumericSystem, place: RankedConfiguration) -> str:
     """The first coordinates of a configuration."""
     pairs = zip(mechanics.coordinates, place.q, strict=True)
-    shown = [f"{c.name} = {value:.3g}" for c, value in pairs][:MOST_SHOWN]
+    shown = [f"{c.name} = {_clean(value):.3g}" for c, value in pairs][:MOST_SHOWN]
     return ", ".join(shown) + (", ..." if len(place.q) > MOST_SHOWN else "")
 
 
+def _clean(value: float) -> float:
+    """A value without what rounding leaves of 0."""
+    return 0.0 if abs(value) < ROUNDING else value
+
+
 def _held(mechanics: NumericSystem, assembly: Assembly, span: Span | None) -> Iterator[Notice]:
-    """Coordinates that no admissible motion changes: more often an axis that is not parallel than what was meant."""
-    places = [(mechanics.coordinates[i].name, assembly.places[0].q[i]) for i in assembly.held]
-    if places:
-        names = shown_names(name for name, _ in places)
-        listed = ", ".join(f"{name} = {value:.4g}" for name, value in places[:MOST_SHOWN])
-        listed += ", ..." if len(places) > MOST_SHOWN else ""
+    """Coordinates that no admissible motion changes: more often an axis that is not parallel than what was meant.
+
+    Held are they along the branches that were looked at; where rows hold them beside the constraints, too, on any.
+    """
+    everywhere = [i for i in assembly.held if _is_held_everywhere(mechanics, assembly, i)]
+    here = [i for i in assembly.held if i not in everywhere]
+    if everywhere:
         rotations = (frame.rotation for frame in mechanics.mechanism.frames)
         parts = {x.name for r in rotations if isinstance(r, Quaternion) for x in r.parts if isinstance(x, Name)}
         # an attitude has four parts, whatever it is held to
-        spare = sum(name not in parts for name, _ in places)
-        left_out = f", else leave the coordinate{'s' if spare > 1 else ''} out" if spare == len(places) else ""
+        spare = sum(mechanics.coordinates[i].name not in parts for i in everywhere)
+        left_out = f", else leave the coordinate{'s' if spare > 1 else ''} out" if spare == len(everywhere) else ""
+        held = _values(mechanics, assembly, everywhere)
         yield Notice(
-            f"{names} cannot move: the constraints hold {listed}; if that is not meant, check axes, lengths and "
-            f"loops{left_out}",
+            f"{_named(mechanics, everywhere)} cannot move: the constraints hold {held}; if that is not meant, check "
+            f"axes, lengths and loops{left_out}",
             span,
         )
+    if here:
+        yield Notice(
+            f"{_named(mechanics, here)} cannot move in the configurations that were looked at: the constraints hold "
+            f"{_values(mechanics, assembly, here)} there, and may leave {'it' if len(here) == 1 else 'them'} free in "
+            f"others; if that is not meant, check axes, lengths and loops, or give a `configuration`",
+            span,
+        )
+
+
+def _named(mechanics: NumericSystem, places: Sequence[int]) -> str:
+    return shown_names(mechanics.coordinates[i].name for i in places)
+
+
+def _values(mechanics: NumericSystem, assembly: Assembly, places: Sequence[int]) -> str:
+    """What coordinates are held at."""
+    q = assembly.places[0].q
+    listed = ", ".join(f"{mechanics.coordinates[i].name} = {_clean(q[i]):.4g}" for i in places[:MOST_SHOWN])
+    return listed + (", ..." if len(places) > MOST_SHOWN else "")
+
+
+def _is_held_everywhere(mechanics: NumericSystem, assembly: Assembly, coordinate: int) -> bool:
+    """Whether rows leave no motion along a coordinate beside the constraints either, where they have the same rank."""
+    axis = [float(j == coordinate) for j in range(len(mechanics.coordinates))]
+    known = assembly.ranks.constraints
+    beside = ([x + BESIDE * (k % 7 + turn) for k, x in enumerate(assembly.places[0].q)] for turn in (1, 3))
+    rows = [mechanics.jacobian(q) for q in beside]
+    return all(rank(one) == known == rank([*one, axis]) for one in rows)
 
 
 def measures_places(mechanics: NumericSystem, assembly: Assembly, measured: tuple[str, ...]) -> bool:
