@@ -12,6 +12,7 @@ from symgen.diagnostics import Notice, Span
 from symgen.model.blocks.allocation import declare_settings, read_allocation
 from symgen.model.blocks.bodies import read_mechanism
 from symgen.model.blocks.coordinates import read_coordinates
+from symgen.model.blocks.couplings import read_couplings
 from symgen.model.blocks.elements import read_forces, read_friction, read_springs
 from symgen.model.blocks.inputs import read_inputs
 from symgen.model.blocks.joint_forms import JointCoordinate, read_joints
@@ -61,7 +62,7 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
     kinetic_read = scope.expression(tree.get("kinetic_energy"), "the kinetic energy", STATE)
     kinetic = kinetic_read or ZERO
     potential = scope.expression(tree.get("potential_energy"), "the potential energy", CONFIGURATION) or ZERO
-    written = read_constraints(scope, tree)
+    written = (*read_constraints(scope, tree), *read_couplings(scope, tree))
     inputs = read_inputs(scope, tree)
     allocation, settings = read_allocation(scope, tree, inputs, parameters, ranges)
     forces = read_applied_forces(scope, tree)

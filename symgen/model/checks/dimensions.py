@@ -13,6 +13,7 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from symgen.diagnostics import Mistake, Span
+from symgen.model.blocks.couplings import coupling_row
 from symgen.model.blocks.elements import Fit
 from symgen.model.checks.body_units import BodyUnits, body_units
 from symgen.model.expressions.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
@@ -70,6 +71,7 @@ def check_units(tree: MappingNode, model: Model, fits: tuple[Fit, ...] = ()) -> 
             inference.agrees(rotor.inertia, demanded, f"the rotor inertia of `{rotor.coordinate}`", "its energy")
     blocks = [member(tree.get("constraints"), kind) for kind in ("geometric", "nonholonomic")]
     rows = {key.value for block in blocks for key, _ in entries(block)}
+    rows |= {coupling_row(key.value) for key, _ in entries(tree.get("coupling"))}
     for row in model.constraints:
         if row.name in rows:
             inference.of(row.expression)

@@ -175,13 +175,13 @@ def _check_default(
         scope.wrong(message, "widen the range, or correct the value", span)
 
 
-def is_coordinate(scope: Scope, key: ScalarNode, where: str) -> bool:
+def is_coordinate(scope: Scope, key: ScalarNode, where: str, why: str = "forces act on coordinates") -> bool:
     """Whether the key names a coordinate; a mistake where it does not."""
     if scope.kinds.get(key.value) == "coordinate":
         return True
     coordinates = [name for name, kind in scope.kinds.items() if kind == "coordinate"]
     listed = f": {', '.join(coordinates)}" if 0 < len(coordinates) <= MOST_LISTED else ""
-    remedy = did_you_mean(key.value, coordinates, f"forces act on coordinates; name one of them{listed}")
+    remedy = did_you_mean(key.value, coordinates, f"{why}; name one of them{listed}")
     if key.value in scope.moved_by:
         remedy = f"name the coordinate of that joint: {' or '.join(f'`{one}`' for one in scope.moved_by[key.value])}"
     if not is_name(key.value):

@@ -323,6 +323,7 @@ MODEL = RecordShape(
             ),
             "constraint rows by name",
         ),
+        Key("coupling", TableShape(ExpressionShape()), "coordinate: what it follows by a gear or belt, such as a: 2*b"),
         Key(
             "urdf",
             Either((Text(), _URDF)),
