@@ -124,8 +124,9 @@ def _finished(
     if report.mistakes:
         raise ModelError(str(path), path.read_text(encoding="utf-8"), report.mistakes)
     notices = [*result.notices, *report.notices]
-    if report.files and not options.verify and not options.as_recorded:
-        notices.append(Notice("the report has no PDF: that is made of what verification measures, too"))
+    if report.files and certificate is None and not options.as_recorded:
+        remedy = "; `--only c,report` measures it" if options.verify else ""
+        notices.append(Notice(f"the report has no PDF: that is made of what verification measures, too{remedy}"))
     return replace(result, files={**result.files, **report.files}, notices=tuple(notices))
 
 

@@ -50,9 +50,9 @@ _EPILOG = """commands:
   symgen MODEL.yaml...              generate and verify
   symgen verify MODEL.yaml          verify again, write the certificate only
   symgen bench MODEL.yaml...        run time against error, beside other tools
-  symgen stress MODEL.yaml...       errors near singularities, extreme values, a long run
-  symgen target MODEL.yaml --cpu C  instructions, bytes and bits on emulated microcontrollers
-  symgen simulate MODEL.yaml        integrates: CSV, chart, animation of frames and points
+  symgen stress MODEL.yaml...       errors near singularities, in long runs
+  symgen target MODEL.yaml --cpu C  instructions, bytes, bits on emulated cores
+  symgen simulate MODEL.yaml        integrates: CSV, chart, animation
   symgen new NAME                   a commented model to start from
   symgen explain MODEL.yaml [NAME]  closed forms and structure in the terminal
   symgen schema                     JSON Schema of model files, for editors
@@ -61,12 +61,14 @@ _EPILOG = """commands:
 examples:
   symgen models/front_car.yaml
   symgen models/*.yaml --out build/symgen --quiet
-  symgen models/front_car.yaml --outputs inverse_dynamics,forward_dynamics --scalar float32 --only c
-  symgen models/front_car.yaml --method householder --method multipliers=schur_qr
+  symgen models/front_car.yaml --outputs inverse_dynamics --scalar float32
+  symgen models/front_car.yaml --method householder --only c
+  symgen models/front_car.yaml --method multipliers=schur_qr
   symgen models/*.yaml --check
   symgen explain models/front_car.yaml nullspace_projector
 
-exit codes: 0 done, 1 the model or its verification is wrong, 2 wrong use or a fault of symgen
+exit codes: 0 done, 1 the model or its verification is wrong, 2 wrong use or a
+fault of symgen
 """
 
 

@@ -57,7 +57,7 @@ def _stress_parser() -> argparse.ArgumentParser:
     """Errors near singularities, for extreme values and over a long run."""
     parser = make_parser(
         "symgen stress",
-        "Errors against the distance to singularities and for extreme values, statuses, other units, a long run.",
+        "Errors towards singularities, for extreme values and units, in a long run.",
     )
     add_models(parser)
     add_out(parser)
@@ -83,7 +83,7 @@ def _target_parser() -> argparse.ArgumentParser:
 
     parser = make_parser(
         "symgen target",
-        "Runs the generated C on emulated microcontrollers: the same bits as here, instructions per call, footprint.",
+        "Runs the generated C on emulated cores: its bits, instructions, footprint.",
     )
     add_models(parser)
     cpus = (*BY_NAME, "all")

@@ -295,3 +295,29 @@ def test_unknown_output_is_wrong_use(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert "unknown quantity 'nonsense'" in capsys.readouterr().err
     assert code(SKATE, "--out", str(tmp_path), "--outputs", "mas_matrix", "--no-verify", "--quiet") == 2
     assert "did you mean `mass_matrix`?" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["", *cli._COMMANDS])
+def test_help_fits_into_eighty_columns(
+    command: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    with pytest.raises(SystemExit):
+        cli.main([*([command] if command else []), "--help"])
+    lines = capsys.readouterr().out.splitlines()
+    assert lines
+    assert [line for line in lines if len(line) > 80] == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("options", "remedy"), [(["--only", "report"], "; `--only c,report` measures it"), (["--no-verify"], "")]
+)
+def test_a_report_without_a_pdf_says_why(
+    options: list[str], remedy: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main([SKATE, *options, "--outputs", "inverse_dynamics", "--out", str(tmp_path)]) == 0
+    why = f"notice: the report has no PDF: that is made of what verification measures, too{remedy}\n"
+    assert why in capsys.readouterr().err
+    assert not (tmp_path / "skate/report/skate.pdf").exists()
+    assert (tmp_path / "skate/report/skate.tex").exists()
