@@ -53,7 +53,9 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
     mistakes in the file and WrongUseError for outputs that do not exist; verification failures come back in the result.
     """
     progress("reading the model")
-    model = load_model(path)
+    # nearly all of what takes longer than a moment there
+    with working("where its loops close"):
+        model = load_model(path)
     options, report_notices = without_report(model, options)
     outputs = requested_outputs(model, options)
     draft: Draft | None = None
