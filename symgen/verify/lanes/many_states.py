@@ -27,7 +27,7 @@ from symgen.ir.kernel import (
 )
 from symgen.ir.last_kernels import LastKernels
 from symgen.verify.given import loaded
-from symgen.verify.lanes.lane_arithmetic import TYPES, UFUNCS, LaneArithmetic, Lanes, number
+from symgen.verify.lanes.lane_arithmetic import TYPES, UFUNCS, LaneArithmetic, Lanes, number, rows_at
 
 _Places: TypeAlias = Any
 
@@ -117,12 +117,16 @@ class _KernelRun:
         """The first status of each state."""
         values = self._values
         for operation, operands, targets in block.groups:
-            # places are in range: nothing has to be looked at before rows are taken
+            # rows that stand together are read where they are; else places are in range, and nothing has to be looked
+            # at before rows are taken
+            read = [
+                values[places] if places.__class__ is slice else values.take(places, 0, None, "clip")
+                for places in operands
+            ]
             if (function := UFUNCS.get(operation)) is not None:
-                read = [values.take(places, 0, None, "clip") for places in operands]
                 function(*read, out=values[targets[0]])
                 continue
-            made = self._arithmetic.apply(operation, [values.take(places, 0, None, "clip") for places in operands])
+            made = self._arithmetic.apply(operation, read)
             for places, result in zip(targets, made, strict=True):
                 values[places] = result
         status = np.zeros(self._count, dtype=int)
@@ -249,8 +253,12 @@ class _Plan:
 
 def _from_the_front(block: _BlockPlan, rows: int) -> _BlockPlan:
     """The same with places that are not negative."""
+
+    def counted(places: _Places) -> _Places:
+        return rows_at(np.where(places < 0, places + rows, places))
+
     groups = tuple(
-        _StatementGroup(operation, tuple(np.where(places < 0, places + rows, places) for places in operands), targets)
+        _StatementGroup(operation, tuple(map(counted, operands)), targets)
         for operation, operands, targets in block.groups
     )
     checks = tuple(
