@@ -22,12 +22,6 @@ def number(literal: Literal, scalar: Scalar) -> Any:
     return TYPES[scalar](round_literal(literal.value, scalar))
 
 
-def rows_at(places: Any) -> Any:
-    """Places of rows, as one piece where they follow each other: such rows are read where they are, and not copied."""
-    first = int(places[0])
-    return slice(first, first + len(places)) if np.all(np.diff(places) == 1) else places
-
-
 class LaneArithmetic:
     """Operations on arrays of a scalar type."""
 
@@ -73,21 +67,18 @@ class _Steps:
         self._numbers = [number(literal, arithmetic.scalar) for literal in literals]
         known = {literal: len(places) + place for place, literal in enumerate(literals)}
         count = len(places) + len(literals)
-        # what has an array operation is called without looking for it each time
-        self._steps: list[tuple[OperationName, Callable[..., Lanes] | None, tuple[int, ...]]] = []
+        self._steps: list[tuple[OperationName, tuple[int, ...]]] = []
         for statement in function.statements:
             operands = (known[o] if isinstance(o, Literal) else places[o.name] for o in statement.operands)
-            operation = statement.operation
-            self._steps.append((operation, VECTORISED.get(operation), tuple(operands)))
+            self._steps.append((statement.operation, tuple(operands)))
             for target in statement.targets:
                 places[target], count = count, count + 1
         self._results = [places[name] for name in function.results]
 
     def __call__(self, operands: Sequence[Lanes]) -> Sequence[Lanes]:
         values = [*operands, *self._numbers]
-        for operation, vectorised, given in self._steps:
-            read = [values[place] for place in given]
-            values += (vectorised(*read),) if vectorised is not None else self._arithmetic.apply(operation, read)
+        for operation, given in self._steps:
+            values += self._arithmetic.apply(operation, [values[place] for place in given])
         return [values[place] for place in self._results]
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from symgen.verify.lanes.lane_arithmetic import UFUNCS, Lanes, rows_at
+from symgen.verify.lanes.lane_arithmetic import UFUNCS, Lanes
 from symgen.verify.lanes.portable_lanes import applied, sines
 from symgen.verify.reference.arithmetic.tape import Replay
 
@@ -22,10 +22,10 @@ class LaneReplay:
         self._constants = np.array(replay.constants.floats())[:, None]
         self._inputs, self._outputs = places.inputs, np.array(places.outputs, dtype=int)
         first = len(self._constants) + len(self._inputs)
-        self._groups: list[tuple[Any, slice, list[Any]]] = []
+        self._groups: list[tuple[Any, slice, list[Lanes]]] = []
         for operation, *operands in places.groups:
             read = [np.array(rows) for rows in operands if rows is not None]
-            self._groups.append((operation, slice(first, first + len(read[0])), list(map(rows_at, read))))
+            self._groups.append((operation, slice(first, first + len(read[0])), read))
             first += len(read[0])
         self._count = first
 
@@ -37,7 +37,7 @@ class LaneReplay:
         for place, source in enumerate(self._inputs, first):
             registers[place] = inputs[source]
         for operation, made, read in self._groups:
-            given = [registers[rows] if rows.__class__ is slice else registers.take(rows, 0) for rows in read]
+            given = [registers.take(rows, 0) for rows in read]
             if operation in SINES:
                 registers[made] = sines(*given)[SINES.index(operation)]
             elif (function := UFUNCS.get(operation)) is not None:

@@ -27,7 +27,7 @@ from symgen.ir.kernel import (
 )
 from symgen.ir.last_kernels import LastKernels
 from symgen.verify.given import loaded
-from symgen.verify.lanes.lane_arithmetic import TYPES, UFUNCS, LaneArithmetic, Lanes, number, rows_at
+from symgen.verify.lanes.lane_arithmetic import TYPES, UFUNCS, LaneArithmetic, Lanes, number
 
 _Places: TypeAlias = Any
 
@@ -255,7 +255,7 @@ def _from_the_front(block: _BlockPlan, rows: int) -> _BlockPlan:
     """The same with places that are not negative."""
 
     def counted(places: _Places) -> _Places:
-        return rows_at(np.where(places < 0, places + rows, places))
+        return _together(np.where(places < 0, places + rows, places))
 
     groups = tuple(
         _StatementGroup(operation, tuple(map(counted, operands)), targets)
@@ -266,6 +266,12 @@ def _from_the_front(block: _BlockPlan, rows: int) -> _BlockPlan:
         for check in block.checks
     )
     return _BlockPlan(groups, checks)
+
+
+def _together(places: _Places) -> _Places:
+    """Places that follow each other as one piece: such rows are read where they are, and not copied."""
+    first = int(places[0])
+    return slice(first, first + len(places)) if np.all(np.diff(places) == 1) else places
 
 
 # Every step looks at all kernels of a model in turn: short ones stay until the next.
