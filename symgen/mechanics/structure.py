@@ -10,7 +10,7 @@ from symgen.mechanics.genericity import Genericity, configurations, rank
 from symgen.mechanics.system import System
 from symgen.mechanics.workless_forces import workless_forces
 from symgen.model.expressions.names import counted
-from symgen.model.model import ConstraintRow
+from symgen.model.model import ConstraintRow, Model
 from symgen.records import dataclass
 from symgen.symbolic.angles.angle_forms import angle_form
 from symgen.symbolic.angles.sharing import angles_of, share_angles
@@ -53,7 +53,7 @@ def analyse(mechanics: System, generic: Genericity) -> Structure:
     decisions = (
         *_constraint_decisions(mechanics, generic, free, blocks, dependent),
         *_force_decisions(mechanics),
-        *_borne_forces(mechanics, generic),
+        *_borne_forces(mechanics.model, generic),
         *_input_decisions(mechanics, generic),
         *_shared_work(mechanics),
     )
@@ -146,9 +146,9 @@ def _force_decisions(mechanics: System) -> Iterator[Decision]:
         yield Decision("applied forces", "the model declares none")
 
 
-def _borne_forces(mechanics: System, generic: Genericity) -> Iterator[Decision]:
+def _borne_forces(model: Model, generic: Genericity) -> Iterator[Decision]:
     """Weights and forces that the rows bear in every configuration."""
-    workless = workless_forces(mechanics, generic)
+    workless = workless_forces(model, generic)
     if workless:
         others = bool(workless.terms) + len(workless.forces) + len(workless.loads)
         parts = [*(["weights"] if workless.weights else []), *([counted(others, "force")] if others else [])]

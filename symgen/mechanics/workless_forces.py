@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import lru_cache
 
 from symgen.linear_algebra.residue_rows import ReducedRows, what_is_left, with_row
 from symgen.mechanics.genericity import Genericity
@@ -57,15 +58,17 @@ class WorklessForces:
         return self.weights or bool(self.terms or self.forces or self.loads)
 
 
-def workless_forces(mechanics: System, generic: Genericity) -> WorklessForces:
-    """Those of a system in the coordinates of its model; none where friction grows with what the rows bear.
+@lru_cache(maxsize=1)
+def workless_forces(model: Model, generic: Genericity) -> WorklessForces:
+    """Those of a model, on a graph of its own; none where friction grows with what the rows bear.
 
-    Nothing is said where rows lose rank on the constraints: off these more of them are independent.
+    Nothing is said where rows lose rank on the constraints: off these more of them are independent.  Methods ask, and
+    then what tells of things that a system does not need.
     """
-    model = mechanics.model
     weighs, stores = model.mechanism.gravity != NO_VECTOR, model.potential_energy != ZERO
     if not generic.r or model.rough or not (weighs or stores or model.has_applied_forces):
         return WorklessForces()
+    mechanics = System(model)
     borne = _Borne(mechanics, generic.rank)
     names = [c.name for c in model.coordinates]
     axes = [tuple(mechanics.graph.const(int(c.coordinate == name)) for name in names) for c in model.applied_forces]

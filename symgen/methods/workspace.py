@@ -53,7 +53,7 @@ class Workspace:
     @cached_property
     def relieved(self) -> Workspace:
         """Of what does not depend on forces that the rows bear: without these, or the same where there are none."""
-        workless = workless_forces(System(self.model), self.generic)
+        workless = workless_forces(self.model, self.generic)
         return Workspace(without_workless_forces(self.model, workless), self.generic) if workless else self
 
     @cached_property

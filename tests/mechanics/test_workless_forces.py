@@ -68,8 +68,7 @@ def _rod(aside: str = "0") -> Model:
 
 
 def _workless(model: Model) -> WorklessForces:
-    mechanics = System(model)
-    return workless_forces(mechanics, genericity(mechanics))
+    return workless_forces(model, genericity(System(model)))
 
 
 def test_the_weight_of_a_rod_between_balls_that_stand_still_does_no_work() -> None:

@@ -57,8 +57,9 @@ class WorstErrors:
                 continue
             self._progress(f"verifying: where {quantity} is worst")
             judged = {scalar: kernel for scalar, kernel in kernels.items() if scalar in expected.scalars}
-            plain = draft.plain_kernel(draft.taken(quantity), kernels)
-            errors = self.at_worst(draft, judged, plain) if judged else {}
+            errors: dict[Scalar, float] = {}
+            if judged:
+                errors = self.at_worst(draft, judged, draft.plain_kernel(draft.taken(quantity), kernels))
             self.keep(quantity, kernels, max(errors.values(), default=0.0))
             if faults := faults_at_worst(quantity, errors):
                 by_quantity[quantity] = faults
@@ -88,4 +89,3 @@ def faults_at_worst(quantity: str, errors: Mapping[Scalar, float]) -> tuple[Faul
     """What is wrong at the states that were searched for."""
     what = f"{INACCURATE} {{:.3g}} times d + eps |y*| at a state searched for, {FACTOR:g} is allowed"
     return tuple(Fault(what.format(error), quantity, scalar) for scalar, error in errors.items() if error > FACTOR)
-

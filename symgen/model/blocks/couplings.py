@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from symgen.model.expressions.combine import minus
 from symgen.model.expressions.expression import Name
 from symgen.model.expressions.walk import names_in
-from symgen.model.file.declarations import is_coordinate
+from symgen.model.file.declarations import enter_row, is_coordinate
 from symgen.model.file.reading import entries
 from symgen.model.file.scope import CONFIGURATION, Scope
 from symgen.model.file.source import MappingNode
@@ -27,12 +27,7 @@ def read_couplings(scope: Scope, tree: MappingNode) -> Iterator[ConstraintRow]:
             scope.wrong(f"the coupling of `{key.value}` holds `{key.value}` itself", remedy, node.span)
             continue
         name = coupling_row(key.value)
-        if name in scope.kinds:
-            message = f"the row `{name}` that is made here has the name of another thing ({scope.kinds[name]})"
-            scope.wrong(message, "rename one of them", key.span)
-            continue
-        scope.kinds[name] = "constraint row"
-        scope.kinds.setdefault(f"multiplier_{name}", "multiplier")
+        enter_row(scope, name, key.span)
         yield ConstraintRow(name, "geometric", minus(Name(key.value, key.span), expression), node.span)
 
 

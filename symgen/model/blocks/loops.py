@@ -6,13 +6,13 @@ from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import Literal
 
-from symgen.diagnostics import Span
 from symgen.model.blocks.frames import NEED_FRAME, frame_name
 from symgen.model.blocks.inputs import point_name, squared_distance
 from symgen.model.blocks.lengths import check_length
 from symgen.model.expressions.combine import divided, minus, negated, plus, times
 from symgen.model.expressions.expression import Binary, Call, Expression, Name, Number, Power
 from symgen.model.expressions.walk import exact_value, names_in
+from symgen.model.file.declarations import enter_row
 from symgen.model.file.reading import entries, items, member, text_of
 from symgen.model.file.scope import PARAMETERS, Scope
 from symgen.model.file.source import MappingNode, Node, ScalarNode
@@ -187,18 +187,9 @@ class LoopRows:
         for suffix, expression in rows:
             if not self._zero_row(expression):
                 name = f"{key.value}_{suffix}"
-                self._enter(name, key.span)
+                enter_row(self._scope, name, key.span)
                 kind: Literal["geometric", "nonholonomic"] = "nonholonomic" if suffix in of_rates else "geometric"
                 yield ConstraintRow(name, kind, expression, key.span)
-
-    def _enter(self, name: str, span: Span) -> None:
-        scope = self._scope
-        if name in scope.kinds:
-            message = f"the row `{name}` that is made here has the name of another thing ({scope.kinds[name]})"
-            scope.wrong(message, "rename one of them", span)
-            return
-        scope.kinds[name] = "constraint row"
-        scope.kinds.setdefault(f"multiplier_{name}", "multiplier")
 
     def _zero_row(self, expression: Expression) -> bool:
         """Whether a row vanishes because each of its components does, or cancels as it stands."""

@@ -184,7 +184,7 @@ def _held(mechanics: NumericSystem, assembly: Assembly, span: Span | None) -> It
 
     Held are they along the branches that were looked at; where rows hold them beside the constraints, too, on any.
     """
-    everywhere = [i for i in assembly.held if _is_held_everywhere(mechanics, assembly, i)]
+    everywhere = _held_everywhere(mechanics, assembly)
     here = [i for i in assembly.held if i not in everywhere]
     if everywhere:
         rotations = (frame.rotation for frame in mechanics.mechanism.frames)
@@ -218,13 +218,16 @@ def _values(mechanics: NumericSystem, assembly: Assembly, places: Sequence[int])
     return listed + (", ..." if len(places) > MOST_SHOWN else "")
 
 
-def _is_held_everywhere(mechanics: NumericSystem, assembly: Assembly, coordinate: int) -> bool:
-    """Whether rows leave no motion along a coordinate beside the constraints either, where they have the same rank."""
-    axis = [float(j == coordinate) for j in range(len(mechanics.coordinates))]
-    known = assembly.ranks.constraints
-    beside = ([x + BESIDE * (k % 7 + turn) for k, x in enumerate(assembly.places[0].q)] for turn in (1, 3))
-    rows = [mechanics.jacobian(q) for q in beside]
-    return all(rank(one) == known == rank([*one, axis]) for one in rows)
+def _held_everywhere(mechanics: NumericSystem, assembly: Assembly) -> list[int]:
+    """Those that rows leave no motion beside the constraints either, where they have the same rank."""
+    if not assembly.held:
+        return []
+    q, known = assembly.places[0].q, assembly.ranks.constraints
+    beside = [mechanics.jacobian([x + BESIDE * (k % 7 + turn) for k, x in enumerate(q)]) for turn in (1, 3)]
+    if any(rank(rows) != known for rows in beside):
+        return []
+    axes = {i: [float(j == i) for j in range(len(q))] for i in assembly.held}
+    return [i for i, axis in axes.items() if all(rank([*rows, axis]) == known for rows in beside)]
 
 
 def measures_places(mechanics: NumericSystem, assembly: Assembly, measured: tuple[str, ...]) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 
-from symgen.diagnostics import Mistake
+from symgen.diagnostics import Mistake, Span
 from symgen.model.blocks.joint_forms import JointCoordinate, declare_joints
 from symgen.model.expressions.expression import Expression, Number
 from symgen.model.expressions.names import MOST_LISTED, QUOTING, did_you_mean, is_name
@@ -173,6 +173,16 @@ def _check_default(
             f"the value of `{key.value}` is {number:.6g}, outside its range [{float(lower):.6g}, {float(upper):.6g}]"
         )
         scope.wrong(message, "widen the range, or correct the value", span)
+
+
+def enter_row(scope: Scope, name: str, span: Span) -> None:
+    """Enters a row that a short form makes, and its multiplier; a mistake where the name is another thing's."""
+    if name in scope.kinds:
+        message = f"the row `{name}` that is made here has the name of another thing ({scope.kinds[name]})"
+        scope.wrong(message, "rename one of them", span)
+        return
+    scope.kinds[name] = "constraint row"
+    scope.kinds.setdefault(f"multiplier_{name}", "multiplier")
 
 
 def is_coordinate(scope: Scope, key: ScalarNode, where: str, why: str = "forces act on coordinates") -> bool:
