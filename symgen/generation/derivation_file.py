@@ -22,9 +22,9 @@ from symgen.methods.selection import MethodChoice
 from symgen.model.model import Model
 from symgen.quantities.select import Choice, Rejection
 
-# The key of decades by which thresholds of rank are raised.
 COORDINATE_BOUNDS = "coordinate_bounds"
-RAISED = "thresholds_raised_by_decades"
+# The keys of decades by which thresholds of rank are raised, and by `Raised`.
+RAISED = {"ranks": "thresholds_raised_by_decades", "masses": "mass_thresholds_raised_by_decades"}
 # Of shares of reactions in the file.
 SHOWN_DECIMALS = 4
 
@@ -137,8 +137,12 @@ def _coordinate_bounds(draft: Draft, quantity: str) -> dict[str, Any]:
 
 def _raised(draft: Draft, quantity: str) -> dict[str, Any]:
     """By how many decades thresholds of rank are above what rounding leaves, by type, where any is."""
-    decades = {scalar: every[quantity] for scalar, every in draft.raised.items() if quantity in every}
-    return {RAISED: decades} if decades else {}
+    raised = {scalar: every[quantity] for scalar, every in draft.raised.items() if quantity in every}
+    made: dict[str, Any] = {}
+    for field, key in RAISED.items():
+        decades = {scalar: by for scalar, one in raised.items() if (by := getattr(one, field)) is not None}
+        made |= {key: decades} if decades else {}
+    return made
 
 
 def _ends(bound: Bound | CoordinateBound) -> list[float | None]:

@@ -11,7 +11,7 @@ from symgen.ir.bounded import Bound, bounded
 from symgen.ir.bounded_coordinates import CoordinateBound, within
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.ir.library_trig import with_library_trig
-from symgen.ir.raised import with_raised_thresholds
+from symgen.ir.raised import Raised, with_raised_thresholds
 from symgen.lowering.schedule import schedule
 from symgen.mechanics.structure import Structure, analyse
 from symgen.mechanics.system import System
@@ -37,7 +37,7 @@ class Draft:
     """The derived quantities of a model and their kernels; `left_out` is what verification rejects by every method.
 
     `bounds` are those of parameters by type and quantity, `coordinate_bounds` those of coordinates, and thresholds of
-    rank are `raised` by so many decades: so are `written` programs.  `notice` says why it does not hold what an earlier
+    rank are `raised`: so are those of `written` programs.  `notice` says why it does not hold what an earlier
     verification led to, where that was asked for.
     """
 
@@ -50,7 +50,7 @@ class Draft:
     notice: str = ""
     bounds: Mapping[Scalar, Mapping[str, tuple[Bound, ...]]] = field(default_factory=dict)
     coordinate_bounds: Mapping[Scalar, Mapping[str, tuple[CoordinateBound, ...]]] = field(default_factory=dict)
-    raised: Mapping[Scalar, Mapping[str, int]] = field(default_factory=dict)
+    raised: Mapping[Scalar, Mapping[str, Raised]] = field(default_factory=dict)
 
     @property
     def written(self) -> dict[Scalar, Program]:
@@ -60,9 +60,9 @@ class Draft:
         positive = positive_parameters(self.model) | nonnegative_parameters(self.model)
         made = {}
         for scalar, program in self.programs.items():
-            bounds, decades = self.bounds.get(scalar, {}), self.raised.get(scalar, {})
+            bounds, thresholds = self.bounds.get(scalar, {}), self.raised.get(scalar, {})
             raised = (
-                with_raised_thresholds(kernel, scalar, decades[kernel.name]) if kernel.name in decades else kernel
+                with_raised_thresholds(kernel, scalar, thresholds.get(kernel.name, Raised()))
                 for kernel in program.kernels
             )
             inside = self.coordinate_bounds.get(scalar, {})

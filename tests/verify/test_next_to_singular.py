@@ -12,7 +12,7 @@ import pytest
 from symgen.generation.draft import Draft, draft_of
 from symgen.generation.results import Options
 from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Statement, Status
-from symgen.ir.raised import with_raised_thresholds
+from symgen.ir.raised import Raised, with_raised_thresholds
 from symgen.laboratory.zoo.witness.witness import Witness
 from symgen.model.load import load_text
 from symgen.verify.expected import Expected
@@ -120,8 +120,8 @@ def test_a_kernel_that_loses_digits_next_to_a_drop_has_a_status_there() -> None:
     """Further away, where the other states of a verification are, nothing changes."""
     draft, expected = lift()
     kernels = draft.kernels("forward_dynamics")
-    decades = NextToSingular(expected).decades(kernels, draft.programs)
-    raised = with_raised_thresholds(kernels["float64"], "float64", decades["float64"])
+    thresholds = NextToSingular(expected).raised(kernels, draft.programs)
+    raised = with_raised_thresholds(kernels["float64"], "float64", thresholds["float64"])
     before, after = ([units(one, flat(x)) for x in (1e-12, 1e-6, 1e-2)] for one in (kernels["float64"], raised))
     assert isinstance(before[0], float)
     assert before[0] > FACTOR
@@ -136,14 +136,14 @@ def test_a_number_too_small_to_have_digits_is_a_status() -> None:
     name = "inverse_dynamics"
     draft, expected = drafted(CRANKS, name, "minor")
     kernels = draft.kernels(name)
-    assert NextToSingular(expected).decades(kernels, draft.programs) == {"float32": 0}
+    assert NextToSingular(expected).raised(kernels, draft.programs) == {"float32": Raised(ranks=0)}
     q, qd, qdd = (tuple(size * x for x in (1, 1, 1, -1, -1)) for size in (-3.7e-10, 1.0, 0.5))
     state = in_scalar(State(q, qd, qdd, (0.0, 0.0), (0.16, 0.25, 4.3), ()), "float32")
     known = expectations(expected.reference, state, [name], "float32", "small")[name]
     sines = draft.programs["float32"].sincos
     made, raised = (
         outcomes(kernel, sines, "float32", [state])[0]
-        for kernel in (kernels["float32"], with_raised_thresholds(kernels["float32"], "float32", 0))
+        for kernel in (kernels["float32"], with_raised_thresholds(kernels["float32"], "float32", Raised(ranks=0)))
     )
     assert made.valid
     assert known.in_units(known.distance(made.entries)) > FACTOR
@@ -171,8 +171,8 @@ def test_pairs_of_float32_have_a_status_where_they_have_lost_all_digits() -> Non
     kernels = draft.kernels_along(
         replace(taken, choice=replace(taken.choice, wide=("float32",))), ("float64", "float32")
     )
-    decades = NextToSingular(expected).decades({"float32": kernels["float32"]}, draft.programs)
-    raised = with_raised_thresholds(kernels["float32"], "float32", decades["float32"])
+    thresholds = NextToSingular(expected).raised({"float32": kernels["float32"]}, draft.programs)
+    raised = with_raised_thresholds(kernels["float32"], "float32", thresholds["float32"])
 
     def statuses(share: float) -> tuple[float, int]:
         state = replace(flat(share), u=(3.0, 0.0, 0.0))
@@ -198,9 +198,9 @@ def test_kernels_with_twice_the_digits_of_float64_and_other_quantities_keep_thei
     (kernel,) = draft.kernels("forward_dynamics").values()
     taken = draft.taken("forward_dynamics")
     wide = replace(taken, choice=replace(taken.choice, wide=("float64",)))
-    assert NextToSingular(expected).decades(draft.kernels_along(wide, ("float64",)), draft.programs) == {}
+    assert NextToSingular(expected).raised(draft.kernels_along(wide, ("float64",)), draft.programs) == {}
     other = replace(kernel, name="nullspace_projector")
-    assert NextToSingular(expected).decades({"float64": other}, draft.programs) == {}
+    assert NextToSingular(expected).raised({"float64": other}, draft.programs) == {}
 
 
 def test_the_unit_of_error_is_known_next_to_a_drop() -> None:
@@ -228,7 +228,7 @@ def test_thresholds_of_ranks_alone_are_raised() -> None:
     named = Block((Statement(("raised_1",), "mul", (value, number)),), ())
     blocks = (named, Block((), checks), Block((again,), ()))
     kernel = Kernel("k", (), (Load("value", "q", 0), Load("scale", "q", 1)), blocks, (value,), (1,))
-    _, made, after = with_raised_thresholds(kernel, "float32", 3).blocks
+    _, made, after = with_raised_thresholds(kernel, "float32", Raised(ranks=3)).blocks
     factor, least = Literal(Fraction(1000)), Literal(Fraction(1, 2**102))
     products = [Statement((name,), "mul", (scale, factor)) for name in ("raised_2", "raised_3")]
     assert [*made.statements] == [again, *products]
@@ -244,9 +244,12 @@ def test_thresholds_of_ranks_alone_are_raised() -> None:
         (masses, scale),
     ]
     assert all(check.first is None and not check.apart for check in made.checks)
-    _, made, _ = with_raised_thresholds(kernel, "float32", 0).blocks
+    _, made, _ = with_raised_thresholds(kernel, "float32", Raised(ranks=0)).blocks
     assert [*made.statements] == [again]
     assert [check.limit for check in made.checks] == [scale, least, number, least, scale, least, scale, least, scale]
+    _, made, _ = with_raised_thresholds(kernel, "float32", Raised(masses=3)).blocks
+    assert made.checks[:-2] == checks[:-1]
+    assert [check.limit for check in made.checks[-2:]] == [Local("raised_2"), least]
 
 
 def test_sweeps_meet_states_on_the_constraints_there() -> None:

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from symgen.generation.acceptance.once_per_kernel import OncePerKernel
 from symgen.generation.draft import Draft
+from symgen.ir.raised import Raised
 from symgen.model.quantities import MAIN
 from symgen.verify.expected import Expected
 from symgen.verify.margins.next_to_singular import NextToSingular
@@ -18,9 +19,9 @@ class RankThresholds:
 
     def __init__(self, expected: Expected) -> None:
         states = NextToSingular(expected)
-        self._known = OncePerKernel[int](lambda draft, _, kernels: states.decades(kernels, draft.programs))
+        self._known = OncePerKernel[Raised](lambda draft, _, kernels: states.raised(kernels, draft.programs))
 
     def of(self, draft: Draft) -> Draft:
-        """The draft with the decades by which thresholds of its kernels are raised."""
+        """The draft with thresholds of its kernels raised where that is needed."""
         names = (kernel.name for kernel in draft.program.kernels if kernel.name in MAIN)
         return replace(draft, raised=self._known.of(draft, names))

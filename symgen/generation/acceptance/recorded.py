@@ -19,6 +19,7 @@ from symgen.generation.draft import REJECTED, Draft, draft_of
 from symgen.ir.bounded import Bound
 from symgen.ir.bounded_coordinates import CoordinateBound
 from symgen.ir.kernel import UNIT_ROUNDOFF
+from symgen.ir.raised import Raised
 from symgen.quantities.alternatives import Alternatives
 from symgen.quantities.select import Rejection
 from symgen.records import dataclass
@@ -48,7 +49,7 @@ class _VerificationRecord:
     left_out: Mapping[str, tuple[Scalar, ...]]
     bounds: Mapping[Scalar, Mapping[str, tuple[Bound, ...]]]
     coordinate_bounds: Mapping[Scalar, Mapping[str, tuple[CoordinateBound, ...]]]
-    raised: Mapping[Scalar, Mapping[str, int]]
+    raised: Mapping[Scalar, Mapping[str, Raised]]
 
 
 class _UnusableError(Exception):
@@ -107,10 +108,15 @@ def _record(content: Mapping[str, Any]) -> _VerificationRecord:
             for scalar in UNIT_ROUNDOFF
         },
         {
-            scalar: {name: int(one[RAISED][scalar]) for name, one in kernels if scalar in one.get(RAISED, {})}
+            scalar: {name: raised for name, one in kernels if (raised := _raised(one, scalar)) != Raised()}
             for scalar in UNIT_ROUNDOFF
         },
     )
+
+
+def _raised(kernel: Mapping[str, Any], scalar: Scalar) -> Raised:
+    decades = {field: kernel.get(key, {}).get(scalar) for field, key in RAISED.items()}
+    return Raised(**{field: None if by is None else int(by) for field, by in decades.items()})
 
 
 def _bounds(bounds: Mapping[str, Sequence[float | None]]) -> Iterator[Bound]:
@@ -143,7 +149,7 @@ def _with_record(draft: Draft, record: _VerificationRecord, asked: Container[str
         for scalar, every in record.coordinate_bounds.items()
     }
     raised = {
-        scalar: {name: decades for name, decades in every.items() if name in present and name not in asked}
+        scalar: {name: one for name, one in every.items() if name in present and name not in asked}
         for scalar, every in record.raised.items()
     }
     draft = replace(draft, bounds=bounds, coordinate_bounds=coordinate_bounds, raised=raised)

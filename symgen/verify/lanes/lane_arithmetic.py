@@ -14,12 +14,20 @@ from symgen.ir.pairs.wide_functions import is_wide_operation, wide_function
 
 # A number of the scalar type for each state, or rows of them.
 Lanes: TypeAlias = Any
+# Of rows: an array of their places, or a slice where they follow each other.
+Places: TypeAlias = Any
 TYPES: dict[Scalar, Any] = {"float64": np.float64, "float32": np.float32}
 
 
 def number(literal: Literal, scalar: Scalar) -> Any:
     """In the scalar type."""
     return TYPES[scalar](round_literal(literal.value, scalar))
+
+
+def together(places: Places) -> Places:
+    """Places that follow each other as one piece: such rows are read where they are, and not copied."""
+    first = int(places[0])
+    return slice(first, first + len(places)) if np.all(np.diff(places) == 1) else places
 
 
 class LaneArithmetic:
@@ -58,7 +66,7 @@ class LaneArithmetic:
 
 
 class _Steps:
-    """A function with its operands found by place."""
+    """A function with its operands found by place, and with its operations found once for all calls."""
 
     def __init__(self, function: Function, arithmetic: LaneArithmetic) -> None:
         self._arithmetic = arithmetic
@@ -67,18 +75,21 @@ class _Steps:
         self._numbers = [number(literal, arithmetic.scalar) for literal in literals]
         known = {literal: len(places) + place for place, literal in enumerate(literals)}
         count = len(places) + len(literals)
-        self._steps: list[tuple[OperationName, tuple[int, ...]]] = []
+        self._steps: list[tuple[Callable[..., Lanes] | None, OperationName, tuple[int, ...]]] = []
         for statement in function.statements:
             operands = (known[o] if isinstance(o, Literal) else places[o.name] for o in statement.operands)
-            self._steps.append((statement.operation, tuple(operands)))
+            self._steps.append((VECTORISED.get(statement.operation), statement.operation, tuple(operands)))
             for target in statement.targets:
                 places[target], count = count, count + 1
         self._results = [places[name] for name in function.results]
 
     def __call__(self, operands: Sequence[Lanes]) -> Sequence[Lanes]:
         values = [*operands, *self._numbers]
-        for operation, given in self._steps:
-            values += self._arithmetic.apply(operation, [values[place] for place in given])
+        for vectorised, operation, given in self._steps:
+            if vectorised is not None:
+                values.append(vectorised(*[values[place] for place in given]))
+            else:
+                values += self._arithmetic.apply(operation, [values[place] for place in given])
         return [values[place] for place in self._results]
 
 

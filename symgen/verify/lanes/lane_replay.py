@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from symgen.verify.lanes.lane_arithmetic import UFUNCS, Lanes
+from symgen.verify.lanes.lane_arithmetic import UFUNCS, Lanes, together
 from symgen.verify.lanes.portable_lanes import applied, sines
 from symgen.verify.reference.arithmetic.tape import Replay
 
@@ -25,8 +25,9 @@ class LaneReplay:
         self._groups: list[tuple[Any, slice, list[Lanes]]] = []
         for operation, *operands in places.groups:
             read = [np.array(rows) for rows in operands if rows is not None]
-            self._groups.append((operation, slice(first, first + len(read[0])), read))
-            first += len(read[0])
+            made = slice(first, first + len(read[0]))
+            self._groups.append((operation, made, [together(rows) for rows in read]))
+            first = made.stop
         self._count = first
 
     def run(self, inputs: Sequence[Lanes], count: int) -> Lanes:
@@ -37,7 +38,7 @@ class LaneReplay:
         for place, source in enumerate(self._inputs, first):
             registers[place] = inputs[source]
         for operation, made, read in self._groups:
-            given = [registers.take(rows, 0) for rows in read]
+            given = [registers[rows] if rows.__class__ is slice else registers.take(rows, 0) for rows in read]
             if operation in SINES:
                 registers[made] = sines(*given)[SINES.index(operation)]
             elif (function := UFUNCS.get(operation)) is not None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,9 +27,7 @@ from symgen.ir.kernel import (
 )
 from symgen.ir.last_kernels import LastKernels
 from symgen.verify.given import loaded
-from symgen.verify.lanes.lane_arithmetic import TYPES, UFUNCS, LaneArithmetic, Lanes, number
-
-_Places: TypeAlias = Any
+from symgen.verify.lanes.lane_arithmetic import TYPES, UFUNCS, LaneArithmetic, Lanes, Places, number, together
 
 # Numbers that are worked out at a time: fewer take as long, and more do not stay in the cache.
 NUMBERS_AT_ONCE = 2_000_000
@@ -148,7 +146,7 @@ class _StatementGroup(NamedTuple):
     one after the other."""
 
     operation: OperationName
-    operands: tuple[_Places, ...]
+    operands: tuple[Places, ...]
     targets: tuple[slice, ...]
 
 
@@ -254,8 +252,8 @@ class _Plan:
 def _from_the_front(block: _BlockPlan, rows: int) -> _BlockPlan:
     """The same with places that are not negative."""
 
-    def counted(places: _Places) -> _Places:
-        return _together(np.where(places < 0, places + rows, places))
+    def counted(places: Places) -> Places:
+        return together(np.where(places < 0, places + rows, places))
 
     groups = tuple(
         _StatementGroup(operation, tuple(map(counted, operands)), targets)
@@ -266,12 +264,6 @@ def _from_the_front(block: _BlockPlan, rows: int) -> _BlockPlan:
         for check in block.checks
     )
     return _BlockPlan(groups, checks)
-
-
-def _together(places: _Places) -> _Places:
-    """Places that follow each other as one piece: such rows are read where they are, and not copied."""
-    first = int(places[0])
-    return slice(first, first + len(places)) if np.all(np.diff(places) == 1) else places
 
 
 # Every step looks at all kernels of a model in turn: short ones stay until the next.

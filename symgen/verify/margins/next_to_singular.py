@@ -1,20 +1,21 @@
 """How near to a drop of rank a kernel holds what status 0 says, where a threshold leaves more room than it has digits.
 
-Floats are dense at 0 alone.  Where rows or inputs lose rank in a configuration whose coordinates are 0, a state may be
-nearer to that than coordinates are to their own rounding elsewhere, rounding moves the result by next to nothing, and
-digits that a kernel loses count.  States are led there; where a kernel that holds everywhere else is beyond what is
-allowed, its thresholds are raised until it has a status.
+Floats are dense at 0 alone.  Where rows or inputs lose rank in a configuration whose coordinates are 0, or a direction
+its mass, a state may be nearer to that than coordinates are to their own rounding elsewhere, rounding moves the result
+by next to nothing, and digits that a kernel loses count.  States are led there; where a kernel that holds everywhere
+else is beyond what is allowed, its thresholds are raised until it has a status.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from symgen.ir.kernel import Kernel, Program, Scalar
-from symgen.ir.raised import with_raised_thresholds
+from symgen.ir.raised import MASSES, Raised, with_raised_thresholds
 from symgen.model.quantities import MAIN
 from symgen.runtime.activity import working
 from symgen.verify.expected import Expected
@@ -22,9 +23,10 @@ from symgen.verify.interpreted import outcomes
 from symgen.verify.lanes.lane_arithmetic import Lanes
 from symgen.verify.margins.lost_digits import LostDigits
 from symgen.verify.reference.reference import State
+from symgen.verify.sampling.inertias import DIVIDED_BY_MASSES, REGULAR_INERTIA
 from symgen.verify.sampling.nearby import Nearby, Surroundings, joined
 from symgen.verify.sampling.searched import NUMBERS
-from symgen.verify.sampling.settling import Settling
+from symgen.verify.sampling.settling import NEARER, Settling
 from symgen.verify.sampling.states import rounded
 from symgen.verify.tolerance import FACTOR
 
@@ -40,48 +42,67 @@ DOUBTFUL, JUDGED, SHOWING = FACTOR / 2, 24, 4
 DECADES_RAISED, MOST_DECADES, MARGIN = 2, 24, 2
 
 
+@dataclass(frozen=True)
+class _Led:
+    """States that are led to where something is lost, how far each is from that, and which thresholds tell."""
+
+    field: str
+    states: Nearby
+    distances: Lanes
+
+
 class NextToSingular:
     """Those states of one verification."""
 
     def __init__(self, expected: Expected) -> None:
         self._expected, self._digits = expected, LostDigits(expected)
 
-    def decades(self, kernels: Mapping[Scalar, Kernel], programs: Mapping[Scalar, Program]) -> dict[Scalar, int]:
-        """By how many decades the thresholds of the kernels of a quantity are to be raised, by scalar type.
+    def raised(self, kernels: Mapping[Scalar, Kernel], programs: Mapping[Scalar, Program]) -> dict[Scalar, Raised]:
+        """By how much the thresholds of the kernels of a quantity are to be raised, by scalar type.
 
-        By none at all where a number that is too small to have digits is all there is to be refused.
+        By no decade where a number that is too small to have digits is all there is to be refused.
         """
         made = {}
         with working("next to singular states"):
             for scalar, kernel in kernels.items():
-                if kernel.name not in MAIN or not self._digits.are_measured(kernel, scalar):
-                    continue
-                if len(self._states):
-                    made[scalar] = self._decades(kernel, programs, scalar)
-        return {scalar: decades for scalar, decades in made.items() if decades is not None}
+                if kernel.name in MAIN and self._digits.are_measured(kernel, scalar):
+                    made[scalar] = Raised()
+                    for led in self._led(kernel):
+                        decades = self._decades(kernel, programs, scalar, led)
+                        made[scalar] = replace(made[scalar], **{led.field: decades})
+        return {scalar: raised for scalar, raised in made.items() if raised != Raised()}
 
-    def _decades(self, kernel: Kernel, programs: Mapping[Scalar, Program], scalar: Scalar) -> int | None:
+    def _led(self, kernel: Kernel) -> Iterator[_Led]:
+        if len(self._next_to_a_drop.states):
+            yield self._next_to_a_drop
+        divided = any(check.status in MASSES for block in kernel.blocks for check in block.checks)
+        if divided and kernel.name in DIVIDED_BY_MASSES and len(self._next_to_no_mass.states):
+            yield self._next_to_no_mass
+
+    def _decades(self, kernel: Kernel, programs: Mapping[Scalar, Program], scalar: Scalar, led: _Led) -> int | None:
         sincos = programs[scalar].sincos
-        lost = list(self._lost(kernel, programs, scalar))
+        lost = list(self._lost(kernel, programs, scalar, led))
         regular = [sample.state for sample in self._expected.samples(scalar)]
         before = [one.status for one in outcomes(kernel, sincos, scalar, regular)]
         for decades in range(0, MOST_DECADES if lost else 0, DECADES_RAISED):
-            raised = with_raised_thresholds(kernel, scalar, decades)
+            raised = with_raised_thresholds(kernel, scalar, Raised(**{led.field: decades}))
             if not any(one.valid for one in outcomes(raised, sincos, scalar, lost)):
                 more = decades + MARGIN if decades else 0
-                raised = with_raised_thresholds(kernel, scalar, more)
+                raised = with_raised_thresholds(kernel, scalar, Raised(**{led.field: more}))
                 after = [one.status for one in outcomes(raised, sincos, scalar, regular)]
                 return more if after == before else None
         return None
 
-    def _lost(self, kernel: Kernel, programs: Mapping[Scalar, Program], scalar: Scalar) -> Iterator[State]:
+    def _lost(
+        self, kernel: Kernel, programs: Mapping[Scalar, Program], scalar: Scalar, led: _Led
+    ) -> Iterator[State]:
         """States of status 0 at which the reference finds more lost than is allowed, the furthest first."""
-        states = self._states
+        states = led.states
         # of long kernels fewer states are looked at
         count = min(len(states), NUMBERS // (len(kernel.statements) + 1))
         places = np.linspace(0, len(states), count, endpoint=False).astype(int)
         doubtful = places[self._digits.units(kernel, programs, scalar, states.only(places)) > DOUBTFUL]
-        order = doubtful[np.argsort(-self._measures[doubtful], kind="stable")][:JUDGED]
+        order = doubtful[np.argsort(-led.distances[doubtful], kind="stable")][:JUDGED]
         showing = 0
         for place in order.tolist():
             sample = self._settling.sample(states.state(place), bool(states.admissible[place]), kernel.name)
@@ -103,12 +124,20 @@ class NextToSingular:
         return Settling(self._expected.reference, self._expected.drawn, NEAREST)
 
     @cached_property
-    def _states(self) -> Nearby:
+    def _next_to_a_drop(self) -> _Led:
         led = self._around.towards(self._around.affordable(LED), self._settling.measures)
-        states = self._around.next_to_zero(joined(led, self._around.around_zero(self._around.affordable(AROUND_ZERO))))
-        count = self._around.affordable(len(states))
-        return states.only(np.linspace(0, len(states), count, endpoint=False).astype(int))
+        around_zero = self._around.around_zero(self._around.affordable(AROUND_ZERO))
+        states = self._affordable(self._around.next_to_zero(joined(led, around_zero)))
+        return _Led("ranks", states, self._around.measures(states, together=True).min(axis=1))
 
     @cached_property
-    def _measures(self) -> Lanes:
-        return self._around.measures(self._states, together=True).min(axis=1)
+    def _next_to_no_mass(self) -> _Led:
+        """Those, too, that are led there alone: pairs of float32 lose digits before."""
+        count, least = self._around.affordable(LED), NEARER * REGULAR_INERTIA
+        led = self._around.towards_no_mass(count, self._settling.measures, least)
+        states = self._affordable(joined(led, self._around.next_to_zero(led)))
+        return _Led("masses", states, self._around.shares_of_mass(states))
+
+    def _affordable(self, states: Nearby) -> Nearby:
+        count = self._around.affordable(len(states))
+        return states.only(np.linspace(0, len(states), count, endpoint=False).astype(int))

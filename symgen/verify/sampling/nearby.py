@@ -254,6 +254,10 @@ class Surroundings:
         least, dice = [*least, share * self._largest_share], random.Random("no mass out of ranges")
         return self._outside(self._drawn_towards(count, least, dice, self._masses, self._beyond))
 
+    def shares_of_mass(self, states: Nearby) -> Lanes:
+        """The least inertia of a direction over the largest, beside the largest such share of samples."""
+        return self._masses.shares(states.parts["q"], states.parts["p"]) / self._largest_share
+
     @cached_property
     def _masses(self) -> MassesInLanes:
         constraints = sum(part.constraints for part in self._parts)

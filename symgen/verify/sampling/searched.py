@@ -19,6 +19,7 @@ import numpy as np
 
 from symgen.ir.kernel import UNIT_ROUNDOFF, Function, Kernel, Scalar
 from symgen.ir.pairs.wide import paired
+from symgen.ir.pairs.wide_functions import works_with_pairs
 from symgen.model.quantities import MAIN
 from symgen.runtime.activity import working
 from symgen.verify.expected import Expected
@@ -137,11 +138,22 @@ class WorstStateSearch:
         They are those of every method that was looked at.
         """
         states = [rounded(sample, scalar).state for sample in self._states[kernel.name]]
-        worst = 0.0
+        worst, judged = 0.0, self._judged(kernel, scalar)
         for place, made in enumerate(outcomes(kernel, sincos, scalar, states)):
-            if made.valid and (expected := self._expectation(kernel.name, place, scalar)) is not None:
+            if made.valid and judged[place] and (expected := self._expectation(kernel.name, place, scalar)) is not None:
                 worst = max(worst, expected.in_units(expected.distance(made.entries)))
         return worst
+
+    def _judged(self, kernel: Kernel, scalar: Scalar) -> Lanes:
+        """Whether each state is one for a kernel.
+
+        Pairs of float32 hardly have digits for a direction that all but has no mass: how near to that they hold is
+        looked at later, and where they do not they have a status (`verify/margins/next_to_singular.py`).
+        """
+        samples = self._states[kernel.name]
+        if scalar == "float64" or not samples or not works_with_pairs(kernel) or kernel.name not in DIVIDED_BY_MASSES:
+            return np.ones(len(samples), dtype=bool)
+        return self._surroundings.shares_of_mass(of_samples(samples)) >= REGULAR_INERTIA
 
     def _expectation(self, quantity: str, place: int, scalar: Scalar) -> Expectation | None:
         """None where there is no value once the state is rounded."""
