@@ -77,6 +77,26 @@ loops:
 inputs: {u_1: {joint: a_1}, u_2: {joint: a_2}}
 configuration: {a_0: -0.85, a_1: -0.85, a_2: -0.85, b_0: 0.85, b_1: 0.85}
 """
+# Two links without inertia of their own carry a point mass: in a line, at 0, a motion of them moves nothing.
+ARM = """\
+model: arm
+coordinates: {a_1: {unit: rad}, a_2: {unit: rad}, a_3: {unit: rad}}
+parameters:
+  l_1: {value: 1.1}
+  l_2: {value: 0.25}
+  l_3: {value: 0.41}
+  m_2: {value: 2.6}
+  m_3: {value: 4}
+  J_3: {value: 0.38}
+definitions:
+  vx_2: -l_1*sin(a_1)*a_1_dot - l_2*sin(a_1 + a_2)*(a_1_dot + a_2_dot)
+  vy_2: l_1*cos(a_1)*a_1_dot + l_2*cos(a_1 + a_2)*(a_1_dot + a_2_dot)
+  rate: a_1_dot + a_2_dot + a_3_dot
+  vx_3: vx_2 - l_3*sin(a_1 + a_2 + a_3)*rate
+  vy_3: vy_2 + l_3*cos(a_1 + a_2 + a_3)*rate
+kinetic_energy: m_2/2*(vx_2**2 + vy_2**2) + m_3/2*(vx_3**2 + vy_3**2) + J_3/2*rate**2
+inputs: {u_1: {acts_on: {a_1: 1}}, u_2: {acts_on: {a_2: 1}}, u_3: {acts_on: {a_3: 1}}}
+"""
 # What is lost is lost twice, once it is refined: 1e-4 of it at 1e-12.
 METHOD = {"forward_dynamics": "schur_qr_refined"}
 
@@ -191,6 +211,37 @@ def test_pairs_of_float32_have_a_status_where_they_have_lost_all_digits() -> Non
     units_beside, status_beside = statuses(1e-3)
     assert units_beside < FACTOR
     assert status_beside == 0
+
+
+@pytest.mark.campaign
+def test_pairs_of_float32_have_a_status_where_a_direction_all_but_has_no_mass() -> None:
+    """Further away they hold, and thresholds of rows, of which there are none, stay."""
+    name = "forward_dynamics"
+    draft, expected = drafted(ARM, name, "schur_qr")
+    taken = draft.taken(name)
+    wide = replace(taken, choice=replace(taken.choice, wide=("float64", "float32")))
+    kernels = draft.kernels_along(wide, ("float64", "float32"))
+    thresholds = NextToSingular(expected).raised(kernels, draft.programs)
+    assert thresholds.keys() == {"float32"}
+    assert thresholds["float32"].ranks is None
+    raised = with_raised_thresholds(kernels["float32"], "float32", thresholds["float32"])
+
+    def both(a_2: float) -> tuple[float, Status]:
+        parameters = (1.1, 0.25, 0.41, 2.6, 4.0, 0.38)
+        state = State((0.7, a_2, 0.9), (0.1, -0.2, 0.3), (0.0,) * 3, (1.0, -2.0, 0.5), parameters, ())
+        state = in_scalar(state, "float32")
+        known = expectations(expected.reference, state, [name], "float32", "in line")[name]
+        made, limited = (
+            outcomes(one, draft.programs["float32"].sincos, "float32", [state])[0]
+            for one in (kernels["float32"], raised)
+        )
+        assert made.valid
+        return known.in_units(known.distance(made.entries)), Status(limited.status)
+
+    lost = [both(x * 10.0**-power) for power in range(1, 5) for x in (1, 2, 3, 5, 7)]
+    assert max(units for units, _ in lost) > FACTOR
+    assert all(units < FACTOR for units, status in lost if status is Status.OK)
+    assert {status for _, status in lost} == {Status.OK, Status.MASS_RANK}
 
 
 def test_kernels_with_twice_the_digits_of_float64_and_other_quantities_keep_their_thresholds() -> None:

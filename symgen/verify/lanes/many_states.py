@@ -29,8 +29,8 @@ from symgen.ir.last_kernels import LastKernels
 from symgen.verify.given import loaded
 from symgen.verify.lanes.lane_arithmetic import TYPES, UFUNCS, LaneArithmetic, Lanes, Places, number, together
 
-# Numbers that are worked out at a time: fewer take as long, and more do not stay in the cache.
-NUMBERS_AT_ONCE = 2_000_000
+# Numbers that are worked out at a time: fewer take longer, and more do not stay in the cache.
+NUMBERS_AT_ONCE = 4_000_000
 
 
 def run_many(
@@ -267,4 +267,4 @@ def _from_the_front(block: _BlockPlan, rows: int) -> _BlockPlan:
 
 
 # Every step looks at all kernels of a model in turn: short ones stay until the next.
-_PLANS = LastKernels[_Plan](4, statements=150_000)
+_PLANS = LastKernels[_Plan](24, statements=150_000)

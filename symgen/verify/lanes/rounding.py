@@ -68,32 +68,39 @@ class RoundingErrors:
         """
         count = len(next(iter(given.values())))
         with np.errstate(all="ignore"):
+            return self._with_both(*self._values(given, count), count, tangents)
+
+    def with_masses(self, given: Mapping[str, Lanes]) -> tuple[Lanes, Lanes, Lanes]:
+        """The errors, their units, and where a pivot of masses is below 0, by more than rounding leaves of one."""
+        count = len(next(iter(given.values())))
+        with np.errstate(all="ignore"):
             values, regular = self._values(given, count)
-            outputs = [values[place] for place in self._outputs]
-            own, slopes = self._shares(values, count)
-            inputs = self._of_inputs(values, slopes, count)
-            size = np.sqrt(sum(x * x for x in outputs))
-            whole = size + LARGEST_OF_EIGHT * np.sqrt(inputs)
-            along = whole
-            if tangents is not None:
-                inputs = np.fmin(inputs, self._along(values, slopes, tangents))
-                along = size + LARGEST_OF_EIGHT * np.sqrt(inputs)
-            regular &= np.isfinite(along) & (along > 0) & np.isfinite(own)
+            negative = self._indefinite(values, count)
+            own, whole, _ = self._with_both(values, regular, count, None)
+        return own, whole, negative
+
+    def _with_both(
+        self, values: Sequence[Lanes], regular: Lanes, count: int, tangents: Lanes | None
+    ) -> tuple[Lanes, Lanes, Lanes]:
+        outputs = [values[place] for place in self._outputs]
+        own, slopes = self._shares(values, count)
+        inputs = self._of_inputs(values, slopes, count)
+        size = np.sqrt(sum(x * x for x in outputs))
+        whole = size + LARGEST_OF_EIGHT * np.sqrt(inputs)
+        along = whole
+        if tangents is not None:
+            inputs = np.fmin(inputs, self._along(values, slopes, tangents))
+            along = size + LARGEST_OF_EIGHT * np.sqrt(inputs)
+        regular = regular & np.isfinite(along) & (along > 0) & np.isfinite(own)
         own = np.sqrt(np.where(regular, own, 0.0))
         return own, np.where(regular, whole, np.inf), np.where(regular, along, np.inf)
 
-    def indefinite(self, given: Mapping[str, Lanes]) -> Lanes:
-        """Where a pivot of masses is below 0, by more than rounding leaves of one that is 0."""
-        count = len(next(iter(given.values())))
+    def _indefinite(self, values: Sequence[Lanes], count: int) -> Lanes:
         negative = np.zeros(count, dtype=bool)
-        if not any(check.status is Status.MASS_RANK for block in self._kernel.blocks for check in block.checks):
-            return negative
-        with np.errstate(all="ignore"):
-            values, _ = self._values(given, count)
-            for block, (_, checks) in zip(self._kernel.blocks, self._blocks, strict=True):
-                for check, (_, value, limit) in zip(block.checks, checks, strict=True):
-                    if check.status is Status.MASS_RANK:
-                        negative |= values[value] < -np.abs(values[limit])
+        for block, (_, checks) in zip(self._kernel.blocks, self._blocks, strict=True):
+            for check, (_, value, limit) in zip(block.checks, checks, strict=True):
+                if check.status is Status.MASS_RANK:
+                    negative |= values[value] < -np.abs(values[limit])
         return negative
 
     def _put(self, name: str) -> int:

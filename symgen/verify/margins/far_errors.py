@@ -23,6 +23,12 @@ from symgen.verify.lanes.many_states import run_lanes
 from symgen.verify.lanes.rounding import RoundingErrors
 from symgen.verify.rounding_noise import noise_in_units
 from symgen.verify.single_precision import distances, in_single_precision
+from symgen.verify.tolerance import FACTOR
+
+# Units of an estimate that count as lost: other states than these lose twice as much, and more.
+UNITS_LOST = FACTOR / 2
+# Up to this power of ten the reference judges what is lost.
+JUDGED_UP_TO = 1.0
 
 
 @dataclass(frozen=True)
@@ -74,29 +80,37 @@ class FarErrors:
         That masses or lengths far apart seem to leave the motion undetermined is no reason: infinitely many units.
         That masses are none is one, and that rows or inputs are near a drop of rank.
         """
-        by_scalar = self._of_pairs(far) if self._in_pairs else self._estimated_and_measured(far)
-        masses = ~self._estimates.indefinite(far.given)
-        return {scalar: np.where(masses, units, 0.0) for scalar, units in by_scalar.items()}
+        own, unit, massless = self._estimates.with_masses(far.given)
+        made: dict[Scalar, Lanes] = {scalar: np.zeros(len(far)) for scalar in self._kernels}
+        heavy = np.flatnonzero(~massless)
+        by_scalar = (self._of_pairs if self._in_pairs else self._of_numbers)(far.only(heavy), own[heavy], unit[heavy])
+        for scalar, units in by_scalar.items():
+            made[scalar][heavy] = units
+        return made
 
-    def _of_pairs(self, far: Far) -> dict[Scalar, Lanes]:
+    def _of_pairs(self, far: Far, own: Lanes, unit: Lanes) -> dict[Scalar, Lanes]:
         """In float64 their noise; in float32 what plain numbers lose, less the digits of pairs if these are used."""
         by_scalar: dict[Scalar, Lanes] = {"float64": np.maximum(self._noise(far), self._refusals("float64", far))}
         if self._single is not None:
-            own, unit = self._estimates.with_units(far.given)
             if works_with_pairs(self._single):
                 by_scalar["float32"] = np.maximum(self._refusals("float32", far), own / unit * 2.0**-GAINED)
             else:
                 by_scalar["float32"] = self._in_float32(self._single, far, own / unit, unit)
         return by_scalar
 
-    def _estimated_and_measured(self, far: Far) -> dict[Scalar, Lanes]:
-        own, unit = self._estimates.with_units(far.given)
+    def _of_numbers(self, far: Far, own: Lanes, unit: Lanes) -> dict[Scalar, Lanes]:
+        """What is estimated, and what is measured where that says little: where more than enough is lost, it is."""
         estimated = own / unit
         refused = np.flatnonzero(~np.isfinite(unit))
         estimated[refused] = self._refusals("float64", far.only(refused))
-        by_scalar: dict[Scalar, Lanes] = {"float64": np.maximum(estimated, self._noise(far))}
-        if self._single is not None:
+        in_doubt = np.flatnonzero((estimated <= UNITS_LOST) | (np.abs(far.powers) <= JUDGED_UP_TO))
+        doubts = far.only(in_doubt)
+        by_scalar: dict[Scalar, Lanes] = {"float64": _raised_to(estimated, in_doubt, self._noise(doubts))}
+        if self._single is not None and works_with_pairs(self._single):
             by_scalar["float32"] = self._in_float32(self._single, far, estimated, unit)
+        elif self._single is not None:
+            made = self._in_float32(self._single, doubts, estimated[in_doubt], unit[in_doubt])
+            by_scalar["float32"] = _raised_to(estimated, in_doubt, made)
         return by_scalar
 
     def _in_float32(self, kernel: Kernel, far: Far, estimated: Lanes, unit: Lanes) -> Lanes:
@@ -121,6 +135,13 @@ class FarErrors:
         status, made = run_lanes(kernel, programs["float32"].sincos, "float32", given)
         off = np.where(status != 0, inf, distances(exact, made))
         return np.where((unknown != 0) & ~_is_unfounded(status, far.regular), 0.0, off)
+
+
+def _raised_to(estimated: Lanes, places: Lanes, measured: Lanes) -> Lanes:
+    """What is estimated, or what is measured at these places where that is more."""
+    made = estimated.copy()
+    made[places] = np.maximum(made[places], measured)
+    return made
 
 
 def _is_unfounded(status: Lanes, regular: Lanes) -> Lanes:

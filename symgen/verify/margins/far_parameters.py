@@ -23,7 +23,7 @@ from symgen.runtime.activity import working
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import outcomes
 from symgen.verify.lanes.lane_arithmetic import Lanes
-from symgen.verify.margins.far_errors import Far, FarErrors
+from symgen.verify.margins.far_errors import JUDGED_UP_TO, UNITS_LOST, Far, FarErrors
 from symgen.verify.margins.far_states import (
     FAR_STARTS,
     FURTHEST,
@@ -58,12 +58,10 @@ CLOSER_STATES = 256
 # Numbers that are worked out for one look at a kernel, and for one at each kernel of a model but those of u, q_ddot and
 # lambda together: as many as three long ones take.
 MOST, MOST_OF_OTHERS = 20_000_000, 60_000_000
-# Units of an estimate that count as lost: other states than these lose twice as much, and more.
-UNITS_LOST = FACTOR / 2
 # As many numbers as a statement of a kernel that works with pairs counts for.
 IN_PAIRS = 16
-# Up to this power the reference judges so many of the worst.
-JUDGED_UP_TO, JUDGED_FAR = 1.0, 2
+# Up to a power the reference judges so many of the worst.
+JUDGED_FAR = 2
 
 
 @dataclass(frozen=True)
