@@ -74,16 +74,18 @@ class FarErrors:
         self._estimates = RoundingErrors(plain or kernels["float64"])
         self._single = kernels.get("float32")
 
-    def units(self, far: Far) -> dict[Scalar, Lanes]:
+    def units(self, far: Far, ranked: bool) -> dict[Scalar, Lanes]:
         """By scalar type, a number for each state; 0 where a kernel refuses with reason.
 
         That masses or lengths far apart seem to leave the motion undetermined is no reason: infinitely many units.
-        That masses are none is one, and that rows or inputs are near a drop of rank.
+        That masses are none is one, and that rows or inputs are near a drop of rank.  Where states are not to be
+        `ranked`, what is estimated to be more than enough is not measured as well, but for what the reference judges.
         """
         own, unit, massless = self._estimates.with_masses(far.given)
         made: dict[Scalar, Lanes] = {scalar: np.zeros(len(far)) for scalar in self._kernels}
         heavy = np.flatnonzero(~massless)
-        by_scalar = (self._of_pairs if self._in_pairs else self._of_numbers)(far.only(heavy), own[heavy], unit[heavy])
+        far, own, unit = far.only(heavy), own[heavy], unit[heavy]
+        by_scalar = self._of_pairs(far, own, unit) if self._in_pairs else self._of_numbers(far, own, unit, ranked)
         for scalar, units in by_scalar.items():
             made[scalar][heavy] = units
         return made
@@ -98,12 +100,12 @@ class FarErrors:
                 by_scalar["float32"] = self._in_float32(self._single, far, own / unit, unit)
         return by_scalar
 
-    def _of_numbers(self, far: Far, own: Lanes, unit: Lanes) -> dict[Scalar, Lanes]:
-        """What is estimated, and what is measured where that says little: where more than enough is lost, it is."""
+    def _of_numbers(self, far: Far, own: Lanes, unit: Lanes, ranked: bool) -> dict[Scalar, Lanes]:
+        """What is estimated or measured, whichever is more."""
         estimated = own / unit
         refused = np.flatnonzero(~np.isfinite(unit))
         estimated[refused] = self._refusals("float64", far.only(refused))
-        in_doubt = np.flatnonzero((estimated <= UNITS_LOST) | (np.abs(far.powers) <= JUDGED_UP_TO))
+        in_doubt = np.flatnonzero(ranked | (estimated <= UNITS_LOST) | (np.abs(far.powers) <= JUDGED_UP_TO))
         doubts = far.only(in_doubt)
         by_scalar: dict[Scalar, Lanes] = {"float64": _raised_to(estimated, in_doubt, self._noise(doubts))}
         if self._single is not None and works_with_pairs(self._single):

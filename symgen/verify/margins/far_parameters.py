@@ -206,7 +206,7 @@ class _Bounds:
             return {}
         steps = [(k, sign * power) for k in read for sign in SIDES for power in CHOSEN_AT]
         far = self._far.states.led(steps, starts, self._lossy_furthest(read, 2 * starts // 3))
-        by_scalar = self._units(far)
+        by_scalar = self._units(far, ranked=True)
         # of each type in turn: in float32 next to all of them may be refused
         order = np.array([np.argsort(-units, kind="stable") for units in by_scalar.values()]).T.ravel()
         worst: dict[tuple[int, int], dict[int, None]] = {}
@@ -287,13 +287,13 @@ class _Bounds:
     def _lost(self, far: Far) -> dict[Scalar, Far]:
         """By scalar type, what of it seems to lose more than is allowed, the worst first."""
         by_scalar = {}
-        for scalar, units in self._units(far).items():
+        for scalar, units in self._units(far, ranked=False).items():
             order = np.argsort(-units, kind="stable")
             by_scalar[scalar] = far.only(order[units[order] > UNITS_LOST])
         return by_scalar
 
-    def _units(self, far: Far) -> dict[Scalar, Lanes]:
-        parts = [self._errors.units(part) for part in self._parts(far)]
+    def _units(self, far: Far, ranked: bool) -> dict[Scalar, Lanes]:
+        parts = [self._errors.units(part, ranked) for part in self._parts(far)]
         return {scalar: np.concatenate([np.zeros(0), *(part[scalar] for part in parts)]) for scalar in self._kernels}
 
     def _parts(self, far: Far) -> Iterator[Far]:
