@@ -279,7 +279,7 @@ def test_what_a_type_loses_further_away_does_not_move_the_bound_of_the_other(
     """One seems to lose from the first power of ten on, where the reference finds nothing, one from the eighth."""
     losses: dict[Scalar, float] = {"float64": 1.0, "float32": 8.0}
 
-    def units(_: FarErrors, far: Far) -> dict[Scalar, Lanes]:
+    def units(_: FarErrors, far: Far, _ranked: bool) -> dict[Scalar, Lanes]:
         mass = far.parameters == 4
         return {scalar: np.where(mass & (far.powers >= lost), 1e3, 0.0) for scalar, lost in losses.items()}
 
@@ -445,7 +445,7 @@ def test_states_far_away_satisfy_the_constraints_there(tmp_path: Path) -> None:
 def test_a_bound_is_a_power_of_ten_before_a_loss_that_no_reference_has_judged(
     monkeypatch: pytest.MonkeyPatch, expected: Expected, lost: float, bound: float
 ) -> None:
-    def units(_: FarErrors, far: Far) -> dict[Scalar, Lanes]:
+    def units(_: FarErrors, far: Far, _ranked: bool) -> dict[Scalar, Lanes]:
         worse = (far.parameters == 4) & (far.powers >= lost)
         return {scalar: np.where(worse, 1e3, 0.0) for scalar in SCALARS}
 
