@@ -41,7 +41,7 @@ NOTED = (f"--junitxml={FIGURES}", "-o", "junit_family=xunit1")
 TESTED = {
     "accuracy": ("gcc",),
     "allocation": ("gcc",),
-    "backends": ("gcc", "cargo"),
+    "backends": ("gcc", "g++", "cargo", "octave-cli", "mkoctfile"),
     "cli": ("gcc",),
     "closedform": (),
     "friction": ("gcc",),

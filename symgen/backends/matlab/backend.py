@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from symgen.backends.backend import Backend, Variant
+from symgen.backends.c.elsewhere import emit_c_into
 from symgen.backends.matlab.functions import emit_functions
-from symgen.backends.matlab.kernels import emit_kernels
 
 BACKEND = Backend(
     "matlab",
     "MATLAB",
-    (Variant(emit_kernels),),
+    (Variant(emit_c_into("matlab")),),
     (".h", ".c"),
     "c",
     of_each_scalar=False,
