@@ -79,7 +79,7 @@ class _Search:
         self._scales = Scales(sizes)
         rows = sizes[: len(mechanics.constraints)]
         self._units = tuple(round(math.log2(row_unit(row.values()))) for row in rows)
-        self._closer = Closer(mechanics.residuals, sizes[: self._r_geometric], self._widths)
+        self._closer = Closer(mechanics, sizes[: self._r_geometric], self._widths)
         self._bound = self._bounds([*(rows for _, rows in samples), *self._with_other_parameters()])
 
     def result(self) -> Assembly | OpenLoop | None:

@@ -44,7 +44,7 @@ class Gradients:
         numbers: Numbers = FLOATS,
     ) -> None:
         self.index, self.numbers = index, numbers
-        self._values, self._definitions, self._components = values, definitions, components
+        self.values, self._definitions, self._components = values, definitions, components
         self._known: dict[str, Dual | Exception] = {}
 
     def of(self, expression: Expression) -> Dual:
@@ -66,7 +66,10 @@ class Gradients:
 
     def binary(self, binary: Binary) -> Dual:
         """Sums, products and quotients."""
-        return _BINARY[binary.operator](*self.of(binary.left), *self.of(binary.right))
+        left, right = binary.left, binary.right
+        # most operands are operations: what their kind is evaluated by is called without a step between
+        value, gradient = _BY_KIND[left.__class__](self, left)
+        return _BINARY[binary.operator](value, gradient, *_BY_KIND[right.__class__](self, right))
 
     def power(self, power: Power) -> Dual:
         """A power with a number."""
@@ -93,11 +96,11 @@ class Gradients:
         """A coordinate, a parameter, a component or a definition."""
         name = given.name
         if name in self.index:
-            return self._values[name], {self.index[name]: 1.0}
+            return self.values[name], {self.index[name]: 1.0}
         if self._components is not None and is_component(name):
             return self._components(name)
         if name not in self._definitions:
-            return self._values[name], {}
+            return self.values[name], {}
         if not self._known:
             self._evaluate_definitions()
         known = self._known[name]
@@ -125,11 +128,30 @@ _BY_KIND: Mapping[type, Callable[..., Dual]] = {
     Power: Gradients.power,
     Call: Gradients.call,
 }
+
+def _sum(a: float, da: _Gradient, b: float, db: _Gradient) -> Dual:
+    return a + b, _combined(da, 1.0, db, 1.0) if db else da
+
+
+def _difference(a: float, da: _Gradient, b: float, db: _Gradient) -> Dual:
+    return a - b, _combined(da, 1.0, db, -1.0) if db else da
+
+
+def _product(a: float, da: _Gradient, b: float, db: _Gradient) -> Dual:
+    return a * b, _combined(da, b, db, a) if db else _scaled(da, b) if da else da
+
+
+def _quotient(a: float, da: _Gradient, b: float, db: _Gradient) -> Dual:
+    if da or db:
+        return a / b, _combined(da, 1 / b, db, -a / (b * b))
+    return a / b, da
+
+
 _BINARY: Mapping[str, Callable[[float, _Gradient, float, _Gradient], Dual]] = {
-    "+": lambda a, da, b, db: (a + b, _combined(da, 1.0, db, 1.0)),
-    "-": lambda a, da, b, db: (a - b, _combined(da, 1.0, db, -1.0)),
-    "*": lambda a, da, b, db: (a * b, _combined(da, b, db, a)),
-    "/": lambda a, da, b, db: (a / b, _combined(da, 1 / b, db, -a / (b * b))),
+    "+": _sum,
+    "-": _difference,
+    "*": _product,
+    "/": _quotient,
 }
 
 

@@ -13,6 +13,7 @@ from symgen.model.configurations.dense import Rows
 from symgen.model.configurations.gradient import Gradients
 from symgen.model.configurations.numbers import FLOATS, Numbers
 from symgen.model.configurations.sparse import Row
+from symgen.model.configurations.valued import BoundExpression, bound
 from symgen.model.expressions.expression import Expression
 from symgen.model.expressions.walk import evaluate, exact_value
 from symgen.model.kinematics.float_kinematics import FloatKinematics
@@ -155,20 +156,33 @@ class NumericSystem:
                 matrix[j][i] += value
         return matrix
 
+    def values(self, q: Sequence[float], numbers: Sequence[int]) -> list[float]:
+        """Of the geometric rows with these numbers."""
+        at = self._gradients(q, {})
+        rows = self._bound_rows
+        return [rows[i](at) for i in numbers]
+
+    @cached_property
+    def _bound_rows(self) -> list[BoundExpression]:
+        given = {*self._index, *(parameter.name for parameter in self.parameters)}
+        return [bound(row.expression, given) for row in self.geometric]
+
     def residuals(self, q: Sequence[float], numbers: Sequence[int]) -> tuple[list[float], list[Row]]:
         """Values and gradients of the geometric rows with these numbers."""
-        gradients = self._gradients(q)
+        gradients = self._gradients(q, self._index)
         pairs = [gradients.of(self.geometric[i].expression) for i in numbers]
         return [value for value, _ in pairs], [gradient for _, gradient in pairs]
 
     def gradients(self, q: Sequence[float], expressions: Iterable[Expression]) -> list[Row]:
         """Those of functions of the configuration."""
-        gradients = self._gradients(q)
+        gradients = self._gradients(q, self._index)
         return [gradients.of(expression)[1] for expression in expressions]
 
-    def _gradients(self, q: Sequence[float]) -> Gradients:
+    def _gradients(self, q: Sequence[float], index: Mapping[str, int]) -> Gradients:
+        """Those by the coordinates in the index, and the values."""
         values = {**self.defaults, **self._named(q)}
-        return Gradients(values, self._index, self._definitions, self._kinematics(values).place, self.numbers)
+        place = self._kinematics(values, index).place
+        return Gradients(values, index, self._definitions, place, self.numbers)
 
     def rows(self, q: Sequence[float]) -> list[Row]:
         """B, r rows."""
@@ -209,9 +223,10 @@ class NumericSystem:
             q = [generator.uniform(float(c.range[0]), float(c.range[1])) for c in self.coordinates]
             yield q, {p.name: _drawn(p, self.defaults[p.name], generator) for p in self.parameters}
 
-    def _kinematics(self, values: dict[str, float]) -> FloatKinematics:
+    def _kinematics(self, values: dict[str, float], index: Mapping[str, int] | None = None) -> FloatKinematics:
+        index = self._index if index is None else index
         # frames use definitions, definitions may use points: those that frames use are evaluated without components
-        return FloatKinematics(self.mechanism, Gradients(values, self._index, self._definitions, numbers=self.numbers))
+        return FloatKinematics(self.mechanism, Gradients(values, index, self._definitions, numbers=self.numbers))
 
     def _named(self, q: Sequence[float]) -> dict[str, float]:
         return {coordinate.name: value for coordinate, value in zip(self.coordinates, q, strict=True)}

@@ -1,0 +1,54 @@
+"""Expressions bound to functions of one configuration, for values alone: what a search evaluates most often.
+
+Their operations and operands are those of `Gradients`, in the same order, so that values are the same to the last bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Container
+from typing import TypeAlias
+
+from symgen.model.configurations.gradient import Gradients
+from symgen.model.expressions.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
+
+BoundExpression: TypeAlias = Callable[[Gradients], float]
+
+
+def bound(expression: Expression, given: Container[str]) -> BoundExpression:
+    """The value of an expression at a configuration; ArithmeticError or ValueError outside the domain.
+
+    Names of `given` are coordinates and parameters; others are definitions or components.
+    """
+    match expression:
+        case Number(value=number):
+            return lambda at: at.numbers.rational(number)
+        case Pi():
+            return lambda at: at.numbers.pi
+        case Name(name=name):
+            return (lambda at: at.values[name]) if name in given else (lambda at: at.name(expression)[0])
+        case Negation(operand=operand):
+            own = bound(operand, given)
+            return lambda at: -own(at)
+        case Binary(operator=operator, left=left, right=right):
+            return _bound_operation(operator, bound(left, given), bound(right, given))
+        case Power(base=base, exponent=exponent):
+            own = bound(base, given)
+            return lambda at: at.numbers.power(own(at), exponent)
+        case Call(function=function, arguments=(argument,)):
+            own = bound(argument, given)
+            return lambda at: at.numbers.functions[function](own(at))
+        case Call(function=function, arguments=arguments):
+            several = [bound(argument, given) for argument in arguments]
+            return lambda at: at.numbers.functions[function](*(one(at) for one in several))
+
+
+def _bound_operation(operator: str, left: BoundExpression, right: BoundExpression) -> BoundExpression:
+    match operator:
+        case "+":
+            return lambda at: left(at) + right(at)
+        case "-":
+            return lambda at: left(at) - right(at)
+        case "*":
+            return lambda at: left(at) * right(at)
+        case _:
+            return lambda at: left(at) / right(at)
