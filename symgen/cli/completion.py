@@ -9,7 +9,7 @@ from typing import Literal, TypeAlias
 
 from symgen.backends.render import render
 from symgen.cli.arguments import USUAL
-from symgen.generation.results import ALL_PARTS, AUTO, LINEARIZATION, NAMED_METHODS
+from symgen.generation.results import ALL_PARTS, AUTO, BASE_PARAMETERS, LINEARIZATION, NAMED_METHODS
 from symgen.model.quantities import ROWS
 
 # What stands in the place of a word: nothing that is known, a model file, a folder, one of several words, or several of
@@ -115,6 +115,6 @@ _BY_METAVAR: Mapping[str, ValueView] = {
     "DIR": ValueView("folder"),
     "PARTS": ValueView("list", ALL_PARTS),
     "A,B": ValueView("list", ("all", *ROWS)),
-    "QUANTITY": ValueView("word", (*ROWS, LINEARIZATION)),
+    "QUANTITY": ValueView("word", (*ROWS, LINEARIZATION, BASE_PARAMETERS)),
     "[QUANTITY=]METHOD": ValueView("word", _methods()),
 }

@@ -25,11 +25,12 @@ from symgen.cli.arguments import (
     parts,
 )
 from symgen.cli.command import Command
+from symgen.cli.identifying import explain_base_parameters
 from symgen.cli.linearizing import add_linearization, explain_linear_system
 from symgen.cli.measuring import BENCH, SIMULATE, STRESS, TARGET
 from symgen.cli.outcome import DONE, MODEL_WRONG, WRONG_USE, check_present, check_writable, guarded
 from symgen.cli.signals import EndedError, signals_end_the_run
-from symgen.generation.results import ALL_PARTS, LINEARIZATION, PARTS, Options, Result, WrongUseError
+from symgen.generation.results import ALL_PARTS, BASE_PARAMETERS, LINEARIZATION, PARTS, Options, Result, WrongUseError
 from symgen.ir.kernel import Scalar
 from symgen.model.expressions.names import did_you_mean
 from symgen.output.write import begin_writing, changed_folders, compare, recover_folders, write_files
@@ -217,7 +218,8 @@ def _explain_parser() -> argparse.ArgumentParser:
         "quantity",
         metavar="QUANTITY",
         nargs="?",
-        help=f"one quantity, or {LINEARIZATION}: poles and gains at rest (default: an overview)",
+        help=f"one quantity; {LINEARIZATION}: poles and gains at rest; {BASE_PARAMETERS}: which combinations of "
+        "inertial parameters count (default: an overview)",
     )
     add_linearization(parser)
     add_method(parser)
@@ -229,6 +231,8 @@ def _explain(given: argparse.Namespace) -> int:
     check_present([given.model])
     if given.quantity == LINEARIZATION:
         return guarded(lambda: explain_linear_system(given.model, given.start, given.lqr))
+    if given.quantity == BASE_PARAMETERS:
+        return guarded(lambda: explain_base_parameters(given.model))
 
     def explain() -> int:
         from symgen.generation.explain import explain

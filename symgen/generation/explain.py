@@ -13,7 +13,7 @@ from symgen.generation.explain_text import methods_text, overview, quantity_text
 from symgen.generation.facts import facts
 from symgen.generation.notices import replaced
 from symgen.generation.requested import unknown_quantity
-from symgen.generation.results import LINEARIZATION, NAMED_METHODS, Options
+from symgen.generation.results import BASE_PARAMETERS, LINEARIZATION, NAMED_METHODS, Options
 from symgen.methods.selection import MethodChoice
 from symgen.model.load import load_model
 from symgen.quantities.catalogue import BY_NAME
@@ -33,7 +33,7 @@ def explain(
     verified some.
     """
     if quantity is not None and quantity not in BY_NAME:
-        raise unknown_quantity(quantity, LINEARIZATION)
+        raise unknown_quantity(quantity, LINEARIZATION, BASE_PARAMETERS)
     progress("reading the model")
     model = load_model(path)
     if quantity is not None:

@@ -1,0 +1,1 @@
+"""Which parameters of its bodies a mechanism shows, and how."""

@@ -1,0 +1,223 @@
+"""Base parameters: which combinations of inertial parameters the equations of a mechanism show, and which none.
+
+Rows of F^T Y at random admissible motions, in balls, until three motions more bring no new direction: there is no
+tolerance, a number counts where its ball leaves 0 out.  Restricted energies would do for holonomic systems alone
+(Gautier and Khalil, Direct calculation of minimum set of inertial parameters of serial robots, 1990).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+from symgen.identification.ball_matrices import Echelon, extended
+from symgen.identification.coefficient_forms import (
+    MOST_VARIABLES,
+    CoefficientForm,
+    Sample,
+    changing,
+    product_form,
+    quotient_form,
+    samples_needed,
+)
+from symgen.identification.constrained_regressor import ConstrainedRegressor
+from symgen.identification.geometry import geometry_values
+from symgen.identification.inertial_parameters import InertialParameter, inertial_parameters, values
+from symgen.identification.motion_states import BallSystem, NoMotionError, motion_states
+from symgen.identification.taylor_balls import FIRST_BITS, MOST_BITS, Ball, WideBallError, ball_precision, may_vanish
+from symgen.model.configurations.mechanics import default_values
+from symgen.model.expressions.walk import evaluate
+from symgen.model.model import Model
+from symgen.runtime.activity import working
+
+# Motions that bring nothing new before the rank counts.
+SURE = 3
+# Of the terms of a sum that vanishes.
+ROUNDING = 1e-14
+# By which one parameter of the geometry is changed, and how far all of them are.
+CHANGE, CHANGES = Fraction(33, 32), 64
+
+
+class NoBodiesError(Exception):
+    """A model without bodies has no inertial parameters."""
+
+
+@dataclass(frozen=True, slots=True)
+class BaseParameter:
+    """A combination that counts: a parameter and what others add to it."""
+
+    stays: InertialParameter
+    added: tuple[tuple[InertialParameter, CoefficientForm], ...]
+    value: float
+
+
+@dataclass(frozen=True, slots=True)
+class BaseParameters:
+    """Those of one model.
+
+    `as_tree` counts them without the constraints, `elsewhere` at other values of the geometry (None where the
+    mechanism does not close there).  Parameters `without_effect` are in no combination.
+    """
+
+    model: Model
+    parameters: tuple[InertialParameter, ...]
+    base: tuple[BaseParameter, ...]
+    without_effect: tuple[InertialParameter, ...]
+    as_tree: int
+    elsewhere: int | None
+
+
+def base_parameters(model: Model) -> BaseParameters:
+    """The base parameters of a model with bodies.
+
+    Raises NoBodiesError where there are none, and NoMotionError where no regular motion was found.
+    """
+    if not model.mechanism.has_mass:
+        raise NoBodiesError
+    bits = FIRST_BITS
+    while True:
+        try:
+            with ball_precision(bits):
+                return _Search(model).result()
+        except WideBallError:
+            if bits == MOST_BITS:
+                raise NoMotionError from None
+            bits *= 2
+
+
+class _Search:
+    def __init__(self, model: Model) -> None:
+        self._model = model
+        self._parameters = inertial_parameters(model.mechanism)
+        self._order = sorted(range(len(self._parameters)), key=lambda k: (self._parameters[k].staying, k))
+        self._geometry = geometry_values(model)
+
+    def result(self) -> BaseParameters:
+        with working("base parameters"):
+            here = self._echelon({})
+            tree = self._echelon({}, is_open=True).rank if self._model.constraints else here.rank
+            combined = [*self._combined(here)]
+            others = self._changed(here, combined)
+            forms = dict(self._forms(here, combined, others)) if others is not None else {}
+            elsewhere = self._elsewhere(here)
+        model = self._model
+        defaults = default_values(model.parameters)
+        numbers = values(model.mechanism, lambda expression: evaluate(expression, defaults))
+        by_pivot: dict[int, list[tuple[int, CoefficientForm]]] = {pivot: [] for pivot in here.pivots}
+        for (row, column), value in combined:
+            form = forms.get((row, column), CoefficientForm(float(value.mid()), ()))
+            by_pivot[here.pivots[row]].append((column, form))
+        base = tuple(
+            BaseParameter(
+                self._parameters[pivot],
+                tuple((self._parameters[column], form) for column, form in added),
+                _sum([numbers[pivot], *(form.value * numbers[column] for column, form in added)]),
+            )
+            for pivot, added in sorted(by_pivot.items())
+        )
+        shown = {*here.pivots, *(column for (_, column), _ in combined)}
+        idle = tuple(one for k, one in enumerate(self._parameters) if k not in shown)
+        return BaseParameters(model, self._parameters, base, idle, tree, elsewhere)
+
+    def _echelon(self, given: Mapping[str, Fraction], is_open: bool = False, rank: int | None = None) -> Echelon:
+        """Reduced rows at as many motions as it takes, or as this rank does."""
+        model = self._model
+        system = BallSystem(model, given, is_open)
+        regressor = ConstrainedRegressor(system)
+        if is_open or model.assembly is None:
+            start, rows = tuple(float(sum(c.range)) / 2 for c in model.coordinates), 0
+        else:
+            start, rows = model.assembly.places[0].q, model.assembly.ranks.constraints
+        echelon, quiet = Echelon([], ()), 0
+        for state in motion_states(system, start, rows):
+            more = extended(echelon, regressor.rows(state), self._order)
+            quiet = quiet + 1 if more.rank == echelon.rank else 0
+            echelon = more
+            if quiet == SURE or echelon.rank == rank:
+                break
+        return echelon
+
+    def _combined(self, echelon: Echelon) -> Iterator[tuple[tuple[int, int], Ball]]:
+        """By row and column, what parameters that are no pivots add."""
+        for i, row in enumerate(echelon.rows):
+            for j, entry in enumerate(row):
+                if j not in echelon.pivots and not may_vanish(entry):
+                    yield (i, j), entry
+
+    def _changed(
+        self, here: Echelon, combined: Sequence[tuple[tuple[int, int], Ball]]
+    ) -> dict[str, Echelon] | None:
+        """With each parameter of the geometry changed; None where nothing is combined, or the pivots differ."""
+        made: dict[str, Echelon] = {}
+        if not combined:
+            return None
+        for name, value in self._geometry.items():
+            try:
+                other = self._echelon({name: value * CHANGE}, rank=here.rank)
+            except NoMotionError:
+                return None
+            if sorted(other.pivots) != sorted(here.pivots):
+                return None
+            made[name] = other
+        return made
+
+    def _forms(
+        self, here: Echelon, combined: Sequence[tuple[tuple[int, int], Ball]], others: Mapping[str, Echelon]
+    ) -> Iterator[tuple[tuple[int, int], CoefficientForm]]:
+        """Closed forms, by row and column."""
+        left: list[tuple[tuple[int, int], Sample, tuple[str, ...]]] = []
+        for (i, j), value in combined:
+            own = Sample(self._geometry, value)
+            scaled = {
+                name: Sample({**self._geometry, name: self._geometry[name] * CHANGE}, _entry(other, here.pivots[i], j))
+                for name, other in others.items()
+            }
+            form = product_form(own, scaled)
+            if form is not None:
+                yield (i, j), form
+            else:
+                left.append(((i, j), own, changing(own, scaled)))
+        fitted = [len(names) for _, _, names in left if len(names) <= MOST_VARIABLES]
+        samples = [*self._anywhere(here, max(map(samples_needed, fitted)))] if fitted else []
+        for (i, j), own, names in left:
+            seen = [Sample(given, _entry(echelon, here.pivots[i], j)) for given, echelon in samples]
+            form = quotient_form(own, names, seen) if len(names) <= MOST_VARIABLES else None
+            yield (i, j), form or replace(CoefficientForm(float(own.value.mid()), ()), changed_by=names)
+
+    def _anywhere(self, here: Echelon, count: int) -> Iterator[tuple[dict[str, Fraction], Echelon]]:
+        """So many times with all parameters of the geometry changed, each time in another way."""
+        for k in range(count):
+            given = self._moved(k)
+            try:
+                echelon = self._echelon(given, rank=here.rank)
+            except NoMotionError:
+                return
+            if sorted(echelon.pivots) != sorted(here.pivots):
+                return
+            yield given, echelon
+
+    def _moved(self, number: int) -> dict[str, Fraction]:
+        """Values of the geometry in general position: their quotients are fractions of large primes."""
+        return {
+            name: value * (1 + Fraction((31 * (k + 1) + 17 * number * (k + 2)) % 101 - 50, 50 * CHANGES))
+            for k, (name, value) in enumerate(self._geometry.items())
+        }
+
+    def _elsewhere(self, here: Echelon) -> int | None:
+        if not self._geometry:
+            return here.rank
+        try:
+            return self._echelon(self._moved(1)).rank
+        except NoMotionError:
+            return None
+
+
+def _sum(terms: Sequence[float]) -> float:
+    """The sum, and 0 for what rounding leaves of one."""
+    total = sum(terms)
+    return 0.0 if abs(total) <= ROUNDING * sum(map(abs, terms)) else total
+
+
+def _entry(echelon: Echelon, pivot: int, column: int) -> Ball:
+    return echelon.rows[echelon.pivots.index(pivot)][column]

@@ -1,0 +1,218 @@
+"""Truncated Taylor series in the time with coefficients in the ball arithmetic of Arb.
+
+What is computed encloses what is meant (Johansson, IEEE Trans. Computers 66, 2017), so that a number whose ball leaves
+0 out is not 0: ranks are decided without a tolerance.  Series hold one coefficient, two or three.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from fractions import Fraction
+from typing import Any, TypeAlias, cast
+
+from flint import arb, ctx, fmpq
+
+from symgen.model.configurations.numbers import Numbers
+
+# Binary digits of balls at first, 192 decimal ones, and at most: more are taken where balls are too wide to decide.
+FIRST_BITS, MOST_BITS = 640, 2560
+
+Ball: TypeAlias = Any
+"""A number of Arb with its radius."""
+Operand: TypeAlias = "Series | float"
+
+
+class WideBallError(ArithmeticError):
+    """A ball is too wide to decide whether a number vanishes: more digits are needed."""
+
+
+@contextmanager
+def ball_precision(bits: int) -> Iterator[None]:
+    """The working precision, for a while."""
+    with ctx.workprec(bits):
+        yield
+
+
+def rounding() -> float:
+    """What is left of a number of size one when Newton's method has converged at the working precision."""
+    return float(2.0 ** -(0.8 * ctx.prec))
+
+
+def ball(value: Fraction | float) -> Ball:
+    """A number as a ball."""
+    return arb(fmpq(value.numerator, value.denominator)) if isinstance(value, Fraction) else arb(value)
+
+
+def wide() -> float:
+    """The radius of a ball beyond which that 0 lies in it says nothing."""
+    return float(2.0 ** -(ctx.prec / 4))
+
+
+def may_vanish(value: Ball) -> bool:
+    """Whether 0 lies in a ball; WideBallError where that says nothing."""
+    if not value.contains(0):
+        return False
+    if not value.rad() < wide():
+        raise WideBallError
+    return True
+
+
+class Series:
+    """c[0] + c[1] t + c[2] t^2; the shorter operand says how far the result goes, numbers go as far as needed."""
+
+    __slots__ = ("c",)
+
+    def __init__(self, coefficients: Sequence[Ball]) -> None:
+        self.c = tuple(coefficients)
+
+    def __add__(self, other: Operand) -> Series:
+        if isinstance(other, Series):
+            return Series([a + b for a, b in zip(self.c, other.c, strict=False)])
+        return Series((self.c[0] + other, *self.c[1:]))
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Series:
+        return Series([-a for a in self.c])
+
+    def __sub__(self, other: Operand) -> Series:
+        return self + -other
+
+    def __rsub__(self, other: Operand) -> Series:
+        return -self + other
+
+    def __mul__(self, other: Operand) -> Series:
+        if not isinstance(other, Series):
+            return Series([a * other for a in self.c])
+        a, b = self.c, other.c
+        terms = min(len(a), len(b))
+        first = a[0] * b[0]
+        if terms == 1:
+            return Series((first,))
+        second = a[0] * b[1] + a[1] * b[0]
+        return Series((first, second) if terms == 2 else (first, second, a[0] * b[2] + a[1] * b[1] + a[2] * b[0]))
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Operand) -> Series:
+        if not isinstance(other, Series):
+            return Series([a / other for a in self.c])
+        return self * _composed(other, lambda x: 1 / x, lambda x: -1 / x**2, lambda x: 2 / x**3)
+
+    def __rtruediv__(self, other: Operand) -> Series:
+        return (other if isinstance(other, Series) else constant(other)) / self
+
+    def __ne__(self, other: object) -> bool:
+        """Whether it may be another number: what is told from 0 is left out of sums."""
+        return not (isinstance(other, (int, float)) and self.c[0] == other and all(a == 0 for a in self.c[1:]))
+
+    def __eq__(self, other: object) -> bool:
+        return not self != other
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __abs__(self) -> float:
+        return abs(float(self.c[0].mid()))
+
+    def __float__(self) -> float:
+        return float(self.c[0].mid())
+
+
+# Terms of a number that stays as it is: as many as there can be.
+_MOST_TERMS = 3
+
+
+def constant(value: Fraction | float) -> Series:
+    """A number that does not change with the time."""
+    return Series((ball(value), *(arb(0) for _ in range(_MOST_TERMS - 1))))
+
+
+_Slope: TypeAlias = Callable[[Ball], Ball]
+
+
+def _composed(of: Series, value: _Slope, slope: _Slope, bend: _Slope) -> Series:
+    """A function of a series, by the function and its two derivatives; ValueError where one has no value."""
+    x = of.c[0]
+    made = [value(x)]
+    if len(of.c) > 1:
+        made.append(slope(x) * of.c[1])
+    if len(of.c) > 2:
+        made.append(slope(x) * of.c[2] + bend(x) * of.c[1] ** 2 / 2)
+    if not all(one.is_finite() for one in made):
+        raise ValueError
+    return Series(made)
+
+
+_RULES: Mapping[str, tuple[_Slope, _Slope, _Slope]] = {
+    "sin": (arb.sin, arb.cos, lambda x: -x.sin()),
+    "cos": (arb.cos, lambda x: -x.sin(), lambda x: -x.cos()),
+    "tan": (arb.tan, lambda x: 1 + x.tan() ** 2, lambda x: 2 * x.tan() * (1 + x.tan() ** 2)),
+    "asin": (arb.asin, lambda x: (1 - x**2).rsqrt(), lambda x: x * (1 - x**2).rsqrt() ** 3),
+    "acos": (arb.acos, lambda x: -((1 - x**2).rsqrt()), lambda x: -x * (1 - x**2).rsqrt() ** 3),
+    "atan": (arb.atan, lambda x: 1 / (1 + x**2), lambda x: -2 * x / (1 + x**2) ** 2),
+    "sqrt": (arb.sqrt, lambda x: x.rsqrt() / 2, lambda x: -(x.rsqrt() ** 3) / 4),
+    "exp": (arb.exp, arb.exp, arb.exp),
+    "log": (arb.log, lambda x: 1 / x, lambda x: -1 / x**2),
+    "sinh": (arb.sinh, arb.cosh, arb.sinh),
+    "cosh": (arb.cosh, arb.sinh, arb.cosh),
+    "tanh": (arb.tanh, lambda x: 1 - x.tanh() ** 2, lambda x: -2 * x.tanh() * (1 - x.tanh() ** 2)),
+}
+
+
+def _function(name: str) -> Callable[..., float]:
+    rules = _RULES[name]
+    return lambda x: cast(float, _composed(x, *rules))
+
+
+def _atan2(y: Series, x: Series) -> float:
+    """The angle of a direction, and x y' - y x' over its square as the rate."""
+    terms = min(len(x.c), len(y.c))
+    made = [arb.atan2(y.c[0], x.c[0])]
+    if terms > 1:
+        rates = [Series([k * c for k, c in enumerate(one.c)][1:]) for one in (x, y)]
+        turning = (x * rates[1] - y * rates[0]) / (x * x + y * y)
+        made += [c / (k + 1) for k, c in enumerate(turning.c[: terms - 1])]
+    return cast(float, Series(made))
+
+
+def _power(base: float, exponent: Fraction) -> float:
+    series = cast(Series, base)
+    value = ball(exponent)
+
+    def raised(x: Ball, lower: int) -> Ball:
+        power = exponent - lower
+        if power.denominator == 1:
+            return x ** int(power)
+        if not x > 0:
+            raise ValueError
+        return x ** ball(power)
+
+    return cast(
+        float,
+        _composed(
+            series,
+            lambda x: raised(x, 0),
+            lambda x: value * raised(x, 1) if value != 0 else arb(0),
+            lambda x: value * (value - 1) * raised(x, 2) if value * (value - 1) != 0 else arb(0),
+        ),
+    )
+
+
+def ball_numbers() -> Numbers:
+    """What expressions are evaluated in: series of balls, told to the type checker as floats."""
+    literals: dict[Fraction | int, Series] = {}
+
+    def rational(value: Fraction | int) -> float:
+        if value not in literals:
+            literals[value] = constant(Fraction(value))
+        return cast(float, literals[value])
+
+    functions: dict[str, Callable[..., float]] = {name: _function(name) for name in _RULES}
+    functions["atan2"] = cast(Callable[..., float], _atan2)
+    return Numbers(
+        cast(float, Series((arb.pi(), arb(0), arb(0)))),
+        functions,
+        rational,
+        _power,
+    )
