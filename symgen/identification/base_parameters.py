@@ -15,7 +15,7 @@ from symgen.identification.ball_matrices import Echelon, extended
 from symgen.identification.coefficient_forms import (
     MOST_VARIABLES,
     CoefficientForm,
-    Sample,
+    CoefficientSample,
     changing,
     product_form,
     quotient_form,
@@ -25,7 +25,14 @@ from symgen.identification.constrained_regressor import ConstrainedRegressor
 from symgen.identification.geometry import geometry_values
 from symgen.identification.inertial_parameters import InertialParameter, inertial_parameters, values
 from symgen.identification.motion_states import BallSystem, NoMotionError, motion_states
-from symgen.identification.taylor_balls import FIRST_BITS, MOST_BITS, Ball, WideBallError, ball_precision, may_vanish
+from symgen.identification.taylor_balls import (
+    FIRST_BALL_BITS,
+    MOST_BALL_BITS,
+    Ball,
+    WideBallError,
+    ball_precision,
+    may_vanish,
+)
 from symgen.model.configurations.mechanics import default_values
 from symgen.model.expressions.walk import evaluate
 from symgen.model.model import Model
@@ -34,9 +41,11 @@ from symgen.runtime.activity import working
 # Motions that bring nothing new before the rank counts.
 SURE = 3
 # Of the terms of a sum that vanishes.
-ROUNDING = 1e-14
-# By which one parameter of the geometry is changed, and how far all of them are.
-CHANGE, CHANGES = Fraction(33, 32), 64
+VANISHING_SUM = 1e-14
+# The factor by which one parameter of the geometry is changed.
+CHANGE = Fraction(33, 32)
+# All of them are changed by one over this at most.
+CHANGED_BY = 64
 
 
 class NoBodiesError(Exception):
@@ -75,18 +84,18 @@ def base_parameters(model: Model) -> BaseParameters:
     """
     if not model.mechanism.has_mass:
         raise NoBodiesError
-    bits = FIRST_BITS
+    bits = FIRST_BALL_BITS
     while True:
         try:
             with ball_precision(bits):
-                return _Search(model).result()
+                return _CombinationSearch(model).result()
         except WideBallError:
-            if bits == MOST_BITS:
+            if bits == MOST_BALL_BITS:
                 raise NoMotionError from None
             bits *= 2
 
 
-class _Search:
+class _CombinationSearch:
     def __init__(self, model: Model) -> None:
         self._model = model
         self._parameters = inertial_parameters(model.mechanism)
@@ -166,11 +175,13 @@ class _Search:
         self, here: Echelon, combined: Sequence[tuple[tuple[int, int], Ball]], others: Mapping[str, Echelon]
     ) -> Iterator[tuple[tuple[int, int], CoefficientForm]]:
         """Closed forms, by row and column."""
-        left: list[tuple[tuple[int, int], Sample, tuple[str, ...]]] = []
+        left: list[tuple[tuple[int, int], CoefficientSample, tuple[str, ...]]] = []
         for (i, j), value in combined:
-            own = Sample(self._geometry, value)
+            own = CoefficientSample(self._geometry, value)
             scaled = {
-                name: Sample({**self._geometry, name: self._geometry[name] * CHANGE}, _entry(other, here.pivots[i], j))
+                name: CoefficientSample(
+                    {**self._geometry, name: self._geometry[name] * CHANGE}, _entry(other, here.pivots[i], j)
+                )
                 for name, other in others.items()
             }
             form = product_form(own, scaled)
@@ -181,7 +192,7 @@ class _Search:
         fitted = [len(names) for _, _, names in left if len(names) <= MOST_VARIABLES]
         samples = [*self._anywhere(here, max(map(samples_needed, fitted)))] if fitted else []
         for (i, j), own, names in left:
-            seen = [Sample(given, _entry(echelon, here.pivots[i], j)) for given, echelon in samples]
+            seen = [CoefficientSample(given, _entry(echelon, here.pivots[i], j)) for given, echelon in samples]
             form = quotient_form(own, names, seen) if len(names) <= MOST_VARIABLES else None
             yield (i, j), form or replace(CoefficientForm(float(own.value.mid()), ()), changed_by=names)
 
@@ -200,7 +211,7 @@ class _Search:
     def _moved(self, number: int) -> dict[str, Fraction]:
         """Values of the geometry in general position: their quotients are fractions of large primes."""
         return {
-            name: value * (1 + Fraction((31 * (k + 1) + 17 * number * (k + 2)) % 101 - 50, 50 * CHANGES))
+            name: value * (1 + Fraction((31 * (k + 1) + 17 * number * (k + 2)) % 101 - 50, 50 * CHANGED_BY))
             for k, (name, value) in enumerate(self._geometry.items())
         }
 
@@ -216,7 +227,7 @@ class _Search:
 def _sum(terms: Sequence[float]) -> float:
     """The sum, and 0 for what rounding leaves of one."""
     total = sum(terms)
-    return 0.0 if abs(total) <= ROUNDING * sum(map(abs, terms)) else total
+    return 0.0 if abs(total) <= VANISHING_SUM * sum(map(abs, terms)) else total
 
 
 def _entry(echelon: Echelon, pivot: int, column: int) -> Ball:

@@ -17,7 +17,7 @@ from flint import arb, arb_mat
 from symgen.identification.taylor_balls import Ball, WideBallError, ball, may_vanish, wide
 
 # Powers of one parameter that are looked at.
-POWERS = (0, 1, -1, 2, -2, 3, -3)
+COMPARED_POWERS = (0, 1, -1, 2, -2, 3, -3)
 # Denominators of numbers that are printed as they are.
 MOST_DENOMINATOR = 10**6
 # Parameters of a polynomial at most.
@@ -28,7 +28,7 @@ Powers: TypeAlias = tuple[tuple[str, int], ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Term:
+class FormTerm:
     """factor * sqrt(root) * parameters to their powers; the factor is a fraction where it was recognized as one."""
 
     factor: Fraction | float
@@ -41,19 +41,19 @@ class CoefficientForm:
     """A sum of terms; none where no form was found, and then the parameters that change the value."""
 
     value: float
-    terms: tuple[Term, ...]
+    terms: tuple[FormTerm, ...]
     changed_by: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
-class Sample:
+class CoefficientSample:
     """Values of parameters, and one coefficient there."""
 
     given: Mapping[str, Fraction]
     value: Ball
 
 
-def product_form(here: Sample, scaled: Mapping[str, Sample]) -> CoefficientForm | None:
+def product_form(here: CoefficientSample, scaled: Mapping[str, CoefficientSample]) -> CoefficientForm | None:
     """The product that it is; `scaled` holds samples with one parameter changed each."""
     powers = []
     for name, other in scaled.items():
@@ -68,7 +68,7 @@ def product_form(here: Sample, scaled: Mapping[str, Sample]) -> CoefficientForm 
     return CoefficientForm(float(here.value.mid()), (_term(rest, tuple(powers)),))
 
 
-def changing(here: Sample, scaled: Mapping[str, Sample]) -> tuple[str, ...]:
+def changing(here: CoefficientSample, scaled: Mapping[str, CoefficientSample]) -> tuple[str, ...]:
     """The parameters that change the coefficient."""
     return tuple(name for name, other in scaled.items() if not may_vanish(other.value - here.value))
 
@@ -78,18 +78,20 @@ def samples_needed(variables: int) -> int:
     return (variables + 1) * (variables + 2) // 2 + 1
 
 
-def quotient_form(here: Sample, names: Sequence[str], samples: Sequence[Sample]) -> CoefficientForm | None:
+def quotient_form(
+    here: CoefficientSample, names: Sequence[str], samples: Sequence[CoefficientSample]
+) -> CoefficientForm | None:
     """The polynomial of degree two that it is, over one of the parameters or 1; all are changed in the samples."""
     for below in ("", *names):
-        found = _polynomial(here, names, samples, below)
-        if found is not None:
-            terms = tuple(_term(factor, powers) for factor, powers in found)
+        factors = _polynomial(here, names, samples, below)
+        if factors is not None:
+            terms = tuple(_term(factor, powers) for factor, powers in factors)
             return CoefficientForm(float(here.value.mid()), terms)
     return None
 
 
 def _polynomial(
-    here: Sample, names: Sequence[str], samples: Sequence[Sample], below: str
+    here: CoefficientSample, names: Sequence[str], samples: Sequence[CoefficientSample], below: str
 ) -> list[tuple[Ball, Powers]] | None:
     """Factors and powers, found at some of the samples and seen to hold at the others."""
     monomials = [_divided(monomial, below) for monomial in _monomials(names)]
@@ -101,17 +103,17 @@ def _polynomial(
         solved = arb_mat(rows).solve(arb_mat([[one.value] for one in samples[:count]]))
     except ZeroDivisionError:
         return None
-    found = [(solved[k, 0], monomial) for k, monomial in enumerate(monomials) if not may_vanish(solved[k, 0])]
+    kept = [(solved[k, 0], monomial) for k, monomial in enumerate(monomials) if not may_vanish(solved[k, 0])]
     for one in (*samples[count:], here):
-        total = sum((factor * _evaluated(monomial, one.given) for factor, monomial in found), arb(0))
+        total = sum((factor * _evaluated(monomial, one.given) for factor, monomial in kept), arb(0))
         if not may_vanish(total - one.value):
             return None
-    return found
+    return kept
 
 
-def _term(factor: Ball, powers: Powers) -> Term:
+def _term(factor: Ball, powers: Powers) -> FormTerm:
     known = recognized(factor)
-    return Term(float(factor.mid()), 1, powers) if known is None else Term(*known, powers)
+    return FormTerm(float(factor.mid()), 1, powers) if known is None else FormTerm(*known, powers)
 
 
 def recognized(value: Ball) -> tuple[Fraction, int] | None:
@@ -136,9 +138,9 @@ def _numerator_and_denominator(value: Ball) -> tuple[int, int]:
     return (mantissa << exponent, 1) if exponent >= 0 else (mantissa, 1 << -exponent)
 
 
-def _power(here: Sample, other: Sample, name: str) -> int | None:
+def _power(here: CoefficientSample, other: CoefficientSample, name: str) -> int | None:
     factor = ball(other.given[name] / here.given[name])
-    return next((power for power in POWERS if may_vanish(other.value - here.value * factor**power)), None)
+    return next((power for power in COMPARED_POWERS if may_vanish(other.value - here.value * factor**power)), None)
 
 
 def _monomials(names: Sequence[str]) -> Iterator[Powers]:

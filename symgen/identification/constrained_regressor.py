@@ -13,7 +13,7 @@ from flint import arb
 
 from symgen.identification.ball_matrices import Matrix
 from symgen.identification.motion_states import BallSystem, MotionState
-from symgen.identification.taylor_balls import Ball, Series, constant
+from symgen.identification.taylor_balls import Ball, TimeSeries, constant
 from symgen.model.configurations.gradient import Gradients
 from symgen.model.kinematics.float_kinematics import FloatArithmetic
 from symgen.model.kinematics.walk import Kinematics
@@ -46,7 +46,7 @@ class ConstrainedRegressor:
     def _index(self) -> dict[str, int]:
         return {c.name: j for j, c in enumerate(self._system.model.coordinates)}
 
-    def _kinematics(self, q: Sequence[Series], index: dict[str, int]) -> Kinematics[float, _Form]:
+    def _kinematics(self, q: Sequence[TimeSeries], index: dict[str, int]) -> Kinematics[float, _Form]:
         numeric = self._system.numeric
         named = {c.name: cast(float, x) for c, x in zip(self._system.model.coordinates, q, strict=True)}
         definitions = {one.name: one.value for one in self._system.model.definitions}
@@ -55,11 +55,11 @@ class ConstrainedRegressor:
 
     def _gravity(self) -> list[Ball]:
         numeric = self._system.numeric
-        return [cast(Series, numeric.numbers.evaluate(x, numeric.defaults)).c[0] for x in self._mechanism.gravity]
+        return [cast(TimeSeries, numeric.numbers.evaluate(x, numeric.defaults)).c[0] for x in self._mechanism.gravity]
 
 
-def _at_once(q: Sequence[Series]) -> list[Series]:
-    return [Series(one.c[:1]) for one in q]
+def _at_once(q: Sequence[TimeSeries]) -> list[TimeSeries]:
+    return [TimeSeries(one.c[:1]) for one in q]
 
 
 def _shown(
@@ -113,5 +113,5 @@ def _along(form: dict[int, Any], directions: Matrix, k: int) -> Ball:
     return sum((_of(value).c[0] * directions[j][k] for j, value in form.items()), arb(0))
 
 
-def _of(value: Any) -> Series:
-    return value if isinstance(value, Series) else constant(value)
+def _of(value: Any) -> TimeSeries:
+    return value if isinstance(value, TimeSeries) else constant(value)

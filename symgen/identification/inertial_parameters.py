@@ -16,8 +16,6 @@ Element: TypeAlias = Literal["m", "mx", "my", "mz", "Ixx", "Iyy", "Izz", "Ixy", 
 
 # Mass, first moments (kg m), inertia tensor about the origin (kg m^2).
 ELEMENTS: tuple[Element, ...] = ("m", "mx", "my", "mz", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz")
-# Powers of the length in their units.
-LENGTH_POWER = dict(zip(ELEMENTS, (0, 1, 1, 1, 2, 2, 2, 2, 2, 2), strict=True)) | {"Ir": 2}
 # Which stay where several say the same: inertias before first moments, these before masses.
 _STAYING: tuple[Element, ...] = ("Ir", "Izz", "Ixx", "Iyy", "Ixy", "Ixz", "Iyz", "mx", "my", "mz", "m")
 

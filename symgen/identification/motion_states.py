@@ -14,7 +14,7 @@ from flint import arb, arb_mat
 from symgen.identification.ball_matrices import Matrix, kernel
 from symgen.identification.taylor_balls import (
     Ball,
-    Series,
+    TimeSeries,
     WideBallError,
     ball,
     ball_numbers,
@@ -28,19 +28,23 @@ from symgen.model.model import Model
 
 # The seed of configurations and motions: the same model is looked at at the same ones.
 MOTION_SEED = 20260720
-# Steps of Newton's method in double precision at most, and what the last one is below.
-FLOAT_STEPS, FLOAT_STEP = 20, 1e-9
+# Steps of Newton's method in double precision at most.
+FLOAT_STEPS = 20
+# What the last of them is below.
+FLOAT_STEP = 1e-9
 # Steps in balls with the last of its matrices at most: each leaves a share of 1e-9 or less.
 BALL_STEPS = 80
 # A step along a branch, in ranges of coordinates: twice as long after one that was taken, half as long after one that
-# was not.  What lies beside it by more than a share of it may be on another branch.
-STRIDE, BESIDE = 0.2, 0.5
+# was not.
+LONGEST_STRIDE = 0.2
+# The share of a step by which a configuration may lie beside it: what is further away may be on another branch.
+OFF_BRANCH = 0.5
 # The shortest step before the longest one is tried again.
-SHORTEST = 1e-3
+SHORTEST_STRIDE = 1e-3
 # Steps that lead nowhere, in a row, before the search ends.
 MOST_MISSED = 60
 # Configurations that steps set out from.
-MOST_PLACES = 12
+MOST_ORIGINS = 12
 
 
 class NoMotionError(Exception):
@@ -51,7 +55,7 @@ class NoMotionError(Exception):
 class MotionState:
     """q(t) up to the second power of the time, and a basis F of the admissible rates at t = 0 (n x delta)."""
 
-    q: tuple[Series, ...]
+    q: tuple[TimeSeries, ...]
     directions: Matrix
     accelerations: tuple[Ball, ...]
 
@@ -78,7 +82,7 @@ class BallSystem:
         self.n = len(model.coordinates)
         self.model = replace(model, constraints=rows)
 
-    def rows(self, q: Sequence[Series]) -> list[dict[int, Series]]:
+    def rows(self, q: Sequence[TimeSeries]) -> list[dict[int, TimeSeries]]:
         """B along q(t)."""
         return [_series(row) for row in self.numeric.rows(cast(Sequence[float], q))]
 
@@ -121,9 +125,9 @@ class BallSystem:
         return None
 
     def _gaps(self, q: Sequence[Ball]) -> list[Ball]:
-        series = cast(Sequence[float], [Series((one,)) for one in q])
+        series = cast(Sequence[float], [TimeSeries((one,)) for one in q])
         values = self.numeric.values(series, range(len(self.numeric.geometric)))
-        return [cast(Series, value).c[0] for value in values]
+        return [cast(TimeSeries, value).c[0] for value in values]
 
 
 def motion_states(system: BallSystem, start: Sequence[float], rank: int) -> Iterator[MotionState]:
@@ -140,23 +144,23 @@ def motion_states(system: BallSystem, start: Sequence[float], rank: int) -> Iter
         yield state
     else:
         places = [([*start], [])]
-    missed, stride = 0, STRIDE
+    missed, stride = 0, LONGEST_STRIDE
     while missed < MOST_MISSED:
         here, basis = places[generator.randrange(len(places))]
         aim = _ahead(here, basis, spans, stride, generator)
         try:
             q = system.closed(aim)
-            near = q is not None and _distance(map(float, q), aim, spans) <= BESIDE * _distance(here, aim, spans)
+            near = q is not None and _distance(map(float, q), aim, spans) <= OFF_BRANCH * _distance(here, aim, spans)
             state = _moving(system, q, rank, generator) if q is not None and near else None
         except WideBallError:
             raise
         except (ArithmeticError, ValueError):
             state = None
         if state is None:
-            missed, stride = missed + 1, stride / 2 if stride > SHORTEST else STRIDE
+            missed, stride = missed + 1, stride / 2 if stride > SHORTEST_STRIDE else LONGEST_STRIDE
             continue
-        missed, stride = 0, min(2 * stride, STRIDE)
-        places[:] = [*(place for place in places if place[1]), _place(state)][-MOST_PLACES:]
+        missed, stride = 0, min(2 * stride, LONGEST_STRIDE)
+        places[:] = [*(place for place in places if place[1]), _place(state)][-MOST_ORIGINS:]
         yield state
     raise NoMotionError
 
@@ -194,12 +198,12 @@ def _moving(system: BallSystem, q: Sequence[Ball], rank: int, generator: random.
     columns = [*range(n)]
     generator.shuffle(columns)
     zero = arb(0)
-    dense = _dense(system.rows([Series((x,)) for x in q]), n)
+    dense = _dense(system.rows([TimeSeries((x,)) for x in q]), n)
     echelon, basis = kernel(dense, n, columns)
     if echelon.rank != rank or not basis:
         return None
     rates = _combined(basis, _drawn(len(basis), generator), n)
-    moved = [Series((x, v)) for x, v in zip(q, rates, strict=True)]
+    moved = [TimeSeries((x, v)) for x, v in zip(q, rates, strict=True)]
     along = system.rows(moved)
     # B q'' = -B' q'
     right = [-sum((entry.c[1] * rates[j] for j, entry in row.items()), zero) for row in along]
@@ -207,7 +211,7 @@ def _moving(system: BallSystem, q: Sequence[Ball], rank: int, generator: random.
     swing = _combined(basis, _drawn(len(basis), generator), n)
     for row, pivot in zip(full.rows, full.pivots, strict=True):
         swing[pivot] += row[n]
-    series = tuple(Series((x, v, a / 2)) for x, v, a in zip(q, rates, swing, strict=True))
+    series = tuple(TimeSeries((x, v, a / 2)) for x, v, a in zip(q, rates, swing, strict=True))
     directions = [[vector[j] for vector in basis] for j in range(n)]
     return MotionState(series, directions, tuple(swing))
 
@@ -224,11 +228,11 @@ def _combined(basis: Matrix, weights: Sequence[Ball], n: int) -> list[Ball]:
     return total
 
 
-def _series(row: Row) -> dict[int, Series]:
-    return {j: value if isinstance(value, Series) else constant(value) for j, value in row.items()}
+def _series(row: Row) -> dict[int, TimeSeries]:
+    return {j: value if isinstance(value, TimeSeries) else constant(value) for j, value in row.items()}
 
 
-def _dense(rows: Sequence[Mapping[int, Series]], n: int) -> Matrix:
+def _dense(rows: Sequence[Mapping[int, TimeSeries]], n: int) -> Matrix:
     return [[row[j].c[0] if j in row else arb(0) for j in range(n)] for row in rows]
 
 

@@ -1,7 +1,7 @@
 """Truncated Taylor series in the time with coefficients in the ball arithmetic of Arb.
 
 What is computed encloses what is meant (Johansson, IEEE Trans. Computers 66, 2017), so that a number whose ball leaves
-0 out is not 0: ranks are decided without a tolerance.  Series hold one coefficient, two or three.
+0 out is not 0: ranks are decided without a tolerance.  TimeSeries hold one coefficient, two or three.
 """
 
 from __future__ import annotations
@@ -15,12 +15,14 @@ from flint import arb, ctx, fmpq
 
 from symgen.model.configurations.numbers import Numbers
 
-# Binary digits of balls at first, 192 decimal ones, and at most: more are taken where balls are too wide to decide.
-FIRST_BITS, MOST_BITS = 640, 2560
+# Binary digits of balls at first: 192 decimal ones.
+FIRST_BALL_BITS = 640
+# The same at most: more are taken where balls are too wide to decide.
+MOST_BALL_BITS = 2560
 
 Ball: TypeAlias = Any
 """A number of Arb with its radius."""
-Operand: TypeAlias = "Series | float"
+Operand: TypeAlias = "TimeSeries | float"
 
 
 class WideBallError(ArithmeticError):
@@ -58,7 +60,7 @@ def may_vanish(value: Ball) -> bool:
     return True
 
 
-class Series:
+class TimeSeries:
     """c[0] + c[1] t + c[2] t^2; the shorter operand says how far the result goes, numbers go as far as needed."""
 
     __slots__ = ("c",)
@@ -66,42 +68,42 @@ class Series:
     def __init__(self, coefficients: Sequence[Ball]) -> None:
         self.c = tuple(coefficients)
 
-    def __add__(self, other: Operand) -> Series:
-        if isinstance(other, Series):
-            return Series([a + b for a, b in zip(self.c, other.c, strict=False)])
-        return Series((self.c[0] + other, *self.c[1:]))
+    def __add__(self, other: Operand) -> TimeSeries:
+        if isinstance(other, TimeSeries):
+            return TimeSeries([a + b for a, b in zip(self.c, other.c, strict=False)])
+        return TimeSeries((self.c[0] + other, *self.c[1:]))
 
     __radd__ = __add__
 
-    def __neg__(self) -> Series:
-        return Series([-a for a in self.c])
+    def __neg__(self) -> TimeSeries:
+        return TimeSeries([-a for a in self.c])
 
-    def __sub__(self, other: Operand) -> Series:
+    def __sub__(self, other: Operand) -> TimeSeries:
         return self + -other
 
-    def __rsub__(self, other: Operand) -> Series:
+    def __rsub__(self, other: Operand) -> TimeSeries:
         return -self + other
 
-    def __mul__(self, other: Operand) -> Series:
-        if not isinstance(other, Series):
-            return Series([a * other for a in self.c])
+    def __mul__(self, other: Operand) -> TimeSeries:
+        if not isinstance(other, TimeSeries):
+            return TimeSeries([a * other for a in self.c])
         a, b = self.c, other.c
         terms = min(len(a), len(b))
         first = a[0] * b[0]
         if terms == 1:
-            return Series((first,))
+            return TimeSeries((first,))
         second = a[0] * b[1] + a[1] * b[0]
-        return Series((first, second) if terms == 2 else (first, second, a[0] * b[2] + a[1] * b[1] + a[2] * b[0]))
+        return TimeSeries((first, second) if terms == 2 else (first, second, a[0] * b[2] + a[1] * b[1] + a[2] * b[0]))
 
     __rmul__ = __mul__
 
-    def __truediv__(self, other: Operand) -> Series:
-        if not isinstance(other, Series):
-            return Series([a / other for a in self.c])
+    def __truediv__(self, other: Operand) -> TimeSeries:
+        if not isinstance(other, TimeSeries):
+            return TimeSeries([a / other for a in self.c])
         return self * _composed(other, lambda x: 1 / x, lambda x: -1 / x**2, lambda x: 2 / x**3)
 
-    def __rtruediv__(self, other: Operand) -> Series:
-        return (other if isinstance(other, Series) else constant(other)) / self
+    def __rtruediv__(self, other: Operand) -> TimeSeries:
+        return (other if isinstance(other, TimeSeries) else constant(other)) / self
 
     def __ne__(self, other: object) -> bool:
         """Whether it may be another number: what is told from 0 is left out of sums."""
@@ -123,15 +125,15 @@ class Series:
 _MOST_TERMS = 3
 
 
-def constant(value: Fraction | float) -> Series:
+def constant(value: Fraction | float) -> TimeSeries:
     """A number that does not change with the time."""
-    return Series((ball(value), *(arb(0) for _ in range(_MOST_TERMS - 1))))
+    return TimeSeries((ball(value), *(arb(0) for _ in range(_MOST_TERMS - 1))))
 
 
 _Slope: TypeAlias = Callable[[Ball], Ball]
 
 
-def _composed(of: Series, value: _Slope, slope: _Slope, bend: _Slope) -> Series:
+def _composed(of: TimeSeries, value: _Slope, slope: _Slope, bend: _Slope) -> TimeSeries:
     """A function of a series, by the function and its two derivatives; ValueError where one has no value."""
     x = of.c[0]
     made = [value(x)]
@@ -141,7 +143,7 @@ def _composed(of: Series, value: _Slope, slope: _Slope, bend: _Slope) -> Series:
         made.append(slope(x) * of.c[2] + bend(x) * of.c[1] ** 2 / 2)
     if not all(one.is_finite() for one in made):
         raise ValueError
-    return Series(made)
+    return TimeSeries(made)
 
 
 _RULES: Mapping[str, tuple[_Slope, _Slope, _Slope]] = {
@@ -165,19 +167,19 @@ def _function(name: str) -> Callable[..., float]:
     return lambda x: cast(float, _composed(x, *rules))
 
 
-def _atan2(y: Series, x: Series) -> float:
+def _atan2(y: TimeSeries, x: TimeSeries) -> float:
     """The angle of a direction, and x y' - y x' over its square as the rate."""
     terms = min(len(x.c), len(y.c))
     made = [arb.atan2(y.c[0], x.c[0])]
     if terms > 1:
-        rates = [Series([k * c for k, c in enumerate(one.c)][1:]) for one in (x, y)]
+        rates = [TimeSeries([k * c for k, c in enumerate(one.c)][1:]) for one in (x, y)]
         turning = (x * rates[1] - y * rates[0]) / (x * x + y * y)
         made += [c / (k + 1) for k, c in enumerate(turning.c[: terms - 1])]
-    return cast(float, Series(made))
+    return cast(float, TimeSeries(made))
 
 
 def _power(base: float, exponent: Fraction) -> float:
-    series = cast(Series, base)
+    series = cast(TimeSeries, base)
     value = ball(exponent)
 
     def raised(x: Ball, lower: int) -> Ball:
@@ -201,7 +203,7 @@ def _power(base: float, exponent: Fraction) -> float:
 
 def ball_numbers() -> Numbers:
     """What expressions are evaluated in: series of balls, told to the type checker as floats."""
-    literals: dict[Fraction | int, Series] = {}
+    literals: dict[Fraction | int, TimeSeries] = {}
 
     def rational(value: Fraction | int) -> float:
         if value not in literals:
@@ -211,7 +213,7 @@ def ball_numbers() -> Numbers:
     functions: dict[str, Callable[..., float]] = {name: _function(name) for name in _RULES}
     functions["atan2"] = cast(Callable[..., float], _atan2)
     return Numbers(
-        cast(float, Series((arb.pi(), arb(0), arb(0)))),
+        cast(float, TimeSeries((arb.pi(), arb(0), arb(0)))),
         functions,
         rational,
         _power,

@@ -7,40 +7,40 @@ from collections.abc import Iterable, Iterator
 from fractions import Fraction
 
 from symgen.identification.base_parameters import BaseParameter, BaseParameters
-from symgen.identification.coefficient_forms import CoefficientForm, Term
+from symgen.identification.coefficient_forms import CoefficientForm, FormTerm
 from symgen.identification.inertial_parameters import InertialParameter
 
 # Columns of a terminal that lines keep to.
-WIDTH = 80
+LINE_WIDTH = 80
 # Digits of values, and of coefficients without a closed form.
-DIGITS = 6
+VALUE_DIGITS = 6
 _RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-def base_parameters_text(found: BaseParameters) -> str:
+def base_parameters_text(made: BaseParameters) -> str:
     """The counts, each base parameter with its value, and what has no effect."""
-    lines = [f"base parameters of {found.model.name}", *_wrapped(_counts(found)), ""]
+    lines = [f"base parameters of {made.model.name}", *_wrapped(_counts(made)), ""]
     lines += ["first moments (m x) and inertias (I) are about the origin and in the axes of the"]
     lines += ["frame of a body; Ir is the inertia of a rotor", ""]
-    for number, one in enumerate(found.base, 1):
+    for number, one in enumerate(made.base, 1):
         lines += _entry(number, one)
-    if any(not form.terms for one in found.base for _, form in one.added):
-        names = sorted({name for one in found.base for _, form in one.added for name in form.changed_by})
+    if any(not form.terms for one in made.base for _, form in one.added):
+        names = sorted({name for one in made.base for _, form in one.added for name in form.changed_by})
         why = f"depend on {', '.join(names)}" if names else "are those of this geometry alone"
-        lines += ["", *_wrapped(f"numbers in brackets {why}; no short closed form was found")]
-    if found.without_effect:
-        lines += ["", *_wrapped(f"no effect on the inputs: {_grouped(found.without_effect)}")]
+        lines += ["", *_wrapped(f"numbers in brackets {why}; no short closed form was made")]
+    if made.without_effect:
+        lines += ["", *_wrapped(f"no effect on the inputs: {_grouped(made.without_effect)}")]
     return "\n".join(lines)
 
 
-def _counts(found: BaseParameters) -> str:
-    text = f"{len(found.base)} of {len(found.parameters)} inertial parameters can be told apart by any motion"
-    if found.model.constraints:
-        text += f"; without the constraints {found.as_tree} could"
-    if found.elsewhere is None:
+def _counts(made: BaseParameters) -> str:
+    text = f"{len(made.base)} of {len(made.parameters)} inertial parameters can be told apart by any motion"
+    if made.model.constraints:
+        text += f"; without the constraints {made.as_tree} could"
+    if made.elsewhere is None:
         text += "; with other lengths it does not close"
-    elif found.elsewhere != len(found.base):
-        text += f"; with other lengths {found.elsewhere} can: this geometry is special"
+    elif made.elsewhere != len(made.base):
+        text += f"; with other lengths {made.elsewhere} can: this geometry is special"
     return text
 
 
@@ -48,12 +48,12 @@ def _entry(number: int, one: BaseParameter) -> Iterator[str]:
     text = one.stays.name
     for other, form in one.added:
         text += _added(other, form)
-    value = f"{one.value:.{DIGITS}g}"
-    wrapped = textwrap.wrap(text, WIDTH - 20, break_long_words=False, subsequent_indent="    ")
+    value = f"{one.value:.{VALUE_DIGITS}g}"
+    wrapped = textwrap.wrap(text, LINE_WIDTH - 20, break_long_words=False, subsequent_indent="    ")
     for k, line in enumerate(wrapped):
         head = f"{number:>4}  " if not k else "      "
         end = f"{value:>14}" if k == len(wrapped) - 1 else ""
-        yield f"{head}{line.replace(_TIED, ' '):<{WIDTH - 20}}{end}".rstrip()
+        yield f"{head}{line.replace(_TIED, ' '):<{LINE_WIDTH - 20}}{end}".rstrip()
 
 
 # What keeps a coefficient and its parameter in one line.
@@ -63,7 +63,7 @@ _TIED = "\u00a0"
 def _added(parameter: InertialParameter, form: CoefficientForm) -> str:
     if not form.terms:
         sign, size = ("-", -form.value) if form.value < 0 else ("+", form.value)
-        return f" {sign}{_TIED}[{size:.{DIGITS}g}]{_TIED}{parameter.name}"
+        return f" {sign}{_TIED}[{size:.{VALUE_DIGITS}g}]{_TIED}{parameter.name}"
     if len(form.terms) == 1:
         sign, factor = _factor(form.terms[0])
         return f" {sign}{_TIED}{factor}{_TIED if factor else ''}{parameter.name}"
@@ -72,10 +72,10 @@ def _added(parameter: InertialParameter, form: CoefficientForm) -> str:
     return f" +{_TIED}({inner.removeprefix('+' + _TIED)}){_TIED}{parameter.name}"
 
 
-def _factor(term: Term) -> tuple[str, str]:
+def _factor(term: FormTerm) -> tuple[str, str]:
     """The sign, and a product with a quotient in brackets; nothing for 1."""
     given = term.factor
-    size = abs(given if isinstance(given, Fraction) else Fraction(f"{given:.{DIGITS}g}"))
+    size = abs(given if isinstance(given, Fraction) else Fraction(f"{given:.{VALUE_DIGITS}g}"))
     above = [_number(Fraction(size.numerator))] if size.numerator != 1 else []
     below = [_number(Fraction(size.denominator))] if size.denominator != 1 else []
     if below and _is_decimal(size):
@@ -90,11 +90,11 @@ def _factor(term: Term) -> tuple[str, str]:
 
 
 def _is_decimal(value: Fraction) -> bool:
-    return Fraction(f"{float(value):.{DIGITS}g}") == value
+    return Fraction(f"{float(value):.{VALUE_DIGITS}g}") == value
 
 
 def _number(value: Fraction) -> str:
-    return f"{float(value):.{DIGITS}g}" if _is_decimal(value) else str(value)
+    return f"{float(value):.{VALUE_DIGITS}g}" if _is_decimal(value) else str(value)
 
 
 def _power(name: str, power: int) -> str:
@@ -110,4 +110,4 @@ def _grouped(parameters: Iterable[InertialParameter]) -> str:
 
 
 def _wrapped(text: str) -> list[str]:
-    return textwrap.wrap(text, WIDTH - 1, break_long_words=False, subsequent_indent="  ")
+    return textwrap.wrap(text, LINE_WIDTH - 1, break_long_words=False, subsequent_indent="  ")

@@ -70,11 +70,11 @@ def test_a_loop_in_the_plane_hides_one_more(gravity: str, counts: tuple[int, int
 def test_a_parallelogram_is_special_and_said_to_be() -> None:
     text = planar_four_bar("[0, -9.81, 0]", ("1", "0.4", "1", "0.4"))
     text = text.replace("a: 1.1, b: -0.9, c: 1.3", "a: 1, b: -1, c: 1")
-    found = base_parameters(load_text(text, "parallelogram.yaml"))
+    shown = base_parameters(load_text(text, "parallelogram.yaml"))
     # the coupler does not turn: one inertia about the pins, two components of gravity
-    assert len(found.base) == 3
-    assert found.elsewhere == 8
-    assert "with other lengths 8 can: this geometry is special" in base_parameters_text(found).replace("\n  ", " ")
+    assert len(shown.base) == 3
+    assert shown.elsewhere == 8
+    assert "with other lengths 8 can: this geometry is special" in base_parameters_text(shown).replace("\n  ", " ")
 
 
 @pytest.mark.campaign
@@ -93,14 +93,14 @@ def test_a_linkage_in_space(gravity: str, counts: tuple[int, int]) -> None:
 def test_shipped_machines(name: str, counts: tuple[int, int]) -> None:
     """The 2RRR/RR without gravity: 12 and 10, rotors among those of the cranks.  The car: 6, and the rotor of a
     wheelset; restricted energies would show one less."""
-    found = base_parameters(shipped.model(name))
-    assert (found.as_tree, len(found.base)) == counts
+    shown = base_parameters(shipped.model(name))
+    assert (shown.as_tree, len(shown.base)) == counts
 
 
 def test_closed_forms_of_a_four_bar() -> None:
     """By hand: the mass of the rocker's far pin is seen from the crank through the coupler."""
-    found = known(planar_four_bar("[0, -9.81, 0]", GENERIC))
-    lines = base_parameters_text(found).splitlines()
+    shown = known(planar_four_bar("[0, -9.81, 0]", GENERIC))
+    lines = base_parameters_text(shown).splitlines()
     entries = [" ".join(line.split()[1:]) for line in lines if line[:4].strip().isdigit()]
     # about the pin: 0.05 + 1.3 (0.4² + 0.04²), and 0.9²/0.7 of 0.9 · 0.3
     assert f"coupler.Izz + (l_2²/l_3) rocker.mx {0.05 + 1.3 * 0.1616 + 0.81 / 0.7 * 0.27:.6g}" in entries
@@ -156,10 +156,10 @@ def _given(model: Model) -> dict[str, float]:
     return {one.name: x for one, x in zip(inertial_parameters(model.mechanism), made, strict=True)}
 
 
-def _least_change(found: BaseParameters, eliminated: str, size: float) -> dict[str, float]:
+def _least_change(shown: BaseParameters, eliminated: str, size: float) -> dict[str, float]:
     """A change of one eliminated parameter that the base parameters do not see."""
     change = {eliminated: size}
-    for one in found.base:
+    for one in shown.base:
         for other, form in one.added:
             if other.name == eliminated:
                 change[one.stays.name] = -size * form.value
@@ -171,14 +171,14 @@ def test_machines_with_the_same_base_parameters_need_the_same_inputs(eliminated:
     """Seen by the kernels of two models, which know nothing of regressors; a change beside it is seen."""
     text = planar_four_bar("[0, -9.81, 0]", GENERIC)
     model = load_text(text, "four_bar.yaml")
-    found, given, motions = known(text), _given(model), _moved(model, 6)
+    shown, given, motions = known(text), _given(model), _moved(model, 6)
     before = _forces(model, motions)
-    hidden = {name: x + _least_change(found, eliminated, 0.2).get(name, 0.0) for name, x in given.items()}
+    hidden = {name: x + _least_change(shown, eliminated, 0.2).get(name, 0.0) for name, x in given.items()}
     other = _forces(load_text(_text(hidden), "four_bar.yaml"), motions)
     size = max(abs(x) for row in before for x in row)
     assert _furthest(before, other) < 1e-11 * size
-    seen = {**hidden, "coupler.mx": hidden["coupler.mx"] + 0.02}
-    beside = _forces(load_text(_text(seen), "four_bar.yaml"), motions)
+    beside_it = {**hidden, "coupler.mx": hidden["coupler.mx"] + 0.02}
+    beside = _forces(load_text(_text(beside_it), "four_bar.yaml"), motions)
     assert _furthest(before, beside) > 1e-4 * size
 
 
