@@ -9,7 +9,7 @@ CAMPAIGN_FILES := $(CAMPAIGN:%=models/%.yaml)
 MODELS := $(wildcard models/*.yaml)
 MECHANISMS := $(filter-out $(CAMPAIGN_FILES),$(MODELS))
 
-.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms bench-derivatives generation stress skipping passes constants trig zoo zoo-case zoo-sweeps docs api site lock robots jax
+.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms bench-derivatives generation stress skipping passes constants trig zoo zoo-case zoo-sweeps docs api site lock robots jax fmpy
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -147,6 +147,9 @@ lock: $(VENV)/installed
 	printf 'jax\n' | $(BIN)/uv pip compile --quiet --python-version 3.11 --python-platform x86_64-manylinux_2_28 \
 	    --generate-hashes --constraint requirements.lock --no-emit-package numpy --no-emit-package scipy --no-header \
 	    --no-annotate --no-emit-index-url --no-emit-find-links --output-file tests/backends/jax.lock -
+	printf 'fmpy\n' | $(BIN)/uv pip compile --quiet --python-version 3.11 --python-platform x86_64-manylinux_2_28 \
+	    --generate-hashes --constraint requirements.lock --no-emit-package numpy --no-header --no-annotate \
+	    --no-emit-index-url --no-emit-find-links --output-file tests/backends/fmpy.lock -
 	printf 'mkdocs-material\nmkdocstrings[python]\n' | $(BIN)/uv pip compile --quiet --universal --python-version 3.11 \
 	    --generate-hashes --constraint requirements.lock --no-header --no-annotate --no-emit-index-url \
 	    --no-emit-find-links --output-file docs/site.lock -
@@ -158,6 +161,10 @@ robots: $(VENV)/installed
 # JAX, under which docs/array-api.md runs: beside the environment, so that nothing else meets it.
 jax: $(VENV)/installed
 	$(BIN)/pip install --quiet --require-hashes --no-deps --upgrade --target build/jax --requirement tests/backends/jax.lock
+
+# FMPy, which runs units of FMI: beside the environment as well.
+fmpy: $(VENV)/installed
+	$(BIN)/pip install --quiet --require-hashes --no-deps --upgrade --target build/fmpy --requirement tests/backends/fmpy.lock
 
 $(VENV)/locked: requirements.lock
 	$(PYTHON) -m venv $(VENV)

@@ -14,7 +14,7 @@ from symgen.records import dataclass
 
 # The registration, in the order in which files are made: what a run makes as a rule, and what `--only` can ask for.
 USUAL = ("c", "python")
-BACKENDS = (*USUAL, "array_api", "rust", "matlab", "ros2")
+BACKENDS = (*USUAL, "array_api", "rust", "matlab", "ros2", "fmi")
 
 
 @dataclass(frozen=True, slots=True)

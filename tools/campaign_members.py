@@ -23,7 +23,7 @@ PYTEST = (PYTHON, "-m", "pytest")
 CORES = ("arm-none-eabi-gcc", "qemu-system-arm", "riscv64-unknown-elf-gcc", "qemu-system-riscv32", "gcc", "clang")
 # The packages of Python, and those that some tests need besides.
 LOCK = "requirements.lock"
-MORE_LOCKS = ("tests/mechanisms/robots.lock", "tests/backends/jax.lock")
+MORE_LOCKS = ("tests/mechanisms/robots.lock", "tests/backends/jax.lock", "tests/backends/fmpy.lock")
 # What looks at the product as a whole.
 PRODUCT = ("symgen", "templates", "models", "pyproject.toml", LOCK)
 # What a campaign's code imports and does not depend on by it: the way from model to C, which its bytes stand for, and
@@ -47,6 +47,7 @@ TESTED = {
     "friction": ("gcc",),
     "generation": ("gcc",),
     "growth": (),
+    "identification": (),
     "ir": (),
     "laws": ("gcc",),
     "linear_algebra": ("gcc",),

@@ -1,0 +1,160 @@
+"""What stands around the C: units of plant and controller for FMI 2.0 and 3.0, and what builds them.
+
+Each unit has one source of its own, whose functions are the interface, beside the kernels; and a description, to which
+the token in the source belongs.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+
+from symgen import __version__
+from symgen.backends.about import symbol_lines
+from symgen.backends.c.identity import status_text_name
+from symgen.backends.c.names import c_members, global_name
+from symgen.backends.comments import c_comment_lines, one_line
+from symgen.backends.fmi.base_units import UnitDefinition, unit_definitions
+from symgen.backends.fmi.variables import Settled, UnitVariable, start_of, variables_of
+from symgen.backends.literals import decimal_text
+from symgen.backends.locals import array_arguments
+from symgen.backends.render import render
+from symgen.backends.scalars import file_stem
+from symgen.ir.kernel import Kernel, Program
+from symgen.model.model import Model
+from symgen.records import dataclass
+
+# By role, the quantity that a unit works out.
+WORKED_OUT = {"plant": "forward_dynamics", "controller": "inverse_dynamics"}
+# What brings a plant back onto the constraints: onto geometric ones, and its rates onto all.
+PROJECTIONS = ("projected_configuration", "admissible_velocity")
+# Of FMI, by what stands before the point.
+FMI_VERSIONS = (2, 3)
+# How fast a plant in Model Exchange leads back onto the constraints, in rad/s: faster ones leave less of the violation,
+# and change the motion more.
+RETURN_RATE = 10.0
+# Calls of two Newton steps each that a start may take, and what the last one may still move, of the size of a place.
+CLOSING_ROUNDS, CLOSED_WITHIN = 25, 1e-10
+
+
+@dataclass(frozen=True, slots=True)
+class KernelCall:
+    """A kernel as a unit calls it: its name, that in C, and the names of its arrays."""
+
+    name: str
+    c_function: str
+    arguments: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class MockupUnitView:
+    """Everything the templates of one unit print; `places` are those of its variables in C."""
+
+    version: int
+    role: str
+    identifier: str
+    token: str
+    symgen: str
+    description: str
+    about: tuple[str, ...]
+    source: str
+    params: str
+    defaults: str
+    status: str
+    status_text: str
+    coordinates: int
+    inputs: int
+    start: tuple[str, ...]
+    variables: tuple[UnitVariable, ...]
+    places: tuple[str, ...]
+    units: tuple[UnitDefinition, ...]
+    worked_out: KernelCall
+    placed: KernelCall | None
+    admitted: KernelCall | None
+    return_rate: float
+    closing_rounds: int
+    closed_within: float
+
+
+def emit_mockup_units(model: Model, programs: Sequence[Program]) -> dict[str, str]:
+    """The units whose quantity is made, what declares their interfaces, and `build.py`; nothing without any."""
+    (program,) = programs
+    kernels = {kernel.name: kernel for kernel in program.kernels}
+    files: dict[str, str] = {}
+    for role, quantity in WORKED_OUT.items():
+        if quantity in kernels:
+            for version in FMI_VERSIONS:
+                view = _view(model, program, kernels, role, version)
+                files |= _unit(view, model.text_hash)
+    if not files:
+        return {}
+    files["build.py"] = render("fmi/build.py.jinja", None)
+    files |= {f"sources/fmi{version}.h": render(f"fmi/fmi{version}.h.jinja", None) for version in FMI_VERSIONS}
+    return {f"fmi/{path}": text for path, text in files.items()}
+
+
+def _unit(view: MockupUnitView, model_hash: str) -> dict[str, str]:
+    """The files of one unit: its token is told by the model and by all that the description says of variables."""
+    description = f"fmi/description{view.version}.xml.jinja"
+    digest = hashlib.sha256(f"{model_hash}\n{render(description, view)}".encode()).hexdigest()
+    token = "-".join((digest[:8], digest[8:12], digest[12:16], digest[16:20], digest[20:32]))
+    view = replace(view, token=f"{{{token}}}")
+    files = {
+        "modelDescription.xml": render(description, view),
+        f"sources/{view.identifier}.c": render(f"fmi/fmi{view.version}.c.jinja", view),
+    }
+    if view.version > 2:
+        files["sources/buildDescription.xml"] = render("fmi/sources.xml.jinja", view)
+    return {f"fmi{view.version}/{view.identifier}/{path}": text for path, text in files.items()}
+
+
+def _view(
+    model: Model, program: Program, kernels: Mapping[str, Kernel], role: str, version: int
+) -> MockupUnitView:
+    calls = {name: _call(model, program, kernel) for name, kernel in kernels.items()}
+    is_plant = role == "plant"
+    has_rows = any(row.kind == "geometric" for row in model.constraints), model.r > 0
+    placed, admitted = (
+        calls.get(name) if is_plant and there else None for name, there in zip(PROJECTIONS, has_rows, strict=True)
+    )
+    variables = variables_of(model, Settled(placed is not None, admitted is not None) if is_plant else None)
+    members = {f"p.{name}": f"p.{member}" for name, member in c_members(model, program).items()}
+    lacking = [
+        name for name, there in zip(PROJECTIONS, has_rows, strict=True) if is_plant and there and name not in kernels
+    ]
+    drifts = f"; drifts off its constraints without {' and '.join(lacking)}" if lacking else ""
+    name = model.description or "constrained mechanical system"
+    description = one_line(f"{model.name}: {name} ({role}{drifts})")
+    return MockupUnitView(
+        version=version,
+        role=role,
+        identifier=f"{model.c_name}_{role}",
+        token="",
+        symgen=__version__,
+        description=description,
+        about=tuple(part for line in (description, *symbol_lines(model)) for part in c_comment_lines(line)),
+        source=file_stem(model.c_name, program.scalar),
+        params=global_name(model.c_name, program.scalar, "params"),
+        defaults=global_name(model.c_name, program.scalar, "default_params"),
+        status=f"{model.c_name}_status",
+        status_text=status_text_name(model),
+        coordinates=model.n,
+        inputs=model.m,
+        start=tuple(decimal_text("float64", Fraction(x)) for x in start_of(model)),
+        variables=variables,
+        places=tuple(members.get(one.place, one.place) for one in variables),
+        units=unit_definitions(one.unit for one in variables),
+        worked_out=calls[WORKED_OUT[role]],
+        placed=placed,
+        admitted=admitted,
+        return_rate=RETURN_RATE,
+        closing_rounds=CLOSING_ROUNDS,
+        closed_within=CLOSED_WITHIN,
+    )
+
+
+def _call(model: Model, program: Program, kernel: Kernel) -> KernelCall:
+    names = tuple(argument.name for argument in array_arguments(kernel))
+    return KernelCall(kernel.name, global_name(model.c_name, program.scalar, kernel.name), names)
