@@ -141,7 +141,7 @@ lock: $(VENV)/installed
 	printf 'editables\nhatchling\n' | $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
 	    --no-header --no-annotate --no-emit-index-url --no-emit-find-links --extra test \
 	    --output-file requirements.lock pyproject.toml -
-	printf 'pin\nexample-robot-data\n' | $(BIN)/uv pip compile --quiet --python-version 3.11 \
+	printf 'pin\nexample-robot-data\nmujoco\n' | $(BIN)/uv pip compile --quiet --python-version 3.11 \
 	    --python-platform x86_64-manylinux_2_28 --generate-hashes --constraint requirements.lock --no-header \
 	    --no-annotate --no-emit-index-url --no-emit-find-links --output-file tests/mechanisms/robots.lock -
 	printf 'jax\n' | $(BIN)/uv pip compile --quiet --python-version 3.11 --python-platform x86_64-manylinux_2_28 \
@@ -154,7 +154,7 @@ lock: $(VENV)/installed
 	    --generate-hashes --constraint requirements.lock --no-header --no-annotate --no-emit-index-url \
 	    --no-emit-find-links --output-file docs/site.lock -
 
-# Pinocchio and published robot descriptions, witnesses of the mechanisms: wheels for Linux and Python 3.11.
+# Pinocchio, MuJoCo and published robot descriptions, witnesses of the mechanisms: wheels for Linux and Python 3.11.
 robots: $(VENV)/installed
 	$(BIN)/pip install --quiet --require-hashes --requirement tests/mechanisms/robots.lock
 

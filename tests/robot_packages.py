@@ -1,4 +1,4 @@
-"""Pinocchio and its robot descriptions (the extra `robots`), or a reason to do without them."""
+"""Pinocchio, its robot descriptions and MuJoCo (the extra `robots`), or a reason to do without them."""
 
 from __future__ import annotations
 
@@ -16,6 +16,14 @@ def pinocchio() -> Any:
         return import_module("pinocchio")
     except ModuleNotFoundError:
         _absent("Pinocchio")
+
+
+def mujoco() -> Any:
+    """The module of that name, under the same terms."""
+    try:
+        return import_module("mujoco")
+    except ModuleNotFoundError:
+        _absent("MuJoCo")
 
 
 def robot_description(name: str) -> Path:

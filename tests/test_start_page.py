@@ -1,4 +1,4 @@
-"""docs/start.md and docs/urdf.md are true: their blocks run one after the other, and print what they say."""
+"""docs/start.md, urdf.md and robots.md are true: their blocks run one after the other, and print what they say."""
 
 from __future__ import annotations
 
@@ -47,4 +47,26 @@ def test_a_robot_with_a_loop(tmp_path: Path, tool: Callable[[str], str]) -> None
     (counted,) = re.findall(r"u takes (\d+) operations", page.text)
     assert re.search(rf"inverse_dynamics +{counted}\n", printed)
     assert "r = 2, δ = 2, m = 2" in printed
+    assert page.run("python", "-c", python).stdout == shown
+
+
+@pytest.mark.campaign
+@pytest.mark.slow
+@pytest.mark.toolchain
+def test_machines_from_other_formats(tmp_path: Path, tool: Callable[[str], str]) -> None:
+    tool("cc")
+    page = Page("robots.md", tmp_path)
+    (crane, press), models, (commands,), (python,) = map(page.blocks, ("xml", "yaml", "sh", "python"))
+    shown, mistake = page.blocks("text")
+    page.write("crane.xml", crane)
+    page.write("press.sdf", press)
+    for model in models:
+        page.write(f"{model.split()[1]}.yaml", model)
+    motor = '<motor name="pressure" joint="stroke"/>'
+    page.write("wrong.xml", crane.replace(motor, '<position name="servo" joint="stroke" kp="9"/>'))
+    page.write("wrong.yaml", models[0].replace("crane.xml", "wrong.xml"))
+    assert page.run("symgen", "wrong.yaml", code=1).stderr.strip().endswith(mistake.strip())
+    printed = page.run("sh", "-ec", commands).stdout
+    (counted,) = re.findall(r"in place of (\d+)", page.text)
+    assert re.search(rf"inverse_dynamics +{counted}\n", printed)
     assert page.run("python", "-c", python).stdout == shown

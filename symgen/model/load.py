@@ -4,15 +4,23 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from symgen.diagnostics import Mistake, ModelError, Span
 from symgen.model.file.attempts import attempted_names
+from symgen.model.file.reading import key_span
 from symgen.model.file.schema import MODEL
 from symgen.model.file.scope import Scope
 from symgen.model.file.shape import check_shape
-from symgen.model.file.source import read_tree
+from symgen.model.file.source import MappingNode, read_tree
 from symgen.model.model import Model
 from symgen.model.resolve import resolve
+
+if TYPE_CHECKING:
+    from symgen.model.robots.file import Imported
+
+# Blocks that name a robot description beside the model file.
+DESCRIPTIONS = ("urdf", "mjcf", "sdf")
 
 
 def load_model(path: Path) -> Model:
@@ -38,12 +46,14 @@ def load_text(text: str, file: str) -> Model:
     all_mistakes = [*mistakes, *check_shape(MODEL, tree, "the model")]
     scope = Scope(mistakes=all_mistakes, attempted=attempted_names(tree, all_mistakes))
     beside: dict[str, str] = {}
-    if tree.get("urdf") is not None:
+    described = [key for key in DESCRIPTIONS if tree.get(key) is not None]
+    if described:
+        for further in described[1:]:
+            message = f"`{described[0]}` and `{further}` both describe the robot"
+            scope.wrong(message, "keep one of them", key_span(tree, further))
         if scope.mistakes:
             raise ModelError(file, text, tuple(scope.mistakes))
-        from symgen.model.urdf.read import import_robot
-
-        imported = import_robot(scope, tree, Path(file).parent)
+        imported = _import(described[0], scope, tree, Path(file).parent)
         tree, beside = imported.tree, {imported.file: imported.text}
         # without the robot every name of it would be unknown
         if scope.mistakes:
@@ -52,3 +62,18 @@ def load_text(text: str, file: str) -> Model:
     if scope.mistakes:
         raise ModelError(file, text, tuple(scope.mistakes), beside)
     return replace(model, notices=tuple(scope.notices))
+
+
+def _import(key: str, scope: Scope, tree: MappingNode, folder: Path) -> Imported:
+    """The tree with what the robot description holds; its reader is loaded where it is used only."""
+    if key == "urdf":
+        from symgen.model.urdf.read import import_robot
+
+        return import_robot(scope, tree, folder)
+    if key == "mjcf":
+        from symgen.model.mjcf.read import import_mjcf
+
+        return import_mjcf(scope, tree, folder)
+    from symgen.model.sdf.read import import_sdf
+
+    return import_sdf(scope, tree, folder)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from symgen.diagnostics import ModelError
 from symgen.model.expressions.names import did_you_mean
-from symgen.model.load import load_model, load_text
+from symgen.model.load import DESCRIPTIONS, load_model, load_text
 from symgen.notebook.language import Block, as_block, as_blocks, as_yaml
 from symgen.notebook.words import BlockWord, block_words
 
@@ -185,8 +185,8 @@ class ModelFile:
 
     def _bring_robot(self, folder: Path) -> None:
         """The robot description lies beside the file, as it does beside the one that was read."""
-        urdf = self._blocks.get("urdf")
-        named = urdf.get("file") if isinstance(urdf, dict) else urdf
+        described = next((block for key in DESCRIPTIONS if (block := self._blocks.get(key))), None)
+        named = described.get("file") if isinstance(described, dict) else described
         if not named:
             return
         beside = (self._path.parent if self._path is not None else Path()) / named

@@ -77,12 +77,12 @@ def test_a_file_that_is_not_text(tmp_path: Path) -> None:
 def test_entities_are_refused_before_they_are_read() -> None:
     """Each hostile document type, also behind a comment that pretends to be harmless."""
     from symgen.diagnostics import Mistake
-    from symgen.model.urdf.xml import parse_xml
+    from symgen.model.robots.xml import parse_xml
 
     for name, (text, _) in HOSTILE.items():
         if "<!DOCTYPE" in text:
             head, _, tail = text.partition("<!DOCTYPE")
-            mistake = parse_xml(f"{head}<!-- a robot -->\n<!DOCTYPE{tail}", "r.urdf")
+            mistake = parse_xml(f"{head}<!-- a robot -->\n<!DOCTYPE{tail}", "r.urdf", "URDF")
             assert isinstance(mistake, Mistake), name
             assert mistake.message == "document types and entities are not read", name
 

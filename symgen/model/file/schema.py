@@ -282,20 +282,18 @@ _ALLOCATION = RecordShape(
     ),
 )
 
-_URDF = RecordShape(
-    "`urdf`",
-    (
-        Key("file", Text(), "its path, below the folder of this file", required=True),
-        Key("coordinates", TableShape(Text()), "name of the coordinate: name of the joint, where they differ"),
-        Key("frames", TableShape(Text()), "name of the frame: name of the link, where they differ"),
-        Key("leave_out", Listing(Word()), "elements and attributes that symgen does not know, and may leave out"),
-        Key(
-            "friction_width",
-            ExpressionShape(),
-            "the rate at which dry friction of the joints has 76 % of its full size",
-        ),
+_DESCRIBED = (
+    Key("file", Text(), "its path, below the folder of this file", required=True),
+    Key("coordinates", TableShape(Text()), "name of the coordinate: name of the joint, where they differ"),
+    Key("frames", TableShape(Text()), "name of the frame: name of the link, where they differ"),
+    Key("leave_out", Listing(Word()), "elements and attributes that symgen does not know, and may leave out"),
+    Key(
+        "friction_width",
+        ExpressionShape(),
+        "the rate at which dry friction of the joints has 76 % of its full size",
     ),
 )
+_URDF, _MJCF, _SDF = (RecordShape(f"`{key}`", _DESCRIBED) for key in ("urdf", "mjcf", "sdf"))
 
 MODEL = RecordShape(
     "the model",
@@ -329,6 +327,8 @@ MODEL = RecordShape(
             Either((Text(), _URDF)),
             "a robot description beside this file: its links become frames, its joints coordinates",
         ),
+        Key("mjcf", Either((Text(), _MJCF)), "the same from a file of MuJoCo, with its loops, couplings and motors"),
+        Key("sdf", Either((Text(), _SDF)), "the same from an SDF file; joints beyond a tree close loops"),
         Key("gravity", _VECTOR, "acceleration of gravity in world axes, such as [0, 0, -g]; absent: 0"),
         Key("frames", TableShape(_FRAME), "axes that move with the bodies: a tree that hangs on `world`"),
         Key("bodies", TableShape(_BODY), "rigid bodies by name; their energies are added to those written out"),

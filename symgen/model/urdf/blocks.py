@@ -11,16 +11,16 @@ from fractions import Fraction
 from math import sqrt
 
 from symgen.diagnostics import Span
-from symgen.model.file.reading import entries, member, text_of
+from symgen.model.file.reading import entries, member
 from symgen.model.file.scope import Scope
 from symgen.model.file.source import MappingNode, Node, ScalarNode, SequenceNode
 from symgen.model.mechanism import WORLD
+from symgen.model.robots.names import RobotNames
+from symgen.model.robots.nodes import Entry, is_placed, ranged_names, text_node, with_entries
+from symgen.model.robots.numbers import WrittenNumber, angle_text, written
 from symgen.model.urdf.bodies import body_entries, carried_links, placed_links
-from symgen.model.urdf.names import RobotNames
-from symgen.model.urdf.numbers import WrittenNumber, angle_text, written
 from symgen.model.urdf.robot import ENDINGS, Origin, Robot, UrdfJoint
 
-Entry = tuple[ScalarNode, Node]
 TYPES = {"continuous": "revolute"}
 # roll, pitch and yaw turn about x, y, z fixed in the parent: yaw, pitch, roll about the axes reached so far
 TURNS = ("x", "y", "z")
@@ -31,67 +31,51 @@ def with_robot(scope: Scope, tree: MappingNode, robot: Robot, names: RobotNames,
     frames: list[Entry] = []
     joints: list[Entry] = []
     root = names.frames[robot.root]
-    if root != WORLD and not _is_placed(tree, root):
+    if root != WORLD and not is_placed(tree, root):
         place = robot.links[robot.root].span
-        frames.append((_text(root, place), MappingNode((), place, True)))
+        frames.append((text_node(root, place), MappingNode((), place, True)))
     for joint in robot.joints.values():
         entry = _motion(joint, names)
         (frames if joint.kind == "fixed" else joints).append(entry)
     moving = [joint for joint in robot.joints.values() if joint.kind != "fixed"]
     additions = {
+        "constraints": list(_mimics(moving, names)),
         "frames": frames,
         "joints": joints,
         "bodies": list(_bodies(scope, tree, robot, names)),
         "friction": list(_friction(scope, tree, moving, names)),
         "ranges": list(_ranges(tree, moving, names)),
     }
-    rows = list(_mimics(moving, names))
-    if rows:
-        geometric = MappingNode((*rows, *entries(member(tree.get("constraints"), "geometric"))), span, False)
-        others = [entry for entry in entries(tree.get("constraints")) if entry[0].value != "geometric"]
-        block = MappingNode(((_text("geometric", span), geometric), *others), span, False)
-        tree = _replaced(tree, "constraints", block, span)
-    for key, made in additions.items():
-        if made:
-            old = tree.get(key)
-            block = MappingNode((*made, *entries(old)), span if old is None else old.span, False)
-            tree = _replaced(tree, key, block, span)
-    return tree
-
-
-def ranged_names(tree: MappingNode) -> set[str]:
-    """The names that the model file gives a range."""
-    own = {key.value for key, _ in entries(tree.get("ranges"))}
-    return own | {key.value for key, node in entries(tree.get("coordinates")) if member(node, "range") is not None}
+    return with_entries(tree, additions, span)
 
 
 def _motion(joint: UrdfJoint, names: RobotNames) -> Entry:
     """The frame of a fixed joint, or the joint with its coordinates."""
     span, child = joint.span, names.frames[joint.child]
-    parent = (_text("parent", span), _text(names.frames[joint.parent], span))
+    parent = (text_node("parent", span), text_node(names.frames[joint.parent], span))
     turns = _turns(joint.origin, span)
     shift = SequenceNode(tuple(entry.node for entry in joint.origin.xyz), span)
     if joint.kind == "fixed":
         parts: list[Entry] = [parent]
         if any(joint.origin.shift):
-            parts.append((_text("translation", span), shift))
+            parts.append((text_node("translation", span), shift))
         if turns.items:
-            parts.append((_text("rotation", span), turns))
-        return _text(child, span), MappingNode(tuple(parts), span, True)
+            parts.append((text_node("rotation", span), turns))
+        return text_node(child, span), MappingNode(tuple(parts), span, True)
     base = names.coordinates[joint.name]
-    coordinates = tuple(_text(base + ending, span) for ending in ENDINGS[joint.kind])
+    coordinates = tuple(text_node(base + ending, span) for ending in ENDINGS[joint.kind])
     moved: list[Entry] = [
-        (_text("type", span), _text(TYPES.get(joint.kind, joint.kind), span)),
+        (text_node("type", span), text_node(TYPES.get(joint.kind, joint.kind), span)),
         parent,
-        (_text("child", span), _text(child, span)),
-        (_text("axis", span), _axis(joint)),
-        (_text("coordinates", span), SequenceNode(coordinates, span)),
+        (text_node("child", span), text_node(child, span)),
+        (text_node("axis", span), _axis(joint)),
+        (text_node("coordinates", span), SequenceNode(coordinates, span)),
     ]
     if any(joint.origin.shift):
-        moved.append((_text("at", span), shift))
+        moved.append((text_node("at", span), shift))
     if turns.items:
-        moved.append((_text("rotation", span), turns))
-    return _text(base, span), MappingNode(tuple(moved), span, True)
+        moved.append((text_node("rotation", span), turns))
+    return text_node(base, span), MappingNode(tuple(moved), span, True)
 
 
 def _turns(origin: Origin, span: Span) -> SequenceNode:
@@ -99,14 +83,14 @@ def _turns(origin: Origin, span: Span) -> SequenceNode:
     for name, angle in reversed(list(zip(TURNS, origin.rpy, strict=False))):
         if angle_text(angle) != "0" and angle.value != 0:
             turn = ScalarNode(angle_text(angle), angle.span, angle.text, False)
-            turns.append(SequenceNode((_text(name, span), turn), span))
+            turns.append(SequenceNode((text_node(name, span), turn), span))
     return SequenceNode(tuple(turns), span)
 
 
 def _axis(joint: UrdfJoint) -> Node:
     """The axis; that of a way gets length 1, where a turn needs the direction only."""
     if not joint.axis:
-        return _text("x", joint.span)
+        return text_node("x", joint.span)
     square = sum((entry.value**2 for entry in joint.axis), Fraction(0))
     if joint.kind != "prismatic" or square == 1:
         return SequenceNode(tuple(entry.node for entry in joint.axis), joint.span)
@@ -126,7 +110,7 @@ def _bodies(scope: Scope, tree: MappingNode, robot: Robot, names: RobotNames) ->
         if name in taken:
             remedy = f"name the further body differently, with `frame: {name}`"
             scope.wrong(f"`{name}` has its mass from the robot description", remedy, taken[name])
-        yield _text(name, made[1]), made[0]
+        yield text_node(name, made[1]), made[0]
 
 
 def _friction(scope: Scope, tree: MappingNode, joints: list[UrdfJoint], names: RobotNames) -> Iterable[Entry]:
@@ -140,7 +124,7 @@ def _friction(scope: Scope, tree: MappingNode, joints: list[UrdfJoint], names: R
             continue
         parts: list[Entry] = []
         if "damping" in given:
-            parts.append((_text("viscous", joint.span), given["damping"].node))
+            parts.append((text_node("viscous", joint.span), given["damping"].node))
         if "friction" in given:
             if width is None:
                 message = f"the dry friction of the joint `{joint.name}` has no width in which it changes its sign"
@@ -150,8 +134,9 @@ def _friction(scope: Scope, tree: MappingNode, joints: list[UrdfJoint], names: R
                 )
                 scope.wrong(message, remedy, given["friction"].span, joint.name)
                 continue
-            parts += [(_text("coulomb", joint.span), given["friction"].node), (_text("width", joint.span), width)]
-        yield _text(name, joint.span), MappingNode(tuple(parts), joint.span, True)
+            parts.append((text_node("coulomb", joint.span), given["friction"].node))
+            parts.append((text_node("width", joint.span), width))
+        yield text_node(name, joint.span), MappingNode(tuple(parts), joint.span, True)
 
 
 def _ranges(tree: MappingNode, joints: list[UrdfJoint], names: RobotNames) -> Iterable[Entry]:
@@ -171,7 +156,7 @@ def _ranges(tree: MappingNode, joints: list[UrdfJoint], names: RobotNames) -> It
                 ranges.append((name + ending, ScalarNode(f"-{bound.text}", bound.span, "", False), bound.node))
         for key, low, high in ranges:
             if key not in own:
-                yield _text(key, span), SequenceNode((low, high), span)
+                yield text_node(key, span), SequenceNode((low, high), span)
 
 
 def _mimics(joints: list[UrdfJoint], names: RobotNames) -> Iterable[Entry]:
@@ -184,25 +169,8 @@ def _mimics(joints: list[UrdfJoint], names: RobotNames) -> Iterable[Entry]:
             row = f"({mimic.multiplier.text})*{row}"
         if mimic.offset is not None and mimic.offset.value != 0:
             row = f"{row} - ({mimic.offset.text})"
-        yield _text(f"{name}_mimic", mimic.span), ScalarNode(f"{name} - {row}", mimic.span, "", False)
-
-
-def _is_placed(tree: MappingNode, root: str) -> bool:
-    """Whether the model file says how the root stands or moves."""
-    children = {text_of(member(node, "child")) or key.value for key, node in entries(tree.get("joints"))}
-    return root in children or root in {key.value for key, _ in entries(tree.get("frames"))}
+        yield text_node(f"{name}_mimic", mimic.span), ScalarNode(f"{name} - {row}", mimic.span, "", False)
 
 
 def _number(value: WrittenNumber | None, span: Span) -> Node:
-    return _text("0", span) if value is None else value.node
-
-
-def _text(text: str, span: Span) -> ScalarNode:
-    # no source text, so that places inside are that of the whole
-    return ScalarNode(text, span, "", False)
-
-
-def _replaced(tree: MappingNode, key: str, value: Node, span: Span) -> MappingNode:
-    kept = tuple(entry for entry in tree.entries if entry[0].value != key)
-    name = next((own for own, _ in tree.entries if own.value == key), _text(key, span))
-    return MappingNode((*kept, (name, value)), tree.span, tree.flow)
+    return text_node("0", span) if value is None else value.node

@@ -7,31 +7,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from fractions import Fraction
 
 from symgen.diagnostics import Notice, Span
 from symgen.model.checks.bodies import check_bodies
 from symgen.model.expressions.expression import Number
-from symgen.model.file.source import MappingNode, Node, ScalarNode, SequenceNode
-from symgen.model.kinematics.triples import plus, transposed
+from symgen.model.file.source import Node
 from symgen.model.mechanism import INERTIA_ELEMENTS, NO_VECTOR, Body, Inertia, Mechanism
-from symgen.model.urdf.numbers import IDENTITY, Matrix, Vector, applied, product, written
+from symgen.model.robots.numbers import IDENTITY
+from symgen.model.robots.places import NO_SHIFT, AxesPlace
+from symgen.model.robots.solids import PLACES, Solid, body_node, made, matrix_of, together
 from symgen.model.urdf.robot import Inertial, Robot, UrdfJoint
-
-# Exactly 0, where sums of exact numbers begin.
-ZERO = Fraction(0)
-NOWHERE: Vector = (ZERO, ZERO, ZERO)
-# where the elements xx, yy, zz, xy, xz, yz stand in the matrix
-PLACES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-
-
-@dataclass(frozen=True, slots=True)
-class Solid:
-    """Mass, centre of mass and the tensor about it, in the axes of one link."""
-
-    mass: Fraction
-    com: Vector
-    tensor: Matrix
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +24,7 @@ class LinkPose:
     """Where a link sits in the axes of the link that carries it."""
 
     carrier: str
-    shift: Vector
-    axes: Matrix
+    place: AxesPlace
 
 
 def placed_links(robot: Robot) -> dict[str, LinkPose]:
@@ -48,17 +32,17 @@ def placed_links(robot: Robot) -> dict[str, LinkPose]:
     held: dict[str, list[UrdfJoint]] = {}
     for joint in robot.joints.values():
         held.setdefault(joint.parent, []).append(joint)
-    places = {robot.root: LinkPose(robot.root, NOWHERE, IDENTITY)}
+    places = {robot.root: LinkPose(robot.root, AxesPlace())}
     waiting = [robot.root]
     for name in waiting:
-        place = places[name]
+        pose = places[name]
         for joint in held.get(name, ()):
             waiting.append(joint.child)
             if joint.kind == "fixed":
-                shift = plus(place.shift, applied(place.axes, joint.origin.shift))
-                places[joint.child] = LinkPose(place.carrier, shift, product(place.axes, joint.origin.axes))
+                inner = AxesPlace(joint.origin.shift, joint.origin.axes)
+                places[joint.child] = LinkPose(pose.carrier, pose.place.then(inner))
             else:
-                places[joint.child] = LinkPose(joint.child, NOWHERE, IDENTITY)
+                places[joint.child] = LinkPose(joint.child, AxesPlace())
     return {name: places[name] for name in robot.links}
 
 
@@ -91,62 +75,24 @@ def body_entries(robot: Robot, links: list[str], places: dict[str, LinkPose]) ->
         inertial = robot.links[name].inertial
         if inertial is not None and any(entry.value for entry in (inertial.mass, *inertial.tensor)):
             inertials.append(inertial)
-            solids.append(_solid(inertial, places[name].shift, places[name].axes))
+            solids.append(_solid(inertial, places[name].place))
     if not solids:
         return None
     first = inertials[0]
-    whole = _together(solids)
+    whole = together(solids)
     as_written = len(solids) == 1 and robot.links[links[0]].inertial is first
-    mass = first.mass.node if len(solids) == 1 else _made(whole.mass, first.span)
-    com = [_made(entry, first.span) for entry in whole.com]
-    tensor = [_made(whole.tensor[row][column], first.span) for row, column in PLACES]
+    mass = first.mass.node if len(solids) == 1 else made(whole.mass, first.span)
+    com = [made(entry, first.span) for entry in whole.com]
+    elements = [whole.tensor[row][column] for row, column in PLACES]
+    tensor = [made(element, first.span) for element in elements]
     if as_written:
         com = [entry.node for entry in first.origin.xyz] or com
         if first.origin.axes == IDENTITY:
             tensor = [entry.node for entry in first.tensor]
-    entries: list[tuple[ScalarNode, Node]] = [(_key("mass", first.span), mass)]
-    if any(whole.com):
-        entries.append((_key("com", first.span), SequenceNode(tuple(com), first.span)))
-    elements = [
-        (_key(name, first.span), node)
-        for name, node, (row, column) in zip(INERTIA_ELEMENTS, tensor, PLACES, strict=True)
-        if whole.tensor[row][column] != 0
-    ]
-    if elements:
-        entries.append((_key("inertia", first.span), MappingNode(tuple(elements), first.span, True)))
-    return MappingNode(tuple(entries), first.span, True), first.span
+    shown = [element != 0 for element in elements]
+    return body_node(mass, com if any(whole.com) else (), tensor, shown, first.span), first.span
 
 
-def _solid(inertial: Inertial, shift: Vector, axes: Matrix) -> Solid:
-    xx, yy, zz, xy, xz, yz = (entry.value for entry in inertial.tensor)
-    turned = product(axes, inertial.origin.axes)
-    tensor: Matrix = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
-    com = plus(shift, applied(axes, inertial.origin.shift))
-    return Solid(inertial.mass.value, com, product(product(turned, tensor), transposed(turned)))
-
-
-def _together(solids: list[Solid]) -> Solid:
-    """One body of several: the tensors about the common centre by Steiner's theorem."""
-    if len(solids) == 1:
-        return solids[0]
-    mass = sum((solid.mass for solid in solids), ZERO)
-    moments = [sum((solid.mass * solid.com[axis] for solid in solids), ZERO) for axis in range(3)]
-    x, y, z = ((moment / mass if mass else ZERO) for moment in moments)
-    rows = [[ZERO] * 3 for _ in range(3)]
-    for solid in solids:
-        arm = (solid.com[0] - x, solid.com[1] - y, solid.com[2] - z)
-        square = sum((entry * entry for entry in arm), ZERO)
-        for row in range(3):
-            for column in range(3):
-                steiner = (square if row == column else ZERO) - arm[row] * arm[column]
-                rows[row][column] += solid.tensor[row][column] + solid.mass * steiner
-    first, second, third = ((row[0], row[1], row[2]) for row in rows)
-    return Solid(mass, (x, y, z), (first, second, third))
-
-
-def _made(value: Fraction, span: Span) -> ScalarNode:
-    return ScalarNode(written(value), span, "", False)
-
-
-def _key(text: str, span: Span) -> ScalarNode:
-    return ScalarNode(text, span, "", False)
+def _solid(inertial: Inertial, place: AxesPlace) -> Solid:
+    own = Solid(inertial.mass.value, NO_SHIFT, matrix_of([entry.value for entry in inertial.tensor]))
+    return own.seen_from(place.then(AxesPlace(inertial.origin.shift, inertial.origin.axes)))

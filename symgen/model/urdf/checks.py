@@ -8,10 +8,9 @@ from fractions import Fraction
 
 from symgen.diagnostics import Mistake
 from symgen.model.expressions.names import did_you_mean
+from symgen.model.robots.reader import MAXIMUM_ANGLE
 from symgen.model.urdf.robot import ENDINGS, Robot, UrdfJoint
 
-# In rad, by which a joint with limits may turn.
-MAXIMUM_ANGLE = 10_000
 # The direction that a planar joint needs as its normal.
 NORMAL = (Fraction(0), Fraction(0), Fraction(1))
 

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from symgen.diagnostics import Mistake, Span
+from symgen.diagnostics import Mistake
 from symgen.model.expressions.names import did_you_mean
-from symgen.model.expressions.parser import MAXIMUM_DECIMAL_EXPONENT, MAXIMUM_DIGITS
-from symgen.model.urdf.numbers import WrittenNumber, read_number
+from symgen.model.robots.numbers import WrittenNumber
+from symgen.model.robots.reader import MAXIMUM_LINKS, ElementReader
+from symgen.model.robots.xml import Element
 from symgen.model.urdf.robot import KINDS, Inertial, Link, Mimic, Origin, Robot, UrdfJoint
-from symgen.model.urdf.xml import Element
 
 TENSOR = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
-# Links that are read, and joints.
-MAXIMUM_LINKS = 500
 LIMITS = ("lower", "upper", "velocity", "effort", "acceleration")
 # what says nothing about the mechanics; each is told to the user
 GEOMETRY = ("visual", "collision")
@@ -41,21 +39,15 @@ def read_robot(root: Element, unread: frozenset[str]) -> tuple[Robot, tuple[Mist
     return robot, tuple(reading.mistakes)
 
 
-class _RobotReader:
+class _RobotReader(ElementReader):
     def __init__(self, unread: frozenset[str]) -> None:
-        self.unread = unread
-        self.owner = ""
-        self.mistakes: list[Mistake] = []
-        self.left_out: dict[str, list[str]] = {}
-
-    def wrong(self, message: str, remedy: str, span: Span) -> None:
-        self.mistakes.append(Mistake(message, remedy, span, self.owner if f"`{self.owner}`" in message else ""))
+        super().__init__("URDF", unread)
 
     def robot(self, root: Element) -> Robot:
         if root.tag != "robot":
             self.wrong(f"a robot description is a `robot`, this is a `{root.tag}`", "give a URDF file", root.span)
             return Robot({}, {}, {})
-        self._attributes(root, ("name", "version"))
+        self.attributes(root, ("name", "version"))
         self.owner = root.attributes.get("name", "")
         self._children(root, ("link", "joint"), "robot")
         if len(root.all("link")) > MAXIMUM_LINKS or len(root.all("joint")) > MAXIMUM_LINKS:
@@ -66,64 +58,64 @@ class _RobotReader:
         for element in root.all("link"):
             link = self._link(element)
             if link.name in links:
-                self._twice("link", element, links[link.name].span)
+                self.twice("link", element, links[link.name].span)
             links.setdefault(link.name, link)
         joints: dict[str, UrdfJoint] = {}
         for element in root.all("joint"):
             joint = self._joint(element)
             if joint is not None and joint.name in joints:
-                self._twice("joint", element, joints[joint.name].span)
+                self.twice("joint", element, joints[joint.name].span)
             if joint is not None:
                 joints.setdefault(joint.name, joint)
         return Robot(links, joints, {tag: tuple(names) for tag, names in self.left_out.items()})
 
     def _link(self, element: Element) -> Link:
         self.owner = element.attributes.get("name", "")
-        self._attributes(element, ("name", "type"))
+        self.attributes(element, ("name", "type"))
         self._children(element, ("inertial",), "link")
-        name = self._text(element, "name", "the link")
-        inertial = self._only(element, "inertial")
+        name = self.text(element, "name", "the link")
+        inertial = self.only(element, "inertial")
         return Link(name, None if inertial is None else self._inertial(inertial, name), element.place("name"))
 
     def _inertial(self, element: Element, link: str) -> Inertial | None:
-        self._attributes(element, ())
+        self.attributes(element, ())
         self._children(element, ("origin", "mass", "inertia"), "inertial")
         origin = self._origin(element)
-        mass, tensor = self._only(element, "mass"), self._only(element, "inertia")
+        mass, tensor = self.only(element, "mass"), self.only(element, "inertia")
         for part, child in (("mass", mass), ("inertia", tensor)):
             if child is None:
                 self.wrong(f"the inertial of the link `{link}` has no `{part}`", f"add <{part} .../>", element.span)
         if mass is None or tensor is None:
             return None
-        self._attributes(mass, ("value",))
-        self._attributes(tensor, TENSOR)
-        value = self._number(mass, "value", f"the mass of `{link}`", needed=True)
-        entries = [self._number(tensor, name, f"the inertia of `{link}`", needed=True) for name in TENSOR]
+        self.attributes(mass, ("value",))
+        self.attributes(tensor, TENSOR)
+        value = self.number(mass, "value", f"the mass of `{link}`", needed=True)
+        entries = [self.number(tensor, name, f"the inertia of `{link}`", needed=True) for name in TENSOR]
         known = tuple(entry for entry in entries if entry is not None)
         return None if value is None or len(known) < len(TENSOR) else Inertial(origin, value, known, element.span)
 
     def _joint(self, element: Element) -> UrdfJoint | None:
         self.owner = element.attributes.get("name", "")
-        self._attributes(element, ("name", "type"))
+        self.attributes(element, ("name", "type"))
         self._children(element, ("origin", "parent", "child", "axis", "limit", "dynamics", "mimic"), "joint")
-        name = self._text(element, "name", "the joint")
-        kind = self._text(element, "type", f"the joint `{name}`")
+        name = self.text(element, "name", "the joint")
+        kind = self.text(element, "type", f"the joint `{name}`")
         if kind and kind not in KINDS:
             remedy = did_you_mean(kind, KINDS, f"the types are {', '.join(KINDS)}")
             self.wrong(f"the joint `{name}` has the unknown type `{kind}`", remedy, element.place("type"))
         ends = []
         for end in ("parent", "child"):
-            part = self._only(element, end)
+            part = self.only(element, end)
             if part is None:
                 self.wrong(f"the joint `{name}` has no `{end}`", f'add <{end} link="..."/>', element.span)
                 continue
-            self._attributes(part, ("link",))
-            ends.append(self._text(part, "link", f"the {end} of the joint `{name}`"))
-        origin, axis = self._origin(element), self._only(element, "axis")
+            self.attributes(part, ("link",))
+            ends.append(self.text(part, "link", f"the {end} of the joint `{name}`"))
+        origin, axis = self._origin(element), self.only(element, "axis")
         direction: tuple[WrittenNumber, ...] = ()
         if axis is not None:
-            self._attributes(axis, ("xyz",))
-            direction = self._vector(axis, "xyz", f"the axis of the joint `{name}`")
+            self.attributes(axis, ("xyz",))
+            direction = self.vector(axis, "xyz", f"the axis of the joint `{name}`")
         limits = self._numbers(element, "limit", LIMITS, name)
         dynamics = self._numbers(element, "dynamics", ("damping", "friction"), name)
         mimic = self._mimic(element, name)
@@ -133,45 +125,30 @@ class _RobotReader:
         return UrdfJoint(name, kind, ends[0], ends[1], origin, direction, limits, dynamics, mimic, span)
 
     def _mimic(self, element: Element, name: str) -> Mimic | None:
-        part = self._only(element, "mimic")
+        part = self.only(element, "mimic")
         if part is None:
             return None
-        self._attributes(part, ("joint", "multiplier", "offset"))
+        self.attributes(part, ("joint", "multiplier", "offset"))
         multiplier, offset = (
-            self._number(part, key, f"the mimic of the joint `{name}`") for key in ("multiplier", "offset")
+            self.number(part, key, f"the mimic of the joint `{name}`") for key in ("multiplier", "offset")
         )
-        return Mimic(self._text(part, "joint", f"the mimic of `{name}`"), multiplier, offset, part.place("joint"))
+        return Mimic(self.text(part, "joint", f"the mimic of `{name}`"), multiplier, offset, part.place("joint"))
 
     def _origin(self, element: Element) -> Origin:
-        part = self._only(element, "origin")
+        part = self.only(element, "origin")
         if part is None:
             return Origin()
-        self._attributes(part, ("xyz", "rpy"))
-        xyz, rpy = (self._vector(part, key, f"`{key}` of the origin") for key in ("xyz", "rpy"))
+        self.attributes(part, ("xyz", "rpy"))
+        xyz, rpy = (self.vector(part, key, f"`{key}` of the origin") for key in ("xyz", "rpy"))
         return Origin(xyz, rpy)
 
     def _numbers(self, element: Element, tag: str, keys: tuple[str, ...], joint: str) -> dict[str, WrittenNumber]:
-        part = self._only(element, tag)
+        part = self.only(element, tag)
         if part is None:
             return {}
-        self._attributes(part, keys)
-        numbers = {key: self._number(part, key, f"the {tag} of the joint `{joint}`") for key in keys}
+        self.attributes(part, keys)
+        numbers = {key: self.number(part, key, f"the {tag} of the joint `{joint}`") for key in keys}
         return {key: value for key, value in numbers.items() if value is not None}
-
-    # attributes and children
-
-    def _attributes(self, element: Element, known: Iterable[str]) -> None:
-        if element.text:
-            message = f"`{element.tag}` holds the text `{element.text[:40]}`"
-            self.wrong(message, "values stand in attributes; remove the text", element.span)
-        for key in element.attributes:
-            if key in known or key == "xmlns" or key.startswith("xmlns:"):
-                continue
-            if key in self.unread:
-                self.left_out.setdefault(key, []).append(self.owner)
-                continue
-            remedy = did_you_mean(key, known, f"symgen does not know what it does to the motion; {_leaving_out(key)}")
-            self.wrong(f"`{key}` is no attribute of `{element.tag}`", remedy, element.place(key))
 
     def _children(self, element: Element, known: Iterable[str], what: str) -> None:
         for child in element.children:
@@ -179,16 +156,15 @@ class _RobotReader:
                 continue
             if child.tag in LEFT_OUT.get(what, ()) or child.tag in self.unread:
                 self._leave_out(child)
-                continue
-            unknown = f"symgen does not know what it does to the motion; {_leaving_out(child.tag)}"
-            remedy = did_you_mean(child.tag, known, unknown)
-            if child.tag.startswith("xacro:"):
+            elif child.tag.startswith("xacro:"):
                 remedy = "this is xacro, from which URDF is made: run `xacro robot.xacro > robot.urdf`"
-            self.wrong(f"`{child.tag[:60]}` is no part of a `{what}`", remedy, child.span)
+                self.wrong(f"`{child.tag[:60]}` is no part of a `{what}`", remedy, child.span)
+            else:
+                self.unknown_child(child, known, what)
 
     def _leave_out(self, element: Element) -> None:
         name = element.attributes.get("name") or element.attributes.get("reference") or self.owner
-        self.left_out.setdefault(element.tag, []).append(name)
+        self.leave_out(element.tag, name)
         drawn = element.tag in (*GEOMETRY, "sensor", "material")
         inside = [] if drawn or element.tag in self.unread else list(element.children)
         while inside:
@@ -196,58 +172,6 @@ class _RobotReader:
             # most extensions name the joints that they are about; one with a type or parts is a further joint
             names_a_joint = part.tag == "joint" and "type" not in part.attributes and not part.all("parent")
             if part.tag in MECHANICAL and part.tag not in self.unread and not names_a_joint:
-                remedy = f"{MECHANICAL[part.tag]}; {_leaving_out(part.tag)}"
+                remedy = f"{MECHANICAL[part.tag]}; {self.leaving_out(part.tag)}"
                 self.wrong(f"`{part.tag}` in `{element.tag}` is not read", remedy, part.span)
             inside += part.children
-
-    def _only(self, element: Element, tag: str) -> Element | None:
-        children = element.all(tag)
-        for further in children[1:]:
-            self.wrong(f"`{element.tag}` has a second `{tag}`", "keep one of them", further.span)
-        return children[0] if children else None
-
-    def _text(self, element: Element, key: str, what: str) -> str:
-        text = element.attributes.get(key, "").strip()
-        if not text:
-            self.wrong(f"{what} has no `{key}`", f'add {key}="..."', element.span)
-        return text
-
-    def _number(self, element: Element, key: str, what: str, needed: bool = False) -> WrittenNumber | None:
-        text = element.attributes.get(key)
-        if text is None:
-            if needed:
-                self.wrong(f"{what} has no `{key}`", f'add {key}="..."', element.span)
-            return None
-        value = read_number(text.strip(), element.place(key))
-        if value is None:
-            within = f"of at most {MAXIMUM_DIGITS} digits and within 1e{MAXIMUM_DECIMAL_EXPONENT}"
-            remedy = f"write a decimal number, {within}"
-            self.wrong(f"`{key}` of {what} is `{text[:40]}`", remedy, element.place(key))
-        return value
-
-    def _vector(self, element: Element, key: str, what: str) -> tuple[WrittenNumber, ...]:
-        text = element.attributes.get(key)
-        if text is None:
-            return ()
-        entries: list[WrittenNumber] = []
-        start = 0
-        for part in text.split():
-            start = text.index(part, start)
-            value = read_number(part, element.place(key, start, len(part)))
-            start += len(part)
-            if value is not None:
-                entries.append(value)
-        if len(entries) != 3 or len(text.split()) != 3:
-            remedy = "write three decimal numbers with spaces between"
-            self.wrong(f"{what} is `{text[:60]}`", remedy, element.place(key))
-            return ()
-        return tuple(entries)
-
-    def _twice(self, what: str, element: Element, first: Span) -> None:
-        name = element.attributes.get("name", "")
-        message = f"there is a second {what} `{name}` (first in line {first.line})"
-        self.wrong(message, "remove or rename one of the two", element.place("name"))
-
-
-def _leaving_out(name: str) -> str:
-    return f"where it may be left out, say so: `urdf: {{file: ..., leave_out: [{name[:40]}]}}`"

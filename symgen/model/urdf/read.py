@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 
 from symgen.diagnostics import Mistake, Notice, Span, printable
-from symgen.model.file.reading import items, key_span, member, text_of
 from symgen.model.file.scope import Scope
-from symgen.model.file.source import MAXIMUM_CHARACTERS, MappingNode, ScalarNode
-from symgen.model.urdf.blocks import ranged_names, with_robot
+from symgen.model.file.source import MappingNode
+from symgen.model.robots.file import Imported, read_description
+from symgen.model.robots.names import read_names
+from symgen.model.robots.nodes import ranged_names
+from symgen.model.robots.numbers import WrittenNumber, quarters
+from symgen.model.urdf.blocks import with_robot
 from symgen.model.urdf.bodies import judge_links
 from symgen.model.urdf.checks import check_joints, find_root
 from symgen.model.urdf.elements import GEOMETRY, read_robot
-from symgen.model.urdf.names import read_names
-from symgen.model.urdf.numbers import WrittenNumber, quarters
-from symgen.model.urdf.robot import Robot
-from symgen.model.urdf.xml import parse_xml
+from symgen.model.urdf.robot import Robot, named_things
 
 ABOUT = {
     "transmission": "inputs stand in the model file, as forces and torques of the joints",
@@ -28,32 +27,13 @@ ABOUT = {
 NEAR_QUARTER = 1e-4
 
 
-@dataclass(frozen=True, slots=True)
-class Imported:
-    """The tree with the robot in it; the text of its file and the name of that file in messages."""
-
-    tree: MappingNode
-    text: str
-    file: str
-
-
 def import_robot(scope: Scope, tree: MappingNode, folder: Path) -> Imported:
     """The robot that `urdf` names, in the tree; what is wrong with it is recorded, and the tree then stays as it is."""
-    node = tree.get("urdf")
-    name = node if isinstance(node, ScalarNode) else member(node, "file")
-    span = key_span(tree, "urdf") or tree.span
-    if not isinstance(name, ScalarNode):
-        return Imported(tree, "", "")
-    file = str(folder / name.value)
-    text = _text(scope, name, folder)
-    if text is None:
-        return Imported(tree, "", file)
-    root = parse_xml(text, file)
-    if isinstance(root, Mistake):
-        scope.mistakes.append(root)
+    given = read_description(scope, tree, folder, "urdf")
+    text, file, span, root = given.text, given.file, given.span, given.root
+    if root is None:
         return Imported(tree, text, file)
-    unread = frozenset(text_of(item) or "" for item in items(member(node, "leave_out")))
-    robot, mistakes = read_robot(root, unread)
+    robot, mistakes = read_robot(root, given.unread)
     if not mistakes and not robot.links:
         mistakes = (Mistake("the robot has no links", "give a URDF file with links and joints", root.span),)
     if not mistakes:
@@ -61,7 +41,7 @@ def import_robot(scope: Scope, tree: MappingNode, folder: Path) -> Imported:
     scope.mistakes.extend(mistakes)
     if mistakes:
         return Imported(tree, text, file)
-    names = read_names(scope, node, robot, span)
+    names = read_names(scope, given.node, named_things(robot), span)
     own = ranged_names(tree)
     scope.mistakes.extend(check_joints(robot, {joint for joint, name in names.coordinates.items() if name in own}))
     if not scope.mistakes:
@@ -73,34 +53,6 @@ def import_robot(scope: Scope, tree: MappingNode, folder: Path) -> Imported:
         if efforts:
             scope.efforts = Notice(printable(f"effort limits of the URDF bound no input ({efforts})"), span)
     return Imported(tree, text, file)
-
-
-def _text(scope: Scope, node: ScalarNode, folder: Path) -> str | None:
-    """The text of the file, which must lie in the folder of the model or below it."""
-    name = text_of(node) or ""
-    parts = PurePosixPath(name).parts
-    if not name or name.startswith("/") or ".." in parts or "\\" in name or ":" in name or not name.isprintable():
-        message = f"`{name[:60]}` is no plain path below the folder of the model file"
-        scope.wrong(message, "copy the robot description beside the model file, and write its name", node.span)
-        return None
-    path = folder / name
-    try:
-        if not path.resolve().is_relative_to(folder.resolve()):
-            message = f"`{name}` is a link that leads out of the folder of the model file"
-            scope.wrong(message, "copy the robot description beside the model file", node.span)
-            return None
-        if not path.is_file():
-            scope.wrong(f"there is no file `{name}`", "the path starts at the folder of the model file", node.span)
-            return None
-        with path.open("rb") as stream:
-            data = stream.read(4 * MAXIMUM_CHARACTERS + 1)
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        scope.wrong(f"`{name}` is not text in UTF-8 (line {line})", "save it as UTF-8", node.span)
-    except (OSError, ValueError):
-        scope.wrong(f"`{name}` cannot be read", "check the permissions of the file", node.span)
-    return None
 
 
 def _notices(robot: Robot, span: Span) -> list[Notice]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from symgen.diagnostics import Span
-from symgen.model.urdf.numbers import IDENTITY, Matrix, Vector, WrittenNumber, product, turn
+from symgen.model.robots.names import NamedThings
+from symgen.model.robots.numbers import IDENTITY, Matrix, Vector, WrittenNumber, product, turn
 
 # the joints that move, with the endings of their coordinates behind the joint's name
 ENDINGS: dict[str, tuple[str, ...]] = {
@@ -95,3 +96,14 @@ class Robot:
     joints: dict[str, UrdfJoint] = field(hash=False)
     left_out: dict[str, tuple[str, ...]] = field(hash=False)
     root: str = ""
+
+
+def named_things(robot: Robot) -> NamedThings:
+    """What may get names of its own in the model file."""
+    moving = {name: joint for name, joint in robot.joints.items() if joint.kind != "fixed"}
+    return NamedThings(
+        "URDF",
+        {name: (joint.span, ENDINGS[joint.kind]) for name, joint in moving.items()},
+        {name: link.span for name, link in robot.links.items()},
+        robot.root,
+    )

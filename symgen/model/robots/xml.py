@@ -13,6 +13,8 @@ from xml.parsers import expat
 from symgen.diagnostics import Mistake, Span
 from symgen.model.file.source import MAXIMUM_CHARACTERS, MAXIMUM_DEPTH
 
+# Levels of elements in elements where bodies stand inside of bodies.
+MAXIMUM_BODIES = 100
 # Elements of a file that are read.
 MAXIMUM_ELEMENTS = 20_000
 
@@ -36,14 +38,19 @@ class XmlDocument:
 
 @dataclass(slots=True)
 class Element:
-    """An element with its attributes and children in the order of the file; `text` is what stands between them."""
+    """An element with its attributes and children in the order of the file, and what stands between them."""
 
     tag: str
     attributes: dict[str, str]
     document: XmlDocument = field(repr=False)
     offset: int
     children: list[Element] = field(default_factory=list)
-    text: str = ""
+    parts: list[str] = field(default_factory=list, repr=False)
+
+    @property
+    def text(self) -> str:
+        """What stands between its children, without white space around."""
+        return "".join(self.parts).strip()
 
     @property
     def span(self) -> Span:
@@ -66,19 +73,32 @@ class Element:
             start, length = 0, len(match.group(1)) - 2
         return self.document.span(match.start(1) + 1 + start, len(value) if length is None else length)
 
+    def place_inside(self, start: int, length: int) -> Span:
+        """The place of some characters of the text, or of the element where something else stands between them."""
+        head = re.compile(r"<(?:[^\"'>]|\"[^\"]*\"|'[^']*')*>\s*").match(self.document.text, self.offset)
+        if head is None or not self.document.text.startswith(self.text, head.end()):
+            return self.span
+        return self.document.span(head.end() + start, length)
+
+
+def a_file(form: str) -> str:
+    """`a URDF file`, `an MJCF file`."""
+    return f"{'an' if form in ('MJCF', 'SDF') else 'a'} {form} file"
+
 
 class _RefusedXmlError(Exception):
     pass
 
 
-def parse_xml(text: str, file: str) -> Element | Mistake:
-    """The root element, or the one mistake that keeps the file from being read."""
+def parse_xml(text: str, file: str, form: str) -> Element | Mistake:
+    """The root element, or the one mistake that keeps the file from being read; `form` is what it should be."""
     if len(text) > MAXIMUM_CHARACTERS:
         message = f"the file has {len(text)} characters or more, at most {MAXIMUM_CHARACTERS} are read"
         return Mistake(message, "remove what does not belong to the mechanism", Span(1, 1, 2, file))
     lines = text.replace("\r\n", "\n").replace("\r", "\n")
     starts = (0, *(match.end() for match in re.finditer("\n", lines)))
-    reading = _XmlReader(XmlDocument(lines, file, starts))
+    levels = MAXIMUM_BODIES if form == "MJCF" else MAXIMUM_DEPTH
+    reading = _XmlReader(XmlDocument(lines, file, starts), levels)
     try:
         return reading.root()
     except _RefusedXmlError:
@@ -87,7 +107,7 @@ def parse_xml(text: str, file: str) -> Element | Mistake:
     except expat.ExpatError as error:
         line, column = max(1, error.lineno), error.offset + 1
         if not text.strip():
-            return Mistake("the file is empty", "give a URDF file", Span(1, 1, 2, file))
+            return Mistake("the file is empty", f"give {a_file(form)}", Span(1, 1, 2, file))
         if error.code == expat.errors.codes[expat.errors.XML_ERROR_NO_ELEMENTS] and reading.unclosed:
             tag, span = reading.unclosed.tag, reading.unclosed.span
             ends = f"the file ends inside of `{tag}`, which begins here"
@@ -99,8 +119,9 @@ def parse_xml(text: str, file: str) -> Element | Mistake:
 class _XmlReader:
     """One pass of expat over a document."""
 
-    def __init__(self, document: XmlDocument) -> None:
+    def __init__(self, document: XmlDocument, levels: int) -> None:
         self.document = document
+        self._levels = levels
         self.mistake: Mistake | None = None
         self._open: list[Element] = []
         self._root: Element | None = None
@@ -126,8 +147,8 @@ class _XmlReader:
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
         element = Element(tag, attributes, self.document, self._offset())
         self._elements += 1
-        if len(self._open) >= MAXIMUM_DEPTH:
-            self._refuse(f"nested deeper than {MAXIMUM_DEPTH} levels", "flatten the file", element.span)
+        if len(self._open) >= self._levels:
+            self._refuse(f"nested deeper than {self._levels} levels", "flatten the file", element.span)
         if self._elements > MAXIMUM_ELEMENTS:
             remedy = "remove what does not belong to the mechanism"
             self._refuse(f"more than {MAXIMUM_ELEMENTS} elements", remedy, element.span)
@@ -142,7 +163,7 @@ class _XmlReader:
 
     def _characters(self, text: str) -> None:
         if self._open:
-            self._open[-1].text += text.strip()
+            self._open[-1].parts.append(text)
 
     def _document_type(self, *_declaration: object) -> None:
         remedy = "remove the line <!DOCTYPE ...> and write what its entities stand for"

@@ -13,12 +13,14 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from symgen.diagnostics import Span
-from symgen.model.expressions.parser import MAXIMUM_DECIMAL_EXPONENT, MAXIMUM_DIGITS
+from symgen.model.expressions.parser import MAXIMUM_DIGITS
 from symgen.model.file.source import ScalarNode
 from symgen.model.kinematics import triples
 from symgen.model.kinematics.fixed_angles import QUARTER_TOLERANCE
 from symgen.model.kinematics.triples import transposed
 
+# Of 10, between 1/10 to which and which numbers are read: a density times five lengths is one of double precision.
+LARGEST_POWER = 50
 # Binary places to which entries of turns are rounded, where denominators have grown through many of them.
 FINEST = 400
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(?:[eE]([+-]?\d{1,4}))?", re.ASCII)
@@ -47,13 +49,16 @@ class WrittenNumber:
 
 
 def read_number(text: str, span: Span) -> WrittenNumber | None:
-    """The number; None for what is none, or is beyond what expressions of the model language may hold."""
+    """The number; None for what is none, or has more digits or another size than is read."""
     match = _NUMBER.fullmatch(text)
     if match is None or len(match.group(1)) > MAXIMUM_DIGITS:
         return None
-    if abs(int(match.group(2) or 0)) > MAXIMUM_DECIMAL_EXPONENT:
+    if abs(int(match.group(2) or 0)) > 2 * LARGEST_POWER:
         return None
-    return WrittenNumber(Fraction(text), text.removeprefix("+"), span)
+    value = Fraction(text)
+    if value and not Fraction(1, 10**LARGEST_POWER) <= abs(value) <= 10**LARGEST_POWER:
+        return None
+    return WrittenNumber(value, text.removeprefix("+"), span)
 
 
 def written(value: Fraction) -> str:
@@ -64,7 +69,11 @@ def written(value: Fraction) -> str:
 
 def quarters(angle: WrittenNumber) -> int | None:
     """The number of quarter turns that an angle stands for; None for any other angle."""
-    turns = float(angle.value) / (math.pi / 2)
+    return _quarters(float(angle.value))
+
+
+def _quarters(angle: float) -> int | None:
+    turns = angle / (math.pi / 2)
     near = round(turns)
     return near if abs(turns - near) * (math.pi / 2) < QUARTER_TOLERANCE else None
 
@@ -75,13 +84,17 @@ def angle_text(angle: WrittenNumber) -> str:
     return angle.text if turns is None else {0: "0", 1: "pi/2", -1: "-pi/2"}.get(turns, f"{turns}*pi/2")
 
 
+def sine_and_cosine(angle: Fraction) -> tuple[Fraction, Fraction]:
+    """Both, exact where the angle stands for quarter turns."""
+    turns = _quarters(float(angle))
+    if turns is None:
+        return Fraction(math.sin(float(angle))), Fraction(math.cos(float(angle)))
+    return Fraction((0, 1, 0, -1)[turns % 4]), Fraction((1, 0, -1, 0)[turns % 4])
+
+
 def turn(axis: int, angle: WrittenNumber) -> Matrix:
     """The matrix of a turn about x, y or z (0, 1, 2); exact for quarter turns."""
-    turns = quarters(angle)
-    if turns is None:
-        sine, cosine = Fraction(math.sin(float(angle.value))), Fraction(math.cos(float(angle.value)))
-    else:
-        sine, cosine = Fraction((0, 1, 0, -1)[turns % 4]), Fraction((1, 0, -1, 0)[turns % 4])
+    sine, cosine = sine_and_cosine(angle.value)
     first, second = (axis + 1) % 3, (axis + 2) % 3
     rows = [list(row) for row in IDENTITY]
     rows[first][first], rows[second][second] = cosine, cosine

@@ -1,0 +1,1 @@
+"""MJCF files as blocks of the model language."""

@@ -1,0 +1,1 @@
+"""SDF files as blocks of the model language."""
