@@ -9,7 +9,8 @@ from typing import Literal, TypeAlias
 
 from symgen.backends.render import render
 from symgen.cli.arguments import USUAL
-from symgen.generation.results import ALL_PARTS, AUTO, BASE_PARAMETERS, LINEARIZATION, NAMED_METHODS
+from symgen.generation.requested import BASE_PARAMETERS
+from symgen.generation.results import ALL_PARTS, AUTO, LINEARIZATION, NAMED_METHODS
 from symgen.model.quantities import ROWS
 
 # What stands in the place of a word: nothing that is known, a model file, a folder, one of several words, or several of

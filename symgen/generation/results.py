@@ -29,9 +29,8 @@ AUTO = "auto"
 NAMED_METHODS: Mapping[str, tuple[str, ...]] = {
     quantity: tuple(row.name for row in methods(quantity)) for quantity in NAMED
 }
-# What stands in the place of a quantity for `explain`: the machine at rest as a linear system, and which combinations
-# of inertial parameters count.
-LINEARIZATION, BASE_PARAMETERS = "linearization", "base_parameters"
+# What stands in the place of a quantity for `explain`: the machine at rest as a linear system.
+LINEARIZATION = "linearization"
 Trig: TypeAlias = Literal["portable", "libm"]
 TRIG: tuple[Trig, ...] = ("portable", "libm")
 
