@@ -9,9 +9,8 @@ from typing import Literal, TypeAlias
 
 from symgen.backends.render import render
 from symgen.cli.arguments import USUAL
-from symgen.generation.requested import BASE_PARAMETERS
 from symgen.generation.results import ALL_PARTS, AUTO, LINEARIZATION, NAMED_METHODS
-from symgen.model.quantities import ROWS
+from symgen.model.quantities import BASE_PARAMETERS, ROWS
 
 # What stands in the place of a word: nothing that is known, a model file, a folder, one of several words, or several of
 # them with commas between.

@@ -30,10 +30,10 @@ from symgen.cli.linearizing import add_linearization, explain_linear_system
 from symgen.cli.measuring import BENCH, SIMULATE, STRESS, TARGET
 from symgen.cli.outcome import DONE, MODEL_WRONG, WRONG_USE, check_present, check_writable, guarded
 from symgen.cli.signals import EndedError, signals_end_the_run
-from symgen.generation.requested import BASE_PARAMETERS
 from symgen.generation.results import ALL_PARTS, LINEARIZATION, PARTS, Options, Result, WrongUseError
 from symgen.ir.kernel import Scalar
 from symgen.model.expressions.names import did_you_mean
+from symgen.model.quantities import BASE_PARAMETERS
 from symgen.output.write import begin_writing, changed_folders, compare, recover_folders, write_files
 from symgen.registered import USUAL
 from symgen.runtime.processes import ToolError

@@ -12,10 +12,11 @@ from symgen.generation.draft import Draft
 from symgen.generation.explain_text import methods_text, overview, quantity_text
 from symgen.generation.facts import facts
 from symgen.generation.notices import replaced
-from symgen.generation.requested import BASE_PARAMETERS, unknown_quantity
+from symgen.generation.requested import unknown_quantity
 from symgen.generation.results import LINEARIZATION, NAMED_METHODS, Options
 from symgen.methods.selection import MethodChoice
 from symgen.model.load import load_model
+from symgen.model.quantities import BASE_PARAMETERS
 from symgen.quantities.catalogue import BY_NAME
 from symgen.report.gather import gather
 

@@ -9,9 +9,6 @@ from symgen.model.expressions.names import did_you_mean
 from symgen.model.model import Model
 from symgen.quantities.catalogue import BY_NAME
 
-# What stands in the place of a quantity for `explain`, too: which combinations of inertial parameters count.
-BASE_PARAMETERS = "base_parameters"
-
 
 def requested_outputs(model: Model, options: Options) -> tuple[str, ...]:
     """What a run is to generate; raises WrongUseError for a quantity or method that does not exist."""

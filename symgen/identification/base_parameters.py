@@ -33,8 +33,8 @@ from symgen.identification.taylor_balls import (
     ball_precision,
     may_vanish,
 )
+from symgen.model.configurations.gradient import Gradients
 from symgen.model.configurations.mechanics import default_values
-from symgen.model.expressions.walk import evaluate
 from symgen.model.model import Model
 from symgen.runtime.activity import working
 
@@ -111,8 +111,9 @@ class _CombinationSearch:
             forms = dict(self._forms(here, combined, others)) if others is not None else {}
             elsewhere = self._elsewhere(here)
         model = self._model
-        defaults = default_values(model.parameters)
-        numbers = values(model.mechanism, lambda expression: evaluate(expression, defaults))
+        definitions = {one.name: one.value for one in model.definitions}
+        evaluated = Gradients(default_values(model.parameters), {}, definitions)
+        numbers = values(model.mechanism, lambda expression: evaluated.of(expression)[0])
         by_pivot: dict[int, list[tuple[int, CoefficientForm]]] = {pivot: [] for pivot in here.pivots}
         for (row, column), value in combined:
             form = forms.get((row, column), CoefficientForm(float(value.mid()), ()))

@@ -15,6 +15,7 @@ from symgen.identification.ball_matrices import Matrix
 from symgen.identification.motion_states import BallSystem, MotionState
 from symgen.identification.taylor_balls import Ball, TimeSeries, constant
 from symgen.model.configurations.gradient import Gradients
+from symgen.model.expressions.expression import Expression
 from symgen.model.kinematics.float_kinematics import FloatArithmetic
 from symgen.model.kinematics.walk import Kinematics
 
@@ -49,13 +50,16 @@ class ConstrainedRegressor:
     def _kinematics(self, q: Sequence[TimeSeries], index: dict[str, int]) -> Kinematics[float, _Form]:
         numeric = self._system.numeric
         named = {c.name: cast(float, x) for c, x in zip(self._system.model.coordinates, q, strict=True)}
-        definitions = {one.name: one.value for one in self._system.model.definitions}
-        gradients = Gradients({**numeric.defaults, **named}, index, definitions, numbers=numeric.numbers)
+        gradients = Gradients({**numeric.defaults, **named}, index, self._definitions(), numbers=numeric.numbers)
         return Kinematics(self._mechanism, FloatArithmetic(gradients), False)
 
     def _gravity(self) -> list[Ball]:
-        numeric = self._system.numeric
-        return [cast(TimeSeries, numeric.numbers.evaluate(x, numeric.defaults)).c[0] for x in self._mechanism.gravity]
+        numeric, definitions = self._system.numeric, self._definitions()
+        evaluated = Gradients(numeric.defaults, {}, definitions, numbers=numeric.numbers)
+        return [_of(evaluated.of(entry)[0]).c[0] for entry in self._mechanism.gravity]
+
+    def _definitions(self) -> dict[str, Expression]:
+        return {one.name: one.value for one in self._system.model.definitions}
 
 
 def _at_once(q: Sequence[TimeSeries]) -> list[TimeSeries]:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
 
-from symgen.model.configurations.mechanics import default_values
-from symgen.model.expressions.expression import Expression, Number
-from symgen.model.expressions.walk import names_in
+from symgen.model.expressions.expression import Expression
+from symgen.model.expressions.walk import exact_value, names_in
 from symgen.model.mechanism import Quaternion
 from symgen.model.model import Model
 
@@ -15,7 +14,7 @@ from symgen.model.model import Model
 def geometry_values(model: Model) -> dict[str, Fraction]:
     """Parameters of the geometry that are numbers of the file, with these numbers; those that are 0 are left out.
 
-    Of parameters that follow from others those others count.
+    Of parameters that follow from others those others count; what is made of pi or roots stays as it is.
     """
     read = {p.name: p.value for p in model.parameters} | {d.name: d.value for d in model.definitions}
     reached: dict[str, None] = {}
@@ -25,12 +24,8 @@ def geometry_values(model: Model) -> dict[str, Fraction]:
         if name in read and name not in reached:
             reached[name] = None
             pending += _names(read[name])
-    defaults = default_values(model.parameters)
-    return {
-        p.name: p.value.value if isinstance(p.value, Number) else Fraction(defaults[p.name])
-        for p in model.parameters
-        if p.name in reached and not [*_names(p.value)] and defaults[p.name]
-    }
+    given = {p.name: exact_value(p.value) for p in model.parameters if p.name in reached}
+    return {name: value for name, value in given.items() if value}
 
 
 def _geometric(model: Model) -> Iterator[Expression]:

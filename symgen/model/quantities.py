@@ -195,3 +195,5 @@ MAIN = tuple(quantity.name for quantity in QUANTITIES if quantity.main)
 """u, q̈ and λ, which take methods of their own and have kernels for many states."""
 MOTIONS = MAIN[1:]
 """q̈ and λ, which follow from inputs: methods make them together."""
+# No quantity: what `explain` tells of a model in the place of one, which combinations of inertial parameters count.
+BASE_PARAMETERS = "base_parameters"

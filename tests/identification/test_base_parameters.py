@@ -16,6 +16,7 @@ from symgen.cli.main import main
 from symgen.identification.base_parameters import BaseParameters, NoBodiesError, base_parameters
 from symgen.identification.coefficient_forms import recognized
 from symgen.identification.constrained_regressor import ConstrainedRegressor
+from symgen.identification.geometry import geometry_values
 from symgen.identification.inertial_parameters import inertial_parameters, values
 from symgen.identification.motion_states import BallSystem, motion_states
 from symgen.identification.taylor_balls import WideBallError, ball_precision, may_vanish
@@ -230,6 +231,18 @@ def test_numbers_are_recognized_where_balls_are_narrow() -> None:
         with pytest.raises(WideBallError):
             may_vanish(arb(0, 1e-6))
         assert not may_vanish(arb(1, 0.5))
+
+
+def test_numbers_of_the_geometry_are_those_of_the_file() -> None:
+    """What is made of pi stays exact: a machine whose arms stand at 120 degrees would not be special beside them."""
+    text = planar_four_bar("[0, -9.81, 0]", GENERIC)
+    text = text.replace("  l_0: {value: 1}", "  l_0: {value: third*3}\n  turned: {value: 2*pi/3}\n  idle: {value: 5}")
+    text = text.replace("parameters:", "parameters:\n  third: {value: 1/3}")
+    text = text.replace("rocker: {type: revolute,", "rocker: {type: revolute, rotation: [[z, turned]],", 1)
+    text = text.replace("c: 1.3", "c: -0.8")
+    values_of_geometry = geometry_values(load_text(text, "four_bar.yaml"))
+    assert values_of_geometry["third"] == Fraction(1, 3)
+    assert set(values_of_geometry) == {"third", "l_1", "l_2", "l_3"}
 
 
 def test_a_model_of_energies_is_told_what_is_missing(capsys: pytest.CaptureFixture[str]) -> None:

@@ -38,7 +38,7 @@ _REMEDIES: dict[Kind, str] = {
     "time": "time-dependent energies, forces and constraints are out of scope; make it a coordinate or a parameter",
     "coordinate": "use numbers and parameters only",
     "parameter": "use numbers only",
-    "definition": "use numbers, parameters and earlier definitions",
+    "definition": "make it a parameter, which may follow from earlier ones, or write what it stands for",
     "setting": "weights, preload and limits act through `allocation` only; name the number under `parameters`",
     "symbol": "symbols of `where` belong to their formula only",
     "place": "frames and points are placed by coordinates and parameters; points are for what comes after them",
