@@ -37,7 +37,7 @@ FEWEST_STARTS, ENOUGH = 8, 4
 # Further starts, for loops that stay open where others close.
 RETRIES = 3
 # Rows evaluated on the way, and how many times as many as long as nothing regular is found.
-EFFORT, LONGEST = 30_000, 5
+EFFORT, LONGEST = 30_000, 3
 # Configurations where entries are told from rounding.
 SHAKEN_POINTS = 2
 # In coordinate widths, along a branch; where motion is confined to less, a smaller one is told from none.

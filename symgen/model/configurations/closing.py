@@ -161,8 +161,8 @@ class Closer:
             if weights is not None:
                 for j, share in transposed_product(rows, weights).items():
                     trial[j] -= share * self._widths[j]
-                # a longer step after one that had to be shortened is most often refused: values tell, without gradients
-                if refused or not shortened or self._is_nearer(trial, loop.rows, size):
+                # where steps have to be shortened every other one is refused: values tell, without gradients
+                if not (refused or shortened) or self._is_nearer(trial, loop.rows, size):
                     fresh = self._scaled(trial, loop.rows, held)
                 else:
                     self.effort += len(loop.rows)

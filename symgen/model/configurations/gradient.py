@@ -62,14 +62,14 @@ class Gradients:
     def negation(self, negation: Negation) -> Dual:
         """What has the other sign."""
         value, gradient = self.of(negation.operand)
-        return -value, _scaled(gradient, -1.0)
+        return -value, scaled(gradient, -1.0)
 
     def binary(self, binary: Binary) -> Dual:
         """Sums, products and quotients."""
         left, right = binary.left, binary.right
         # most operands are operations: what their kind is evaluated by is called without a step between
         value, gradient = _BY_KIND[left.__class__](self, left)
-        return _BINARY[binary.operator](value, gradient, *_BY_KIND[right.__class__](self, right))
+        return BINARY[binary.operator](value, gradient, *_BY_KIND[right.__class__](self, right))
 
     def power(self, power: Power) -> Dual:
         """A power with a number."""
@@ -78,7 +78,7 @@ class Gradients:
         if not gradient:
             return raised(value, exponent), {}
         slope = self.numbers.rational(exponent) * raised(value, exponent - 1)
-        return raised(value, exponent), _scaled(gradient, slope)
+        return raised(value, exponent), scaled(gradient, slope)
 
     def call(self, call: Call) -> Dual:
         """A function."""
@@ -87,10 +87,7 @@ class Gradients:
             (y, dy), (x, dx) = map(self.of, call.arguments)
             square = x * x + y * y
             return known["atan2"](y, x), _combined(dy, x / square, dx, -y / square)
-        value, gradient = self.of(call.arguments[0])
-        if not gradient:
-            return known[call.function](value), {}
-        return known[call.function](value), _scaled(gradient, _DERIVATIVES[call.function](known, value))
+        return call_of(known, call.function, *self.of(call.arguments[0]))
 
     def name(self, given: Name) -> Dual:
         """A coordinate, a parameter, a component or a definition."""
@@ -138,7 +135,7 @@ def _difference(a: float, da: _Gradient, b: float, db: _Gradient) -> Dual:
 
 
 def _product(a: float, da: _Gradient, b: float, db: _Gradient) -> Dual:
-    return a * b, _combined(da, b, db, a) if db else _scaled(da, b) if da else da
+    return a * b, _combined(da, b, db, a) if db else scaled(da, b) if da else da
 
 
 def _quotient(a: float, da: _Gradient, b: float, db: _Gradient) -> Dual:
@@ -147,7 +144,7 @@ def _quotient(a: float, da: _Gradient, b: float, db: _Gradient) -> Dual:
     return a / b, da
 
 
-_BINARY: Mapping[str, Callable[[float, _Gradient, float, _Gradient], Dual]] = {
+BINARY: Mapping[str, Callable[[float, _Gradient, float, _Gradient], Dual]] = {
     "+": _sum,
     "-": _difference,
     "*": _product,
@@ -155,16 +152,24 @@ _BINARY: Mapping[str, Callable[[float, _Gradient, float, _Gradient], Dual]] = {
 }
 
 
-def _scaled(gradient: _Gradient, factor: float) -> _Gradient:
+def call_of(known: _Functions, function: str, value: float, gradient: _Gradient) -> Dual:
+    """A function of one argument, which has this value and gradient."""
+    if not gradient:
+        return known[function](value), {}
+    return known[function](value), scaled(gradient, _DERIVATIVES[function](known, value))
+
+
+def scaled(gradient: _Gradient, factor: float) -> _Gradient:
+    """Times a factor."""
     return {index: factor * value for index, value in gradient.items()} if gradient else gradient
 
 
 def _combined(a: _Gradient, alpha: float, b: _Gradient, beta: float) -> _Gradient:
     if not a:
-        return _scaled(b, beta)
+        return scaled(b, beta)
     if not b:
-        return a if alpha == 1.0 else _scaled(a, alpha)
-    result = dict(a) if alpha == 1.0 else _scaled(a, alpha)
+        return a if alpha == 1.0 else scaled(a, alpha)
+    result = dict(a) if alpha == 1.0 else scaled(a, alpha)
     for index, value in b.items():
         result[index] = result.get(index, 0.0) + beta * value
     return result

@@ -13,7 +13,7 @@ from symgen.model.configurations.dense import Rows
 from symgen.model.configurations.gradient import Gradients
 from symgen.model.configurations.numbers import FLOATS, Numbers
 from symgen.model.configurations.sparse import Row
-from symgen.model.configurations.valued import BoundExpression, bound
+from symgen.model.configurations.valued import BoundDual, BoundExpression, bound, bound_dual
 from symgen.model.expressions.expression import Expression
 from symgen.model.expressions.walk import evaluate, exact_value
 from symgen.model.kinematics.float_kinematics import FloatKinematics
@@ -163,14 +163,23 @@ class NumericSystem:
         return [rows[i](at) for i in numbers]
 
     @cached_property
+    def _given(self) -> frozenset[str]:
+        """The names that have values: coordinates and parameters."""
+        return frozenset((*self._index, *(parameter.name for parameter in self.parameters)))
+
+    @cached_property
     def _bound_rows(self) -> list[BoundExpression]:
-        given = {*self._index, *(parameter.name for parameter in self.parameters)}
-        return [bound(row.expression, given) for row in self.geometric]
+        return [bound(row.expression, self._given) for row in self.geometric]
+
+    @cached_property
+    def _bound_gradients(self) -> list[BoundDual]:
+        return [bound_dual(row.expression, self._index, self._given) for row in self.geometric]
 
     def residuals(self, q: Sequence[float], numbers: Sequence[int]) -> tuple[list[float], list[Row]]:
         """Values and gradients of the geometric rows with these numbers."""
-        gradients = self._gradients(q, self._index)
-        pairs = [gradients.of(self.geometric[i].expression) for i in numbers]
+        at = self._gradients(q, self._index)
+        rows = self._bound_gradients
+        pairs = [rows[i](at) for i in numbers]
         return [value for value, _ in pairs], [gradient for _, gradient in pairs]
 
     def gradients(self, q: Sequence[float], expressions: Iterable[Expression]) -> list[Row]:
