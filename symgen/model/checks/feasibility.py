@@ -9,9 +9,9 @@ from contextlib import suppress
 from symgen.diagnostics import Mistake, Notice, Span
 from symgen.model.checks.masses import check_masses
 from symgen.model.configurations.assembly import Assembly, RankedConfiguration
-from symgen.model.configurations.branches import OpenLoop
 from symgen.model.configurations.dense import Rows, rank
 from symgen.model.configurations.mechanics import NumericSystem
+from symgen.model.configurations.open_loops import OpenLoop
 from symgen.model.expressions.expression import Binary, Expression, Name, Power
 from symgen.model.expressions.names import counted, shown_names
 from symgen.model.expressions.walk import evaluate

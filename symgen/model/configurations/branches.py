@@ -16,17 +16,16 @@ import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import islice
 
 from symgen.model.checks.shaken import Shaken
 from symgen.model.configurations.assembly import Assembly, ConfigurationRanks, RankedConfiguration
-from symgen.model.configurations.closing import CLOSED, Closer, KinematicLoop, row_unit
+from symgen.model.configurations.closing import CLOSED, Closer, row_unit
 from symgen.model.configurations.dense import null_space
 from symgen.model.configurations.mechanics import NumericSystem
+from symgen.model.configurations.open_loops import OpenLoop, OpenLoops
 from symgen.model.configurations.sparse import NEGLIGIBLE, PLAIN, Row, Scales, clear_rank, pivots, typical
 from symgen.model.configurations.starts import Starts
 from symgen.model.model import Input
-from symgen.records import dataclass
 
 # Configurations where no constraint holds any.
 FREE_POINTS = 6
@@ -37,7 +36,7 @@ FEWEST_STARTS, ENOUGH = 8, 4
 # Further starts, for loops that stay open where others close.
 RETRIES = 3
 # Rows evaluated on the way, and how many times as many as long as nothing regular is found.
-EFFORT, LONGEST = 30_000, 3
+EFFORT, LONGEST = 30_000, 5
 # Configurations where entries are told from rounding.
 SHAKEN_POINTS = 2
 # In coordinate widths, along a branch; where motion is confined to less, a smaller one is told from none.
@@ -52,14 +51,6 @@ STRAIGHT = 0.1
 SINGULAR, SHARE = 1e-3, 0.05
 # Configurations of the same ranks that are looked at for a regular one.
 TRIED = 3
-
-
-@dataclass(frozen=True, slots=True)
-class OpenLoop:
-    """A mechanism that does not close: the geometric row that stays open widest, by number, and its value."""
-
-    row: int
-    value: float
 
 
 def branches(mechanics: NumericSystem, inputs: Sequence[Input], start: dict[str, float]) -> Assembly | OpenLoop | None:
@@ -79,7 +70,12 @@ class _Search:
         self._scales = Scales(sizes)
         rows = sizes[: len(mechanics.constraints)]
         self._units = tuple(round(math.log2(row_unit(row.values()))) for row in rows)
-        self._closer = Closer(mechanics, sizes[: self._r_geometric], self._widths)
+        geometric = sizes[: self._r_geometric]
+        self._closer = Closer(mechanics.residuals, geometric, self._widths)
+        # what is looked for there takes nothing off the effort of the search
+        self._open_loops = OpenLoops(
+            Closer(mechanics.residuals, geometric, self._widths), lambda: Starts(mechanics, inputs, start)
+        )
         self._bound = self._bounds([*(rows for _, rows in samples), *self._with_other_parameters()])
 
     def result(self) -> Assembly | OpenLoop | None:
@@ -87,7 +83,7 @@ class _Search:
             return None
         configurations = list(self._free() if not self._r_geometric else self._closed())
         if not configurations:
-            return self._open()
+            return self._open_loops.widest()
         # where sizes differ too much no rank is clear-cut: then what is not negligible counts
         for plain in (PLAIN, NEGLIGIBLE):
             places = [
@@ -207,6 +203,8 @@ class _Search:
                     reached.append(ranks)
                     regular = regular or self._is_regular(RankedConfiguration(q, ranks))
             enough = number + 1 >= FEWEST_STARTS
+            if number + 1 == FEWEST_STARTS and not configurations and self._open_loops.a_part_stays_open():
+                return
             if enough and len(configurations) >= ENOUGH and self._at_bound(reached):
                 return
             if self._closer.effort > EFFORT and (regular or self._closer.effort > LONGEST * EFFORT):
@@ -348,22 +346,6 @@ class _Search:
             if not low - slack <= x <= high + slack:
                 return False
         return True
-
-    def _open(self) -> OpenLoop | None:
-        """The widest gap at the nearest configuration, of a loop that never closes."""
-        nearest: dict[KinematicLoop, tuple[float, list[float]]] = {}
-        for guess, _ in islice(Starts(self._mechanics, self._inputs, self._start).guesses(()), FEWEST_STARTS):
-            closed = self._closer.close(guess)
-            for loop in self._closer.loops:
-                gaps = self._closer.gaps(closed.q, loop) if loop in closed.open else [0.0]
-                size = math.hypot(*gaps)
-                if not math.isnan(size) and (loop not in nearest or size < nearest[loop][0]):
-                    nearest[loop] = size, gaps
-        for loop, (size, gaps) in nearest.items():
-            if size > 0:
-                widest = max(range(len(gaps)), key=lambda i: abs(gaps[i]))
-                return OpenLoop(loop.rows[widest], gaps[widest])
-        return None
 
 
 def _evaluated(mechanics: NumericSystem, inputs: Sequence[Input], q: Sequence[float]) -> list[Row]:

@@ -9,8 +9,8 @@ to a configuration where a gradient vanishes a residual of 1e-12 is still a dist
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Sequence
-from typing import Protocol
+from collections.abc import Callable, Collection, Iterable, Sequence
+from typing import TypeAlias
 
 from symgen.model.configurations.sparse import Row, groups, solve_gram, transposed_product
 from symgen.records import dataclass
@@ -26,6 +26,10 @@ SLOW_STEPS, SLOW = 6, 1e-3
 # Steps in a row that come no closer, once a loop is closed.
 MOST_REFUSED = 2
 
+Residuals: TypeAlias = Callable[[Sequence[float], Sequence[int]], tuple[list[float], list[Row]]]
+"""Values and gradients of the rows with the given numbers at q; ArithmeticError or ValueError outside a domain."""
+
+
 # A row whose gradient has entries this far from 1 is in units of its own.
 ORDINARY = 2.0**10
 
@@ -34,16 +38,6 @@ def row_unit(entries: Iterable[float]) -> float:
     """The factor that brings a row back to ordinary size, by its gradient; a power of 2, and 1 where none is needed."""
     size = max(map(abs, entries), default=0.0)
     return 1.0 if not 0 < size < math.inf or 1 / ORDINARY <= size <= ORDINARY else 2.0 ** -math.frexp(size)[1]
-
-
-class GeometricRows(Protocol):
-    """The geometric rows of a mechanism at a configuration; ArithmeticError or ValueError outside a domain."""
-
-    def values(self, q: Sequence[float], numbers: Sequence[int]) -> list[float]:
-        """Those of the rows with the given numbers."""
-
-    def residuals(self, q: Sequence[float], numbers: Sequence[int]) -> tuple[list[float], list[Row]]:
-        """The same values, and gradients."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,8 +59,8 @@ class ClosureResult:
 class Closer:
     """Closes the loops of one mechanism; `effort` counts the rows that were evaluated."""
 
-    def __init__(self, geometric: GeometricRows, lengths: Sequence[Row], widths: Sequence[float]) -> None:
-        self._geometric, self._widths = geometric, widths
+    def __init__(self, residuals: Residuals, lengths: Sequence[Row], widths: Sequence[float]) -> None:
+        self._residuals, self._lengths, self._widths = residuals, lengths, widths
         self._units = [
             1 / max((value * widths[j] for j, value in row.items()), default=0.0) if any(row.values()) else 1.0
             for row in lengths
@@ -85,9 +79,15 @@ class Closer:
     def gaps(self, q: Sequence[float], loop: KinematicLoop) -> list[float]:
         """The values of the rows of a loop, in their own units; NaN outside of a domain."""
         try:
-            return self._geometric.values(q, loop.rows)
+            return self._residuals(q, loop.rows)[0]
         except (ArithmeticError, ValueError):
             return [math.nan] * len(loop.rows)
+
+    def widest(self, q: Sequence[float], loop: KinematicLoop, share: float) -> KinematicLoop:
+        """The rows of a loop that stay open by this share of the widest gap or more, in units of their gradients."""
+        gaps = [abs(self._units[i] * gap) for i, gap in zip(loop.rows, self.gaps(q, loop), strict=True)]
+        rows = tuple(i for i, gap in zip(loop.rows, gaps, strict=True) if gap >= share * max(gaps))
+        return KinematicLoop(rows, tuple(sorted({j for i in rows for j in self._lengths[i]})))
 
     def rest(self, q: Sequence[float]) -> float:
         """What is left of the rows of the widest open loop, in units of their gradients; NaN outside a domain."""
@@ -118,38 +118,26 @@ class Closer:
         """Residuals and gradients in units of rows and widths; none along held coordinates."""
         self.effort += len(numbers)
         try:
-            values, rows = self._geometric.residuals(q, numbers)
+            values, rows = self._residuals(q, numbers)
         except (ArithmeticError, ValueError):
             return None
-        gaps = self._in_units(values, numbers)
-        return None if gaps is None else (gaps, self._slopes(rows, numbers, held))
-
-    def _slopes(self, rows: Sequence[Row], numbers: Sequence[int], held: Collection[int]) -> list[Row]:
         units, widths = self._units, self._widths
-        return [
-            {j: units[i] * value * widths[j] for j, value in row.items() if j not in held}
-            for i, row in zip(numbers, rows, strict=True)
-        ]
-
-    def _in_units(self, values: Sequence[float], numbers: Sequence[int]) -> list[float] | None:
         if not all(map(math.isfinite, values)):
             return None
-        return [self._units[i] * value for i, value in zip(numbers, values, strict=True)]
-
-    def _is_nearer(self, q: Sequence[float], numbers: Sequence[int], size: float) -> bool:
-        """Whether the rows come closer than `size`, by their values alone."""
-        try:
-            gaps = self._in_units(self._geometric.values(q, numbers), numbers)
-        except (ArithmeticError, ValueError):
-            return False
-        return gaps is not None and _length(gaps) < size
+        return (
+            [units[i] * value for i, value in zip(numbers, values, strict=True)],
+            [
+                {j: units[i] * value * widths[j] for j, value in row.items() if j not in held}
+                for i, row in zip(numbers, rows, strict=True)
+            ],
+        )
 
     def _close(self, q: list[float], loop: KinematicLoop, held: Collection[int]) -> bool:
         """Whether the loop closes; q ends where the iteration does."""
         state = self._scaled(q, loop.rows, held)
         if state is None:
             return False
-        damping, slow, refused, shortened = 1e-3, 0, 0, False
+        damping, slow, refused = 1e-3, 0, 0
         values, rows = state
         size = _length(values)
         for _ in range(CLOSING_STEPS):
@@ -161,17 +149,13 @@ class Closer:
             if weights is not None:
                 for j, share in transposed_product(rows, weights).items():
                     trial[j] -= share * self._widths[j]
-                # where steps have to be shortened every other one is refused: values tell, without gradients
-                if not (refused or shortened) or self._is_nearer(trial, loop.rows, size):
-                    fresh = self._scaled(trial, loop.rows, held)
-                else:
-                    self.effort += len(loop.rows)
+                fresh = self._scaled(trial, loop.rows, held)
             fresh_size = math.inf if fresh is None else _length(fresh[0])
             if fresh is not None and fresh_size < size:
                 slow = slow + 1 if fresh_size > (1 - SLOW) * size else 0
                 q[:], (values, rows) = trial, fresh
                 damping = max(damping * min(0.1, fresh_size / size), 1e-14)
-                size, refused, shortened = fresh_size, 0, refused > 0
+                size, refused = fresh_size, 0
             else:
                 refused += 1
                 damping = max(damping, 1e-12) * 10

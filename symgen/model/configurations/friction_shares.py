@@ -135,7 +135,7 @@ def _closed(mechanics: NumericSystem, model: Model, start: Sequence[float]) -> t
     except (ArithmeticError, ValueError):
         return None
     lengths: list[Mapping[int, float]] = [{j: abs(x) for j, x in row.items()} for row in slopes]
-    reached = Closer(mechanics, [dict(row) for row in lengths], widths).close(start)
+    reached = Closer(mechanics.residuals, [dict(row) for row in lengths], widths).close(start)
     inside = all(
         (c.is_angle and not c.has_range) or float(c.range[0]) <= x <= float(c.range[1])
         for c, x in zip(model.coordinates, reached.q, strict=True)

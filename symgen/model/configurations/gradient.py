@@ -44,7 +44,7 @@ class Gradients:
         numbers: Numbers = FLOATS,
     ) -> None:
         self.index, self.numbers = index, numbers
-        self.values, self._definitions, self._components = values, definitions, components
+        self._values, self._definitions, self._components = values, definitions, components
         self._known: dict[str, Dual | Exception] = {}
 
     def of(self, expression: Expression) -> Dual:
@@ -62,14 +62,11 @@ class Gradients:
     def negation(self, negation: Negation) -> Dual:
         """What has the other sign."""
         value, gradient = self.of(negation.operand)
-        return -value, scaled(gradient, -1.0)
+        return -value, _scaled(gradient, -1.0)
 
     def binary(self, binary: Binary) -> Dual:
         """Sums, products and quotients."""
-        left, right = binary.left, binary.right
-        # most operands are operations: what their kind is evaluated by is called without a step between
-        value, gradient = _BY_KIND[left.__class__](self, left)
-        return BINARY[binary.operator](value, gradient, *_BY_KIND[right.__class__](self, right))
+        return _BINARY[binary.operator](*self.of(binary.left), *self.of(binary.right))
 
     def power(self, power: Power) -> Dual:
         """A power with a number."""
@@ -78,7 +75,7 @@ class Gradients:
         if not gradient:
             return raised(value, exponent), {}
         slope = self.numbers.rational(exponent) * raised(value, exponent - 1)
-        return raised(value, exponent), scaled(gradient, slope)
+        return raised(value, exponent), _scaled(gradient, slope)
 
     def call(self, call: Call) -> Dual:
         """A function."""
@@ -87,17 +84,20 @@ class Gradients:
             (y, dy), (x, dx) = map(self.of, call.arguments)
             square = x * x + y * y
             return known["atan2"](y, x), _combined(dy, x / square, dx, -y / square)
-        return call_of(known, call.function, *self.of(call.arguments[0]))
+        value, gradient = self.of(call.arguments[0])
+        if not gradient:
+            return known[call.function](value), {}
+        return known[call.function](value), _scaled(gradient, _DERIVATIVES[call.function](known, value))
 
     def name(self, given: Name) -> Dual:
         """A coordinate, a parameter, a component or a definition."""
         name = given.name
         if name in self.index:
-            return self.values[name], {self.index[name]: 1.0}
+            return self._values[name], {self.index[name]: 1.0}
         if self._components is not None and is_component(name):
             return self._components(name)
         if name not in self._definitions:
-            return self.values[name], {}
+            return self._values[name], {}
         if not self._known:
             self._evaluate_definitions()
         known = self._known[name]
@@ -125,51 +125,24 @@ _BY_KIND: Mapping[type, Callable[..., Dual]] = {
     Power: Gradients.power,
     Call: Gradients.call,
 }
-
-def _sum(a: float, da: _Gradient, b: float, db: _Gradient) -> Dual:
-    return a + b, _combined(da, 1.0, db, 1.0) if db else da
-
-
-def _difference(a: float, da: _Gradient, b: float, db: _Gradient) -> Dual:
-    return a - b, _combined(da, 1.0, db, -1.0) if db else da
-
-
-def _product(a: float, da: _Gradient, b: float, db: _Gradient) -> Dual:
-    return a * b, _combined(da, b, db, a) if db else scaled(da, b) if da else da
-
-
-def _quotient(a: float, da: _Gradient, b: float, db: _Gradient) -> Dual:
-    if da or db:
-        return a / b, _combined(da, 1 / b, db, -a / (b * b))
-    return a / b, da
-
-
-BINARY: Mapping[str, Callable[[float, _Gradient, float, _Gradient], Dual]] = {
-    "+": _sum,
-    "-": _difference,
-    "*": _product,
-    "/": _quotient,
+_BINARY: Mapping[str, Callable[[float, _Gradient, float, _Gradient], Dual]] = {
+    "+": lambda a, da, b, db: (a + b, _combined(da, 1.0, db, 1.0)),
+    "-": lambda a, da, b, db: (a - b, _combined(da, 1.0, db, -1.0)),
+    "*": lambda a, da, b, db: (a * b, _combined(da, b, db, a)),
+    "/": lambda a, da, b, db: (a / b, _combined(da, 1 / b, db, -a / (b * b))),
 }
 
 
-def call_of(known: _Functions, function: str, value: float, gradient: _Gradient) -> Dual:
-    """A function of one argument, which has this value and gradient."""
-    if not gradient:
-        return known[function](value), {}
-    return known[function](value), scaled(gradient, _DERIVATIVES[function](known, value))
-
-
-def scaled(gradient: _Gradient, factor: float) -> _Gradient:
-    """Times a factor."""
+def _scaled(gradient: _Gradient, factor: float) -> _Gradient:
     return {index: factor * value for index, value in gradient.items()} if gradient else gradient
 
 
 def _combined(a: _Gradient, alpha: float, b: _Gradient, beta: float) -> _Gradient:
     if not a:
-        return scaled(b, beta)
+        return _scaled(b, beta)
     if not b:
-        return a if alpha == 1.0 else scaled(a, alpha)
-    result = dict(a) if alpha == 1.0 else scaled(a, alpha)
+        return a if alpha == 1.0 else _scaled(a, alpha)
+    result = dict(a) if alpha == 1.0 else _scaled(a, alpha)
     for index, value in b.items():
         result[index] = result.get(index, 0.0) + beta * value
     return result

@@ -13,7 +13,6 @@ from symgen.model.configurations.dense import Rows
 from symgen.model.configurations.gradient import Gradients
 from symgen.model.configurations.numbers import FLOATS, Numbers
 from symgen.model.configurations.sparse import Row
-from symgen.model.configurations.valued import BoundDual, BoundExpression, bound, bound_dual
 from symgen.model.expressions.expression import Expression
 from symgen.model.expressions.walk import evaluate, exact_value
 from symgen.model.kinematics.float_kinematics import FloatKinematics
@@ -89,7 +88,7 @@ class NumericSystem:
     def expansion(self, q: Sequence[float], parameters: dict[str, float]) -> Expansion:
         """Polynomials in the rates at a configuration."""
         values = {**parameters, **self._named(q)}
-        kinematics = self._kinematics(values)
+        kinematics = self._kinematics(values, self._index)
         rates = [coordinate.rate for coordinate in self.coordinates]
 
         def polynomial(name: str) -> Polynomial:
@@ -123,7 +122,7 @@ class NumericSystem:
         able: dict[str, tuple[bool, bool, bool]] = {}
         points = self.anywhere(EXPANSION_POINTS) if self.mechanism.bodies else ()
         for q, parameters in points:
-            kinematics = self._kinematics({**parameters, **self._named(q)})
+            kinematics = self._kinematics({**parameters, **self._named(q)}, self._index)
             for frame in dict.fromkeys(body.frame for body in self.mechanism.bodies):
                 try:
                     turns = [any(abs(x) > LEAST_TURN for x in form.values()) for form in kinematics.turning(frame)]
@@ -147,7 +146,7 @@ class NumericSystem:
     def mass_matrix(self, q: Sequence[float]) -> Rows:
         """G, n x n."""
         n = len(self.coordinates)
-        matrix = self._kinematics({**self.defaults, **self._named(q)}).mass_matrix(n)
+        matrix = self._kinematics({**self.defaults, **self._named(q)}, self._index).mass_matrix(n)
         order = {coordinate.rate: index for index, coordinate in enumerate(self.coordinates)}
         for monomial, (value, _) in self.expansion(q, self.defaults).of(self._kinetic).items():
             if len(monomial) == 2:
@@ -158,28 +157,13 @@ class NumericSystem:
 
     def values(self, q: Sequence[float], numbers: Sequence[int]) -> list[float]:
         """Of the geometric rows with these numbers."""
-        at = self._gradients(q, {})
-        rows = self._bound_rows
-        return [rows[i](at) for i in numbers]
-
-    @cached_property
-    def _given(self) -> frozenset[str]:
-        """The names that have values: coordinates and parameters."""
-        return frozenset((*self._index, *(parameter.name for parameter in self.parameters)))
-
-    @cached_property
-    def _bound_rows(self) -> list[BoundExpression]:
-        return [bound(row.expression, self._given) for row in self.geometric]
-
-    @cached_property
-    def _bound_gradients(self) -> list[BoundDual]:
-        return [bound_dual(row.expression, self._index, self._given) for row in self.geometric]
+        evaluated = self._gradients(q, {})
+        return [evaluated.of(self.geometric[i].expression)[0] for i in numbers]
 
     def residuals(self, q: Sequence[float], numbers: Sequence[int]) -> tuple[list[float], list[Row]]:
         """Values and gradients of the geometric rows with these numbers."""
-        at = self._gradients(q, self._index)
-        rows = self._bound_gradients
-        pairs = [rows[i](at) for i in numbers]
+        gradients = self._gradients(q, self._index)
+        pairs = [gradients.of(self.geometric[i].expression) for i in numbers]
         return [value for value, _ in pairs], [gradient for _, gradient in pairs]
 
     def gradients(self, q: Sequence[float], expressions: Iterable[Expression]) -> list[Row]:
@@ -188,7 +172,7 @@ class NumericSystem:
         return [gradients.of(expression)[1] for expression in expressions]
 
     def _gradients(self, q: Sequence[float], index: Mapping[str, int]) -> Gradients:
-        """Those by the coordinates in the index, and the values."""
+        """Values, and gradients by the coordinates in the index."""
         values = {**self.defaults, **self._named(q)}
         place = self._kinematics(values, index).place
         return Gradients(values, index, self._definitions, place, self.numbers)
@@ -232,8 +216,7 @@ class NumericSystem:
             q = [generator.uniform(float(c.range[0]), float(c.range[1])) for c in self.coordinates]
             yield q, {p.name: _drawn(p, self.defaults[p.name], generator) for p in self.parameters}
 
-    def _kinematics(self, values: dict[str, float], index: Mapping[str, int] | None = None) -> FloatKinematics:
-        index = self._index if index is None else index
+    def _kinematics(self, values: dict[str, float], index: Mapping[str, int]) -> FloatKinematics:
         # frames use definitions, definitions may use points: those that frames use are evaluated without components
         return FloatKinematics(self.mechanism, Gradients(values, index, self._definitions, numbers=self.numbers))
 

@@ -114,13 +114,11 @@ def solve_gram(rows: Sequence[Row], right: Sequence[float], damping: float) -> l
             for k, entry in entries:
                 own[k] = own.get(k, 0.0) + factor * entry
     values = list(right)
-    left = list(range(len(rows)))
-    sizes = [len(row) for row in gram]
+    left = set(range(len(rows)))
     taken: list[tuple[int, float, Row]] = []
     while left:
-        # the shortest row that is left, the first of equal ones
-        near = [sizes[i] for i in left]
-        k = left.pop(near.index(min(near)))
+        k = min([(len(gram[i]), i) for i in left])[1]
+        left.remove(k)
         row = gram[k]
         pivot = row.pop(k)
         if not 0 < pivot < math.inf:
@@ -132,7 +130,6 @@ def solve_gram(rows: Sequence[Row], right: Sequence[float], damping: float) -> l
             for j, value in row.items():
                 other[j] = other.get(j, 0.0) - factor * value
             values[i] -= factor * values[k]
-            sizes[i] = len(other)
         taken.append((k, pivot, row))
     solution = [0.0] * len(rows)
     for k, pivot, row in reversed(taken):
