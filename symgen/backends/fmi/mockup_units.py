@@ -12,16 +12,12 @@ from dataclasses import replace
 from fractions import Fraction
 
 from symgen import __version__
-from symgen.backends.about import symbol_lines
-from symgen.backends.c.identity import status_text_name
-from symgen.backends.c.names import c_members, global_name
-from symgen.backends.comments import c_comment_lines, one_line
+from symgen.backends.c.elsewhere import CallerNames, KernelCall, caller_names, heading, kernel_call, titled
+from symgen.backends.c.names import c_members
 from symgen.backends.fmi.base_units import UnitDefinition, unit_definitions
 from symgen.backends.fmi.variables import Settled, UnitVariable, start_of, variables_of
 from symgen.backends.literals import decimal_text
-from symgen.backends.locals import array_arguments
 from symgen.backends.render import render
-from symgen.backends.scalars import file_stem
 from symgen.ir.kernel import Kernel, Program
 from symgen.model.model import Model
 from symgen.records import dataclass
@@ -40,15 +36,6 @@ CLOSING_ROUNDS, CLOSED_WITHIN = 25, 1e-10
 
 
 @dataclass(frozen=True, slots=True)
-class KernelCall:
-    """A kernel as a unit calls it: its name, that in C, and the names of its arrays."""
-
-    name: str
-    c_function: str
-    arguments: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
 class MockupUnitView:
     """Everything the templates of one unit print; `places` are those of its variables in C."""
 
@@ -59,11 +46,7 @@ class MockupUnitView:
     symgen: str
     description: str
     about: tuple[str, ...]
-    source: str
-    params: str
-    defaults: str
-    status: str
-    status_text: str
+    c: CallerNames
     coordinates: int
     inputs: int
     start: tuple[str, ...]
@@ -113,7 +96,7 @@ def _unit(view: MockupUnitView, model_hash: str) -> dict[str, str]:
 def _view(
     model: Model, program: Program, kernels: Mapping[str, Kernel], role: str, version: int
 ) -> MockupUnitView:
-    calls = {name: _call(model, program, kernel) for name, kernel in kernels.items()}
+    calls = {name: kernel_call(model, program, kernel) for name, kernel in kernels.items()}
     is_plant = role == "plant"
     has_rows = any(row.kind == "geometric" for row in model.constraints), model.r > 0
     placed, admitted = (
@@ -125,8 +108,7 @@ def _view(
         name for name, there in zip(PROJECTIONS, has_rows, strict=True) if is_plant and there and name not in kernels
     ]
     drifts = f"; drifts off its constraints without {' and '.join(lacking)}" if lacking else ""
-    name = model.description or "constrained mechanical system"
-    description = one_line(f"{model.name}: {name} ({role}{drifts})")
+    description = titled(model, f" ({role}{drifts})")
     return MockupUnitView(
         version=version,
         role=role,
@@ -134,12 +116,8 @@ def _view(
         token="",
         symgen=__version__,
         description=description,
-        about=tuple(part for line in (description, *symbol_lines(model)) for part in c_comment_lines(line)),
-        source=file_stem(model.c_name, program.scalar),
-        params=global_name(model.c_name, program.scalar, "params"),
-        defaults=global_name(model.c_name, program.scalar, "default_params"),
-        status=f"{model.c_name}_status",
-        status_text=status_text_name(model),
+        about=heading(model, description),
+        c=caller_names(model, program),
         coordinates=model.n,
         inputs=model.m,
         start=tuple(decimal_text("float64", Fraction(x)) for x in start_of(model)),
@@ -153,8 +131,3 @@ def _view(
         closing_rounds=CLOSING_ROUNDS,
         closed_within=CLOSED_WITHIN,
     )
-
-
-def _call(model: Model, program: Program, kernel: Kernel) -> KernelCall:
-    names = tuple(argument.name for argument in array_arguments(kernel))
-    return KernelCall(kernel.name, global_name(model.c_name, program.scalar, kernel.name), names)

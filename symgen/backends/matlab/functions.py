@@ -6,13 +6,13 @@ import textwrap
 from collections.abc import Iterator, Sequence
 
 from symgen.backends.about import shape_text, status_meaning, statuses_of, symbol_lines, symbol_text
-from symgen.backends.c.names import c_members, global_name, status_name
+from symgen.backends.c.elsewhere import CallerNames, KernelCall, caller_names, kernel_call, titled
+from symgen.backends.c.names import c_members, status_name
 from symgen.backends.comments import c_comment, one_line
-from symgen.backends.locals import array_arguments, names_of
+from symgen.backends.locals import names_of
 from symgen.backends.matlab.reserved import LONGEST_NAME, WORDS
 from symgen.backends.quantities import meaning
 from symgen.backends.render import render
-from symgen.backends.scalars import file_stem
 from symgen.ir.kernel import Kernel, Program
 from symgen.model.model import Model
 from symgen.naming import identifiers
@@ -28,13 +28,9 @@ ENDINGS = ("_mex", "_sfun", "build_")
 
 @dataclass(frozen=True, slots=True)
 class MatlabFunctionView:
-    """One quantity: its name and that in C, arguments with their lengths, shape, what its result is called, help."""
+    """One quantity: how it is called, what its result is called, help."""
 
-    name: str
-    c_function: str
-    arguments: tuple[tuple[str, int], ...]
-    rows: int
-    columns: int
+    call: KernelCall
     result: str
     about: tuple[str, ...]
 
@@ -44,12 +40,10 @@ class MatlabView:
     """Everything the templates print; `fields` are names of parameters, those in C, and what each is."""
 
     name: str
-    source: str
+    c: CallerNames
     gateway: str
     title: str
     about: tuple[str, ...]
-    params: str
-    defaults: str
     fields: tuple[tuple[str, str, str], ...]
     statuses: tuple[tuple[str, str, str], ...]
     functions: tuple[MatlabFunctionView, ...]
@@ -78,8 +72,8 @@ def emit_functions(model: Model, programs: Sequence[Program]) -> dict[str, str]:
     }
     for function in view.functions:
         one = OneFunctionView(view, function)
-        files[f"+{view.name}/{function.name}.m"] = render("matlab/function.m.jinja", one)
-        if function.name == BLOCK:
+        files[f"+{view.name}/{function.call.name}.m"] = render("matlab/function.m.jinja", one)
+        if function.call.name == BLOCK:
             files[f"{view.name}_sfun.c"] = render("matlab/block.c.jinja", one)
     return {f"matlab/{path}": text for path, text in files.items()}
 
@@ -97,12 +91,10 @@ def _view(model: Model, program: Program) -> MatlabView:
     name = identifiers((short,), WORDS.is_taken)[short]
     return MatlabView(
         name=name,
-        source=file_stem(model.c_name, program.scalar),
+        c=caller_names(model, program),
         gateway=f"{name}_mex",
-        title=c_comment(f"{model.name}: {model.description or 'constrained mechanical system'}"),
+        title=c_comment(titled(model)),
         about=tuple(help_lines(symbol_lines(model))),
-        params=global_name(model.c_name, program.scalar, "params"),
-        defaults=global_name(model.c_name, program.scalar, "default_params"),
         fields=tuple(
             (fields[one.name], members[one.name], one_line(symbol_text(one.unit, one.description)))
             for one in model.parameters
@@ -112,22 +104,14 @@ def _view(model: Model, program: Program) -> MatlabView:
             for one in statuses_of(model)
         ),
         functions=functions,
-        most_arguments=max(1, *(len(function.arguments) for function in functions)),
-        most_outputs=max(function.rows * function.columns for function in functions),
+        most_arguments=max(1, *(len(function.call.arguments) for function in functions)),
+        most_outputs=max(function.call.rows * function.call.columns for function in functions),
     )
 
 
 def _function(model: Model, program: Program, kernel: Kernel, result: str) -> MatlabFunctionView:
-    rows, columns = (*kernel.shape, 1)[:2]
-    return MatlabFunctionView(
-        name=kernel.name,
-        c_function=global_name(model.c_name, program.scalar, kernel.name),
-        arguments=tuple((argument.name, argument.length) for argument in array_arguments(kernel)),
-        rows=rows,
-        columns=columns,
-        result=result,
-        about=tuple(help_lines([f"{meaning(kernel)}; {shape_text(kernel)}"])),
-    )
+    about = tuple(help_lines([f"{meaning(kernel)}; {shape_text(kernel)}"]))
+    return MatlabFunctionView(kernel_call(model, program, kernel), result, about)
 
 
 def help_lines(lines: Iterator[str] | Sequence[str]) -> Iterator[str]:

@@ -9,15 +9,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from symgen import __version__
-from symgen.backends.about import symbol_lines
-from symgen.backends.c.identity import status_text_name
-from symgen.backends.c.names import c_members, global_name
-from symgen.backends.comments import c_comment_lines, one_line
-from symgen.backends.locals import array_arguments
+from symgen.backends.c.elsewhere import CallerNames, KernelCall, caller_names, heading, kernel_call, titled
+from symgen.backends.c.names import c_members
 from symgen.backends.render import render
 from symgen.backends.ros2.reserved import package_name
-from symgen.backends.scalars import file_stem
-from symgen.ir.kernel import Kernel, Program
+from symgen.ir.kernel import Program
 from symgen.model.model import Model
 from symgen.records import dataclass
 
@@ -33,19 +29,9 @@ APPLIED = "applied_force"
 
 
 @dataclass(frozen=True, slots=True)
-class AnswerView:
-    """A function of the interface: the quantity and its C, the arguments that this takes, and the shape."""
-
-    quantity: str
-    c_function: str
-    arguments: tuple[str, ...]
-    rows: int
-    columns: int
-
-
-@dataclass(frozen=True, slots=True)
 class PluginView:
-    """Everything the templates print; `fields` are parameters by name and in C.
+    """Everything the templates print; `fields` are parameters by name and in C, `answers` kernels by the functions of
+    the interface.
 
     `friction` is what forces are applied, where that is made; whether it `depends` on more than rates is what the
     interface, which gives it these alone, has no place for.
@@ -55,15 +41,11 @@ class PluginView:
     version: str
     description: str
     about: tuple[str, ...]
-    source: str
-    params: str
-    defaults: str
-    status: str
-    status_text: str
+    c: CallerNames
     coordinates: int
     fields: tuple[tuple[str, str], ...]
-    answers: dict[str, AnswerView]
-    friction: AnswerView | None
+    answers: dict[str, KernelCall]
+    friction: KernelCall | None
     depends: bool
 
 
@@ -74,22 +56,18 @@ def emit_plugin(model: Model, programs: Sequence[Program]) -> dict[str, str]:
     applied = kernels.get(APPLIED)
     if ANSWERS["getTorques"] not in kernels:
         return {}
-    description = one_line(f"{model.name}: {model.description or 'constrained mechanical system'}")
+    description = titled(model)
     members = c_members(model, program)
     view = PluginView(
         package=package_name(model.c_name),
         version=__version__,
         description=description,
-        about=tuple(part for line in (description, *symbol_lines(model)) for part in c_comment_lines(line)),
-        source=file_stem(model.c_name, program.scalar),
-        params=global_name(model.c_name, program.scalar, "params"),
-        defaults=global_name(model.c_name, program.scalar, "default_params"),
-        status=f"{model.c_name}_status",
-        status_text=status_text_name(model),
+        about=heading(model, description),
+        c=caller_names(model, program),
         coordinates=model.n,
         fields=tuple((one.name, members[one.name]) for one in model.parameters),
-        answers={name: _answer(model, program, kernels[of]) for name, of in ANSWERS.items() if of in kernels},
-        friction=_answer(model, program, applied) if applied is not None else None,
+        answers={name: kernel_call(model, program, kernels[of]) for name, of in ANSWERS.items() if of in kernels},
+        friction=kernel_call(model, program, applied) if applied is not None else None,
         depends=applied is None or any(load.argument not in ("qd", "p") for load in applied.loads),
     )
     files = {
@@ -99,9 +77,3 @@ def emit_plugin(model: Model, programs: Sequence[Program]) -> dict[str, str]:
         "plugin.xml": "ros2/plugin.xml.jinja",
     }
     return {f"ros2/{path}": render(template, view) for path, template in files.items()}
-
-
-def _answer(model: Model, program: Program, kernel: Kernel) -> AnswerView:
-    rows, columns = (*kernel.shape, 1)[:2]
-    names = tuple(argument.name for argument in array_arguments(kernel))
-    return AnswerView(kernel.name, global_name(model.c_name, program.scalar, kernel.name), names, rows, columns)
