@@ -17,6 +17,15 @@ Case = tuple[str, str]
 Load = Callable[[Path, str, str], Model]
 
 
+def replaced(good: Case, *pieces: str) -> Case:
+    """The good file with pieces replaced, old and new in turn; the model file as it is."""
+    text, head = good
+    for old, new in zip(pieces[::2], pieces[1::2], strict=True):
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    return text, head
+
+
 def check_group(load: Load, cases: Mapping[str, Case], expected: Path, folder: Path) -> None:
     """The mistakes of each spoiled file are those of the text, each with a place and a remedy."""
     sections: dict[str, str] = {}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from spoiled_files import Case, replaced
+
 HEAD = "model: robot\nmjcf: robot.xml\n"
 ARM = """\
 <mujoco model="arm">
@@ -31,16 +33,10 @@ ARM = """\
 </mujoco>
 """
 
-Case = tuple[str, str]
-
 
 def changed(*pieces: str) -> Case:
-    """The file with pieces replaced, old and new in turn; the model file as it is."""
-    text = ARM
-    for old, new in zip(pieces[::2], pieces[1::2], strict=True):
-        assert old in text, old
-        text = text.replace(old, new, 1)
-    return text, HEAD
+    """The good file with pieces replaced."""
+    return replaced((ARM, HEAD), *pieces)
 
 
 def imported_as(mjcf: str) -> Case:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from spoiled_files import Case, replaced
+
 HEAD = "model: robot\nsdf: robot.sdf\ngravity: [0, 0, -9.81]\n"
 ARM = """\
 <?xml version="1.0"?>
@@ -37,16 +39,10 @@ ARM = """\
 </sdf>
 """
 
-Case = tuple[str, str]
-
 
 def changed(*pieces: str) -> Case:
-    """The file with pieces replaced, old and new in turn; the model file as it is."""
-    text = ARM
-    for old, new in zip(pieces[::2], pieces[1::2], strict=True):
-        assert old in text, old
-        text = text.replace(old, new, 1)
-    return text, HEAD
+    """The good file with pieces replaced."""
+    return replaced((ARM, HEAD), *pieces)
 
 
 def added(parts: str) -> Case:
