@@ -13,9 +13,8 @@ from flint import arb
 
 from symgen.identification.ball_matrices import Matrix
 from symgen.identification.motion_states import BallSystem, MotionState
-from symgen.identification.taylor_balls import Ball, TimeSeries, constant
+from symgen.identification.taylor_balls import Ball, TimeSeries, series_of
 from symgen.model.configurations.gradient import Gradients
-from symgen.model.expressions.expression import Expression
 from symgen.model.kinematics.float_kinematics import FloatArithmetic
 from symgen.model.kinematics.walk import Kinematics
 
@@ -29,37 +28,32 @@ class ConstrainedRegressor:
     def __init__(self, system: BallSystem) -> None:
         self._system, self._mechanism = system, system.model.mechanism
         self._frames = list(dict.fromkeys(body.frame for body in self._mechanism.bodies))
+        self._index = {c.name: j for j, c in enumerate(system.model.coordinates)}
+        self._definitions = {one.name: one.value for one in system.model.definitions}
+        numeric = system.numeric
+        still = Gradients(numeric.defaults, {}, self._definitions, numbers=numeric.numbers)
+        self._gravity = [series_of(still.of(entry)[0]).c[0] for entry in self._mechanism.gravity]
 
     def rows(self, state: MotionState) -> Matrix:
         """delta rows, a column for each of `inertial_parameters`."""
-        along, instant = self._kinematics(state.q, {}), self._kinematics(_at_once(state.q), self._index())
-        gravity = self._gravity()
-        by_frame = {frame: _shown(along, instant, frame, gravity, state.directions) for frame in self._frames}
+        along, instant = self._kinematics(state.q, {}), self._kinematics(_at_once(state.q), self._index)
+        by_frame = {
+            frame: _shown(along, instant, frame, self._gravity, state.directions) for frame in self._frames
+        }
         made: Matrix = []
         for k in range(len(state.directions[0])):
             row = [entry for body in self._mechanism.bodies for entry in by_frame[body.frame][k]]
             for rotor in self._mechanism.rotor_inertias:
-                j = self._index()[rotor.coordinate]
-                row.append(state.directions[j][k] * state.accelerations[j])
+                j = self._index[rotor.coordinate]
+                row.append(state.directions[j][k] * 2 * state.q[j].c[2])
             made.append(row)
         return made
-
-    def _index(self) -> dict[str, int]:
-        return {c.name: j for j, c in enumerate(self._system.model.coordinates)}
 
     def _kinematics(self, q: Sequence[TimeSeries], index: dict[str, int]) -> Kinematics[float, _Form]:
         numeric = self._system.numeric
         named = {c.name: cast(float, x) for c, x in zip(self._system.model.coordinates, q, strict=True)}
-        gradients = Gradients({**numeric.defaults, **named}, index, self._definitions(), numbers=numeric.numbers)
+        gradients = Gradients({**numeric.defaults, **named}, index, self._definitions, numbers=numeric.numbers)
         return Kinematics(self._mechanism, FloatArithmetic(gradients), False)
-
-    def _gravity(self) -> list[Ball]:
-        numeric, definitions = self._system.numeric, self._definitions()
-        evaluated = Gradients(numeric.defaults, {}, definitions, numbers=numeric.numbers)
-        return [_of(evaluated.of(entry)[0]).c[0] for entry in self._mechanism.gravity]
-
-    def _definitions(self) -> dict[str, Expression]:
-        return {one.name: one.value for one in self._system.model.definitions}
 
 
 def _at_once(q: Sequence[TimeSeries]) -> list[TimeSeries]:
@@ -74,8 +68,8 @@ def _shown(
     directions: Matrix,
 ) -> list[list[Ball]]:
     """For each direction what the ten parameters of a body with this frame add."""
-    axes = [[_of(entry) for entry in row] for row in along.axes(frame)]
-    origin = [_of(entry) for entry in along.origin(frame)]
+    axes = [[series_of(entry) for entry in row] for row in along.axes(frame)]
+    origin = [series_of(entry) for entry in along.origin(frame)]
     turned = [[axes[i][k].c[0] for i in range(3)] for k in range(3)]  # R^T
     felt = [2 * origin[i].c[2] - gravity[i] for i in range(3)]
     acceleration = [_dot(row, felt) for row in turned]
@@ -114,8 +108,4 @@ def _dot(left: _Vector, right: _Vector) -> Ball:
 
 
 def _along(form: dict[int, Any], directions: Matrix, k: int) -> Ball:
-    return sum((_of(value).c[0] * directions[j][k] for j, value in form.items()), arb(0))
-
-
-def _of(value: Any) -> TimeSeries:
-    return value if isinstance(value, TimeSeries) else constant(value)
+    return sum((series_of(value).c[0] * directions[j][k] for j, value in form.items()), arb(0))

@@ -21,9 +21,9 @@ from symgen.identification.taylor_balls import (
     constant,
     may_vanish,
     rounding,
+    series_of,
 )
 from symgen.model.configurations.mechanics import NumericSystem
-from symgen.model.configurations.sparse import Row
 from symgen.model.model import Model
 
 # The seed of configurations and motions: the same model is looked at at the same ones.
@@ -57,7 +57,6 @@ class MotionState:
 
     q: tuple[TimeSeries, ...]
     directions: Matrix
-    accelerations: tuple[Ball, ...]
 
 
 class BallSystem:
@@ -84,7 +83,8 @@ class BallSystem:
 
     def rows(self, q: Sequence[TimeSeries]) -> list[dict[int, TimeSeries]]:
         """B along q(t)."""
-        return [_series(row) for row in self.numeric.rows(cast(Sequence[float], q))]
+        rows = self.numeric.rows(cast(Sequence[float], q))
+        return [{j: series_of(value) for j, value in row.items()} for row in rows]
 
     def closed(self, q: Sequence[float]) -> tuple[Ball, ...] | None:
         """The configuration that Newton's method leads to, in balls that hold it; None where it leads nowhere.
@@ -100,21 +100,21 @@ class BallSystem:
             values, slopes = self._floats.residuals(place, numbers)
             pairs = pairs or _pivots([[row.get(j, 0.0) for j in range(self.n)] for row in slopes])
             try:
-                inverse = arb_mat([[arb(slopes[i].get(j, 0.0)) for _, j in pairs] for i, _ in pairs]).inv()
+                matrix = arb_mat([[arb(slopes[i].get(j, 0.0)) for _, j in pairs] for i, _ in pairs])
+                moved = _step(matrix, pairs, list(map(arb, values)))
             except ZeroDivisionError:
                 return None
-            moved = _step(inverse, pairs, list(map(arb, values)))
             for (_, j), x in zip(pairs, moved, strict=True):
                 place[j] += float(x)
             if max(map(abs, map(float, moved)), default=0.0) < FLOAT_STEP:
-                return self._closed_in_balls(list(map(arb, place)), inverse, pairs)
+                return self._closed_in_balls(list(map(arb, place)), matrix, pairs)
         return None
 
     def _closed_in_balls(
-        self, place: list[Ball], inverse: arb_mat, pairs: Sequence[tuple[int, int]]
+        self, place: list[Ball], matrix: arb_mat, pairs: Sequence[tuple[int, int]]
     ) -> tuple[Ball, ...] | None:
         for _ in range(BALL_STEPS):
-            moved = _step(inverse, pairs, self._gaps(place))
+            moved = _step(matrix, pairs, self._gaps(place))
             for (_, j), x in zip(pairs, moved, strict=True):
                 place[j] = (place[j] + x).mid()
             last = max(map(abs, map(float, moved)), default=0.0)
@@ -213,7 +213,7 @@ def _moving(system: BallSystem, q: Sequence[Ball], rank: int, generator: random.
         swing[pivot] += row[n]
     series = tuple(TimeSeries((x, v, a / 2)) for x, v, a in zip(q, rates, swing, strict=True))
     directions = [[vector[j] for vector in basis] for j in range(n)]
-    return MotionState(series, directions, tuple(swing))
+    return MotionState(series, directions)
 
 
 def _drawn(count: int, generator: random.Random) -> list[Ball]:
@@ -228,17 +228,13 @@ def _combined(basis: Matrix, weights: Sequence[Ball], n: int) -> list[Ball]:
     return total
 
 
-def _series(row: Row) -> dict[int, TimeSeries]:
-    return {j: value if isinstance(value, TimeSeries) else constant(value) for j, value in row.items()}
-
-
 def _dense(rows: Sequence[Mapping[int, TimeSeries]], n: int) -> Matrix:
     return [[row[j].c[0] if j in row else arb(0) for j in range(n)] for row in rows]
 
 
-def _step(inverse: arb_mat, pairs: Sequence[tuple[int, int]], values: Sequence[Ball]) -> list[Ball]:
-    """Newton's step of the coordinates of `pairs` by their rows."""
-    made = inverse * arb_mat([[-values[i].mid()] for i, _ in pairs])
+def _step(matrix: arb_mat, pairs: Sequence[tuple[int, int]], values: Sequence[Ball]) -> list[Ball]:
+    """Newton's step of the coordinates of `pairs` by their rows; ZeroDivisionError for a singular matrix."""
+    made = matrix.solve(arb_mat([[-values[i].mid()] for i, _ in pairs]))
     return [made[k, 0].mid() for k in range(len(pairs))]
 
 

@@ -103,7 +103,7 @@ class TimeSeries:
         return self * _composed(other, lambda x: 1 / x, lambda x: -1 / x**2, lambda x: 2 / x**3)
 
     def __rtruediv__(self, other: Operand) -> TimeSeries:
-        return (other if isinstance(other, TimeSeries) else constant(other)) / self
+        return series_of(other) / self
 
     def __ne__(self, other: object) -> bool:
         """Whether it may be another number: what is told from 0 is left out of sums."""
@@ -128,6 +128,11 @@ _MOST_TERMS = 3
 def constant(value: Fraction | float) -> TimeSeries:
     """A number that does not change with the time."""
     return TimeSeries((ball(value), *(arb(0) for _ in range(_MOST_TERMS - 1))))
+
+
+def series_of(value: object) -> TimeSeries:
+    """What an evaluation in these numbers gave: literals among gradients are plain ones."""
+    return value if isinstance(value, TimeSeries) else constant(cast(float, value))
 
 
 _Slope: TypeAlias = Callable[[Ball], Ball]

@@ -10,10 +10,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from symgen.diagnostics import Notice, Span
-from symgen.model.file.reading import entries, member
+from symgen.model.file.reading import entries
 from symgen.model.file.scope import Scope
 from symgen.model.file.source import MappingNode, ScalarNode, SequenceNode
 from symgen.model.mechanism import WORLD
+from symgen.model.robots.joint_friction import JointFriction, friction_entries
 from symgen.model.robots.machine import ENDINGS, Closing, Follower, Machine, MachineJoint
 from symgen.model.robots.names import RobotNames, plain_name
 from symgen.model.robots.nodes import Entry, own_names, ranged_names, replaced, text_node, with_entries
@@ -65,7 +66,7 @@ class _MachineBlocks:
             "loops": loops,
             "rotor_inertias": list(self._numbers(single, "rotor_inertias", "rotor")),
             "springs": list(self._springs(single)),
-            "friction": list(self._friction(single)),
+            "friction": list(friction_entries(self._scope, self._tree, self._form, self._friction(single))),
             "coupling": couplings,
             "inputs": inputs,
             "configuration": list(self._start(moving)) if loops or rows or couplings else [],
@@ -234,31 +235,13 @@ class _MachineBlocks:
                 parts.append((text_node("length", rest.span), _number(rest)))
             yield text_node(name, span), MappingNode(tuple(parts), span, True)
 
-    def _friction(self, joints: list[MachineJoint]) -> Iterator[Entry]:
-        """Damping and dry friction, unless the model file says otherwise for the coordinate."""
-        key = self._form.lower()
-        width = member(self._tree.get(key), "friction_width")
-        own = own_names(self._tree, "friction")
+    def _friction(self, joints: list[MachineJoint]) -> Iterator[JointFriction]:
         for joint in joints:
-            name, parts = self._names.coordinates[joint.name], list[Entry]()
-            viscous, dry = joint.values.get("viscous"), joint.values.get("dry")
-            if name in own:
-                continue
-            if viscous is not None and viscous.value:
-                parts.append((text_node("viscous", viscous.span), _number(viscous)))
-            if dry is not None and dry.value:
-                if width is None:
-                    message = f"the dry friction of the joint `{joint.name}` has no width in which it changes its sign"
-                    remedy = (
-                        f"add the rate at which it has 76 % of its full size: `{key}: {{file: ..., friction_width: "
-                        f"0.01}}`, or an entry `{name}` under `friction` of the model file, which replaces that of "
-                        f"the {self._form}"
-                    )
-                    self._scope.wrong(message, remedy, dry.span)
-                    continue
-                parts += [(text_node("coulomb", dry.span), _number(dry)), (text_node("width", dry.span), width)]
-            if parts:
-                yield text_node(name, joint.span), MappingNode(tuple(parts), joint.span, True)
+            viscous, dry = (
+                _number(value) if value is not None and value.value else None
+                for value in (joint.values.get("viscous"), joint.values.get("dry"))
+            )
+            yield JointFriction(joint.name, self._names.coordinates[joint.name], viscous, dry, joint.span)
 
     def _ranges(self, joints: list[MachineJoint]) -> Iterator[Entry]:
         own = ranged_names(self._tree)

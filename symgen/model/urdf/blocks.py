@@ -11,10 +11,11 @@ from fractions import Fraction
 from math import sqrt
 
 from symgen.diagnostics import Span
-from symgen.model.file.reading import entries, member
+from symgen.model.file.reading import entries
 from symgen.model.file.scope import Scope
 from symgen.model.file.source import MappingNode, Node, ScalarNode, SequenceNode
 from symgen.model.mechanism import WORLD
+from symgen.model.robots.joint_friction import JointFriction, friction_entries
 from symgen.model.robots.names import RobotNames
 from symgen.model.robots.nodes import Entry, is_placed, ranged_names, text_node, with_entries
 from symgen.model.robots.numbers import WrittenNumber, angle_text, written
@@ -43,7 +44,7 @@ def with_robot(scope: Scope, tree: MappingNode, robot: Robot, names: RobotNames,
         "frames": frames,
         "joints": joints,
         "bodies": list(_bodies(scope, tree, robot, names)),
-        "friction": list(_friction(scope, tree, moving, names)),
+        "friction": list(friction_entries(scope, tree, "URDF", _friction(moving, names))),
         "ranges": list(_ranges(tree, moving, names)),
     }
     return with_entries(tree, additions, span)
@@ -113,30 +114,13 @@ def _bodies(scope: Scope, tree: MappingNode, robot: Robot, names: RobotNames) ->
         yield text_node(name, made[1]), made[0]
 
 
-def _friction(scope: Scope, tree: MappingNode, joints: list[UrdfJoint], names: RobotNames) -> Iterable[Entry]:
-    """Damping and dry friction, unless the model file says otherwise for the coordinate."""
-    width = member(tree.get("urdf"), "friction_width")
-    own = {key.value for key, _ in entries(tree.get("friction"))}
+def _friction(joints: list[UrdfJoint], names: RobotNames) -> Iterable[JointFriction]:
     for joint in joints:
-        given = {key: value for key, value in joint.dynamics.items() if value.value != 0}
-        name = names.coordinates[joint.name]
-        if not given or name in own:
-            continue
-        parts: list[Entry] = []
-        if "damping" in given:
-            parts.append((text_node("viscous", joint.span), given["damping"].node))
-        if "friction" in given:
-            if width is None:
-                message = f"the dry friction of the joint `{joint.name}` has no width in which it changes its sign"
-                remedy = (
-                    "add the rate at which it has 76 % of its full size: `urdf: {file: ..., friction_width: 0.01}`, "
-                    f"or an entry `{name}` under `friction` of the model file, which replaces that of the URDF"
-                )
-                scope.wrong(message, remedy, given["friction"].span, joint.name)
-                continue
-            parts.append((text_node("coulomb", joint.span), given["friction"].node))
-            parts.append((text_node("width", joint.span), width))
-        yield text_node(name, joint.span), MappingNode(tuple(parts), joint.span, True)
+        viscous, dry = (
+            value.node if value is not None and value.value else None
+            for value in (joint.dynamics.get("damping"), joint.dynamics.get("friction"))
+        )
+        yield JointFriction(joint.name, names.coordinates[joint.name], viscous, dry, joint.span)
 
 
 def _ranges(tree: MappingNode, joints: list[UrdfJoint], names: RobotNames) -> Iterable[Entry]:
