@@ -19,7 +19,7 @@ from symgen.runtime.activity import working
 from symgen.verify.expected import Expected
 from symgen.verify.lanes.lane_arithmetic import Lanes
 from symgen.verify.margins.lost_digits import LostDigits
-from symgen.verify.sampling.nearby import Nearby
+from symgen.verify.sampling.nearby_states import Nearby
 from symgen.verify.sampling.states import rounded
 from symgen.verify.tolerance import FACTOR
 

@@ -15,8 +15,8 @@ from symgen.verify.lanes.ranks_in_lanes import is_regular, matrices, ranked_part
 from symgen.verify.lanes.rates_in_lanes import RatesInLanes
 from symgen.verify.margins.far_errors import Far, joined
 from symgen.verify.powers_of_ten import power_of_ten
-from symgen.verify.sampling.nearby import joined as joined_states
-from symgen.verify.sampling.nearby import of_samples
+from symgen.verify.sampling.nearby_states import joined as joined_states
+from symgen.verify.sampling.nearby_states import of_samples
 from symgen.verify.sampling.task_ahead import TaskInLanes
 
 # Powers of ten by which a parameter is away at most: they are looked at one by one.

@@ -18,7 +18,7 @@ from symgen.verify.lanes.lane_arithmetic import Lanes
 from symgen.verify.lanes.many_states import run_lanes
 from symgen.verify.lanes.rounding import RoundingErrors
 from symgen.verify.reference.reference import ReferenceValueError, State
-from symgen.verify.sampling.nearby import Nearby
+from symgen.verify.sampling.nearby_states import Nearby
 from symgen.verify.sampling.searched import NUMBERS
 from symgen.verify.single_precision import distances, lost_in_float32, units_in_float32
 from symgen.verify.tolerance import FACTOR, is_beyond

@@ -24,7 +24,8 @@ from symgen.verify.lanes.lane_arithmetic import Lanes
 from symgen.verify.margins.lost_digits import LostDigits
 from symgen.verify.reference.reference import State
 from symgen.verify.sampling.inertias import DIVIDED_BY_MASSES, REGULAR_INERTIA
-from symgen.verify.sampling.nearby import Nearby, Surroundings, joined
+from symgen.verify.sampling.nearby import Surroundings
+from symgen.verify.sampling.nearby_states import Nearby, joined
 from symgen.verify.sampling.searched import NUMBERS
 from symgen.verify.sampling.settling import NEARER, Settling
 from symgen.verify.sampling.states import rounded

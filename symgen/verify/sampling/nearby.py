@@ -8,11 +8,9 @@ as there.  The dice do not depend on what was looked at before.
 from __future__ import annotations
 
 import random
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from functools import cached_property
 from math import hypot, prod
-from typing import Any
 
 import numpy as np
 
@@ -25,6 +23,7 @@ from symgen.verify.lanes.small_matrices import products, pseudoinverses
 from symgen.verify.powers_of_ten import power_of_ten
 from symgen.verify.reference.parameter_values import default_parameters
 from symgen.verify.reference.reference import Reference, ReferenceValueError, State
+from symgen.verify.sampling.nearby_states import Nearby, of_samples
 from symgen.verify.sampling.plain_values import values_at
 from symgen.verify.sampling.reach import reachable, unstated_lengths
 from symgen.verify.sampling.states import Sample
@@ -54,45 +53,6 @@ LED_STEPS, LONGEST_LED, WAY_LEFT, PROBED = 8, 0.4, 0.3, 1e-2
 SMALL, NEXT_TO_ZERO = 1e-2, 11
 # In how many samples that is looked at, and how large these forces are beside inputs.
 SAMPLES_LOOKED_AT, LEAST_DRIVE = 8, 0.1
-
-
-@dataclass(frozen=True)
-class Nearby:
-    """States with a row each: arguments and parameters by name, whether rates satisfy the constraints, and the places
-    of the samples that they come from."""
-
-    parts: Mapping[str, Lanes]
-    admissible: Lanes
-    origins: Lanes
-
-    def __len__(self) -> int:
-        return len(self.origins)
-
-    def only(self, which: Lanes) -> Nearby:
-        """Those that a mask or places name."""
-        parts = {name: values[which] for name, values in self.parts.items()}
-        return Nearby(parts, self.admissible[which], self.origins[which])
-
-    def state(self, place: int) -> State:
-        """One of them, in seven digits: what is found does not depend on the last bits of NumPy's functions."""
-        single = {name: values[place].astype(np.float32) for name, values in self.parts.items()}
-        q, qd, qdd, u, task = (tuple(map(float, single[name])) for name in ("q", "qd", "qdd", "u", "task"))
-        return State(q, qd, qdd, u, tuple(map(float, self.parts["p"][place])), task)
-
-
-def of_samples(samples: Sequence[Sample]) -> Nearby:
-    """Samples as they are."""
-    states = [sample.state for sample in samples]
-    parts = {name: _rows([getattr(state, name) for state in states]) for name in ("q", "qd", "qdd", "u", "task")}
-    parts["p"] = _rows([state.parameters for state in states])
-    return Nearby(parts, np.array([sample.admissible for sample in samples]), np.arange(len(samples)))
-
-
-def joined(first: Nearby, second: Nearby) -> Nearby:
-    """All states of both."""
-    parts = {name: np.concatenate((values, second.parts[name])) for name, values in first.parts.items()}
-    admissible = np.concatenate((first.admissible, second.admissible))
-    return Nearby(parts, admissible, np.concatenate((first.origins, second.origins)))
 
 
 class Surroundings:
@@ -395,10 +355,6 @@ def _driven_by_itself(reference: Reference, state: State) -> bool:
     except ReferenceValueError:
         return False
     return hypot(*force) > LEAST_DRIVE * max(map(abs, state.u), default=0.0)
-
-
-def _rows(values: Sequence[Sequence[Any]]) -> Lanes:
-    return np.array([[float(x) for x in row] for row in values]).reshape(len(values), -1)
 
 
 def _shifts(dice: random.Random, like: Lanes) -> Lanes:

@@ -8,7 +8,8 @@ from functools import cached_property
 from symgen.model.quantities import MAIN
 from symgen.verify.reference.reference import Reference
 from symgen.verify.sampling.inertias import DIVIDED_BY_MASSES, REGULAR_INERTIA
-from symgen.verify.sampling.nearby import Nearby, Surroundings
+from symgen.verify.sampling.nearby import Surroundings
+from symgen.verify.sampling.nearby_states import Nearby
 from symgen.verify.sampling.settling import NEARER, Settling
 from symgen.verify.sampling.states import Sample
 

@@ -29,7 +29,8 @@ from symgen.verify.lanes.rounding import RoundingErrors
 from symgen.verify.reference.reference import ReferenceValueError
 from symgen.verify.running.compile import Outcome
 from symgen.verify.sampling.inertias import DIVIDED_BY_MASSES, REGULAR_INERTIA
-from symgen.verify.sampling.nearby import Nearby, Surroundings, joined, of_samples
+from symgen.verify.sampling.nearby import Surroundings
+from symgen.verify.sampling.nearby_states import Nearby, joined, of_samples
 from symgen.verify.sampling.settling import NEARER, Settling
 from symgen.verify.sampling.states import Sample, rounded
 from symgen.verify.single_precision import lost_in_float32

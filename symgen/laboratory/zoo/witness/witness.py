@@ -16,6 +16,7 @@ from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.draws.describe import Description
 from symgen.laboratory.zoo.witness.allocation import directed, holding, is_directed, limits_of, members, preloads
 from symgen.laboratory.zoo.witness.coverage import Tally
+from symgen.laboratory.zoo.witness.distances import distance, least_distance, norm
 from symgen.laboratory.zoo.witness.fields import Balls, Floats, precision
 from symgen.laboratory.zoo.witness.generated import ARGUMENTS, Answer, Target, targets
 from symgen.laboratory.zoo.witness.kkt import (
@@ -42,8 +43,6 @@ from symgen.laboratory.zoo.witness.urdf_file import expanded
 STATES = 20
 PERTURBATIONS = 8
 ALLOWED = 16.0
-# The truth is known to so much where it is looked at.
-KNOWN = 1e-40
 EPS = {"float64": 2.0**-53, "float32": 2.0**-24}
 # a status is a failure where rows, inputs and masses are further apart than this
 CERTAIN = {"float64": 1e-4, "float32": 2e-2}
@@ -250,8 +249,8 @@ class Witness:
                     certain = answer.status != ACTUATION_RANK
                 return JudgedResult(answer.status, 0.0, 0.0, truth.clear, certain)
             units = self._units(answer, truth, quantity, given, ranks, EPS[scalar])
-        apart = _norm([a - b for a, b in zip(answer.value, exact, strict=True)])
-        return JudgedResult(0, units, apart / (_norm(exact) or 1.0), truth.clear, False)
+        apart = norm([a - b for a, b in zip(answer.value, exact, strict=True)])
+        return JudgedResult(0, units, apart / (norm(exact) or 1.0), truth.clear, False)
 
     def _shortest_row(self, state: FloatState, ranks: GenericRanks) -> float:
         """The least length of a row beside its usual one: rows that all but vanish are a reason for a status."""
@@ -260,7 +259,7 @@ class Witness:
         values |= dict(zip((*self._system.parameters, *self._allocation()), state.parameters, strict=True))
         rows = self._evaluate(values, Floats()).rows
         pairs = zip(rows, ranks.lengths, strict=bool(ranks.lengths))
-        return min((_norm(row) / usual for row, usual in pairs if usual > NOTHING), default=1.0)
+        return min((norm(row) / usual for row, usual in pairs if usual > NOTHING), default=1.0)
 
     def unit(self, quantity: str, state: FloatState, ranks: GenericRanks, scalar: str) -> float:
         """The most that roundings of the inputs change a result, as a share of it; infinite where there is none."""
@@ -273,8 +272,8 @@ class Witness:
                 return math.inf
             for _ in range(PERTURBATIONS):
                 other = self._known(quantity, given, ranks, (dice, EPS[scalar]))
-                moved = max(moved, math.inf if other is None else _distance(other.value, truth.value))
-            size = _norm([float(x.mid()) for x in truth.value])
+                moved = max(moved, math.inf if other is None else distance(other.value, truth.value))
+            size = norm([float(x.mid()) for x in truth.value])
         return moved / size if size else 0.0 if not moved else math.inf
 
     def _units(
@@ -283,8 +282,8 @@ class Witness:
         """The error over what is allowed; what rounding the inputs does is worked out only where it is needed."""
         if not all(map(math.isfinite, answer.value)) or len(answer.value) != len(truth.value):
             return math.inf
-        error = _least_distance(answer.value, truth.value)
-        size = _norm([float(x.mid()) for x in truth.value])
+        error = least_distance(answer.value, truth.value)
+        size = norm([float(x.mid()) for x in truth.value])
 
         def moved(eps: float, allowed: float) -> float:
             """What is allowed where roundings of this size move the result, worked out as far as it is needed."""
@@ -294,7 +293,7 @@ class Witness:
                     break
                 other = self._known(quantity, state, ranks, (dice, eps))
                 if other is not None:
-                    largest = max(largest, _distance(other.value, truth.value))
+                    largest = max(largest, distance(other.value, truth.value))
                 due = allowed * (largest + eps * size)
             return due
 
@@ -375,24 +374,6 @@ class Witness:
 
 def _sign(dice: Dice) -> int:
     return 1 if dice.chance(0.5) else -1
-
-
-def _norm(values: Sequence[float]) -> float:
-    return math.sqrt(math.fsum(x * x for x in values))
-
-
-def _distance(values: Sequence[Any], exact: Sequence[Any]) -> float:
-    return _norm([float((x - y).mid()) for x, y in zip(exact, values, strict=True)])
-
-
-def _least_distance(values: Sequence[float], exact: Sequence[Any]) -> float:
-    """Between numbers and what is known of the truth: 0 is right where that is 0 to a hundred digits.
-
-    Numbers are held against the middle of what is known less well.
-    """
-    if any(float(x.rad()) > KNOWN for x in exact):
-        return _distance(values, exact)
-    return _norm([float((x - y).abs_lower()) for x, y in zip(exact, values, strict=True)])
 
 
 def check(description: Description, folder: Path) -> CheckResult:
