@@ -84,5 +84,5 @@ def test_links_that_turn_quickly_beside_a_tip_that_hardly_pulls(tmp_path: Path) 
     assert draft.choice("multipliers").title == ARTICULATED
     search = WorstStateSearch(Expected(draft.model, ["multipliers"], 8, lambda _: None))
     kernel = draft.kernels("multipliers")["float64"]
-    search.look(kernel)
+    search.look(kernel.name, "its method", lambda: kernel)
     assert search.largest(kernel, draft.programs["float64"].sincos, "float64") < 8

@@ -55,9 +55,9 @@ LONGEST_WEIGHED = 6_000
 WIDENED = 3
 # Counted cost of the longest of them.
 LONGEST_WIDENED = 40_000
-# Counted cost of all long methods together that are tried for a quantity, or for accelerations and multipliers, before
-# twice the digits are: the rest may do with fewer digits, but each takes seconds to be derived and measured.
-LONG_TRIED = 40_000
+# Counted cost of all methods together that are tried for a quantity, or for accelerations and multipliers, before twice
+# the digits are: the rest may do with fewer digits, but each takes seconds to be derived and measured.
+MOST_TRIED = 20_000
 
 
 class Fallback:
@@ -174,7 +174,7 @@ class Fallback:
     def _next(self, draft: Draft, quantity: str, expected: Expected) -> Passing | None:
         """The next method that passes with a margin, or else the best of those that pass; others are noted."""
         passing, needed = self._passing[quantity], tuple(draft.kernels(quantity))
-        if (first := self._first_of(draft, quantity, expected, LONG_TRIED)) is not None:
+        if (first := self._first_of(draft, quantity, expected, MOST_TRIED)) is not None:
             return first
         for one in self._with_more_digits(draft, quantity, expected):
             # more digits in float64, too, are worth a margin only where next to none is left
@@ -251,11 +251,11 @@ class Fallback:
         """One tier after the other, until what was tried counts so many operations."""
         for tier in range(TIERS):
             candidates = self._candidates(draft, quantity, tier, expected, MARGIN)
-            while self._tried_long(quantity) <= operations and (one := next(candidates, None)) is not None:
+            while self._cost_tried(quantity) <= operations and (one := next(candidates, None)) is not None:
                 yield one
 
-    def _tried_long(self, quantity: str) -> int:
-        """Counted cost of the long methods tried for a quantity; accelerations and multipliers count together."""
+    def _cost_tried(self, quantity: str) -> int:
+        """Counted cost of the methods tried for a quantity; accelerations and multipliers count together."""
         return sum(self._operations[name] for name in (MOTIONS if quantity in MOTIONS else (quantity,)))
 
     def _candidates(
@@ -278,7 +278,7 @@ class Fallback:
             if (known := digest(kernels)) not in self._seen[quantity]:
                 self._seen[quantity].add(known)
                 one = self._measured(draft, other, kernels, expected)
-                # long ones are grouped where that may be what is taken: it takes longer than measuring
+                # numbers are grouped where that may be what is taken: it takes longer than measuring
                 yield self._grouped(draft, one, expected) if one.largest <= most else one
 
     def _grouped(self, draft: Draft, one: Passing, expected: Expected) -> Passing:
@@ -287,7 +287,7 @@ class Fallback:
             return one
         before = one.scalars
         # of long ones grouping takes longer than looking for their worst states
-        one = self._at_its_worst(draft, one, draft.plain_kernel(one.alternative, one.kernels), expected)
+        one = self._at_its_worst(draft, one, expected)
         if one.scalars != before:
             return one
         whole = grouped(one.alternative)
@@ -351,14 +351,14 @@ class Fallback:
                     continue
                 worst = max(worst, record.largest)
             passed[scalar] = kernel
-        plain = draft.plain_kernel(one, kernels) if one.grouped and "float64" in passed else None
-        return self._at_its_worst(draft, Passing(worst, tuple(passed), one, kernels), plain, expected)
+        return self._at_its_worst(draft, Passing(worst, tuple(passed), one, kernels), expected, one.grouped)
 
-    def _at_its_worst(self, draft: Draft, one: Passing, plain: Kernel | None, expected: Expected) -> Passing:
-        """What passes at the states that were searched for, too, those of its `plain` kernel among them."""
+    def _at_its_worst(self, draft: Draft, one: Passing, expected: Expected, own: bool = True) -> Passing:
+        """What passes at the states that were searched for, too, its `own` worst ones among them."""
         passed, quantity, title = list(one.scalars), one.alternative.choice.quantity, one.alternative.choice.title
         judged = {scalar: one.kernels[scalar] for scalar in passed if scalar in expected.scalars}
-        errors = self.errors.at_worst(draft, judged, plain) if judged else {}
+        looked_at = one.alternative if own and "float64" in passed else None
+        errors = self.errors.at_worst(draft, judged, looked_at) if judged else {}
         if not one.alternative.choice.wide:
             lost = self._lost[quantity]
             lost[title] = max(lost.get(title, 0.0), errors.get("float64", 0.0))

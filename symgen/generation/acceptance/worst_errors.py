@@ -7,6 +7,7 @@ from typing import TypeAlias
 
 from symgen.generation.draft import Draft
 from symgen.ir.kernel import Kernel, Scalar
+from symgen.quantities.alternatives import Alternative
 from symgen.records import dataclass
 from symgen.verify.certificate import Certificate, Fault
 from symgen.verify.comparison import INACCURATE
@@ -59,17 +60,22 @@ class WorstErrors:
             judged = {scalar: kernel for scalar, kernel in kernels.items() if scalar in expected.scalars}
             errors: dict[Scalar, float] = {}
             if judged:
-                errors = self.at_worst(draft, judged, draft.plain_kernel(draft.taken(quantity), kernels))
+                errors = self.at_worst(draft, judged, draft.taken(quantity))
             self.keep(quantity, kernels, max(errors.values(), default=0.0))
             if faults := faults_at_worst(quantity, errors):
                 by_quantity[quantity] = faults
         return by_quantity
 
-    def at_worst(self, draft: Draft, kernels: Kernels, plain: Kernel | None) -> dict[Scalar, float]:
-        """The errors of kernels where they are worst, a `plain` one among them and others before."""
+    def at_worst(self, draft: Draft, kernels: Kernels, one: Alternative | None) -> dict[Scalar, float]:
+        """The errors of kernels where their quantity is worst by one method and by others before.
+
+        `one` is None where its method is not to be looked at.
+        """
         assert self._search is not None
-        if plain is not None:
-            self._search.look(plain)
+        if one is not None:
+            alternative = one
+            choice = one.choice
+            self._search.look(choice.quantity, choice.title, lambda: draft.plain_kernel(alternative, kernels))
         programs = draft.programs
         return {
             scalar: self._search.largest(kernel, programs[scalar].sincos, scalar) for scalar, kernel in kernels.items()

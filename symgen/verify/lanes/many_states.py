@@ -143,7 +143,7 @@ class _KernelRun:
 
 class _StatementGroup(NamedTuple):
     """Statements of one operation: places of their first operands, of their second ones; likewise targets, which stand
-    one after the other."""
+    one after the other.  Places are numbers until all are known."""
 
     operation: OperationName
     operands: tuple[Places, ...]
@@ -239,7 +239,7 @@ class _Plan:
                 known |= zip(targets, range(first, first + len(targets)), strict=True)
                 depth += [level] * len(targets)
                 made.append(slice(first, len(depth)))
-            groups.append(_StatementGroup(operation, tuple(np.array(read).T), tuple(made)))
+            groups.append(_StatementGroup(operation, tuple(zip(*read, strict=True)), tuple(made)))
         return tuple(groups)
 
     def _check(self, check: Check, known: Mapping[str, int]) -> _CheckPlan:
@@ -252,8 +252,8 @@ class _Plan:
 def _from_the_front(block: _BlockPlan, rows: int) -> _BlockPlan:
     """The same with places that are not negative."""
 
-    def counted(places: Places) -> Places:
-        return together(np.where(places < 0, places + rows, places))
+    def counted(places: Sequence[int]) -> Places:
+        return together([place + rows if place < 0 else place for place in places])
 
     groups = tuple(
         _StatementGroup(operation, tuple(map(counted, operands)), targets)

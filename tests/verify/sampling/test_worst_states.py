@@ -378,7 +378,7 @@ def test_u_is_judged_nearer_to_singular_states_than_samples_are() -> None:
     expected = Expected(model, model.outputs, 16, lambda _: None)
     assert min(abs(sample.state.q[1]) for sample in expected.drawn) > 0.3
     search, (kernel,) = WorstStateSearch(expected), program.kernels
-    search.look(kernel)
+    search.look(kernel.name, "its method", lambda: kernel)
     assert search.largest(kernel, program.sincos, "float64") > FACTOR
     assert search.largest(widened(kernel, "float64"), program.sincos, "float64") < 1
 
@@ -419,7 +419,7 @@ def test_surplus_rows_hide_no_loss_of_digits() -> None:
     expected = Expected(model, model.outputs, 16, lambda _: None)
     assert expected.reference.ranks.constraints < expected.reference.system.r
     search, (kernel,) = WorstStateSearch(expected), program.kernels
-    search.look(kernel)
+    search.look(kernel.name, "its method", lambda: kernel)
     assert search.largest(kernel, program.sincos, "float64") > FACTOR
 
 
@@ -459,11 +459,11 @@ def test_what_float32_loses_is_measured_where_next_to_nothing_drives() -> None:
     (kernel,), (single,) = programs["float64"].kernels, programs["float32"].kernels
     expected = Expected(model, model.outputs, 16, lambda _: None)
     only = WorstStateSearch(expected)
-    only.look(kernel)
+    only.look(kernel.name, "its method", lambda: kernel)
     assert only.largest(single, programs["float32"].sincos, "float32") < FACTOR  # what the estimates alone find
     expected.values("float32")
     search = WorstStateSearch(expected)
-    search.look(kernel)
+    search.look(kernel.name, "its method", lambda: kernel)
     assert search.largest(kernel, programs["float64"].sincos, "float64") < FACTOR
     assert search.largest(single, programs["float32"].sincos, "float32") > 4 * FACTOR
 
@@ -520,6 +520,6 @@ def test_what_is_lost_of_a_machine_that_coasts_is_looked_for() -> None:
     known = [values["forward_dynamics"] for values in expected.values("float64")]
     errors = [one.in_units(one.distance(result.entries)) for one, result in zip(known, made, strict=True)]
     search = WorstStateSearch(expected)
-    search.look(kernel)
+    search.look(kernel.name, "its method", lambda: kernel)
     assert max(errors) < 2
     assert search.largest(kernel, program.sincos, "float64") > FACTOR
