@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import threading
+import time
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from symgen.laboratory.zoo import campaign, command
+from symgen.laboratory.zoo.alone import alone, beside_others
 from symgen.laboratory.zoo.campaign import MOST_SECONDS, Campaign, JudgedDraw, judge, one_draw, shrunk
 from symgen.laboratory.zoo.cases import case_of, read_case
 from symgen.laboratory.zoo.draws.describe import Description, Terms, read_description, summands
@@ -119,6 +122,54 @@ def test_a_failing_draw_leaves_its_file_and_a_small_case(ends, tmp_path: Path) -
     large, small = Path(record.file).read_text(), Path(record.file).with_name("case.yaml").read_text()
     assert "# expected: verified" in small
     assert len(small) < len(large) / 2
+
+
+@pytest.mark.parametrize("enough", [True, False])
+def test_what_takes_too_long_beside_others_is_run_again_by_itself(tmp_path: Path, monkeypatch, enough: bool) -> None:
+    mistaken = "zoo.yaml:3:1: no mass along some motion\n  m: 0\n  ^\n  remedy: give it one\n"
+    runs = [CommandRun(-9, "", "", 61, 1, "time"), CommandRun(1, "", mistaken, 58, 1)]
+    runs = runs if enough else [runs[0], runs[0]]
+
+    def instead(_model: Path, folder: Path) -> CommandRun:
+        folder.mkdir(parents=True, exist_ok=True)
+        return runs.pop(0)
+
+    monkeypatch.setattr(campaign, "run_command", instead)
+    monkeypatch.setattr(campaign, "judged", lambda _, verdict: verdict)
+    record, _ = one_draw(Campaign(1, tmp_path, "geared"), 0)
+    assert runs == []
+    assert (record.ending, record.kind, record.cpu) == ((REFUSED, "", 58) if enough else (FAILED, "time", 61))
+
+
+def test_one_by_itself_waits_for_those_that_run_and_is_not_overtaken(tmp_path: Path) -> None:
+    order: list[str] = []
+    waiting, later = threading.Event(), threading.Event()
+
+    def by_itself() -> None:
+        waiting.set()
+        with alone(tmp_path):
+            order.append("alone")
+            # time for another to begin, were it let in
+            time.sleep(0.2)
+            order.append("done")
+
+    def beside() -> None:
+        later.set()
+        with beside_others(tmp_path):
+            order.append("later")
+
+    threads = [threading.Thread(target=by_itself), threading.Thread(target=beside)]
+    with beside_others(tmp_path), beside_others(tmp_path):
+        threads[0].start()
+        waiting.wait(10)
+        time.sleep(0.2)
+        threads[1].start()
+        later.wait(10)
+        time.sleep(0.2)
+        order.append("first")
+    for thread in threads:
+        thread.join(10)
+    assert order == ["first", "alone", "done", "later"]
 
 
 def test_a_campaign_makes_its_failures_small_and_keeps_them_as_tests(ends, tmp_path: Path, monkeypatch) -> None:
@@ -258,7 +309,7 @@ def test_a_draw_that_ends_well_leaves_nothing(ends, tmp_path: Path, monkeypatch)
     monkeypatch.setattr(campaign, "_witnessed", lambda *_: (DrawVerdict(VERIFIED), "", Coverage(20)))
     record, _ = one_draw(Campaign(1, tmp_path, "disc"), 0)
     assert not record.failed
-    assert not list(tmp_path.iterdir())
+    assert {path.suffix for path in tmp_path.iterdir()} == {".lock"}
 
 
 def test_a_draw_is_made_small_and_kept(ends, tmp_path: Path, monkeypatch) -> None:

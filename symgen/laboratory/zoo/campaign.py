@@ -14,6 +14,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import TypeVar
 
+from symgen.laboratory.zoo.alone import alone, beside_others
 from symgen.laboratory.zoo.cases import case_of
 from symgen.laboratory.zoo.draws.describe import Description
 from symgen.laboratory.zoo.draws.families import draw
@@ -111,10 +112,17 @@ def without_states(verdict: DrawVerdict, lack: str) -> DrawVerdict:
 
 
 def one_draw(campaign: Campaign, index: int) -> tuple[DrawRecord, str]:
-    """A draw from its number to its record, and a line about it."""
+    """A draw from its number to its record, and a line about it.
+
+    One that takes too long beside others is run again by itself.
+    """
     description = draw(campaign.seed, index, campaign.family)
     model = campaign.folder / f"{campaign.seed}_{index}" / "zoo.yaml"
-    ended = judge(description, model)
+    with beside_others(campaign.folder):
+        ended = judge(description, model)
+    if ended.verdict.kind == "time":
+        with alone(campaign.folder):
+            ended = judge(description, model)
     verdict = ended.verdict
     record = DrawRecord(
         campaign.seed, index, description.family, verdict.ending, verdict.kind, verdict.signature,
