@@ -24,8 +24,10 @@ from symgen.quantities.row_units import in_ordinary_units
 from symgen.quantities.select import Choice
 from symgen.records import dataclass
 from symgen.runtime.effort import TooLongError, at_most, worth_trying
-from symgen.symbolic.traverse import cost
+from symgen.symbolic.traverse import cost, reached
 
+# Scalars of an alternative beyond which numbers are grouped only in what is taken: that is most of the work there.
+LONG_ALTERNATIVE = 2_000
 # Counted cost of a method beyond which refined ones and those of last resort are given up: they take as long as others.
 LONGEST_OF_LAST_RESORT = 10_000
 # How many times other methods are offered: valid ones, then those of last resort.
@@ -36,7 +38,7 @@ TIERS = 2
 class Alternative:
     """A quantity by another method, on the graph of `mechanics`; `known` is what is known of its validity.
 
-    Its numbers are `grouped` only once it is known to be of use: that takes longer than measuring what it loses.
+    A long one has its numbers `grouped` only once it is known to be of use.
     """
 
     choice: Choice
@@ -130,8 +132,11 @@ class Alternatives:
     ) -> Alternative:
         """A quantity as it is scheduled, on a graph that holds nothing else any more."""
         made = complete(mechanics, self._generic, derived)
-        forget_others(mechanics, (made,))
-        return Alternative(choice, mechanics, made, known, grouped=False)
+        alternative = Alternative(choice, mechanics, made, known, grouped=False)
+        if len(reached(scalars(made))) > LONG_ALTERNATIVE:
+            forget_others(mechanics, (made,))
+            return alternative
+        return grouped(alternative)
 
 
 def grouped(one: Alternative) -> Alternative:

@@ -288,9 +288,10 @@ def test_a_loss_that_no_state_of_the_verification_meets_is_searched_for(
 
 
 @pytest.mark.campaign
-def test_an_alternative_has_its_numbers_grouped_once_its_worst_states_speak_for_it(
+def test_a_long_alternative_has_its_numbers_grouped_once_its_worst_states_speak_for_it(
     yoke: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(alternatives, "LONG_ALTERNATIVE", 0)
     monkeypatch.setattr(fallback, "WIDENED", 0)
     regrouped: list[str] = []
 
@@ -548,7 +549,7 @@ def test_after_long_methods_twice_the_digits_are_tried_before_the_rest(
     """The rest of them comes where more digits are of no help."""
     spoil_choice(monkeypatch, losing_digits)
     usual = derived(made(yoke))["kernels"]["multipliers"]
-    monkeypatch.setattr(fallback, "MOST_TRIED", -1)
+    monkeypatch.setattr(fallback, "LONG_TRIED", -1)
     if not digits_help:
         monkeypatch.setattr(fallback, "WIDENED", 0)
     kernel = derived(made(yoke))["kernels"]["multipliers"]

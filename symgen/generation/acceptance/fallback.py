@@ -55,9 +55,9 @@ LONGEST_WEIGHED = 6_000
 WIDENED = 3
 # Counted cost of the longest of them.
 LONGEST_WIDENED = 40_000
-# Counted cost of all methods together that are tried for a quantity, or for accelerations and multipliers, before twice
-# the digits are: the rest may do with fewer digits, but each takes seconds to be derived and measured.
-MOST_TRIED = 20_000
+# Counted cost of all long methods together that are tried for a quantity, or for accelerations and multipliers, before
+# twice the digits are: the rest may do with fewer digits, but each takes seconds to be derived and measured.
+LONG_TRIED = 20_000
 
 
 class Fallback:
@@ -174,7 +174,7 @@ class Fallback:
     def _next(self, draft: Draft, quantity: str, expected: Expected) -> Passing | None:
         """The next method that passes with a margin, or else the best of those that pass; others are noted."""
         passing, needed = self._passing[quantity], tuple(draft.kernels(quantity))
-        if (first := self._first_of(draft, quantity, expected, MOST_TRIED)) is not None:
+        if (first := self._first_of(draft, quantity, expected, LONG_TRIED)) is not None:
             return first
         for one in self._with_more_digits(draft, quantity, expected):
             # more digits in float64, too, are worth a margin only where next to none is left
@@ -251,11 +251,11 @@ class Fallback:
         """One tier after the other, until what was tried counts so many operations."""
         for tier in range(TIERS):
             candidates = self._candidates(draft, quantity, tier, expected, MARGIN)
-            while self._cost_tried(quantity) <= operations and (one := next(candidates, None)) is not None:
+            while self._tried_long(quantity) <= operations and (one := next(candidates, None)) is not None:
                 yield one
 
-    def _cost_tried(self, quantity: str) -> int:
-        """Counted cost of the methods tried for a quantity; accelerations and multipliers count together."""
+    def _tried_long(self, quantity: str) -> int:
+        """Counted cost of the long methods tried for a quantity; accelerations and multipliers count together."""
         return sum(self._operations[name] for name in (MOTIONS if quantity in MOTIONS else (quantity,)))
 
     def _candidates(
@@ -278,7 +278,7 @@ class Fallback:
             if (known := digest(kernels)) not in self._seen[quantity]:
                 self._seen[quantity].add(known)
                 one = self._measured(draft, other, kernels, expected)
-                # numbers are grouped where that may be what is taken: it takes longer than measuring
+                # long ones are grouped where that may be what is taken: it takes longer than measuring
                 yield self._grouped(draft, one, expected) if one.largest <= most else one
 
     def _grouped(self, draft: Draft, one: Passing, expected: Expected) -> Passing:

@@ -253,7 +253,10 @@ def _from_the_front(block: _BlockPlan, rows: int) -> _BlockPlan:
     """The same with places that are not negative."""
 
     def counted(places: Sequence[int]) -> Places:
-        return together([place + rows if place < 0 else place for place in places])
+        stand = [place + rows if place < 0 else place for place in places]
+        # most that do not follow each other are told apart by their ends
+        apart = stand[-1] - stand[0] != len(stand) - 1
+        return np.array(stand) if apart else together(np.array(stand))
 
     groups = tuple(
         _StatementGroup(operation, tuple(map(counted, operands)), targets)
