@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import TypeAlias
 
 from symgen.generation.draft import Draft
@@ -66,16 +67,12 @@ class WorstErrors:
                 by_quantity[quantity] = faults
         return by_quantity
 
-    def at_worst(self, draft: Draft, kernels: Kernels, one: Alternative | None) -> dict[Scalar, float]:
-        """The errors of kernels where their quantity is worst by one method and by others before.
-
-        `one` is None where its method is not to be looked at.
-        """
+    def at_worst(self, draft: Draft, kernels: Kernels, looked_at: Alternative | None) -> dict[Scalar, float]:
+        """The errors of kernels where their quantity is worst, by a method that is `looked_at` and by others before."""
         assert self._search is not None
-        if one is not None:
-            alternative = one
-            choice = one.choice
-            self._search.look(choice.quantity, choice.title, lambda: draft.plain_kernel(alternative, kernels))
+        if looked_at is not None:
+            choice, plain = looked_at.choice, partial(draft.plain_kernel, looked_at, kernels)
+            self._search.look(choice.quantity, choice.title, plain)
         programs = draft.programs
         return {
             scalar: self._search.largest(kernel, programs[scalar].sincos, scalar) for scalar, kernel in kernels.items()
