@@ -127,7 +127,7 @@ class Draft:
 
     def plain_kernel(self, alternative: Alternative, kernels: Mapping[Scalar, Kernel]) -> Kernel:
         """The kernel in float64 that works with plain numbers, of an alternative with these kernels."""
-        if "float64" not in alternative.choice.wide:
+        if "float64" in kernels and "float64" not in alternative.choice.wide:
             return kernels["float64"]
         plain = replace(alternative, choice=replace(alternative.choice, wide=()))
         return self.kernels_along(plain, ("float64",))["float64"]

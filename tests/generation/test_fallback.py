@@ -19,6 +19,7 @@ from symgen.diagnostics import SymgenBug
 from symgen.generation.acceptance import fallback
 from symgen.generation.acceptance.fallback import NARROW
 from symgen.generation.results import Options, Result
+from symgen.ir import kernel as kernels
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.guards import Guard
 from symgen.methods.forward_dynamics.motion import Motion
@@ -444,6 +445,16 @@ def test_float32_works_with_twice_the_digits_where_it_alone_is_rejected(
     content = json.loads((tmp_path / "out/yoke/derivation.json").read_bytes())
     assert content["kernels"]["multipliers"]["twice_the_digits"] == ["float32"]
     assert cli.main([*common, "--check"]) == 0
+
+
+@pytest.mark.parametrize("scalar", ["float32", pytest.param("float64", marks=pytest.mark.campaign)])
+def test_a_scalar_type_that_is_asked_for_alone_takes_the_next_method_too(
+    yoke: Path, monkeypatch: pytest.MonkeyPatch, scalar: kernels.Scalar
+) -> None:
+    spoil_choice(monkeypatch, edgy)
+    result = generate(yoke, replace(FAST, parts=("c",), scalars=(scalar,)), lambda _: None)
+    assert result.failures == ()
+    assert "searched for" in derived(result)["rejected"][0]["why"]
 
 
 @pytest.mark.campaign

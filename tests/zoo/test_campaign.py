@@ -88,7 +88,7 @@ def ends(monkeypatch):
     """The command replaced by an ending, without files."""
 
     def use(run: CommandRun) -> None:
-        def instead(_model: Path, folder: Path) -> CommandRun:
+        def instead(_model: Path, folder: Path, _options: tuple[str, ...]) -> CommandRun:
             folder.mkdir(parents=True, exist_ok=True)
             return run
 
@@ -130,7 +130,7 @@ def test_what_takes_too_long_beside_others_is_run_again_by_itself(tmp_path: Path
     runs = [CommandRun(-9, "", "", 61, 1, "time"), CommandRun(1, "", mistaken, 58, 1)]
     runs = runs if enough else [runs[0], runs[0]]
 
-    def instead(_model: Path, folder: Path) -> CommandRun:
+    def instead(_model: Path, folder: Path, _options: tuple[str, ...]) -> CommandRun:
         folder.mkdir(parents=True, exist_ok=True)
         return runs.pop(0)
 

@@ -27,7 +27,7 @@ def test_a_case_ends_as_it_must(path: Path, tmp_path: Path, tool: Callable[[str]
     case = read_case(path)
     model = tmp_path / "zoo.yaml"
     model.write_text(case.model)
-    run = run_command(model, tmp_path / "out")
+    run = run_command(model, tmp_path / "out", case.options)
     ending = verdict_of(run)
     assert case.expected == {NOTICED: VERIFIED}.get(ending.ending, ending.ending), f"{ending}\n{run.err}"
     if ending.ending in (VERIFIED, NOTICED):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -134,6 +135,10 @@ def test_names_are_replaced_as_words() -> None:
 
 
 def test_a_stored_case_is_read_as_it_was(tmp_path: Path) -> None:
-    case = case_of(draw(5, 1, "bennett"), DrawVerdict("failed", "internal error", "KeyError: `.` at run"))
-    (tmp_path / "case.yaml").write_text(case.text)
-    assert read_case(tmp_path / "case.yaml") == case
+    verdict = DrawVerdict("failed", "internal error", "KeyError: `.` at run")
+    alone = replace(draw(5, 1, "bennett"), options=("--scalar", "float32"))
+    for description in (replace(alone, options=()), alone):
+        case = case_of(description, verdict)
+        (tmp_path / "case.yaml").write_text(case.text)
+        assert case.options == description.options
+        assert read_case(tmp_path / "case.yaml") == case

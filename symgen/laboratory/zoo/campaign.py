@@ -72,7 +72,7 @@ def judge(description: Description, model: Path) -> JudgedDraw:
     """Writes the model file, runs the command beside it and looks at the numbers."""
     write(description, model)
     folder = model.with_suffix("")
-    run = run_command(model, folder)
+    run = run_command(model, folder, description.options)
     verdict = judged(description, verdict_of(run))
     compared = None
     if not verdict.failed and verdict.ending != REFUSED:

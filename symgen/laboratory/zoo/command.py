@@ -7,6 +7,7 @@ import os
 import sys
 import time
 from collections import Counter
+from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -56,7 +57,8 @@ def main() -> int:
         return _count(given.seed, range(given.first, given.first + given.draws), given.family)
     if given.file is not None:
         case = read_case(given.file)
-        return _one(read_description(case.model, case.start), given.file.stem, given)
+        description = replace(read_description(case.model, case.start), options=case.options)
+        return _one(description, given.file.stem, given)
     if given.store is not None:
         return _one(draw(given.seed, given.first, given.family), f"{given.seed}_{given.first}", given)
     if given.sum is not None:

@@ -10,7 +10,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -37,14 +37,16 @@ class CommandRun:
     ended: str = ""
 
 
-def run_command(model: Path, folder: Path, cpu: float = CPU_SECONDS, megabytes: float = MEGABYTES) -> CommandRun:
-    """`symgen MODEL` into `folder`, verification included.
+def run_command(
+    model: Path, folder: Path, options: Sequence[str] = (), cpu: float = CPU_SECONDS, megabytes: float = MEGABYTES
+) -> CommandRun:
+    """`symgen MODEL` with options into `folder`, verification included.
 
     `ended` says why a run was ended from here: time, memory or no end.
     """
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    command = [sys.executable, "-m", "symgen", str(model), "--out", str(folder)]
+    command = [sys.executable, "-m", "symgen", str(model), "--out", str(folder), *options]
     with (folder / "stdout").open("w+") as out, (folder / "stderr").open("w+") as err:
         began = os.times()
         process = subprocess.Popen(

@@ -37,7 +37,7 @@ class Description:
 
     `start` is a configuration that satisfies the constraints by construction, whether the file tells it or not.
     `marks` say what the text does not show: how loops were closed, which mistake was made on purpose. `files` stand
-    beside the model file.
+    beside the model file. `options` stand behind it on the command line.
     """
 
     family: str
@@ -45,6 +45,7 @@ class Description:
     start: Mapping[str, float] = field(default_factory=dict)
     marks: tuple[str, ...] = ()
     files: Mapping[str, str] = field(default_factory=dict)
+    options: tuple[str, ...] = ()
 
     @property
     def text(self) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.draws.describe import Description
@@ -45,10 +46,14 @@ FAMILIES: dict[str, tuple[float, Callable[[Dice], Description]]] = {
     "gyroscope": (0.7, gyroscope),
     "robot_files": (1.5, robot_files),
 }
+# scalar types that are asked for alone, and how often
+ALONE = {"": 8.0, "float64": 1.0, "float32": 1.0}
 
 
 def draw(seed: int, index: int, family: str = "") -> Description:
     """The draw with this number of a campaign; the same on every machine."""
     choice = Dice("family", seed, index)
     name = family or choice.weighted({name: weight for name, (weight, _) in FAMILIES.items()})
-    return FAMILIES[name][1](Dice("zoo", name, seed, index))
+    description = FAMILIES[name][1](Dice("zoo", name, seed, index))
+    alone = Dice("scalar", seed, index).weighted(ALONE)
+    return replace(description, options=("--scalar", alone)) if alone else description
