@@ -24,8 +24,9 @@ def member(name: str, **changed: Any) -> Member:
         return (root / "result.txt").read_text()
 
     command = ("python", "-c", COUNT.format(name))
-    files = (f"generated/{name}/files.sha256", "code")
-    return replace(Member("weighing", name, (command,), files, ("scales",), result), **changed)
+    checksums = (f"generated/{name}/files.sha256",)
+    made = Member("weighing", name, (command,), ("code",), ("scales",), result, checksums=checksums)
+    return replace(made, **changed)
 
 
 @pytest.fixture
@@ -88,7 +89,9 @@ def test_every_change_is_noticed(root: Path) -> None:
     (root / "generated/b/files.sha256").write_text("1235  c/x.c\n")  # one byte of a kernel
     assert run_changed(root, members, NOT_SAMPLED, version) == 0
     assert ran(root) == ["b"]
-    (root / "generated/b/files.sha256").write_text("1234  c/x.c\n")
+    (root / "generated/b/files.sha256").write_text("1234  c/x.c\n5678  report/x.pdf\n")  # no campaign reads it
+    assert run_changed(root, members, NOT_SAMPLED, version) == 0
+    assert ran(root) == []
 
     (root / "code/weigh.py").write_text("2\n")
     run_changed(root, members, NOT_SAMPLED, version)

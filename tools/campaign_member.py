@@ -13,6 +13,7 @@ class Member:
     """One run of a campaign: commands one after the other, the files that go in, and what is kept of the result.
 
     A command that begins with `python` is run by this interpreter, so that hashes do not depend on where it is.
+    `checksums` are files of checksums of a model's generated files that go in, all but its report.
     """
 
     campaign: str
@@ -23,3 +24,4 @@ class Member:
     result: Callable[[Path], Any] = lambda _: "passed"
     alone: bool = False
     environment: tuple[tuple[str, str], ...] = ()
+    checksums: tuple[str, ...] = ()

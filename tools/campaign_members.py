@@ -1,7 +1,8 @@
 """What the campaigns consist of: commands, what goes in, and what is kept of the results.
 
-A campaign on a shipped model depends on the product by the bytes it made (`files.sha256`), on its own code, and on what
-this imports besides the way to those bytes; one on anything else depends on the product as a whole.
+A campaign on a shipped model depends on the product by the bytes it made (`files.sha256`, but for the report), on its
+own code, and on what this imports besides the way to those bytes; one on anything else depends on the product as a
+whole.
 """
 
 from __future__ import annotations
@@ -85,7 +86,8 @@ def all_members(root: Path) -> tuple[Member, ...]:
                (*PRODUCT, *_tests_of(root, "target"), "examples"), CORES),
         *(_proof(root, name) for name in models),
         *(_stress(root, name) for name in energies),
-        *(_mechanism(f"models/{name}.yaml", name, (*_made(name), *_code(root, "symgen/verify"))) for name in bodies),
+        *(_mechanism(f"models/{name}.yaml", name, (*_made(name), *_code(root, "symgen/verify")), _checksums(name))
+          for name in bodies),
         *(_mechanism(path := f"tests/mechanisms/{name}.yaml", name, (path, *PRODUCT)) for name in others),
         Member("mechanisms", "witnesses", ((*PYTEST, "tests/mechanisms", "-m", "mechanisms or not mechanisms"),),
                (*PRODUCT, *_tests_of(root, "mechanisms")), ("gcc",)),
@@ -95,7 +97,7 @@ def all_members(root: Path) -> tuple[Member, ...]:
                ((*PYTEST, "tests/toolchain/test_portable_pair.py", "-k", "everywhere", *NOTED),),
                (LOCK, "symgen/ir", "symgen/backends", "templates/c", *_tests_of(root, "toolchain")), ("gcc",),
                lambda root: figures(root / FIGURES), environment=(("SYMGEN_TRIG_STRIDE", "1"),)),
-        *(_bench(f"models/{name}.yaml", name, (*_made(name), *benching)) for name in energies),
+        *(_bench(f"models/{name}.yaml", name, (*_made(name), *benching), _checksums(name)) for name in energies),
         _bench(other := "docs/bench/rapkm_without_payload.yaml", "rapkm_without_payload", (other, *PRODUCT)),
         Member("bench", "tests", ((*PYTEST, "tests/bench", "-m", "bench"),), (*PRODUCT, *_tests_of(root, "bench")),
                ("gcc", "valgrind"), alone=True),
@@ -136,7 +138,11 @@ def _tests(root: Path, path: str, tools: tuple[str, ...]) -> Member:
 
 
 def _made(name: str) -> tuple[str, ...]:
-    return (f"models/{name}.yaml", f"generated/{name}/files.sha256", LOCK)
+    return (f"models/{name}.yaml", LOCK)
+
+
+def _checksums(name: str) -> tuple[str, ...]:
+    return (f"generated/{name}/files.sha256",)
 
 
 def _written(name: str, file: str) -> Callable[[Path], Any]:
@@ -151,7 +157,8 @@ def _target(root: Path, name: str) -> Member:
 
     command = (*SYMGEN, "target", f"models/{name}.yaml", "--cpu", "all", "--quiet")
     code = (*_code(root, "symgen/laboratory/target", "symgen/closedform"), "templates/target", "templates/package")
-    return Member("firmware", name, (command,), (*_made(name), *code), CORES, result)
+    files = (*_made(name), *code)
+    return Member("firmware", name, (command,), files, CORES, result, checksums=_checksums(name))
 
 
 def _proof(root: Path, name: str) -> Member:
@@ -162,7 +169,8 @@ def _proof(root: Path, name: str) -> Member:
     make = (*SYMGEN, f"models/{name}.yaml", "--only", "c,proof", "--recorded", "generated", "--out", "build/proof")
     table = (PYTHON, "tools/proof_table.py", "build/proof", "generated", name)
     code = (*_code(root, "symgen/proof"), "templates/proof", *imported(root, ("tools/proof_table.py",), ("symgen",)))
-    return Member("proof", name, (make, table), (*_made(name), *code), ("frama-c", "gappa", "gcc"), result)
+    files, tools = (*_made(name), *code), ("frama-c", "gappa", "gcc")
+    return Member("proof", name, (make, table), files, tools, result, checksums=_checksums(name))
 
 
 def _stress(root: Path, name: str) -> Member:
@@ -173,12 +181,12 @@ def _stress(root: Path, name: str) -> Member:
 
     command = (*SYMGEN, "stress", f"models/{name}.yaml", "--quiet")
     code = (*_code(root, "symgen/laboratory/stress"), "templates/stress")
-    return Member("stress", name, (command,), (*_made(name), *code), ("gcc",), result)
+    return Member("stress", name, (command,), (*_made(name), *code), ("gcc",), result, checksums=_checksums(name))
 
 
-def _mechanism(path: str, name: str, files: tuple[str, ...]) -> Member:
+def _mechanism(path: str, name: str, files: tuple[str, ...], checksums: tuple[str, ...] = ()) -> Member:
     command = (*SYMGEN, path, "--only", "c,python", "--states", "32", "--quiet", "--out", "build/mechanisms")
-    return Member("mechanisms", name, (command,), files, ("gcc",))
+    return Member("mechanisms", name, (command,), files, ("gcc",), checksums=checksums)
 
 
 def _zoo() -> Member:
@@ -197,14 +205,16 @@ def _zoo() -> Member:
     return Member("zoo", "same_draws", (command,), (*PRODUCT, *MORE_LOCKS), ("gcc",), result, alone=True)
 
 
-def _bench(path: str, name: str, files: tuple[str, ...]) -> Member:
+def _bench(path: str, name: str, files: tuple[str, ...], checksums: tuple[str, ...] = ()) -> Member:
     """What symgen's own kernels with its own sine and cosine take: nothing of it depends on the processor."""
 
     def result(root: Path) -> Any:
         return counted(_written(name, "bench.json")(root))
 
     command = (*SYMGEN, "bench", path, "--quiet")
-    return Member("bench", name, (command,), (*files, "templates/bench"), ("gcc", "valgrind"), result, alone=True)
+    tools = ("gcc", "valgrind")
+    files = (*files, "templates/bench")
+    return Member("bench", name, (command,), files, tools, result, alone=True, checksums=checksums)
 
 
 def counted(bench: Any) -> Any:

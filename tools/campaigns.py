@@ -33,13 +33,15 @@ ROOT = Path(__file__).resolve().parent.parent
 RECORD = "tests/campaigns.json"
 SAMPLED = 12
 LAST_LINES = 30
+# The folder of a model's generated files that no campaign reads.
+REPORT = "report/"
 # Folders of what Python and an installation make beside the sources.
 MADE = frozenset({"__pycache__", "compiled"})
 Record = dict[str, dict[str, dict[str, Any]]]
 
 
 def inputs_hash(root: Path, member: Member, version: Callable[[str], str]) -> str:
-    """What went in, as one hash: commands, files below the given paths, versions of tools."""
+    """What went in, as one hash: commands, files below the given paths, generated files, versions of tools."""
     hashed = hashlib.sha256()
     for part in (*member.commands, *member.environment, *((tool, version(tool)) for tool in member.tools)):
         hashed.update(repr(part).encode())
@@ -47,6 +49,10 @@ def inputs_hash(root: Path, member: Member, version: Callable[[str], str]) -> st
         for file in sorted(_below(root / path)):
             hashed.update(f"{file.relative_to(root).as_posix()}\0".encode())
             hashed.update(hashlib.sha256(file.read_bytes()).digest())
+    for path in member.checksums:
+        lines = (root / path).read_text(encoding="utf-8").splitlines(keepends=True)
+        hashed.update(path.encode())
+        hashed.update("".join(line for line in lines if not line.split()[1].startswith(REPORT)).encode())
     return hashed.hexdigest()
 
 

@@ -16,6 +16,7 @@ from pathlib import Path
 
 from symgen.closedform.forms import derive_closed_forms
 from symgen.closedform.published import decide_published
+from symgen.model.inertial_parameters import ELEMENTS
 from symgen.model.load import load_model
 from symgen.model.quantities import QUANTITIES
 
@@ -133,8 +134,17 @@ def quantities() -> str:
     ]
     for q in QUANTITIES:
         shape = " × ".join(q.shape).replace("delta", "δ").replace("3*points", "3p").replace("points", "p")
+        shape = shape.replace("inertial_parameters", "inertial parameters")
         row = (f"`{q.name}`", q.symbol, q.equation, q.description, ", ".join(q.arguments), shape)
         lines.append(f"| {' | '.join(row)} |")
+    lines += [
+        "",
+        f"Inertial parameters are {', '.join(ELEMENTS)} of each body in the order of the file (mass, first moments, "
+        "the inertia tensor about the origin of the body's frame, in its axes), then Ir of each rotor in "
+        "`rotor_inertias`. Columns of `regressor` have their names in C (`PRESS_PI_CRANK_MX`), in Python "
+        "(`INERTIAL_PARAMETERS`) and in the help of each function; it is made where it is named, `all` leaves it out "
+        "([base parameters](base-parameters.md#the-regressor)).",
+    ]
     return "\n".join(lines) + "\n"
 
 
