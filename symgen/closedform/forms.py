@@ -14,6 +14,7 @@ from symgen.closedform.display import latex_name
 from symgen.closedform.exact import Exact
 from symgen.closedform.mechanics import ExactSystem, make_translator
 from symgen.closedform.points import POINT_DIGITS, generic_points
+from symgen.closedform.regressor import ExactRegressor
 from symgen.closedform.singular import SingularSet, derive_singular_sets
 from symgen.closedform.spelling import Speller
 from symgen.closedform.structure import Integrability, RankStructure, derive_integrability, derive_structure
@@ -25,9 +26,11 @@ from symgen.closedform.structured import (
     structured_projector,
     structured_pseudoinverse,
 )
+from symgen.model.availability import lacking
 from symgen.model.expressions.expression import Expression, Name
 from symgen.model.kinematics.energy_form import energy_form, points_written
 from symgen.model.model import Allocation, Model, PublishedEquations, PublishedMatrix, PublishedSingularSet
+from symgen.model.quantities import REGRESSOR, ROWS
 from symgen.records import dataclass
 
 LONG_MATRIX = 60
@@ -79,6 +82,8 @@ def derive_closed_forms(model: Model, straight_line_operations: Mapping[str, int
     divides by something identically zero, TooLargeError when already B or M is too long to write out, or where no
     configuration was found at which ranks are seen.
     """
+    has_columns = REGRESSOR in model.outputs and lacking(ROWS[REGRESSOR], model) is None
+    described = model
     asked = not {"all", "point_position", "point_jacobian"}.isdisjoint(model.outputs)
     model, places, velocities = points_written(model) if asked else (energy_form(model), (), ())
     of_points = map(Name, (*places, *velocities))
@@ -92,7 +97,8 @@ def derive_closed_forms(model: Model, straight_line_operations: Mapping[str, int
     exact = Exact(model, mechanics, structure)
     speller = Speller(exact.ring, dynamic_names(model))
     kernel = _short_kernel(exact)
-    writer = _FormWriter(model, exact, speller, straight_line_operations or {}, places, velocities)
+    columns = ExactRegressor(described, structure) if has_columns else None
+    writer = _FormWriter(model, exact, speller, straight_line_operations or {}, places, velocities, columns)
     return ClosedForms(
         model=model.name,
         forms={form.quantity: form for form in writer.all_forms()},
@@ -169,9 +175,10 @@ class _FormWriter:
         operations: Mapping[str, int],
         places: tuple[str, ...],
         velocities: tuple[str, ...],
+        columns: ExactRegressor | None = None,
     ) -> None:
         self.model = model
-        self.places, self.velocities = places, velocities
+        self.places, self.velocities, self.columns = places, velocities, columns
         self.exact = exact
         self.speller = speller
         self.operations = operations
@@ -209,6 +216,8 @@ class _FormWriter:
             yield self._direct("orthogonal_complement", self._complement)
         if model.inputs:
             yield from self._actuation_forms(projector)
+        if self.columns is not None:
+            yield self._regressor(self.columns)
         if self.places:
             yield self._direct("point_position", lambda: mechanics.places(self.places))
             yield self._direct("point_jacobian", lambda: mechanics.rate_coefficients(self.velocities))
@@ -263,6 +272,15 @@ class _FormWriter:
             except TooLargeError as large:
                 reason = f"not written out: {large}"
         return ClosedForm(quantity, None, (), f"{reason}; the allocation of redundant inputs")
+
+    def _regressor(self, columns: ExactRegressor) -> ClosedForm:
+        """Y, in a ring of its own."""
+        exact = columns.exact
+        speller = Speller(exact.ring, dynamic_names(exact.model))
+        own = _FormWriter(exact.model, exact, speller, self.operations, (), ())
+        form = own._direct(REGRESSOR, columns.matrix, "the pseudoinverse of N_B M times the columns of tau")
+        self.names |= own.names
+        return form
 
     def _pseudoinverse(self) -> ClosedForm:
         """B^+, or the entries of S = B B^T with the formula."""

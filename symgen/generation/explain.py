@@ -16,7 +16,7 @@ from symgen.generation.requested import unknown_quantity
 from symgen.generation.results import LINEARIZATION, NAMED_METHODS, Options
 from symgen.methods.selection import MethodChoice
 from symgen.model.load import load_model
-from symgen.model.quantities import BASE_PARAMETERS
+from symgen.model.quantities import BASE_PARAMETERS, NAMED, ROWS
 from symgen.quantities.catalogue import BY_NAME
 from symgen.report.gather import gather
 
@@ -40,7 +40,9 @@ def explain(
     if quantity is not None:
         model = replace(model, outputs=(*model.outputs, quantity))
     progress("deriving")
-    draft = as_recorded(model, ("all",), Options(scalars=("float64",), methods=methods or {}, measured=out))
+    # what `all` leaves to those who name it has a kernel here where it is asked for
+    outputs = ("all", quantity) if quantity is not None and ROWS[quantity].needs == NAMED else ("all",)
+    draft = as_recorded(model, outputs, Options(scalars=("float64",), methods=methods or {}, measured=out))
     progress("closed forms")
     try:
         report = gather(model, facts(draft))

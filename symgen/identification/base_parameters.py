@@ -23,7 +23,6 @@ from symgen.identification.coefficient_forms import (
 )
 from symgen.identification.constrained_regressor import ConstrainedRegressor
 from symgen.identification.geometry import geometry_values
-from symgen.identification.inertial_parameters import InertialParameter, inertial_parameters, values
 from symgen.identification.motion_states import BallSystem, NoMotionError, motion_states
 from symgen.identification.taylor_balls import (
     FIRST_BALL_BITS,
@@ -35,6 +34,7 @@ from symgen.identification.taylor_balls import (
 )
 from symgen.model.configurations.gradient import Gradients
 from symgen.model.configurations.mechanics import default_values
+from symgen.model.inertial_parameters import InertialParameter, inertial_parameters, values
 from symgen.model.model import Model
 from symgen.runtime.activity import working
 

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from symgen.identification.base_parameters import BaseParameter, BaseParameters
 from symgen.identification.coefficient_forms import CoefficientForm, FormTerm
-from symgen.identification.inertial_parameters import InertialParameter
+from symgen.model.inertial_parameters import InertialParameter
 
 # Columns of a terminal that lines keep to.
 LINE_WIDTH = 80

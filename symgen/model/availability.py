@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from symgen.model.inertial_parameters import inertial_parameters
 from symgen.model.model import Model
 from symgen.model.open_task import directions, left_open
 from symgen.model.quantities import (
@@ -20,7 +21,7 @@ from symgen.model.quantities import (
 )
 
 # What would hold friction of reactions, and is made without it only.
-WITHOUT_FRICTION = frozenset({"actuator_bias"})
+WITHOUT_FRICTION = frozenset({"actuator_bias", "regressor"})
 
 
 def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actuation: int | None = None) -> str | None:
@@ -36,6 +37,7 @@ def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actua
         "k": (len(model.task), "`task`"),
         "points": (len(model.mechanism.points), "points"),
         "parameters": (len(model.parameters), "parameters"),
+        "inertial_parameters": (len(inertial_parameters(model.mechanism)), "bodies and no rotor inertias"),
         "delta": (delta, "degrees of freedom"),
     }
     for size, (count, what) in counts.items():

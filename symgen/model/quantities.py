@@ -27,6 +27,9 @@ TASK, TASK_RATES, TASK_PLACES, TASK_OPEN = "task", "task rates", "task places", 
 # depend on each other.
 DERIVATIVES, OF_INPUTS, VARIATIONS = "derivatives", "derivatives of inputs", "derivatives along constraints"
 
+# What is made where it is named, and never for `all`.
+NAMED = "its name in outputs"
+
 
 @dataclass(frozen=True, slots=True)
 class QuantityRow:
@@ -34,8 +37,8 @@ class QuantityRow:
 
     `result` is what its array is called in C.  `shape` has its extents, sums of products of numbers and of sizes of the
     system: n coordinates, m inputs, r rows, of these r_g geometric, delta degrees of freedom, k coordinates of the
-    task, points, parameters.  A quantity exists where none of them is 0 and the model has what it `needs`.  The `main`
-    ones are what the equations of motion are solved for.
+    task, points, parameters, inertial parameters.  A quantity exists where none of them is 0 and the model has what it
+    `needs`.  The `main` ones are what the equations of motion are solved for.
     """
 
     name: str
@@ -159,6 +162,8 @@ QUANTITIES: tuple[QuantityRow, ...] = (
          "derivatives of J_uᵀ w by q, qd and qdd along a direction v of these", OF_INPUTS),
     _row("inverse_dynamics_parameter_jacobian", "J_p", "", "u_p", "q qd qdd", "m parameters",
          "derivatives of u by the parameters, in their order", OF_INPUTS),
+    _row("regressor", "Y", "", "Y", "q qd qdd", "m inertial_parameters",
+         "least inputs for a unit of each inertial parameter, in which u of bodies and rotors is linear", NAMED),
     _row("constraint_variations", "X", "", "X", "q qd qdd", "3*n 3*n",
          "projector onto the changes of q, qd and qdd that the constraints allow", VARIATIONS),
     _row("inverse_dynamics_residual", "F Fᵀ(τ − M u)", "", "residual", "q qd qdd", "n",
@@ -195,5 +200,7 @@ MAIN = tuple(quantity.name for quantity in QUANTITIES if quantity.main)
 """u, q̈ and λ, which take methods of their own and have kernels for many states."""
 MOTIONS = MAIN[1:]
 """q̈ and λ, which follow from inputs: methods make them together."""
+# Whose columns have names: those of the inertial parameters.
+REGRESSOR = "regressor"
 # No quantity: what `explain` tells of a model in the place of one, which combinations of inertial parameters count.
 BASE_PARAMETERS = "base_parameters"

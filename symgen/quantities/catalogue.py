@@ -15,7 +15,9 @@ from symgen.methods.given.functions import GivenBy, measured, task
 from symgen.methods.given.least_motion import LeastMotion
 from symgen.methods.quantity import Quantity, is_fixed
 from symgen.methods.redundancy.utilisation import utilisation
+from symgen.methods.regressor import regressor
 from symgen.model.availability import lacking
+from symgen.model.inertial_parameters import inertial_parameters
 from symgen.model.model import Model
 from symgen.model.quantities import QUANTITIES, QuantityRow
 from symgen.records import dataclass
@@ -170,6 +172,7 @@ _DERIVED: dict[str, _Derived] = {
         lambda d: flatten(d.inverse_dynamics_jacobian(d.mechanics.parameters)),
         _inputs,
     ),
+    "regressor": (lambda d: flatten(regressor(d)), _actuation),
     "constraint_variations": (lambda d: flatten(constraint_variations(d)), _variations),
     "inverse_dynamics_residual": (lambda d: d.inverse_dynamics_residual(), _residual),
     "friction_residual": (lambda d: d.friction_residual(), _inputs),
@@ -195,8 +198,8 @@ def sizes(model: Model, generic: Genericity) -> dict[str, int]:
     """The sizes of a system, which shapes are made of."""
     geometric = sum(row.kind == "geometric" for row in model.constraints)
     of_system = {"n": generic.n, "r": generic.r, "r_g": geometric, "m": generic.m, "delta": generic.delta}
-    of_system["k"] = len(model.task)
-    return {**of_system, "points": len(model.mechanism.points), "parameters": len(model.parameters)}
+    of_system |= {"k": len(model.task), "points": len(model.mechanism.points), "parameters": len(model.parameters)}
+    return {**of_system, "inertial_parameters": len(inertial_parameters(model.mechanism))}
 
 
 def missing(entry: CatalogueEntry, model: Model, generic: Genericity) -> str | None:

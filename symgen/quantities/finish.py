@@ -8,9 +8,10 @@ from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
 from symgen.methods.method import INPUTS
 from symgen.methods.quantity import Quantity, is_fixed, scalars
+from symgen.model.inertial_parameters import in_words
 from symgen.model.model import Model
 from symgen.model.open_task import left_open, norm_of_motions
-from symgen.model.quantities import MOTIONS
+from symgen.model.quantities import MOTIONS, REGRESSOR
 from symgen.quantities.excess import with_test_of_excess
 from symgen.quantities.moving_axes import in_moving_axes
 from symgen.quantities.row_units import in_units_of_the_file
@@ -52,6 +53,9 @@ def _remarked(derived: Quantity, generic: Genericity, model: Model) -> Quantity:
     if derived.name == MOTIONS[1] and generic.rank < generic.r:
         which = f"not unique, as the constraints depend on each other (rank {generic.rank} of {generic.r})"
         return replace(derived, remark=f"{which}: these are the smallest; u and q̈ are not affected")
+    if derived.name == REGRESSOR:
+        least = "" if model.allocation is None else "the least whatever `allocation` says; "
+        return replace(derived, remark=f"{least}columns {in_words(model.mechanism)}")
     if derived.name == INPUTS and not generic.full_actuation:
         return replace(derived, remark=short_of_inputs(generic))
     return derived

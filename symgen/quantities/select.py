@@ -13,7 +13,7 @@ from symgen.methods.method import INPUTS
 from symgen.methods.quantity import Quantity, scalars
 from symgen.methods.selection import AUTO, MethodChoice, Methods
 from symgen.model.model import Model
-from symgen.model.quantities import FRICTION, LIMITED, POINTS, TASK_OPEN
+from symgen.model.quantities import FRICTION, LIMITED, NAMED, POINTS, TASK_OPEN
 from symgen.quantities.candidates import Candidates
 from symgen.quantities.catalogue import BY_NAME, CATALOGUE, CatalogueEntry, missing
 from symgen.quantities.everything import WorkBudget, too_long
@@ -93,7 +93,9 @@ def requested(model: Model, generic: Genericity, outputs: Sequence[str]) -> tupl
 
 def _is_meant(entry: CatalogueEntry, model: Model) -> bool:
     """Whether `all` asks a system for a quantity: for places of points where it has some, derivatives where it says,
-    what is measured and what is of a task where it names that."""
+    what is measured and what is of a task where it names that; columns for each body nowhere."""
+    if entry.needs == NAMED:
+        return False
     if entry.row.is_derivative:
         return model.derivatives
     if entry.row.is_of_measured:

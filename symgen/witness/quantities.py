@@ -12,6 +12,7 @@ from symgen.witness.allocation import allocated, utilisation
 from symgen.witness.given import quantities_of_given
 from symgen.witness.lagrange import Lagrange, along
 from symgen.witness.linear import compound, pseudoinverse, solve
+from symgen.witness.regressor import regressor
 
 # Newton steps towards V of the configuration that is projected.
 PROJECTION_STEPS = 2
@@ -66,6 +67,8 @@ def derive(model: Model, s: Lagrange, ranks: ConfigurationRanks) -> dict[str, ca
     }
     if model.allocation is not None and lacking(ROWS["utilisation"], model) is None:
         quantities["utilisation"] = utilisation(model, model.allocation, s, N, ranks.actuation)
+    if lacking(ROWS["regressor"], model) is None:
+        quantities["regressor"] = regressor(model, s, M_plus)
     if model.rough:  # u and what follows from it hold friction of reactions, which is a fixed point
         for name in (*MAIN, *WITHOUT_FRICTION):
             quantities.pop(name, None)

@@ -17,7 +17,6 @@ from symgen.identification.base_parameters import BaseParameters, NoBodiesError,
 from symgen.identification.coefficient_forms import recognized
 from symgen.identification.constrained_regressor import ConstrainedRegressor
 from symgen.identification.geometry import geometry_values
-from symgen.identification.inertial_parameters import inertial_parameters, values
 from symgen.identification.motion_states import BallSystem, motion_states
 from symgen.identification.taylor_balls import WideBallError, ball_precision, may_vanish
 from symgen.identification.text import base_parameters_text
@@ -28,6 +27,7 @@ from symgen.mechanics.genericity import parameter_values
 from symgen.mechanics.system import System
 from symgen.model.configurations.mechanics import default_values
 from symgen.model.expressions.walk import evaluate
+from symgen.model.inertial_parameters import inertial_parameters, values
 from symgen.model.load import load_text
 from symgen.model.model import Model
 from symgen.quantities.select import derive_quantities

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symgen.backends.c.functions import CFunctionView
-from symgen.backends.c.identity import IdentityView
+from symgen.backends.c.identity import EntryPlaces, IdentityView
 from symgen.backends.c.names import guard
 from symgen.backends.c.pairs import PairsView, pairs_view
 from symgen.backends.c.steps import StepsView, steps_view
@@ -49,6 +49,7 @@ class FileView:
     functions: tuple[CFunctionView, ...]
     struct: StructView | None
     statuses: StatusView | None
+    columns: EntryPlaces | None
     includes_math: bool
     pairs: PairsView | None
     both: LibraryPair | None
@@ -65,6 +66,7 @@ def file_view(
     functions: tuple[CFunctionView, ...],
     struct: StructView | None = None,
     statuses: StatusView | None = None,
+    columns: EntryPlaces | None = None,
 ) -> FileView:
     """The files of a variant, whose header includes that of the kernels for one state; of these without `ending`.
 
@@ -81,6 +83,7 @@ def file_view(
         functions=functions,
         struct=struct,
         statuses=statuses,
+        columns=columns,
         includes_math=uses_library(program),
         pairs=pairs_view(prefix, suffix, program),
         both=library_pair(prefix, program),

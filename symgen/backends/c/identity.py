@@ -11,7 +11,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from symgen import __version__
 from symgen.backends.about import symbol_text
 from symgen.backends.comments import c_comment
+from symgen.ir.kernel import Program
+from symgen.model.inertial_parameters import inertial_parameters
 from symgen.model.model import Model
+from symgen.model.quantities import REGRESSOR
 from symgen.naming import macro_name
 from symgen.records import dataclass
 
@@ -37,6 +40,15 @@ class IdentityView:
     text_function: str
 
 
+def column_view(model: Model, program: Program) -> EntryPlaces | None:
+    """The columns of the regressor, where a program has it."""
+    if all(kernel.name != REGRESSOR for kernel in program.kernels):
+        return None
+    prefix = macro_name(model.c_name)
+    named = [(f"{one.owner}_{one.element}", one.name) for one in inertial_parameters(model.mechanism)]
+    return _entry_places(prefix, "PI", "inertial parameters (columns of Y)", named)
+
+
 def identity_view(model: Model) -> IdentityView:
     """Of a model."""
     prefix = macro_name(model.c_name)
@@ -55,11 +67,11 @@ def status_text_name(model: Model) -> str:
     return f"{model.c_name}_status_text"
 
 
-def identity_names(model: Model) -> set[str]:
+def identity_names(model: Model, program: Program) -> set[str]:
     """The global names of all that."""
-    view = identity_view(model)
+    view, columns = identity_view(model), column_view(model, program)
     names = {view.version_macro, view.hash_macro, view.text_function}
-    for one in view.places:
+    for one in (*view.places, *(() if columns is None else (columns,))):
         names |= {one.size, *(name for name, _, _ in one.entries)}
     return names
 
@@ -76,12 +88,15 @@ def _places(model: Model, prefix: str) -> Iterator[EntryPlaces]:
         ("XT", "x_t, xd_t and xdd_t", ((x.name, x.name) for x in model.task)),
     )
     for letter, what, entries in arguments:
-        named = list(entries)
-        if named:
-            ends = _endings([name for name, _ in named])
-            members = ((f"{prefix}_{letter}_{end}", text) for end, (_, text) in zip(ends, named, strict=True))
-            places = tuple((name, place, c_comment(text)) for place, (name, text) in enumerate(members))
-            yield EntryPlaces(what, f"{prefix}_SIZE_{letter}", places)
+        if named := list(entries):
+            yield _entry_places(prefix, letter, what, named)
+
+
+def _entry_places(prefix: str, letter: str, what: str, named: Sequence[tuple[str, str]]) -> EntryPlaces:
+    ends = _endings([name for name, _ in named])
+    members = ((f"{prefix}_{letter}_{end}", text) for end, (_, text) in zip(ends, named, strict=True))
+    places = tuple((name, place, c_comment(text)) for place, (name, text) in enumerate(members))
+    return EntryPlaces(what, f"{prefix}_SIZE_{letter}", places)
 
 
 def _endings(names: Sequence[str]) -> list[str]:

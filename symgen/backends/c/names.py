@@ -69,7 +69,7 @@ def names_in_file(model: Model, program: Program, own: Iterable[str]) -> Names:
 
 def _own_names(model: Model, program: Program) -> set[str]:
     own = {global_name(model.c_name, program.scalar, kind) for kind in ("params", "default_params")}
-    own |= {f"{model.c_name}_status", defined_macro(model), *identity_names(model)}
+    own |= {f"{model.c_name}_status", defined_macro(model), *identity_names(model, program)}
     return own | _of_functions(model, program, "")
 
 

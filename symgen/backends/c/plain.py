@@ -16,7 +16,7 @@ from symgen.backends.about import (
 )
 from symgen.backends.c.file import StatusView, StructView, file_view, files
 from symgen.backends.c.functions import CFunctionView, kernel_function
-from symgen.backends.c.identity import identity_view
+from symgen.backends.c.identity import column_view, identity_view
 from symgen.backends.c.names import c_names, defined_macro, global_name, status_name
 from symgen.backends.c.statements import c_literal
 from symgen.backends.comments import c_comment, c_comment_lines, indent_of
@@ -69,6 +69,7 @@ def emit_c(model: Model, program: Program) -> dict[str, str]:
             tuple((status_name(model, s), int(s), status_meaning(s, model)) for s in statuses_of(model)),
             identity_view(model),
         ),
+        column_view(model, program),
     )
     return files(view)
 

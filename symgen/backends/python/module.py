@@ -18,7 +18,9 @@ from symgen.backends.scalars import file_stem
 from symgen.backends.statements import Helper
 from symgen.ir.kernel import Kernel, Program
 from symgen.ir.pairs.wide_functions import wide_function, wide_operations, with_bodies
+from symgen.model.inertial_parameters import inertial_parameters
 from symgen.model.model import Model
+from symgen.model.quantities import REGRESSOR
 from symgen.records import dataclass
 
 _SINCOS = "_sincos"
@@ -61,6 +63,7 @@ class PythonView:
     about: tuple[str, ...]
     version: str
     model_hash: str
+    columns: tuple[str, ...]
     statuses: tuple[tuple[str, int, str], ...]
     fields: tuple[FieldView, ...]
     functions: tuple[NumpyFunctionView, ...]
@@ -85,6 +88,7 @@ def emit_python(model: Model, program: Program) -> dict[str, str]:
         about=module_lines(model, program),
         version=__version__,
         model_hash=model.text_hash,
+        columns=_columns(model, program),
         statuses=tuple((status.name, int(status), status_meaning(status, model)) for status in statuses_of(model)),
         fields=_fields(model, names),
         functions=tuple(_kernel(kernel, names, None if pair is None else _SINCOS) for kernel in program.kernels),
@@ -140,6 +144,13 @@ def _kernel(kernel: Kernel, names: Names, sincos: str | None) -> NumpyFunctionVi
         shape=kernel.shape,
         batched=kernel.name in BATCHED,
     )
+
+
+def _columns(model: Model, program: Program) -> tuple[str, ...]:
+    """What the columns of the regressor are called, where the program has it."""
+    if all(kernel.name != REGRESSOR for kernel in program.kernels):
+        return ()
+    return tuple(one.name for one in inertial_parameters(model.mechanism))
 
 
 def _c_files(model: Model, program: Program) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ Lumped (lumps.py), the bodies of a frame are one.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
@@ -81,10 +81,15 @@ def inertial_wrenches(bodies: Bodies, qd: Vector, qdd: Vector, gravity: Vector3)
     return recursion.wrenches(recursion.moving(), recursion.motions)
 
 
-def frame_motions(bodies: Bodies, qd: Vector, qdd: Vector, gravity: Vector3) -> dict[str, FrameMotion]:
-    """How the frames that carry bodies move, gravity taken off their accelerations; arguments as for `newton_euler`."""
+def frame_motions(
+    bodies: Bodies, qd: Vector, qdd: Vector, gravity: Vector3, further: Iterable[str] = ()
+) -> dict[str, FrameMotion]:
+    """How the frames that carry bodies move, and `further` ones; gravity is taken off their accelerations.
+
+    Arguments as for `newton_euler`.
+    """
     recursion = _Recursion(bodies, qd, qdd, gravity)
-    recursion.moving()
+    recursion.moving(further)
     return recursion.motions
 
 
@@ -146,9 +151,9 @@ class _Recursion:
             self._work(totals, (rate,), (torque,))
         return tuple(totals)
 
-    def moving(self) -> list[Frame]:
-        """The frames that carry bodies, from the root outwards, their motions known from here on."""
-        loaded = self._loaded()
+    def moving(self, further: Iterable[str] = ()) -> list[Frame]:
+        """The frames that carry bodies and `further` ones, from the root outwards, their motions known from here on."""
+        loaded = self._loaded(further)
         frames = [frame for frame in self.bodies.mechanism.frames if frame.name in loaded]
         for frame in frames:
             self.motions[frame.name] = self.step(frame.name)
@@ -171,7 +176,7 @@ class _Recursion:
             if com is None or name == body.frame:
                 by_frame[name] = _sum(by_frame[name], self._inertial(body, motions[name]))
                 continue
-            turning = _turning_moment(self.bodies.inertia(body.name), motions[body.frame])
+            turning = turning_moment(self.bodies.inertia(body.name), motions[body.frame])
             by_frame[body.frame] = _sum(by_frame[body.frame], Wrench(self.none, turning))
             if name != WORLD:
                 mass = self.bodies.scalars.value(body.mass)
@@ -191,11 +196,11 @@ class _Recursion:
             name, com = self.kinematics.frames[name].parent, plus(joint.place, applied(joint.axes, com))
         return name, com
 
-    def _loaded(self) -> set[str]:
-        """Frames that carry bodies, by themselves or further out."""
+    def _loaded(self, further: Iterable[str]) -> set[str]:
+        """Frames that carry bodies or are `further` ones, by themselves or further out."""
         loaded: set[str] = set()
-        for body in self.bodies.mechanism.bodies:
-            loaded.update(self.kinematics.lineage(body.frame))
+        for name in (*(body.frame for body in self.bodies.mechanism.bodies), *further):
+            loaded.update(self.kinematics.lineage(name))
         return loaded
 
     def step(self, name: str) -> FrameMotion:
@@ -253,7 +258,7 @@ class _Recursion:
         """What moving a body so takes: m a of its centre of mass; the moment of that and I w' + w x I w."""
         mass, com = self.bodies.scalars.value(body.mass), self.kinematics.space.values(body.com)
         point = self._on_point(body.frame, mass, com, motion)
-        return replace(point, moment=plus(_turning_moment(self.bodies.inertia(body.name), motion), point.moment))
+        return replace(point, moment=plus(turning_moment(self.bodies.inertia(body.name), motion), point.moment))
 
     def _on_point(self, name: str, mass: Scalar, place: Vector3, motion: FrameMotion) -> Wrench:
         """What moving a mass at a place c of a frame takes: m a, and its moment.
@@ -285,7 +290,7 @@ class _Recursion:
     def _inertial_about_origin(self, lump: Lump, motion: FrameMotion) -> Wrench:
         """m a + U h and its moment, I w' + w x I w + h x a."""
         x, y, z = (lump.mass * a for a in motion.linear)
-        moment = plus(_turning_moment(lump.tensor, motion), self._cross(lump.first, motion.linear))
+        moment = plus(turning_moment(lump.tensor, motion), self._cross(lump.first, motion.linear))
         return Wrench(plus(applied(motion.field, lump.first), (x, y, z)), moment)
 
     def _turning_rate(self, name: str) -> Vector3:
@@ -330,7 +335,7 @@ def _about_shared_axis(w: Vector3, turning: Vector3, k: int, column: Vector3) ->
     return triple(components)
 
 
-def _turning_moment(tensor: Rows[Scalar], motion: FrameMotion) -> Vector3:
+def turning_moment(tensor: Rows[Scalar], motion: FrameMotion) -> Vector3:
     """I w' + w x I w, sorted by the entries of the tensor: they meet sums that the accelerations of points hold too."""
     (i_xx, i_xy, i_xz), (_, i_yy, i_yz), (_, _, i_zz) = tensor
     (x, y, z), (a, b, c) = motion.velocity, motion.acceleration

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from symgen.model.expressions.expression import Expression
 from symgen.model.expressions.walk import exact_value
+from symgen.model.inertial_parameters import in_words
 from symgen.model.mechanism import INERTIA_ELEMENTS, Frame, Quaternion, Vector3
+from symgen.model.model import Model
+from symgen.model.quantities import REGRESSOR
 from symgen.report.context import Context, text_of
 from symgen.report.document import Block, InlineCode, InlineMath, Table, Text
 from symgen.report.mathematics.from_expression import expression_layout
 from symgen.report.mathematics.layout import Fenced, Layout, Letter
 from symgen.report.mathematics.names import name_layout
-from symgen.report.prose import equals, listed, paragraph, say
+from symgen.report.prose import SYMBOLS, equals, listed, paragraph, say
 
 NOTHING = say("{}", "–")
 GRAVITY = Letter("g", "bold")
@@ -42,7 +45,19 @@ def mechanism(context: Context) -> list[Block]:
         rows = tuple(((InlineCode(r.coordinate),), _math(expression_layout(r.inertia))) for r in parts.rotor_inertias)
         blocks.append(paragraph("Rotors that are geared to a coordinate add their inertia to its rate alone."))
         blocks.append(Table((say("Coordinate"), say("Inertia")), rows, (0, 1)))
+    if REGRESSOR in context.input.operation_counts:
+        blocks += [_regressor(context.model), *context.quantity(REGRESSOR)]
     return blocks
+
+
+def _regressor(model: Model) -> Block:
+    """What the columns of Y are."""
+    text = (
+        "What bodies and rotors ask of the inputs is linear in their inertial parameters: masses, first moments, and "
+        "inertias about the origins of frames, all in the axes of these. The columns of {} are the least inputs for a "
+        "unit of each, in the order {}."
+    )
+    return paragraph(text, SYMBOLS[REGRESSOR], InlineCode(in_words(model.mechanism)))
 
 
 def _frames(context: Context) -> Table:

@@ -16,6 +16,7 @@ from symgen.verify.reference.evaluation import Evaluation
 from symgen.verify.reference.friction import friction_of
 from symgen.verify.reference.inputs.allocation import allocated, utilisation
 from symgen.verify.reference.measures import actuation_measure, constraint_measure
+from symgen.verify.reference.regressor import regressor
 from symgen.verify.reference.slopes import curvature, jacobian
 
 
@@ -209,6 +210,7 @@ QUANTITIES: dict[str, Definition] = {
     "forward_dynamics_jacobian": _forward_dynamics_jacobian,
     "forward_dynamics_gradient": _forward_dynamics_gradient,
     "multipliers_jacobian": _multipliers_jacobian,
+    "regressor": regressor,
     "constraint_variations": _constraint_variations,
     "inverse_dynamics_residual": _inverse_dynamics_residual,
     "friction_residual": _friction_residual,
@@ -237,4 +239,5 @@ RATES = {
     "projected_coriolis_matrix": ("mass", "constraints"),
     "minimal_coriolis_matrix": ("mass", "constraints"),
     "actuator_bias": ("mass", "constraints", "control"),
+    "regressor": ("mass",),
 }

@@ -26,7 +26,7 @@ from symgen.verify.reference.arithmetic.taylor import CONSTANT, Polynomial, Tayl
 from symgen.verify.reference.configurations.parts import parts, touched
 from symgen.verify.reference.inputs.driven import blocks_of_inputs
 from symgen.verify.reference.matrix_rates import MatrixRates
-from symgen.verify.reference.mechanism.bodies import BodyJacobian, BodyRows, weights_of
+from symgen.verify.reference.mechanism.bodies import BodyJacobian, BodyRows, constants, weights_of
 from symgen.verify.reference.mechanism.frames import Frames
 from symgen.verify.reference.motion import DriftAlongRate
 from symgen.verify.reference.translation import Translation, literals_of, translation, uses_components
@@ -243,10 +243,18 @@ class ReferenceSystem:
         k = len(self.model.mechanism.points)
         return arb_mat(k, 3, values[: 3 * k]), arb_mat(3 * k, self.n, values[3 * k :])
 
+    def gravity(self, parameters: Sequence[Any], literals: Sequence[Any]) -> Sequence[Any]:
+        """The acceleration of gravity in world axes."""
+        return self._gravity.run([*([None] * (2 * self.n)), *parameters, *literals])
+
     def operations(self, rates: Iterable[str]) -> int:
         """Number of recorded operations, for estimates of cost, with those of the `rates` of matrices."""
         needed = {*rates, *(("mass", "constraints") if self.motion is None else ())}
         return len(self._tape.records) + sum(self.rates.operations(matrix) for matrix in sorted(needed))
+
+    @cached_property
+    def _gravity(self) -> Replay:
+        return replay_of(self._tape, constants(self._translation(0, 0), self.model.mechanism.gravity))
 
     @cached_property
     def _energies(self) -> Replay:

@@ -6,11 +6,11 @@ Inverse dynamics is linear in them (Khalil and Dombre, Modeling, Identification 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from symgen.model.expressions.expression import Expression
 from symgen.model.mechanism import Body, Mechanism
+from symgen.records import dataclass
 
 Element: TypeAlias = Literal["m", "mx", "my", "mz", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz", "Ir"]
 
@@ -42,6 +42,16 @@ def inertial_parameters(mechanism: Mechanism) -> tuple[InertialParameter, ...]:
     """Those of all bodies in the order of the file, then of rotors."""
     bodies = [InertialParameter(body.name, element) for body in mechanism.bodies for element in ELEMENTS]
     return (*bodies, *(InertialParameter(rotor.coordinate, "Ir") for rotor in mechanism.rotor_inertias))
+
+
+def in_words(mechanism: Mechanism) -> str:
+    """Their order, as `m, mx, ..., Iyz of crank, of rod; Ir of a`."""
+    groups = []
+    if mechanism.bodies:
+        groups.append(f"{', '.join(ELEMENTS)} {', '.join(f'of {body.name}' for body in mechanism.bodies)}")
+    if mechanism.rotor_inertias:
+        groups.append(f"Ir {', '.join(f'of {rotor.coordinate}' for rotor in mechanism.rotor_inertias)}")
+    return "; ".join(groups)
 
 
 def values(mechanism: Mechanism, evaluate: Callable[[Expression], float]) -> tuple[float, ...]:
