@@ -85,17 +85,33 @@ def expectations(
 def is_beyond(
     reference: Reference, state: State, quantity: str, scalar: Scalar, seed: str, entries: Sequence[float], units: float
 ) -> bool:
-    """Whether entries are more than so many units away from the reference value of `expectations`.
+    """Whether entries are more than so many units away from the reference value of `expectations`."""
+    return GrowingUnit(reference, state, quantity, scalar, seed).units_above(entries, units) > units
 
-    Of its changes no more are looked at than it takes to see that they are not.
+
+class GrowingUnit:
+    """What `expectations` has for a quantity at a state, with no more changes looked at than it takes.
+
+    Raises ReferenceValueError where there is no value.
     """
-    distance: float | None = None
-    for estimate in _estimates(reference, state, [quantity], scalar, seed):
-        expected = estimate[quantity]
-        distance = expected.distance(entries) if distance is None else distance
-        if expected.in_units(distance) <= units:
-            return False
-    return True
+
+    def __init__(self, reference: Reference, state: State, quantity: str, scalar: Scalar, seed: str) -> None:
+        self._quantity = quantity
+        self._estimates = _estimates(reference, state, [quantity], scalar, seed)
+        self._last = next(self._estimates)[quantity]
+
+    def units_above(self, entries: Sequence[float], least: float) -> float:
+        """How many units entries are away from the reference value, or the `least` where they are no more than that.
+
+        Raises ReferenceValueError where there is none beside the state.
+        """
+        distance = self._last.distance(entries)
+        while (units := self._last.in_units(distance)) > least:
+            following = next(self._estimates, None)
+            if following is None:
+                return units
+            self._last = following[self._quantity]
+        return least
 
 
 def _estimates(

@@ -24,10 +24,13 @@ def number(literal: Literal, scalar: Scalar) -> Any:
     return TYPES[scalar](round_literal(literal.value, scalar))
 
 
-def together(places: Places) -> Places:
+def together(places: Sequence[int]) -> Places:
     """Places that follow each other as one piece: such rows are read where they are, and not copied."""
-    first = int(places[0])
-    return slice(first, first + len(places)) if np.all(np.diff(places) == 1) else places
+    first, count = places[0], len(places)
+    # most are told apart by their ends
+    if places[-1] - first == count - 1 and [*places] == [*range(first, first + count)]:
+        return slice(first, first + count)
+    return np.array(places)
 
 
 class LaneArithmetic:

@@ -24,7 +24,7 @@ class LaneReplay:
         first = len(self._constants) + len(self._inputs)
         self._groups: list[tuple[Any, slice, list[Lanes]]] = []
         for operation, *operands in places.groups:
-            read = [np.array(rows) for rows in operands if rows is not None]
+            read = [rows for rows in operands if rows is not None]
             made = slice(first, first + len(read[0]))
             self._groups.append((operation, made, [together(rows) for rows in read]))
             first = made.stop

@@ -253,10 +253,7 @@ def _from_the_front(block: _BlockPlan, rows: int) -> _BlockPlan:
     """The same with places that are not negative."""
 
     def counted(places: Sequence[int]) -> Places:
-        known = [place + rows if place < 0 else place for place in places]
-        # of most that do not follow each other the ends say so
-        apart = known[-1] - known[0] != len(known) - 1
-        return np.array(known) if apart else together(np.array(known))
+        return together([place + rows if place < 0 else place for place in places])
 
     groups = tuple(
         _StatementGroup(operation, tuple(map(counted, operands)), targets)

@@ -34,7 +34,7 @@ from symgen.verify.sampling.nearby_states import Nearby, joined, of_samples
 from symgen.verify.sampling.settling import NEARER, Settling
 from symgen.verify.sampling.states import Sample, rounded
 from symgen.verify.single_precision import lost_in_float32
-from symgen.verify.tolerance import FACTOR, Expectation, expectations
+from symgen.verify.tolerance import FACTOR, GrowingUnit
 
 # States drawn; fewer of long kernels, so that no more numbers are held at a time.
 DRAWN, ALIGNED, IN_MODES, RESTING, FURTHER_OUT, TOWARDS, HARDLY_DRIVEN = 512, 256, 256, 128, 256, 256, 64
@@ -86,7 +86,8 @@ class WorstStateSearch:
         self._expected = expected
         self._states: defaultdict[str, list[Sample]] = defaultdict(list)
         self._looked_at: set[tuple[str, str]] = set()
-        self._values: dict[tuple[str, int, Scalar], Expectation | None] = {}
+        # None where there is no value once the state is rounded
+        self._units_there: dict[tuple[str, int, Scalar], GrowingUnit | None] = {}
 
     def look(self, quantity: str, method: str, plain: Callable[[], Kernel]) -> None:
         """Adds the worst states of a method, by its kernel of plain numbers, once.
@@ -145,8 +146,8 @@ class WorstStateSearch:
         states = [rounded(sample, scalar).state for sample in self._states[kernel.name]]
         worst, judged = 0.0, self._judged(kernel, scalar)
         for place, made in enumerate(outcomes(kernel, sincos, scalar, states)):
-            if made.valid and judged[place] and (expected := self._expectation(kernel.name, place, scalar)) is not None:
-                worst = max(worst, expected.in_units(expected.distance(made.entries)))
+            if made.valid and judged[place]:
+                worst = self._units_above(kernel.name, place, scalar, made.entries, worst)
         return worst
 
     def _judged(self, kernel: Kernel, scalar: Scalar) -> Lanes:
@@ -160,17 +161,21 @@ class WorstStateSearch:
             return np.ones(len(samples), dtype=bool)
         return self._surroundings.shares_of_mass(of_samples(samples)) >= REGULAR_INERTIA
 
-    def _expectation(self, quantity: str, place: int, scalar: Scalar) -> Expectation | None:
-        """None where there is no value once the state is rounded."""
+    def _units_above(
+        self, quantity: str, place: int, scalar: Scalar, entries: Sequence[float], least: float
+    ) -> float:
+        """The error of entries in units where that is above the least; where there is no value there is none."""
         key = quantity, place, scalar
-        if key not in self._values:
-            state = rounded(self._states[quantity][place], scalar).state
-            try:
-                made = expectations(self._expected.reference, state, [quantity], scalar, f"{scalar} searched {place}")
-                self._values[key] = made[quantity]
-            except ReferenceValueError:
-                self._values[key] = None
-        return self._values[key]
+        try:
+            if key not in self._units_there:
+                state = rounded(self._states[quantity][place], scalar).state
+                seed = f"{scalar} searched {place}"
+                self._units_there[key] = GrowingUnit(self._expected.reference, state, quantity, scalar, seed)
+            there = self._units_there[key]
+            return least if there is None else there.units_above(entries, least)
+        except ReferenceValueError:
+            self._units_there[key] = None
+            return least
 
     def _estimated(self, kernel: Kernel, errors: RoundingErrors) -> _Estimates:
         """What is estimated at states near those of the verification."""
