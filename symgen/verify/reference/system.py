@@ -11,25 +11,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
 from flint import arb_mat
 
-from symgen.model.expressions.expression import Expression
-from symgen.model.mechanism import component
 from symgen.model.model import Model
-from symgen.verify.reference.arithmetic.adjoints import shorter_gradients
-from symgen.verify.reference.arithmetic.tape import Register, Replay, Tape, replay_of
-from symgen.verify.reference.arithmetic.taylor import CONSTANT, Polynomial, Taylor
+from symgen.verify.reference.arithmetic.tape import Register, Replay, replay_of
 from symgen.verify.reference.configurations.parts import parts, touched
 from symgen.verify.reference.inputs.driven import blocks_of_inputs
 from symgen.verify.reference.matrix_rates import MatrixRates
-from symgen.verify.reference.mechanism.bodies import BodyJacobian, BodyRows, constants, weights_of
-from symgen.verify.reference.mechanism.frames import Frames
+from symgen.verify.reference.mechanism.bodies import BodyJacobian
 from symgen.verify.reference.motion import DriftAlongRate
-from symgen.verify.reference.translation import Translation, literals_of, translation, uses_components
+from symgen.verify.reference.recorded_model import RecordedModel
+from symgen.verify.reference.translation import uses_components
 
 
 @dataclass(frozen=True)
@@ -85,25 +80,19 @@ class ReferenceSystem:
 
     def __init__(self, model: Model) -> None:
         self.model = model
-        self.literals = literals_of(model)
+        self._recorded = recorded = RecordedModel(model)
+        self.literals, self._tape, self._bodies = recorded.literals, recorded.tape, recorded.bodies
         n, m, r = model.n, model.m, model.r
         self.n, self.m, self.r = n, m, r
         self.r_geometric = sum(row.kind == "geometric" for row in model.constraints)
-        self._tape = Tape()
-        self._shared: dict[tuple[int, int], Translation] = {}
-        places = self._translation(1, 0)
-        self._frames = Frames(model.mechanism, places.algebra, places.polynomial)
-        self._bodies = BodyRows(model.mechanism, self._frames, n, self._tape.zero)
-        energy = self._quadratic_energy()
-        potential = self._potential_energy(1)
-        rows = self._constraint_rows()
+        mass, slopes, rows = recorded.written_mass(), recorded.potential_slopes(), recorded.constraint_rows()
         blocks = [
-            [self._rate_coefficient(energy, i, j) for i in range(n) for j in range(n)],
+            mass,
             [entry for row, _ in rows for entry in row],
             [residual for _, residual in rows[: self.r_geometric]],
-            self._control(),
-            self._slopes(potential),
-            weights_of(model.mechanism, self._translation(0, 0)),
+            recorded.control(),
+            slopes,
+            recorded.weights(),
         ]
         shapes = ((n, n), (r, n), (self.r_geometric, 1), (n, m), (n, 1), (len(blocks[5]), 1))
         self._matrices = [_Matrix(*shape, block, self._tape.zero) for shape, block in zip(shapes, blocks, strict=True)]
@@ -207,10 +196,7 @@ class ReferenceSystem:
     @cached_property
     def task_replay(self) -> Replay:
         """Its coordinates, then their derivatives row by row."""
-        zero, given = self._tape.zero, self._translation(1, 0)
-        polynomials = [given.polynomial(x.expression) for x in self.model.task]
-        slopes = [x.get(((j,), ()), zero) for x in polynomials for j in range(self.n)]
-        return replay_of(self._tape, [*(x.get(CONSTANT, zero) for x in polynomials), *slopes])
+        return replay_of(self._tape, self._recorded.task())
 
     def loop_geometry(
         self, q: Sequence[Any], parameters: Sequence[Any], literals: Sequence[Any]
@@ -254,157 +240,16 @@ class ReferenceSystem:
 
     @cached_property
     def _gravity(self) -> Replay:
-        return replay_of(self._tape, constants(self._translation(0, 0), self.model.mechanism.gravity))
+        return replay_of(self._tape, self._recorded.gravity())
 
     @cached_property
     def _energies(self) -> Replay:
-        plain = self._translation(0, 0)
-        total = self._written_energy(plain)
-        if self.model.mechanism.bodies:
-            total = plain.algebra.add(total, self._frames.kinetic_energy(plain.algebra, self._settled_rate))
-        return self._plain([total, self._potential_energy(0)])
+        return replay_of(self._tape, self._recorded.energies())
 
     @cached_property
     def _points(self) -> Replay:
-        names = [point.name for point in self.model.mechanism.points]
-        places = [x for name in names for x in self._frames.place(name)]
-        rates = [x for name in names for x in self._frames.velocity(name)]
-        return self._plain([*places, *(_share(rate, j) for rate in rates for j in range(self.n))])
+        return replay_of(self._tape, self._recorded.points())
 
     @cached_property
     def _applied(self) -> Replay:
-        """Q_a: what is given by coordinates, and each force times the coefficients of the rate it works on."""
-        plain = self._translation(0, 0)
-        forces = {force.coordinate: force.expression for force in self.model.applied_forces}
-        total = [plain.polynomial(forces[c.name]) if c.name in forces else {} for c in self.model.coordinates]
-        for force in self.model.forces:
-            magnitude = plain.polynomial(force.magnitude)
-            shares = self._coefficients(force.velocity)
-            total = [
-                plain.algebra.add(x, plain.algebra.multiply(magnitude, share))
-                for x, share in zip(total, shares, strict=True)
-            ]
-        return self._plain(total)
-
-    def _written_energy(self, given: Translation) -> Polynomial:
-        """T as written out plus that of the rotors."""
-        algebra = given.algebra
-        total = given.polynomial(self.model.kinetic_energy)
-        half: Polynomial = {CONSTANT: self._tape.constant(Fraction(1, 2))}
-        for rotor in self.model.mechanism.rotor_inertias:
-            rate = given.names[next(c.rate for c in self.model.coordinates if c.name == rotor.coordinate)]
-            inertia = algebra.multiply(half, given.polynomial(rotor.inertia))
-            total = algebra.add(total, algebra.multiply(inertia, algebra.multiply(rate, rate)))
-        return total
-
-    def _quadratic_energy(self) -> Polynomial:
-        return self._written_energy(self._translation(0, 2))
-
-    def _potential_energy(self, coordinates: int) -> Polynomial:
-        """U as written out plus that of the bodies."""
-        given = self._translation(coordinates, 0)
-        weight = _truncated(self._frames.potential_energy(), coordinates)
-        return given.algebra.add(given.polynomial(self.model.potential_energy), weight)
-
-    def _control(self) -> list[Register]:
-        """M, row by row."""
-        plain, zero = self._translation(0, 0), self._tape.zero
-        columns = [dict(control.acts_on) for control in self.model.inputs]
-        worked_on = [self._coefficients(control.velocity) for control in self.model.inputs]
-        entries = [
-            worked[k] if worked else plain.polynomial(column[c.name]) if c.name in column else {}
-            for k, c in enumerate(self.model.coordinates)
-            for column, worked in zip(columns, worked_on, strict=True)
-        ]
-        return [entry.get(CONSTANT, zero) for entry in entries]
-
-    def _coefficients(self, velocity: Expression | None) -> list[Polynomial]:
-        """The coefficients of a rate by the rates of the coordinates."""
-        if velocity is None:
-            return []
-        linear = self._translation(0, 1).polynomial(velocity)
-        return [_share(linear, j) for j in range(self.n)]
-
-    def _component(self, name: str, coordinates: int, rates: int) -> Polynomial:
-        """A component of a point or frame, to these degrees."""
-        polynomial = self._frames.component(name)
-        if not component(name).is_rate:
-            return _truncated(polynomial, coordinates)
-        return polynomial if rates else self._settled_rate(polynomial)
-
-    def _settled_rate(self, rate: Polynomial) -> Polynomial:
-        """A rate with the rates of the coordinates at their values."""
-        total = self._tape.zero
-        for (_, moving), register in rate.items():
-            value = self._tape.input(self.n + moving[0])
-            total = self._tape.binary("add", total, self._tape.binary("mul", register, value))
-        return {CONSTANT: total}
-
-    def _plain(self, polynomials: Sequence[Polynomial]) -> Replay:
-        return replay_of(self._tape, [p.get(CONSTANT, self._tape.zero) for p in polynomials])
-
-    def _rate_coefficient(self, energy: Polynomial, i: int, j: int) -> Register:
-        """Register of d2T/dqd_i dqd_j."""
-        register = energy.get(((), (min(i, j), max(i, j))), self._tape.zero)
-        return self._tape.scaled(Fraction(2), register) if i == j else register
-
-    def _slopes(self, potential: Polynomial) -> list[Register]:
-        """The gradient of U, in the same ways."""
-        zero = self._tape.zero
-        known = [potential.get(((k,), ()), zero) for k in range(self.n)]
-        value = potential.get(CONSTANT, zero)
-        gradients = shorter_gradients(self._tape, [value], [value, *known], self.n)
-        return known if gradients is None else gradients[0]
-
-    def _constraint_rows(self) -> list[tuple[list[Register], Register]]:
-        """Rows of B with the residuals of the geometric ones, by Taylor polynomials or backwards, what takes less."""
-        rows = [self._constraint_row(index) for index in range(self.r)]
-        geometric = rows[: self.r_geometric]
-        residuals = [residual for _, residual in geometric]
-        known = [*residuals, *(entry for row, _ in geometric for entry in row)]
-        gradients = shorter_gradients(self._tape, residuals, known, self.n)
-        if gradients is None:
-            return rows
-        return [*zip(gradients, residuals, strict=True), *rows[self.r_geometric :]]
-
-    def _constraint_row(self, index: int) -> tuple[list[Register], Register]:
-        """Row of B, and the residual of a geometric row."""
-        row = self.model.constraints[index]
-        zero, n = self._tape.zero, self.n
-        if row.kind == "nonholonomic":
-            linear = self._translation(0, 1).polynomial(row.expression)
-            return [linear.get(((), (j,)), zero) for j in range(n)], zero
-        g = self._translation(1, 0).polynomial(row.expression)
-        return [g.get(((j,), ()), zero) for j in range(n)], g.get(CONSTANT, zero)
-
-    def _translation(self, coordinates: int, rates: int) -> Translation:
-        """The shared translation for polynomials of these degrees; degree 0 in both takes the rates at their value."""
-        key = (coordinates, rates)
-        if key not in self._shared:
-            tape, n = self._tape, self.n
-
-            def moving(j: int) -> tuple[Polynomial, Polynomial]:
-                place: Polynomial = {CONSTANT: tape.input(j)}
-                if coordinates:
-                    place[(j,), ()] = tape.one
-                rate: Polynomial = {((), (j,)): tape.one} if rates else {CONSTANT: tape.input(n + j)}
-                return place, {} if coordinates and not rates else rate
-
-            self._shared[key] = translation(
-                self.model,
-                self.literals,
-                Taylor(tape, coordinates, rates),
-                moving,
-                lambda name: self._component(name, coordinates, rates),
-            )
-        return self._shared[key]
-
-
-def _share(rate: Polynomial, j: int) -> Polynomial:
-    """The coefficient of the j-th rate."""
-    return {(place, ()): register for (place, rates), register in rate.items() if rates == (j,)}
-
-
-def _truncated(place: Polynomial, degree: int) -> Polynomial:
-    """The polynomial up to a degree in the coordinates."""
-    return {monomial: register for monomial, register in place.items() if len(monomial[0]) <= degree}
+        return replay_of(self._tape, self._recorded.applied())

@@ -11,7 +11,7 @@ from flint import arb, arb_mat
 from symgen.model.load import load_text
 from symgen.verify.lanes import ranks_in_lanes
 from symgen.verify.lanes.ranks_in_lanes import RankedPart, is_regular
-from symgen.verify.reference import system as reference_system
+from symgen.verify.reference import recorded_model
 from symgen.verify.reference.arithmetic.adjoints import shorter_gradients
 from symgen.verify.reference.arithmetic.linear import (
     determinant,
@@ -83,7 +83,7 @@ def test_inputs_that_act_alike_are_told() -> None:
 def test_gradients_backwards_are_those_of_taylor_polynomials(monkeypatch: pytest.MonkeyPatch) -> None:
     model = load_text(chain(20), "necklace.yaml")
     backwards = ReferenceSystem(model)
-    monkeypatch.setattr(reference_system, "shorter_gradients", lambda *_: None)
+    monkeypatch.setattr(recorded_model, "shorter_gradients", lambda *_: None)
     forwards = ReferenceSystem(model)
     assert 3 * backwards.geometry_replay.operations < forwards.geometry_replay.operations
     with precision(200):
