@@ -9855,7 +9855,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_applied_force(const double q[6], cons
 
 rapkm_2rrr_rr_status rapkm_2rrr_rr_minimal_control_matrix(const double q[6], const rapkm_2rrr_rr_params *p, double M_bar[6]) {
     const double l_2 = p->l_2;
-    if (RAPKM_2RRR_RR_RARELY(!(1600.0 >= l_2))) {
+    if (RAPKM_2RRR_RR_RARELY(!(5300.0 >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
     }
     const double a_1 = q[0];

@@ -84,7 +84,7 @@
  *   projected_coriolis_matrix 0.015 <= l_1 <= 3, l_2 <= 3, |m_payload| <= 10
  *   minimal_mass_matrix 0.015 <= l_1, l_2 <= 3, |m_payload| <= 10
  *   minimal_coriolis_matrix 0.015 <= l_1 <= 3, l_2 <= 3, |m_payload| <= 170
- *   minimal_control_matrix l_2 <= 1600
+ *   minimal_control_matrix l_2 <= 5300
  *   admissible_velocity 0.015 <= l_1, l_2 <= 3
  *   admissible_acceleration 0.015 <= l_1 <= 3, l_2 <= 3
  *   projected_configuration l_1 <= 3, l_2 <= 3, |y_1| <= 1

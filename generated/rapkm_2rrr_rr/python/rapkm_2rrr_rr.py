@@ -82,7 +82,7 @@ Beyond these bounds of parameters results would lose digits; they have the statu
   projected_coriolis_matrix 0.015 <= l_1 <= 3, l_2 <= 3, |m_payload| <= 10
   minimal_mass_matrix 0.015 <= l_1, l_2 <= 3, |m_payload| <= 10
   minimal_coriolis_matrix 0.015 <= l_1 <= 3, l_2 <= 3, |m_payload| <= 170
-  minimal_control_matrix l_2 <= 1600
+  minimal_control_matrix l_2 <= 5300
   admissible_velocity 0.015 <= l_1, l_2 <= 3
   admissible_acceleration 0.015 <= l_1 <= 3, l_2 <= 3
   projected_configuration l_1 <= 3, l_2 <= 3, |y_1| <= 1
@@ -9228,7 +9228,7 @@ def minimal_control_matrix(q: ArrayLike, p: Parameters = PARAMETERS) -> NDArray[
         b_3 = q[..., 5]
         l_1 = np.float64(p.l_1)
         l_2 = np.float64(p.l_2)
-        status = _first(status, ~np.asarray(1600.0 >= l_2), 6)
+        status = _first(status, ~np.asarray(5300.0 >= l_2), 6)
         t1 = a_1 + b_1
         t2 = a_2 + b_2
         t3 = a_1 - a_3
