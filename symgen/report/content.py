@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import field
 
 from symgen.closedform.forms import ClosedForm
+from symgen.closedform.frame_steps import FrameStep
 from symgen.closedform.published import Verdict
 from symgen.closedform.singular import SingularSet
 from symgen.closedform.structure import Integrability, RankStructure
@@ -49,7 +50,7 @@ class ReportInput:
 
     Without `verification`, `charts`, `targets`, `proof` a function of model and symgen alone.
 
-    `drawing` is the machine as SVG.
+    `drawing` is the machine as SVG, `frame_steps` those of its recursion where the mass matrix is not written out.
     `operation_counts`: quantity -> kind of operation (add, mul, div, sqrt, sincos, other) -> number.
     `skipped`: decisions with their reasons, and quantities that do not exist with theirs.
     """
@@ -64,6 +65,7 @@ class ReportInput:
     operation_counts: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
     verdicts: tuple[Verdict, ...] = ()
     notices: tuple[str, ...] = ()
+    frame_steps: tuple[FrameStep, ...] = ()
     drawing: str | None = None
     verification: Verification | None = None
     charts: tuple[Chart, ...] = ()

@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 
 from symgen import __version__
-from symgen.closedform.forms import derive_closed_forms
+from symgen.closedform.forms import ClosedForm, derive_closed_forms
+from symgen.closedform.frame_steps import FrameStep, frame_steps
 from symgen.closedform.published import decide_published
 from symgen.drawing.svg import drawing
 from symgen.model.model import Model
@@ -32,8 +33,14 @@ def gather(model: Model, facts: Facts) -> ReportInput:
         operation_counts={name: asdict(count) for name, count in counts.items()},
         verdicts=decide_published(model, forms),
         notices=tuple(notice.message for notice in model.notices),
+        frame_steps=_frame_steps(model, forms.forms.get("mass_matrix")),
         drawing=drawing(model),
     )
+
+
+def _frame_steps(model: Model, mass: ClosedForm | None) -> tuple[FrameStep, ...]:
+    """Those of bodies whose mass matrix is asked for and too long to be written out."""
+    return frame_steps(model) if mass is not None and mass.matrix is None and model.mechanism.bodies else ()
 
 
 def with_measurements(

@@ -46,6 +46,7 @@ RELATIONS = {
     ">": ">",
     "∈": r"\in",
     ":=": ":=",
+    "×": r"\times",
 }
 FUNCTIONS = frozenset(
     ["sin", "cos", "tan", "arcsin", "arccos", "arctan", "sinh", "cosh", "tanh", "ln", "exp", "det", "dim", "ker"]

@@ -46,6 +46,7 @@ from symgen.report.prose import (
     transposed,
     u,
 )
+from symgen.report.sections.recursion import recursion
 
 PARTIAL = Letter("∂", "upright")
 D = bold("D")
@@ -65,6 +66,7 @@ def equations_of_motion(context: Context) -> Section:
         *_mass(context),
         *_coriolis(context),
         *_potential(context),
+        *recursion(context),
     ]
     if context.model.rough:
         blocks += [paragraph("Friction {} grows with reactions; it stands below, with the inputs.", D)]
@@ -95,8 +97,10 @@ def _motion(context: Context) -> Layout:
 
 def _mass(context: Context) -> list[Block]:
     quadratic = equals(T, Product((HALF, transposed(qd), G, qd)))
+    written = context.matrix("mass_matrix") is not None
+    pattern = "Writing the kinetic energy {} as {} gives" if written else "The kinetic energy {} is {}."
     return [
-        paragraph("Writing the kinetic energy {} as {} gives", FormulaReference("T"), quadratic),
+        paragraph(pattern, FormulaReference("T"), quadratic),
         *context.quantity("mass_matrix", "G"),
     ]
 
@@ -104,6 +108,7 @@ def _mass(context: Context) -> list[Block]:
 def _coriolis(context: Context) -> list[Block]:
     if context.vanishes("coriolis_matrix"):
         return [paragraph("The mass matrix is constant; therefore {}.", equals(C, ZERO))]
+    following = "" if context.matrix("coriolis_matrix") is None else " It is"
     a, b, c = Letter("a"), Letter("b"), Letter("c")
     derivatives = [
         _partial(Scripts(G, listed(pair)), Scripts(Letter("q"), None, by))
@@ -116,7 +121,7 @@ def _coriolis(context: Context) -> list[Block]:
     return [
         paragraph("The Coriolis matrix consists of Christoffel symbols (sum over {}),", c),
         displayed((christoffel,)),
-        paragraph("the choice that makes {} skew-symmetric. It is", skew),
+        paragraph(f"the choice that makes {{}} skew-symmetric.{following}", skew),
         *context.quantity("coriolis_matrix", "C"),
     ]
 
