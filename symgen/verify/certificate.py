@@ -49,6 +49,16 @@ class ConditionRecord:
 
 
 @dataclass(frozen=True, slots=True)
+class SearchRecord:
+    """At how many states something was looked for in a quantity, and at how many it would be were its kernels short."""
+
+    quantity: str
+    looked_for: str
+    states: int
+    in_full: int
+
+
+@dataclass(frozen=True, slots=True)
 class Fault:
     """One thing that is wrong: what, with which quantity on which target; both are empty where all of it is.
 
@@ -90,7 +100,7 @@ class Certificate:
     """The result of verifying one model's files.
 
     `faults` name what is wrong (empty: verified); `notes` what could not be verified and why; `left_out` what was
-    asked for and is not among the files.
+    asked for and is not among the files.  `states` were drawn, those of `searches` looked at beside them.
     """
 
     model: str
@@ -104,6 +114,7 @@ class Certificate:
     faults: tuple[Fault, ...]
     notes: tuple[str, ...]
     left_out: tuple[LeftOut, ...] = ()
+    searches: tuple[SearchRecord, ...] = ()
 
     @property
     def failures(self) -> tuple[str, ...]:
@@ -148,6 +159,7 @@ class Certificate:
             "notes": list(self.notes),
             "tolerance": _tolerance(),
             "states": self.states,
+            "searches": [asdict(record) for record in self.searches],
             "ranks": dict(self.ranks),
             "versions": dict(self.versions),
             "hashes": dict(self.hashes),

@@ -10,6 +10,7 @@ from typing import TypeAlias
 from symgen.ir.kernel import Scalar
 from symgen.model.model import Model
 from symgen.runtime.activity import each, working
+from symgen.verify.certificate import SearchRecord
 from symgen.verify.reference.reference import Reference, ReferenceValueError
 from symgen.verify.sampling.modes import modes
 from symgen.verify.sampling.nearby import Surroundings
@@ -45,6 +46,7 @@ class Expected:
         with working("assembly modes"):
             self.modes = modes(self.reference)
         self.drawn = sample_states(self.reference, quantities, count, modes=self.modes)
+        self._searches: dict[tuple[str, str], SearchRecord] = {}
         self._samples: dict[Scalar, tuple[Sample, ...]] = {}
         self._values: dict[Scalar, list[dict[str, Expectation]]] = {}
 
@@ -57,6 +59,17 @@ class Expected:
     def outside(self) -> OutsideStates:
         """States out of the ranges of the file."""
         return OutsideStates(self.reference, self.drawn, self.surroundings)
+
+    @property
+    def searches(self) -> tuple[SearchRecord, ...]:
+        """What was looked for beside the states, by quantity; of several methods with the fewest states."""
+        return tuple(record for _, record in sorted(self._searches.items()))
+
+    def record_search(self, made: SearchRecord) -> None:
+        """Something was looked for."""
+        known = self._searches.setdefault((made.quantity, made.looked_for), made)
+        if made.states < known.states:
+            self._searches[made.quantity, made.looked_for] = made
 
     @property
     def scalars(self) -> tuple[Scalar, ...]:

@@ -150,6 +150,7 @@ def _verified(
     return replace(
         blank,
         states=len(expected.drawn),
+        searches=expected.searches,
         ranks=(
             ("constraints", reference.ranks.constraints),
             ("geometric constraints", reference.ranks.geometric),

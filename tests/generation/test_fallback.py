@@ -31,8 +31,10 @@ from symgen.quantities import alternatives, candidates, everything
 from symgen.quantities.alternatives import Alternative
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.verify.certificate import LeftOut
+from symgen.verify.margins import far_parameters
 from symgen.verify.reference.reference import State
 from symgen.verify.running import compile as compiling
+from symgen.verify.sampling import searched
 from symgen.verify.sampling.searched import JUDGED
 from symgen.verify.sampling.settling import Settling
 from symgen.verify.sampling.states import Sample
@@ -286,6 +288,18 @@ def test_a_loss_that_no_state_of_the_verification_meets_is_searched_for(
     wide = derived(result)["kernels"].get("multipliers", {}).get("twice_the_digits")
     assert wide or [one.quantity for one in result.left_out] == ["multipliers"]
     assert made(yoke).files["derivation.json"] == result.files["derivation.json"]
+
+
+def test_the_certificate_says_where_fewer_states_are_looked_at(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As of long kernels, where all of them would take minutes."""
+    monkeypatch.setattr(searched, "NUMBERS", 10_000)
+    monkeypatch.setattr(far_parameters, "MOST", 20_000)
+    certificate = made(yoke).certificate
+    assert certificate is not None
+    by_search = {(one["quantity"], one["looked_for"]): one for one in certificate["searches"]}
+    for looked_for in ("worst states", "bounds of parameters"):
+        search = by_search["multipliers", looked_for]
+        assert 0 < search["states"] < search["in_full"]
 
 
 @pytest.mark.campaign

@@ -20,6 +20,7 @@ from symgen.ir.bounded import Bound
 from symgen.ir.kernel import Kernel, Program, Scalar
 from symgen.model.quantities import MAIN
 from symgen.runtime.activity import working
+from symgen.verify.certificate import SearchRecord
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import outcomes
 from symgen.verify.lanes.lane_arithmetic import Lanes
@@ -77,6 +78,7 @@ class FarParameters:
 
     def __init__(self, expected: Expected) -> None:
         self._reference, self._drawn = expected.reference, expected.drawn
+        self._record = expected.record_search
         self.states = FarStates(expected)
 
     def bounds(
@@ -97,6 +99,10 @@ class FarParameters:
         name = kernels["float64"].name
         with working(f"how far parameters of {name} may be"):
             return _Bounds(self, kernels, programs, plain, MOST if name in MAIN else int(share * MOST)).of(read)
+
+    def record_search(self, quantity: str, states: int) -> None:
+        """At so many states on each side of every parameter the kernels of a quantity were looked at."""
+        self._record(SearchRecord(quantity, "bounds of parameters", states, FAR_STATES))
 
     def share(self, kernels: Iterable[Kernel]) -> float:
         """What each of the other kernels of a model in float64 is afforded of what its looks may take.
@@ -167,6 +173,7 @@ class _Bounds:
         leading = len(self._far.states.leading.intersection(read))
         led = self._as_many(FAR_STARTS, max(1, leading) * FURTHEST)
         chosen = self._chosen(read, states)
+        self._far.record_search(self._kernels["float64"].name, states)
         first: dict[Scalar, dict[tuple[int, int], float]] = {scalar: {} for scalar in self._kernels}
         for nearest in range(1, FURTHEST + 1, TOGETHER_AWAY):
             # nothing is looked for beyond the first loss

@@ -22,6 +22,7 @@ from symgen.ir.pairs.wide import paired
 from symgen.ir.pairs.wide_functions import works_with_pairs
 from symgen.model.quantities import MAIN
 from symgen.runtime.activity import working
+from symgen.verify.certificate import SearchRecord
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import outcomes
 from symgen.verify.lanes.lane_arithmetic import Lanes
@@ -183,10 +184,12 @@ class WorstStateSearch:
         states = self._beside_singular if kernel.name in MAIN else self._drawn
         if kernel.name in DIVIDED_BY_MASSES.intersection(MAIN):
             states = joined(states, self._all_but_massless)
-        if len(states) > count:
+        near = len(states)
+        if near > count:
             samples = len(self._surroundings.samples)
-            others = np.linspace(samples, len(states), max(0, count - samples), endpoint=False).astype(int)
+            others = np.linspace(samples, near, max(0, count - samples), endpoint=False).astype(int)
             states = states.only(np.append(np.arange(samples), others))
+        self._expected.record_search(SearchRecord(kernel.name, "worst states", len(states), near))
         least = self._settling(kernel.name).measures
         made = self._units(errors, states, least, kernel.name in MAIN)
         going = min(self._affordable(KEPT * DIRECTIONS), max(count, DIRECTIONS))
