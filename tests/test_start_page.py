@@ -1,4 +1,4 @@
-"""docs/start.md, urdf.md and robots.md are true: their blocks run one after the other, and print what they say."""
+"""The pages one starts with are true: their blocks run one after the other, and print what they say."""
 
 from __future__ import annotations
 
@@ -28,6 +28,35 @@ def test_the_first_machine(tmp_path: Path, tool: Callable[[str], str]) -> None:
     for path in re.findall(r"- `((?:report|c|./python)/[^`]+)`", page.text):
         assert (tmp_path / "generated" / "lift" / path).is_file()
     assert (tmp_path / "generated/lift/simulation.csv").is_file()
+
+
+@pytest.mark.campaign
+@pytest.mark.slow
+@pytest.mark.toolchain
+@pytest.mark.parametrize("name", ["energies", "parallel-robot"])
+def test_a_machine_by_each_form(name: str, tmp_path: Path, tool: Callable[[str], str]) -> None:
+    tool("cc")
+    page = Page(f"{name}.md", tmp_path)
+    (model,), (command,), (python,), (shown,) = map(page.blocks, ("yaml", "sh", "python", "text"))
+    page.write(f"{model.split()[1]}.yaml", model)
+    printed = page.run("sh", "-ec", command).stdout
+    (counted,) = re.findall(r"says `(n = [^`]+)`", page.text)
+    assert counted in printed
+    assert page.run("python", "-c", python).stdout == shown
+
+
+@pytest.mark.campaign
+def test_without_its_third_branch_the_plotter_has_a_status_on_the_rail(tmp_path: Path) -> None:
+    page = Page("parallel-robot.md", tmp_path)
+    (model,) = page.blocks("yaml")
+    less = re.sub(r"  (far|rod_3|tip_3|pin_3|f_3|d): .*\n", "", model)
+    less = less.replace(", s_3: 0.37", "").replace(", a_3: -2.7", "").replace(", s_3]", "]")
+    page.write("two.yaml", less)
+    page.run("symgen", "two.yaml", "--only", "python", "--no-verify")
+    (said,) = re.findall(r"u has the status `(\w+)`", page.text)
+    flat = "plotter.inverse_dynamics([-0.4, 0.4, 0.0, 3.141592653589793], [0.0] * 4, [0.0] * 4)"
+    source = f"import sys\nsys.path.append('generated/plotter/python')\nimport plotter\n{flat}"
+    assert f"inverse_dynamics: {said}" in page.run("python", "-c", source, code=1).stderr
 
 
 @pytest.mark.campaign
