@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from symgen.diagnostics import Mistake, ModelError, Span
 from symgen.model.file.attempts import attempted_names
+from symgen.model.file.misplaced import without_misplaced
 from symgen.model.file.reading import key_span
 from symgen.model.file.schema import MODEL
 from symgen.model.file.scope import Scope
@@ -43,8 +44,10 @@ def load_text(text: str, file: str) -> Model:
     tree, mistakes = read_tree(text)
     if tree is None:
         raise ModelError(file, text, mistakes)
-    all_mistakes = [*mistakes, *check_shape(MODEL, tree, "the model")]
+    rest, misplaced = without_misplaced(tree)
+    all_mistakes = [*mistakes, *misplaced, *check_shape(MODEL, rest, "the model")]
     scope = Scope(mistakes=all_mistakes, attempted=attempted_names(tree, all_mistakes))
+    tree = rest
     beside: dict[str, str] = {}
     described = [key for key in DESCRIPTIONS if tree.get(key) is not None]
     if described:

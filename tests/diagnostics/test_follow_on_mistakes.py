@@ -113,6 +113,9 @@ SPOILED = (
     ("inputs:\n", "input:\n"),
     ("two: {joint: c,", "two: {jont: c,"),
     ("push: {point: tip", "push: {pont: tip"),
+    ("push: {point: tip, magnitude: k*g, direction: [1, 0, 0]}", "push: {between: [tip, foot], stiffness: k}"),
+    ("one: {between: [tip, foot], stiffness: 10, length: 1}", "one: {point: tip, direction: [1, 0, 0], magnitude: k}"),
+    ("  foot: {frame: cart, at", "  foot: {parent: cart, translation"),
 )
 
 
@@ -132,6 +135,23 @@ def test_one_mistake_is_told_once(before: str, after: str) -> None:
     line = GOOD[: GOOD.index(before) + len(before) - 1].count("\n") + 1
     mistakes = mistakes_of(GOOD.replace(before, after, 1))
     assert [place for place, _ in mistakes] == [line], mistakes
+
+
+def test_an_entry_of_another_block_is_sent_there() -> None:
+    spring = "push: {type: spring, between: [tip, foot], stiffness: k}"
+    text = GOOD.replace("push: {point: tip, magnitude: k*g, direction: [1, 0, 0]}", spring)
+    with pytest.raises(ModelError) as raised:
+        load_text(text, "spoiled.yaml")
+    (mistake,) = raised.value.mistakes
+    assert mistake.message == "`push` has the keys of a spring, and stands under `forces`"
+    assert mistake.remedy == "`springs` is a block of its own: move it there, without `type`"
+
+
+def test_keys_that_two_blocks_know_send_nobody_anywhere() -> None:
+    """`between` and `length` are keys of springs and of loops."""
+    entry = "push: {between: [tip, foot], length: 1}"
+    mistakes = mistakes_of(GOOD.replace("push: {point: tip, magnitude: k*g, direction: [1, 0, 0]}", entry))
+    assert any("`between` is no key of a force" in message for _, message in mistakes)
 
 
 def test_a_joint_that_takes_the_coordinate_of_another_is_one_mistake() -> None:
