@@ -33,7 +33,6 @@ from symgen.runtime.activity import working
 if TYPE_CHECKING:
     from symgen.generation.acceptance.coordinate_bounds import CoordinateBounds
     from symgen.generation.acceptance.parameter_bounds import ParameterBounds
-    from symgen.generation.acceptance.rank_thresholds import RankThresholds
     from symgen.generation.acceptance.trial import Trial
     from symgen.report.facts import ReportFiles
     from symgen.report.proof import ProofFacts
@@ -60,7 +59,7 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
     outputs = requested_outputs(model, options)
     draft: Draft | None = None
     trial: Trial | None = None
-    limits: tuple[RankThresholds, CoordinateBounds, ParameterBounds] | None = None
+    limits: tuple[CoordinateBounds, ParameterBounds] | None = None
     while True:
         with _reporting(model, options.verify) if "report" in options.parts else nullcontext() as reporting:
             if draft is None:
@@ -69,7 +68,6 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
                 if options.verify and verified(options):
                     from symgen.generation.acceptance.coordinate_bounds import CoordinateBounds
                     from symgen.generation.acceptance.parameter_bounds import ParameterBounds
-                    from symgen.generation.acceptance.rank_thresholds import RankThresholds
                     from symgen.generation.acceptance.trial import Trial
 
                     with _literals_in_range(path):
@@ -78,10 +76,12 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
                     if not draft.program.kernels:
                         return _result(draft, options, {}, replace(tried, left_out=draft.left_out))
                     expected = trial.expected
-                    limits = RankThresholds(expected), CoordinateBounds(expected), ParameterBounds(expected)
-            for limit in limits or ():
+                    limits = CoordinateBounds(expected), ParameterBounds(expected)
+            if trial is not None:
                 with _literals_in_range(path):
                     check_literals(draft.programs)
+                draft = trial.ranks.of(draft)
+            for limit in limits or ():
                 progress(f"verifying: {limit.WHAT}")
                 draft = limit.of(draft)
             if reporting is not None:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,8 +17,10 @@ from symgen.ir.kernel import Block, Check, Kernel, Literal, Load, Local, Stateme
 from symgen.ir.raised import Raised, with_raised_thresholds
 from symgen.laboratory.zoo.witness.witness import Witness
 from symgen.model.load import load_text
+from symgen.pipeline import generate
 from symgen.verify.expected import Expected
 from symgen.verify.interpreted import outcomes
+from symgen.verify.margins import next_to_singular
 from symgen.verify.margins.next_to_singular import NextToSingular
 from symgen.verify.reference.reference import State
 from symgen.verify.sampling.nearby import Surroundings
@@ -148,6 +152,23 @@ def test_a_kernel_that_loses_digits_next_to_a_drop_has_a_status_there() -> None:
     assert after[0] is Status.CONSTRAINT_RANK
     assert after[1:] == before[1:]
     assert all(isinstance(one, float) and one < FACTOR for one in after[1:])
+
+
+@pytest.mark.campaign
+def test_where_no_threshold_refuses_what_is_lost_a_method_is_rejected(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, tool: Callable[[str], str]
+) -> None:
+    tool("cc")
+    model = tmp_path / "lift.yaml"
+    model.write_text(LIFT, encoding="utf-8")
+    options = Options(parts=("c",), states=16, outputs=("forward_dynamics",), methods=METHOD, scalars=("float64",))
+    assert generate(model, options, lambda _: None).left_out == ()
+    monkeypatch.setattr(next_to_singular, "MOST_DECADES", 0)
+    (left_out,) = generate(model, options, lambda _: None).left_out
+    assert left_out.quantity == "forward_dynamics"
+    assert "next to a singular state, which no threshold refuses" in left_out.tried[0][1]
+    # another method holds there
+    assert generate(model, replace(options, methods={}), lambda _: None).left_out == ()
 
 
 @pytest.mark.campaign

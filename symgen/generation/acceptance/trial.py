@@ -13,6 +13,7 @@ from pathlib import Path
 
 from symgen.backends.literals import check_literals
 from symgen.generation.acceptance.fallback import Fallback
+from symgen.generation.acceptance.rank_thresholds import RankThresholds
 from symgen.generation.draft import Draft
 from symgen.generation.files import verified
 from symgen.generation.results import Options
@@ -39,12 +40,17 @@ class Trial:
         self.fallback = Fallback(options, progress)
         check_literals(draft.programs)
         self.expected = expected_of(path, draft, options.states, progress, self._scalars)
+        self.ranks = RankThresholds(self.expected)
 
     def settled(self, draft: Draft) -> tuple[Draft, Certificate]:
         """The draft that nothing speaks against any more, and what its trial found."""
         while True:
             certificate = self._certificate(draft)
             other = self.fallback.other(draft, certificate, self.expected)
+            if other is None:
+                self._progress(f"verifying: {self.ranks.WHAT}")
+                if faults := self.ranks.faults(draft):
+                    other = self.fallback.other(draft, replace(certificate, faults=faults), self.expected)
             if other is None or not other.program.kernels:
                 self.fallback.settle()
                 return other or draft, certificate

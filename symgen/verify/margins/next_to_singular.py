@@ -8,7 +8,7 @@ else is beyond what is allowed, its thresholds are raised until it has a status.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -58,20 +58,30 @@ class NextToSingular:
     def __init__(self, expected: Expected) -> None:
         self._expected, self._digits = expected, LostDigits(expected)
 
-    def raised(self, kernels: Mapping[Scalar, Kernel], programs: Mapping[Scalar, Program]) -> dict[Scalar, Raised]:
+    def raised(
+        self, kernels: Mapping[Scalar, Kernel], programs: Mapping[Scalar, Program]
+    ) -> dict[Scalar, Raised | None]:
         """By how much the thresholds of the kernels of a quantity are to be raised, by scalar type.
 
-        By no decade where a number that is too small to have digits is all there is to be refused.
+        By no decade where a number that is too small to have digits is all there is to be refused; None where digits
+        are lost and no threshold refuses that, or none that leaves regular states what they are.
         """
-        made = {}
+        made: dict[Scalar, Raised | None] = {}
         with working("next to singular states"):
             for scalar, kernel in kernels.items():
                 if kernel.name in MAIN and self._digits.are_measured(kernel, scalar):
-                    made[scalar] = Raised()
-                    for led in self._led(kernel):
-                        decades = self._decades(kernel, programs, scalar, led)
-                        made[scalar] = replace(made[scalar], **{led.field: decades})
+                    made[scalar] = self._raised(kernel, programs, scalar)
         return {scalar: raised for scalar, raised in made.items() if raised != Raised()}
+
+    def _raised(self, kernel: Kernel, programs: Mapping[Scalar, Program], scalar: Scalar) -> Raised | None:
+        raised, every = Raised(), list[State]()
+        for led in self._led(kernel):
+            if lost := list(self._lost(kernel, programs, scalar, led)):
+                raised = replace(raised, **{led.field: self._decades(kernel, programs, scalar, led.field, lost)})
+                every += lost
+        # masses may refuse what is lost next to a drop of rank
+        made = outcomes(with_raised_thresholds(kernel, scalar, raised), programs[scalar].sincos, scalar, every)
+        return None if any(one.valid for one in made) else raised
 
     def _led(self, kernel: Kernel) -> Iterator[_Led]:
         if len(self._next_to_a_drop.states):
@@ -80,16 +90,23 @@ class NextToSingular:
         if divided and kernel.name in DIVIDED_BY_MASSES and len(self._next_to_no_mass.states):
             yield self._next_to_no_mass
 
-    def _decades(self, kernel: Kernel, programs: Mapping[Scalar, Program], scalar: Scalar, led: _Led) -> int | None:
+    def _decades(
+        self,
+        kernel: Kernel,
+        programs: Mapping[Scalar, Program],
+        scalar: Scalar,
+        field: str,
+        lost: Sequence[State],
+    ) -> int | None:
+        """By how many all of the states at which digits are lost are refused, and no regular one; None by none."""
         sincos = programs[scalar].sincos
-        lost = list(self._lost(kernel, programs, scalar, led))
         regular = [sample.state for sample in self._expected.samples(scalar)]
         before = [one.status for one in outcomes(kernel, sincos, scalar, regular)]
-        for decades in range(0, MOST_DECADES if lost else 0, DECADES_RAISED):
-            raised = with_raised_thresholds(kernel, scalar, Raised(**{led.field: decades}))
+        for decades in range(0, MOST_DECADES, DECADES_RAISED):
+            raised = with_raised_thresholds(kernel, scalar, Raised(**{field: decades}))
             if not any(one.valid for one in outcomes(raised, sincos, scalar, lost)):
                 more = decades + MARGIN if decades else 0
-                raised = with_raised_thresholds(kernel, scalar, Raised(**{led.field: more}))
+                raised = with_raised_thresholds(kernel, scalar, Raised(**{field: more}))
                 after = [one.status for one in outcomes(raised, sincos, scalar, regular)]
                 return more if after == before else None
         return None
