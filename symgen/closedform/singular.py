@@ -6,6 +6,7 @@ leaves directions open where it loses rank.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from typing import Literal, TypeAlias
 
 from sympy import Expr, Integer
@@ -22,7 +23,6 @@ from symgen.closedform.algebra.homogeneous import (
 from symgen.closedform.algebra.limits import TooLargeError
 from symgen.closedform.algebra.matrices import identity
 from symgen.closedform.algebra.minors import common_denominator
-from symgen.closedform.algebra.quotient import Matrix
 from symgen.closedform.algebra.ring import TrigRing
 from symgen.closedform.exact import Exact
 from symgen.closedform.spelling import Speller
@@ -54,56 +54,76 @@ class SingularSet:
 
 
 def derive_singular_sets(model: Model, exact: Exact, speller: Speller) -> tuple[SingularSet, ...]:
-    """Constraint singularities, input singularities, and those of the chosen independent velocities."""
+    """Constraint singularities, input singularities, and those of what is given and of chosen velocities.
+
+    The first that is too much work is the last, and empty.
+    """
     singular_sets: list[SingularSet] = []
+    begun: tuple[Kind, str] = ("constraint", "constraint_jacobian")
     try:
         with exact.ring.work.limited("the singular configurations"):
-            _collect(model, exact, speller, singular_sets)
+            for kind, quantity, vanishing in _rank_losses(model, exact):
+                begun = kind, quantity
+                common = vanishing()
+                if common is not None:
+                    singular_sets.append(_common_zeros(exact, speller, kind, quantity, *common))
     except TooLargeError as large:
-        singular_sets.append(SingularSet("constraint", "constraint_jacobian", (), False, f"not worked out: {large}"))
+        singular_sets.append(SingularSet(*begun, (), False, f"not worked out: {large}"))
     return tuple(singular_sets)
 
 
-def _collect(model: Model, exact: Exact, speller: Speller, sets: list[SingularSet]) -> None:
+# What vanishes at once, a factor that was taken out of all of it, and what happens there.
+Common: TypeAlias = tuple[list[PolyElement], PolyElement, str]
+RankLoss: TypeAlias = tuple[Kind, str, Callable[[], Common | None]]
+
+
+def _rank_losses(model: Model, exact: Exact) -> Iterator[RankLoss]:
+    """What may lose rank, and what vanishes there when it is asked for; None where it has no rank to lose."""
     if model.constraints:
-        minors = [v for one in exact.minor_sets for v in one.values.values()]
-        contents = [one.content for one in exact.minor_sets]
-        content = contents[0] if len(contents) == 1 else exact.ring.one
-        sets.append(
-            _common_zeros(exact, speller, "constraint", "constraint_jacobian", minors, content, "the rank of B drops")
-        )
+        yield "constraint", "constraint_jacobian", lambda: _of_constraints(exact)
     if model.inputs and exact.structure.degree_of_actuation == exact.delta:
-        deltas = [v for one in exact.actuations for v in one.determinants.values()]
-        text = "the degree of actuation drops"
-        quantity = "projected_control_pseudoinverse"
-        sets.append(_common_zeros(exact, speller, "input", quantity, deltas, exact.ring.one, text))
-    _collect_given(model, exact, speller, sets)
+        yield "input", "projected_control_pseudoinverse", lambda: _of_inputs(exact)
+    yield from _of_given(model, exact)
     if model.independent_velocities:
-        complement = exact.complement(model.independent_velocities)
-        if complement is not None:
-            bottom = common_denominator(exact.ring, [e for row in complement for e in row])
-            text = "the chosen velocities become dependent (a property of the choice, not of the mechanism)"
-            sets.append(
-                _common_zeros(exact, speller, "parameter", "orthogonal_complement", [bottom], exact.ring.one, text)
-            )
+        yield "parameter", "orthogonal_complement", lambda: _of_chosen(model, exact)
 
 
-def _collect_given(model: Model, exact: Exact, speller: Speller, sets: list[SingularSet]) -> None:
+def _of_constraints(exact: Exact) -> Common:
+    minors = [v for one in exact.minor_sets for v in one.values.values()]
+    contents = [one.content for one in exact.minor_sets]
+    return minors, contents[0] if len(contents) == 1 else exact.ring.one, "the rank of B drops"
+
+
+def _of_inputs(exact: Exact) -> Common:
+    deltas = [v for one in exact.actuations for v in one.determinants.values()]
+    return deltas, exact.ring.one, "the degree of actuation drops"
+
+
+def _of_chosen(model: Model, exact: Exact) -> Common | None:
+    complement = exact.complement(model.independent_velocities)
+    if complement is None:
+        return None
+    bottom = common_denominator(exact.ring, [e for row in complement for e in row])
+    text = "the chosen velocities become dependent (a property of the choice, not of the mechanism)"
+    return [bottom], exact.ring.one, text
+
+
+def _of_given(model: Model, exact: Exact) -> Iterator[RankLoss]:
     """Those of what is measured and of the task: where they do not determine the rest, or lose rank if it is open."""
-    given: list[tuple[Kind, str, Matrix]] = []
     if model.measured:
         units = identity(exact.ring, model.n)
-        given.append(("measured", "what is measured", tuple(units[k] for k in model.measured_places)))
+        measured = tuple(units[k] for k in model.measured_places)
+        text = "what is measured does not determine the rest"
+        yield "measured", "velocity_from_measured", lambda: (exact.determined_by(measured), exact.ring.one, text)
     leaves = model.task_leaves
-    if model.task and not leaves.rates:
-        given.append(("task", "the task", exact.mechanics.task_jacobian))
-    elif model.task and not leaves.idle:
-        given.append(("open_task", "the task", exact.mechanics.task_jacobian))
-    for kind, what, slopes in given:
-        values = exact.determined_by(slopes)
-        text = f"{what} {'loses rank' if kind == 'open_task' else 'does not determine the rest'}"
-        name = f"velocity_from_{'measured' if kind == 'measured' else 'task'}"
-        sets.append(_common_zeros(exact, speller, kind, name, values, exact.ring.one, text))
+    if model.task and not (leaves.rates and leaves.idle):
+        kind: Kind = "open_task" if leaves.rates else "task"
+        said = f"the task {'loses rank' if leaves.rates else 'does not determine the rest'}"
+        yield kind, "velocity_from_task", lambda: (_of_task(exact), exact.ring.one, said)
+
+
+def _of_task(exact: Exact) -> list[PolyElement]:
+    return exact.determined_by(exact.mechanics.task_jacobian)
 
 
 def essential_factors(ring: TrigRing, p: PolyElement) -> tuple[PolyElement, ...]:

@@ -59,7 +59,13 @@ class Speller:
             angle = sum((Rational(f.numerator, f.denominator) * spell_expression(base) for base, f in atom), Integer(0))
             self.angles.append(angle)
             self.symbols += [sin(angle), cos(angle)]
-        self.symbols += [spell_expression(atom.expression) for atom in ring.opaque]
+        self._squares: list[tuple[int, Any]] = []
+        for opaque in ring.opaque:
+            root = spell_expression(opaque.expression)
+            square = root**2
+            if square.is_Rational:
+                self._squares.append((len(self.symbols), QQ(int(square.p), int(square.q))))
+            self.symbols.append(root)
         self._dynamic = tuple(sorted(self.dynamic))
         self._products: dict[tuple[int, ...], Expr] = {}
         self._known: dict[PolyElement, tuple[Rational, Expr]] = {}
@@ -155,13 +161,16 @@ class Speller:
     def shorter(self, p: PolyElement) -> tuple[Rational, Expr]:
         """(scale, sum) of a factor in the shortest of its forms: polynomial, Fourier sum, or collected by rates."""
         if p not in self._known:
-            normal = self.ring.normal(p)
-            forms = [self._plain(q) for q in ((p,) if normal == p else (p, normal))]
+            plain = self._without_squares(p)
+            normal = self.ring.normal(plain)
+            if not normal:
+                return Integer(1), Integer(0)
+            forms = [self._plain(q) for q in ((plain,) if normal == plain else (plain, normal))]
             lengths = [_length(form) for form in forms]
             collected = self._collected(normal)
             length = None if collected is None else _length((Integer(1), collected))
-            if sum([2 ** sum([monomial[i] for i in self.ring.angle_positions]) for monomial in p]) <= MOST_WAVES:
-                series = fourier_series(self.ring, p)
+            if sum([2 ** sum([monomial[i] for i in self.ring.angle_positions]) for monomial in plain]) <= MOST_WAVES:
+                series = fourier_series(self.ring, plain)
                 least = least_length(self.ring, series)
                 # it is not built where another form is shorter anyway
                 if least < min(lengths) and (length is None or least <= length):
@@ -173,6 +182,19 @@ class Speller:
             best = forms[lengths.index(min(lengths))]
             self._known[p] = _upright(*best)
         return self._known[p]
+
+    def _without_squares(self, p: PolyElement) -> PolyElement:
+        """The same with 3 for the square of sqrt(3): what coefficients have in common is seen then."""
+        for position, square in self._squares:
+            if any(monomial[position] > 1 for monomial in p):
+                reduced = self.ring.polys.zero.copy()
+                for monomial, coefficient in p.items():
+                    pairs, single = divmod(monomial[position], 2)
+                    place = (*monomial[:position], single, *monomial[position + 1 :])
+                    reduced[place] = reduced.get(place, QQ(0)) + coefficient * square**pairs
+                p = reduced
+                p.strip_zero()
+        return p
 
     def _plain(self, p: PolyElement) -> tuple[Rational, Expr]:
         """The sum of monomials as it stands, the rational content apart."""
@@ -205,7 +227,7 @@ class Speller:
 
     def fourier(self, p: PolyElement) -> tuple[Rational, Expr]:
         """(scale, sum) with p = scale * sum: sines and cosines of angle combinations, coprime integer coefficients."""
-        return self._waves(fourier_series(self.ring, p))
+        return self._waves(fourier_series(self.ring, self._without_squares(p)))
 
     def _waves(self, series: Series) -> tuple[Rational, Expr]:
         """(scale, sum) of a Fourier series."""

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 
-from sympy import Add, Expr, ImmutableDenseMatrix, Integer, Symbol, preorder_traversal
+from sympy import Add, Expr, ImmutableDenseMatrix, Integer, Mul, Symbol, preorder_traversal
 from sympy.polys.rings import PolyElement
 
 from symgen.closedform.algebra.limits import TooLargeError
@@ -113,7 +113,10 @@ def structured_projector(exact: Exact, speller: Speller, taken: frozenset[str]) 
 
 
 def structured_control_pseudoinverse(exact: Exact, speller: Speller, taken: frozenset[str]) -> NamedMatrix:
-    """M~^+ = sum_J Delta_J v_L / Sigma_Delta, L = J without the input of the row; Delta_J as products of factors."""
+    """M~^+ = sum_J Delta_J v_L / Sigma_Delta, L = J without the input of the row; Delta_J as products of factors.
+
+    A single Delta_J is cancelled: v_L / Delta_J.
+    """
     naming = Naming(speller, taken)
     name_minors(exact, naming)
     scale = speller.polynomial(exact.control_scale)
@@ -132,6 +135,8 @@ def structured_control_pseudoinverse(exact: Exact, speller: Speller, taken: froz
             for sign, j, rest in left_inverse_terms(actuation, k):
                 for a in range(exact.model.n):
                     entries[k][a] += sign * deltas[j] * vectors[rest][a]
+    if squares.is_Pow:
+        return _finish([[scale * e / squares for e in row] for row in entries], naming, [])
     entries = [[scale * e / total for e in row] for row in entries]
     return _finish(entries, naming, [(total, squares)])
 
@@ -149,7 +154,7 @@ def structured_inverse_dynamics(
     naming = Naming(speller, taken)
     symbols = [naming.symbol(f"tau_{i + 1}") for i in range(exact.model.n)]
     load = [[symbol if entry else Integer(0)] for symbol, (entry,) in zip(symbols, exact.load, strict=True)]
-    matrix = _product(left.matrix, load)
+    matrix = _product(left.matrix, load).applyfunc(_over_common_denominator)
     used = matrix.free_symbols
     terms = sum(len(e.numerator) for symbol, (e,) in zip(symbols, exact.load, strict=True) if symbol in used)
     if terms > LONGEST_LOAD:
@@ -188,6 +193,20 @@ def _product(left: ImmutableDenseMatrix, right: Sequence[Sequence[Expr]]) -> Imm
     return ImmutableDenseMatrix(
         [[Add(*(row[k] * entry for k, entry in column)) for column in columns] for row in left.tolist()]
     )
+
+
+def _over_common_denominator(entry: Expr) -> Expr:
+    """A sum whose terms all have the same names in their denominators, as one fraction."""
+    terms = Add.make_args(entry)
+    shared = set.intersection(*(_names_below(term) for term in terms))
+    divisor = Mul(*sorted(shared, key=str))
+    return Add(*(term * divisor for term in terms)) / divisor if len(terms) > 1 else entry
+
+
+def _names_below(term: Expr) -> set[Expr]:
+    """The names that a product is divided by once."""
+    powers = (factor for factor in Mul.make_args(term) if factor.is_Pow and factor.exp == -1)
+    return {power.base for power in powers if power.base.is_Symbol}
 
 
 def _finish(entries: Sequence[Sequence[Expr]], naming: Naming, sums: Iterable[tuple[Symbol, Expr]]) -> NamedMatrix:

@@ -7,6 +7,8 @@ from dataclasses import field
 
 from symgen.closedform.forms import ClosedForm
 from symgen.closedform.frame_steps import FrameStep
+from symgen.closedform.laws.choice import Laws
+from symgen.closedform.laws.singular_sets import DeterminantSet
 from symgen.closedform.published import Verdict
 from symgen.closedform.singular import SingularSet
 from symgen.closedform.structure import Integrability, RankStructure
@@ -50,6 +52,7 @@ class ReportInput:
 
     Without `verification`, `charts`, `targets`, `proof` a function of model and symgen alone.
 
+    `laws` are printed in the place of closed forms that are long, `determinants` in that of singular sets.
     `drawing` is the machine as SVG, `frame_steps` those of its recursion where the mass matrix is not written out.
     `operation_counts`: quantity -> kind of operation (add, mul, div, sqrt, sincos, other) -> number.
     `skipped`: decisions with their reasons, and quantities that do not exist with theirs.
@@ -71,3 +74,5 @@ class ReportInput:
     charts: tuple[Chart, ...] = ()
     targets: tuple[TargetCore, ...] = ()
     proof: ProofFacts | None = None
+    laws: Laws = field(default_factory=dict)
+    determinants: tuple[DeterminantSet, ...] = ()

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from itertools import islice
 from typing import Any
 
 from symgen.closedform.forms import ClosedForm
+from symgen.closedform.laws.terms import MatrixLaw
 from symgen.model.model import Model
 from symgen.report.content import ReportInput
 from symgen.report.document import Block, FormulaReference, Paragraph, Text, displayed
@@ -52,10 +54,15 @@ class Context:
         self.layout = SympyLayout(order)
         self.denominators = Denominators(frozenset(order), _intermediate_names(report_input.forms))
         self._defined: dict[str, str] = {}
+        self._listed: set[str] = set()
 
     def form(self, quantity: str) -> ClosedForm | None:
         """The closed form of a quantity, where the model has one."""
         return self.input.forms.get(quantity)
+
+    def laws(self, quantity: str) -> tuple[MatrixLaw, ...]:
+        """The laws of a quantity whose closed form is long; in a short report those that need no list of names."""
+        return tuple(law for law in self.input.laws.get(quantity, ()) if self.full or not law.intermediates)
 
     def matrix(self, quantity: str) -> Any:
         """The SymPy matrix of a quantity, or None."""
@@ -77,7 +84,7 @@ class Context:
             return (paragraph("{} is long and left out of this short report.", shown),)
         blocks: list[Block] = []
         if form.intermediates:
-            blocks += self._intermediates(form, f"with_{quantity}")
+            blocks += self.intermediates(form.intermediates, f"with_{quantity}")
         if form.matrix is not None:
             blocks += matrix_blocks(shown, form.matrix, self.layout, self.denominators, label)
         if form.note:
@@ -88,12 +95,22 @@ class Context:
         """Whether a form is printed in a short report."""
         return not form.intermediates and size(self.layout.matrix(form.matrix)) <= SHORT
 
-    def _intermediates(self, form: ClosedForm, label: str) -> list[Block]:
-        """The definitions of the names a form uses, those of earlier forms by reference."""
-        new = [(symbol, value) for symbol, value in form.intermediates if symbol.name not in self._defined]
-        earlier = sorted(
-            {self._defined[symbol.name] for symbol, _ in form.intermediates if symbol.name in self._defined}
-        )
+    def free_names(self, stem: str, count: int) -> list[str]:
+        """D_1, D_2 and the like that nothing else in the report is called."""
+        taken = frozenset(name_order(self.model)) | _intermediate_names(self.input.forms)
+        numbered = (f"{stem}_{k}" for k in range(1, count + len(taken) + 1))
+        return list(islice((name for name in numbered if name not in taken), count))
+
+    def first(self, factor: str) -> bool:
+        """Whether a factor of a law is to be listed now; it stands above when it is asked for again."""
+        known = factor in self._listed
+        self._listed.add(factor)
+        return not known
+
+    def intermediates(self, named: tuple[tuple[Any, Any], ...], label: str) -> list[Block]:
+        """The definitions of the names (symbols of SymPy) that a form uses, those of earlier forms by reference."""
+        new = [(symbol, value) for symbol, value in named if symbol.name not in self._defined]
+        earlier = sorted({self._defined[symbol.name] for symbol, _ in named if symbol.name in self._defined})
         self._defined |= {symbol.name: label for symbol, _ in new}
         known = say(" and".join([" {}"] * len(earlier)), *map(FormulaReference, earlier))
         if not new:

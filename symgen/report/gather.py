@@ -8,6 +8,8 @@ from dataclasses import asdict, replace
 from symgen import __version__
 from symgen.closedform.forms import ClosedForm, derive_closed_forms
 from symgen.closedform.frame_steps import FrameStep, frame_steps
+from symgen.closedform.laws.choice import derive_laws
+from symgen.closedform.laws.singular_sets import derive_determinant_sets
 from symgen.closedform.published import decide_published
 from symgen.drawing.svg import drawing
 from symgen.model.model import Model
@@ -26,6 +28,8 @@ def gather(model: Model, facts: Facts) -> ReportInput:
         model=model,
         version=__version__,
         forms=forms.forms,
+        laws=derive_laws(forms),
+        determinants=derive_determinant_sets(forms),
         structure=forms.structure,
         integrability=forms.integrability,
         singular_sets=forms.singular_sets,

@@ -7,6 +7,8 @@ from functools import cache
 from pathlib import Path
 
 from symgen.closedform.forms import derive_closed_forms
+from symgen.closedform.laws.choice import derive_laws
+from symgen.closedform.laws.singular_sets import derive_determinant_sets
 from symgen.closedform.published import Verdict
 from symgen.model.load import load_model
 from symgen.report.compose import compose
@@ -28,6 +30,8 @@ def report_input(name: str) -> ReportInput:
         model=model,
         version="1.2.3",
         forms=forms.forms,
+        laws=derive_laws(forms),
+        determinants=derive_determinant_sets(forms),
         structure=forms.structure,
         integrability=forms.integrability,
         singular_sets=forms.singular_sets,

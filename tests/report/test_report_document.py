@@ -22,7 +22,7 @@ from symgen.report.mathematics.measure import page_width
 from symgen.report.pdf import render_pdf, render_typst
 from symgen.report.prose import say
 
-NAMES = ("skate", "front_car", "double_pendulum", "slider_crank", "hostile")
+NAMES = ("skate", "front_car", "double_pendulum", "slider_crank", "delta", "rapkm_bodies", "gough_stewart", "hostile")
 HTML = "{http://www.w3.org/1999/xhtml}"
 
 
@@ -82,7 +82,7 @@ def test_latex_has_balanced_braces_and_environments(name: str) -> None:
 
 
 @pytest.mark.toolchain
-@pytest.mark.parametrize("name", ["front_car", "hostile"])
+@pytest.mark.parametrize("name", ["front_car", "delta", "hostile"])
 def test_latex_compiles(name: str, tmp_path: Path, tool: Callable[[str], str]) -> None:
     (tmp_path / "report.tex").write_text(render_latex(document(name)), encoding="utf-8")
     command = [tool("pdflatex"), "-interaction=nonstopmode", "-halt-on-error", "report.tex"]
@@ -174,7 +174,8 @@ from report_inputs import document
 from symgen.report.html import render_html
 from symgen.report.latex import render_latex
 sys.stdout.reconfigure(encoding="utf-8")
-print(render_html(document("front_car")), render_latex(document("front_car")))
+for name in ("front_car", "delta", "rapkm_bodies", "gough_stewart"):
+    print(render_html(document(name)), render_latex(document(name)))
 """
 
 
@@ -187,3 +188,29 @@ def test_text_does_not_depend_on_the_hash_seed() -> None:
         texts.append(subprocess.run(command, env=environment, capture_output=True, check=True).stdout)
     assert len(texts[0]) > 10000
     assert texts[0] == texts[1]
+
+
+def test_long_matrices_are_laws_and_long_singular_sets_determinants() -> None:
+    source = " ".join(render_latex(document("delta")).split())
+    for text in (
+        r"\mathbf{N}_{\mathbf{B}} = \mathbf{I} - \mathbf{B}^{\mathrm{T}} \mathbf{S}^{-1} \mathbf{B}",
+        r"\mathbf{u} = \boldsymbol{\tau}_{a} - \mathbf{B}_{a}^{\mathrm{T}} (\mathbf{B}_{p}^{\mathrm{T}})^{-1}",
+        r"-\frac{\mathbf{B}_{1, 4}}{\mathbf{B}_{1, 1}}",
+        r"D_{1} = \begin{vmatrix} \mathbf{B}_{1, 4} & \mathbf{B}_{1, 5} & \mathbf{B}_{1, 6} \\",
+        "There motions are possible on which no input works.",
+    ):
+        assert text in source, text
+    for text in ("not worked out", "is not printed", r"\Phi"):
+        assert text not in source, text
+
+
+def test_minors_of_two_directions_are_one_matrix() -> None:
+    source = " ".join(render_latex(document("rapkm_bodies")).split())
+    assert r"\frac{1}{\Sigma _{\Phi }}\,\boldsymbol{\Phi} \boldsymbol{\Phi}^{\mathrm{T}}" in source
+    assert r"where $\boldsymbol{\Phi}$ vanishes, that is where $\Sigma _{\Phi } = 0$" in source
+
+
+def test_a_long_jacobian_is_a_product() -> None:
+    source = " ".join(render_latex(document("gough_stewart")).split())
+    assert r"\mathbf{B} = \mathbf{K} \mathbf{J}" in source
+    assert r"\mathbf{K}_{1, 1} = 2 x_{\mathrm{head~1}} - 2 x_{\mathrm{foot~1}}" in source

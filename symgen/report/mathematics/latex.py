@@ -105,9 +105,10 @@ def latex_math(node: Layout) -> str:
             return " ".join(_term(*term, first=k == 0) for k, term in enumerate(terms))
         case Row(pieces=pieces):
             return "".join(latex_math(piece) for piece in pieces)
-        case Array(rows=rows):
+        case Array(rows=rows, fence=fence):
             lines = r" \\ ".join(" & ".join(latex_math(entry) for entry in row) for row in rows)
-            return rf"\begin{{pmatrix}} {lines} \end{{pmatrix}}"
+            environment = "pmatrix" if fence == "(" else "vmatrix"
+            return rf"\begin{{{environment}}} {lines} \end{{{environment}}}"
 
 
 def _letter(letter: Letter) -> str:

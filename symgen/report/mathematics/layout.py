@@ -128,9 +128,10 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Array:
-    """A matrix with its parentheses."""
+    """A matrix with its parentheses, or a determinant between bars."""
 
     rows: tuple[tuple[Layout, ...], ...]
+    fence: Literal["(", "|"] = "("
 
 
 @dataclass(frozen=True, slots=True)

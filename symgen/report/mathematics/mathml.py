@@ -89,10 +89,12 @@ def mathml(node: Layout) -> str:
             return f"<mrow>{''.join(_term(*term, first=k == 0) for k, term in enumerate(terms))}</mrow>"
         case Row(pieces=pieces):
             return f"<mrow>{''.join(mathml(piece) for piece in pieces)}</mrow>"
-        case Array(rows=rows):
+        case Array(rows=rows, fence=fence):
             cells = ("".join(f"<mtd>{mathml(entry)}</mtd>" for entry in row) for row in rows)
             table = "".join(f"<mtr>{row}</mtr>" for row in cells)
-            return f'<mrow><mo form="prefix">(</mo><mtable>{table}</mtable><mo form="postfix">)</mo></mrow>'
+            opening = f'<mo form="prefix">{fence}</mo>'
+            closing = f'<mo form="postfix">{CLOSING[fence]}</mo>'
+            return f"<mrow>{opening}<mtable>{table}</mtable>{closing}</mrow>"
     raise AssertionError(node)
 
 

@@ -43,11 +43,18 @@ def _component_layout(one: Component) -> Layout:
     return Scripts(symbol, places[0] if len(places) == 1 else Row(tuple(places)))
 
 
+def _entry_layout(matrix: str, row: str, column: str) -> Layout:
+    """B[1,4] as the entry 1, 4 of B."""
+    return Scripts(Letter(matrix, "bold"), Row((Numeral(row), Punctuation(","), Numeral(column))))
+
+
 @cache
 def name_layout(name: str) -> Layout:
-    """A declared name as it is set: dots for rates and accelerations, parts after underscores as indices."""
+    """A name as it is set: dots for rates and accelerations, parts after underscores as indices; entries of B."""
     if is_component(name):
         return _component_layout(component(name))
+    if entry := re.fullmatch(r"([A-Z])\[(\d+),(\d+)\]", name):
+        return _entry_layout(*entry.groups())
     for suffix, mark in RATE_MARKS:
         if name.endswith(suffix) and len(name) > len(suffix):
             inner = name_layout(name[: -len(suffix)])

@@ -73,8 +73,9 @@ def text_math(node: Layout) -> str:
             return "".join(_term(*term, first=k == 0) for k, term in enumerate(terms))
         case Row(pieces=pieces):
             return "".join(text_math(piece) for piece in pieces)
-        case Array(rows=rows):
-            return "[" + "; ".join(", ".join(text_math(entry) for entry in row) for row in rows) + "]"
+        case Array(rows=rows, fence=fence):
+            inside = "; ".join(", ".join(text_math(entry) for entry in row) for row in rows)
+            return f"[{inside}]" if fence == "(" else f"|{inside}|"
 
 
 def terminal_width(node: Layout) -> float:

@@ -88,9 +88,9 @@ def typst_math(node: Layout) -> str:
             return " ".join(_term(*term, first=k == 0) for k, term in enumerate(terms))
         case Row(pieces=pieces):
             return " ".join(typst_math(piece) for piece in pieces)
-        case Array(rows=rows):
+        case Array(rows=rows, fence=fence):
             lines = "; ".join(", ".join(typst_math(entry) for entry in row) for row in rows)
-            return f"mat({lines})"
+            return f"mat({lines})" if fence == "(" else f"mat(delim: {quoted(fence)}, {lines})"
 
 
 def _term(sign: str, term: Layout, first: bool) -> str:

@@ -18,6 +18,7 @@ from symgen.report.mathematics.layout import (
 )
 from symgen.report.prose import (
     HALF,
+    PARTIAL,
     TWO,
     ZERO,
     B,
@@ -46,9 +47,9 @@ from symgen.report.prose import (
     transposed,
     u,
 )
+from symgen.report.sections.by_laws.constraints import jacobian_law, rate_law
 from symgen.report.sections.recursion import recursion
 
-PARTIAL = Letter("∂", "upright")
 D = bold("D")
 
 
@@ -137,6 +138,10 @@ def _potential(context: Context) -> list[Block]:
     return [paragraph("The potential forces, {}, are", gradient), *context.quantity("potential_force", "Q")]
 
 
+def _coefficients(context: Context) -> list[Block]:
+    return jacobian_law(context) or list(context.quantity("constraint_jacobian", "B"))
+
+
 def _jacobian(context: Context) -> list[Block]:
     kinds = {row.kind for row in context.model.constraints}
     velocity = equals(juxtaposed(B, qd), ZERO)
@@ -148,7 +153,7 @@ def _jacobian(context: Context) -> list[Block]:
             "The time derivative of {} together with {} reads {}, paper (1), with the coefficient matrix"
         ),
     }[frozenset(kinds)]
-    blocks: list[Block] = [paragraph(pattern, *references, velocity), *context.quantity("constraint_jacobian", "B")]
+    blocks: list[Block] = [paragraph(pattern, *references, velocity), *_coefficients(context)]
     if context.vanishes("constraint_jacobian_dot"):
         blocks.append(
             paragraph("{} is constant, so that accelerations satisfy {}.", B, equals(juxtaposed(B, qdd), ZERO))
@@ -156,7 +161,7 @@ def _jacobian(context: Context) -> list[Block]:
     else:
         acceleration = equals(plus(juxtaposed(B, qdd), juxtaposed(B_dot, qd)), ZERO)
         blocks += [paragraph("A further derivative, {}, restricts the accelerations, with", acceleration)]
-        blocks += context.quantity("constraint_jacobian_dot", "Bdot")
+        blocks += rate_law(context) or context.quantity("constraint_jacobian_dot", "Bdot")
     if "geometric" in kinds:
         blocks.append(
             paragraph("The left-hand sides of {} are collected in {}.", FormulaReference("constraints_geometric"), g)

@@ -12,6 +12,7 @@ from symgen.report.prose import (
     M,
     Mt,
     Qa,
+    V,
     W,
     delta_diff,
     equals,
@@ -31,6 +32,7 @@ from symgen.report.prose import (
 from symgen.report.prose import C as CORIOLIS
 from symgen.report.prose import Q as POTENTIAL
 from symgen.report.sections.allocation import allocated_inputs
+from symgen.report.sections.by_laws.projections import input_laws, inverse_laws
 from symgen.report.sections.rough import friction_of_reactions
 
 
@@ -42,7 +44,7 @@ def inverse_dynamics(context: Context) -> Section:
     full = structure.degree_of_actuation == structure.differential_freedom
     blocks: list[Block] = [*_projected_control(context)]
     blocks.append(_pseudoinverse(context, full))
-    blocks += context.quantity("projected_control_pseudoinverse", "Mplus")
+    blocks += inverse_laws(context) or context.quantity("projected_control_pseudoinverse", "Mplus")
     blocks += [
         paragraph("The {} that produce a motion are, paper (27),", _which_inputs(context)),
         displayed((equals(u, juxtaposed(pseudoinverse(Mt), tau)), equals(tau, _balance(context))), "u"),
@@ -61,16 +63,18 @@ def inverse_dynamics(context: Context) -> Section:
     blocks += friction_of_reactions(context.model)
     blocks += _inputs_written_out(context)
     if full and m == structure.differential_freedom:
-        wt = transposed(W)
+        # W stands for a basis that is listed, where there is one
+        basis = V if any(law.kind in ("basis", "kernel") for law in context.laws("nullspace_projector")) else W
+        wt = transposed(basis)
         blocks.append(
             paragraph(
                 "Since {} is a basis of the admissible velocities with {}, the numbers {} are velocities along the "
                 "inputs and "
                 "{} is the mass seen by them (Remark 10 of the paper).",
-                equals(W, transposed(Fenced(pseudoinverse(Mt)))),
-                equals(qd, juxtaposed(W, nu)),
+                equals(basis, transposed(Fenced(pseudoinverse(Mt)))),
+                equals(qd, juxtaposed(basis, nu)),
                 equals(nu, juxtaposed(transposed(M), qd)),
-                juxtaposed(wt, G, W),
+                juxtaposed(wt, G, basis),
             )
         )
     return Section(say("Inverse dynamics"), tuple(blocks))
@@ -142,7 +146,7 @@ def _projected_control(context: Context) -> list[Block]:
             )
         ]
     blocks: list[Block] = [paragraph("The projected control matrix, paper (21), is {}.", equals(Mt, juxtaposed(NB, M)))]
-    if projected is not None:
+    if projected is not None and not context.laws("nullspace_projector"):
         blocks += context.quantity("projected_control_matrix", "Mtilde")
     return blocks
 
@@ -155,6 +159,9 @@ def _which_inputs(context: Context) -> str:
 
 
 def _inputs_written_out(context: Context) -> list[Block]:
+    laws = input_laws(context)
+    if laws:
+        return laws
     if context.matrix("inverse_dynamics") is None or not context.full:
         evaluated = FormulaReference("D" if context.model.rough else "u")
         return (

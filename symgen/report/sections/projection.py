@@ -40,6 +40,7 @@ from symgen.report.prose import (
     transposed,
     u,
 )
+from symgen.report.sections.by_laws.projections import projector_laws
 
 X = bold("X")
 
@@ -83,15 +84,16 @@ def _pseudoinverse(context: Context) -> list[Block]:
     gram = inverse(Fenced(juxtaposed(B, transposed(B))))
     formula = equals(pseudoinverse(B), juxtaposed(transposed(B), gram))
     blocks: list[Block] = [paragraph("As long as the rows of {} are independent, {}.", B, formula)]
-    if context.full and context.matrix("constraint_pseudoinverse") is not None:
+    written = context.matrix("constraint_pseudoinverse") is not None and not context.laws("constraint_pseudoinverse")
+    if context.full and written:
         blocks += [paragraph("In closed form"), *context.quantity("constraint_pseudoinverse", "Bplus")]
     return blocks
 
 
 def _projector(context: Context) -> list[Block]:
-    form = context.form("nullspace_projector")
-    if form is None:
-        return []
+    form, laws = context.form("nullspace_projector"), projector_laws(context)
+    if form is None or laws:
+        return laws
     if form.intermediates:
         opening = paragraph(
             "In the signed minors of {}, named below, it is a quotient of polynomials without any matrix inverse.", B
@@ -111,10 +113,8 @@ def _derivative(context: Context) -> list[Block]:
     blocks: list[Block] = [
         paragraph("Its time derivative is symmetric, {} with {} (Remark 9 of the paper).", formula, where)
     ]
-    if context.full and context.form("nullspace_projector_dot") is not None:
-        if context.matrix("nullspace_projector_dot") is not None:
-            blocks.append(paragraph("In closed form it is"))
-        blocks += context.quantity("nullspace_projector_dot", "NBdot")
+    if context.full and context.matrix("nullspace_projector_dot") is not None:
+        blocks += [paragraph("In closed form it is"), *context.quantity("nullspace_projector_dot", "NBdot")]
     return blocks
 
 

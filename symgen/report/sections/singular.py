@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from symgen.closedform.singular import SingularSet
+from symgen.closedform.laws.singular_sets import DeterminantSet
+from symgen.closedform.singular import Kind, SingularSet
 from symgen.report.context import Context
 from symgen.report.document import Block, Section, displayed
-from symgen.report.mathematics.layout import Relation, Row, size
+from symgen.report.mathematics.layout import Layout, Relation, Row, size
 from symgen.report.mathematics.matrices import packed
-from symgen.report.prose import SYMBOLS, ZERO, Slot, paragraph, say
+from symgen.report.prose import SYMBOLS, ZERO, paragraph, say
+from symgen.report.sections.by_laws.determinants import Determinants
+from symgen.report.sections.by_laws.projections import matrix_of_minors
 
 OPENING = {
     "constraint": "At constraint singularities the rank of {} drops and {} does not exist",
@@ -18,45 +21,63 @@ OPENING = {
     "task": "The task does not determine the rates everywhere",
     "open_task": "The task loses rank where it cannot be moved in some direction",
 }
+ORDER: tuple[Kind, ...] = ("constraint", "input", "measured", "task", "open_task", "parameter")
 # Symbols, numbers and operations of equations that are printed; of longer ones only the number is.
 LARGEST_LOCUS = 1500
 
 
 def singular(context: Context) -> Section:
     """Where ranks drop."""
-    blocks: list[Block] = []
-    for locus in context.input.singular_sets:
-        blocks += _one(context, locus)
+    determinants = {one.kind: one for one in context.input.determinants}
+    expressions = {one.kind: one for one in context.input.singular_sets}
+    printed = Determinants(context)
+    blocks = printed.definitions()
+    for kind in ORDER:
+        if kind in determinants:
+            blocks += _by_determinants(printed, determinants[kind])
+        elif kind in expressions:
+            blocks += _one(context, expressions[kind])
     if not blocks:
         blocks.append(paragraph("Without constraints, inputs and chosen velocities no rank can drop."))
     return Section(say("Singular configurations"), tuple(blocks))
 
 
+def _by_determinants(printed: Determinants, one: DeterminantSet) -> list[Block]:
+    if one.empty:
+        return [paragraph(_nowhere(one.kind), *_slots(one.kind))]
+    return printed.conditions(one, OPENING[one.kind], *_slots(one.kind))
+
+
 def _one(context: Context, locus: SingularSet) -> list[Block]:
     if locus.decided and not locus.vanishing:
-        return [paragraph(_nowhere(locus.kind), *_slots(locus))]
+        return [paragraph(_nowhere(locus.kind), *_slots(locus.kind))]
     if not locus.vanishing:
-        return [paragraph(OPENING[locus.kind] + "; {}.", *_slots(locus), locus.explanation.rstrip("."))]
+        return [paragraph(OPENING[locus.kind] + "; {}.", *_slots(locus.kind), locus.explanation.rstrip("."))]
+    minors = matrix_of_minors(context, locus.vanishing)
+    if minors and not locus.decided:
+        where = "; this happens where {} vanishes, that is where {}."
+        return [paragraph(OPENING[locus.kind] + where, *_slots(locus.kind), *minors)]
     equations = tuple(Row((context.layout.expression(value), Relation("="), ZERO)) for value in locus.vanishing)
     if locus.decided:
-        return [paragraph(OPENING[locus.kind] + "; this happens where", *_slots(locus)), displayed(equations)]
+        return [paragraph(OPENING[locus.kind] + "; this happens where", *_slots(locus.kind)), displayed(equations)]
     nodes = sum(size(line) for line in equations)
     if nodes > LARGEST_LOCUS:
         many = f"; these are the common zeros of {len(equations)} expressions with {nodes} symbols, not printed."
-        return [paragraph(OPENING[locus.kind] + many, *_slots(locus))]
+        return [paragraph(OPENING[locus.kind] + many, *_slots(locus.kind))]
     opening = paragraph(
-        OPENING[locus.kind] + "; this happens where all of these expressions vanish at once:", *_slots(locus)
+        OPENING[locus.kind] + "; this happens where all of these expressions vanish at once:", *_slots(locus.kind)
     )
     return [opening, displayed(tuple(packed(equations)))]
 
 
-def _slots(locus: SingularSet) -> list[Slot]:
-    if locus.kind in ("measured", "task", "open_task"):
-        return []
-    symbol = SYMBOLS[locus.quantity]
-    if locus.kind != "constraint":
-        return [symbol]
-    return [SYMBOLS["constraint_jacobian"], SYMBOLS["nullspace_projector"]]
+def _slots(kind: Kind) -> list[Layout]:
+    """The symbols in the sentences of a kind."""
+    quantities = {
+        "constraint": ("constraint_jacobian", "nullspace_projector"),
+        "input": ("projected_control_pseudoinverse",),
+        "parameter": ("orthogonal_complement",),
+    }.get(kind, ())
+    return [SYMBOLS[quantity] for quantity in quantities]
 
 
 def _nowhere(kind: str) -> str:
