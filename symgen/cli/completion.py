@@ -12,9 +12,9 @@ from symgen.cli.arguments import USUAL
 from symgen.generation.results import ALL_PARTS, AUTO, LINEARIZATION, NAMED_METHODS
 from symgen.model.quantities import BASE_PARAMETERS, ROWS
 
-# What stands in the place of a word: nothing that is known, a model file, a folder, one of several words, or several of
-# them with commas between.
-Kind: TypeAlias = Literal["", "model", "folder", "word", "list"]
+# What stands in the place of a word: nothing that is known, a model file, a log, a folder, one of several words, or
+# several of them with commas between.
+Kind: TypeAlias = Literal["", "model", "log", "folder", "word", "list"]
 
 MODELS = ("yaml", "yml", "urdf")
 # Flags that end a run stand in every parser.
@@ -112,6 +112,7 @@ def _methods() -> tuple[str, ...]:
 
 _BY_METAVAR: Mapping[str, ValueView] = {
     "MODEL.yaml": ValueView("model"),
+    "LOG.csv": ValueView("log"),
     "DIR": ValueView("folder"),
     "PARTS": ValueView("list", ALL_PARTS),
     "A,B": ValueView("list", ("all", *ROWS)),

@@ -1,11 +1,16 @@
-"""`symgen explain MODEL.yaml base_parameters`: which combinations of inertial parameters count."""
+"""Which combinations of inertial parameters count, and what a log of the machine says of them."""
 
 from __future__ import annotations
 
+import argparse
 import sys
 from pathlib import Path
 
-from symgen.cli.outcome import DONE, MODEL_WRONG
+from symgen.cli.arguments import add_out, add_quiet, make_parser, positive
+from symgen.cli.command import Command
+from symgen.cli.outcome import DONE, MODEL_WRONG, each_file
+from symgen.generation.results import WrongUseError
+from symgen.terminal import Progress
 
 
 def explain_base_parameters(path: Path) -> int:
@@ -26,3 +31,42 @@ def explain_base_parameters(path: Path) -> int:
         return MODEL_WRONG
     print(text)
     return DONE
+
+
+def _identify_parser() -> argparse.ArgumentParser:
+    parser = make_parser(
+        "symgen identify",
+        "Masses, inertias and friction of a machine from a log of its motion: estimates,\n"
+        "a report, and the model file with them.",
+        _LOG_FORMAT,
+    )
+    parser.add_argument("model", metavar="MODEL.yaml", type=Path, help="model file, in bodies form")
+    parser.add_argument("log", metavar="LOG.csv", type=Path, help="samples of a motion")
+    parser.add_argument(
+        "--cutoff", metavar="HZ", type=positive, help="of the low-pass (default: 5 times what the motion has)"
+    )
+    add_out(parser)
+    add_quiet(parser)
+    return parser
+
+
+def _identify(given: argparse.Namespace) -> int:
+    if not given.log.is_file():
+        raise WrongUseError(f"no such file: {given.log}")
+
+    def one(path: Path, progress: Progress) -> int:
+        from symgen.identification.estimates.command import run_identify
+
+        return run_identify(path, given.log, given.out, given.cutoff, given.quiet, progress)
+
+    return each_file([given.model], given.out, given.quiet, one)
+
+
+_LOG_FORMAT = """the log: a line of names, then a line for each sample, at equal steps of time
+  t                  time in s
+  x                  measured coordinates, by their names in the model
+  x_dot, x_ddot      rates and accelerations, where they are measured
+  u                  every input, by its name in the model
+  a unit may stand behind a name in brackets, as in `a_1 [rad]`
+"""
+IDENTIFY = Command(_identify_parser, _identify)

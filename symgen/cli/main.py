@@ -25,7 +25,7 @@ from symgen.cli.arguments import (
     parts,
 )
 from symgen.cli.command import Command
-from symgen.cli.identifying import explain_base_parameters
+from symgen.cli.identifying import IDENTIFY, explain_base_parameters
 from symgen.cli.linearizing import add_linearization, explain_linear_system
 from symgen.cli.measuring import BENCH, SIMULATE, STRESS, TARGET
 from symgen.cli.outcome import DONE, MODEL_WRONG, WRONG_USE, check_present, check_writable, guarded
@@ -55,6 +55,7 @@ _EPILOG = """commands:
   symgen stress MODEL.yaml...       errors near singularities, in long runs
   symgen target MODEL.yaml --cpu C  instructions, bytes, bits on emulated cores
   symgen simulate MODEL.yaml        integrates: CSV, chart, animation
+  symgen identify MODEL.yaml LOG    parameters from a log of the machine
   symgen new NAME                   a commented model to start from
   symgen explain MODEL.yaml [NAME]  closed forms and structure in the terminal
   symgen schema                     JSON Schema of model files, for editors
@@ -294,6 +295,7 @@ _COMMANDS = {
     "stress": STRESS,
     "target": TARGET,
     "simulate": SIMULATE,
+    "identify": IDENTIFY,
     "new": Command(_new_parser, _new),
     "explain": Command(_explain_parser, _explain),
     "schema": Command(_schema_parser, _schema),

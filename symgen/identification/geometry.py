@@ -16,19 +16,26 @@ def geometry_values(model: Model) -> dict[str, Fraction]:
 
     Of parameters that follow from others those others count; what is made of pi or roots stays as it is.
     """
-    read = {p.name: p.value for p in model.parameters} | {d.name: d.value for d in model.definitions}
-    reached: dict[str, None] = {}
-    pending = [name for expression in _geometric(model) for name in _names(expression)]
-    while pending:
-        name = pending.pop()
-        if name in read and name not in reached:
-            reached[name] = None
-            pending += _names(read[name])
+    reached = names_reached(model, geometric_expressions(model))
     given = {p.name: exact_value(p.value) for p in model.parameters if p.name in reached}
     return {name: value for name, value in given.items() if value}
 
 
-def _geometric(model: Model) -> Iterator[Expression]:
+def names_reached(model: Model, expressions: Iterable[Expression]) -> set[str]:
+    """Parameters and definitions in some expressions, and those that these are made of."""
+    read = {p.name: p.value for p in model.parameters} | {d.name: d.value for d in model.definitions}
+    reached: set[str] = set()
+    pending = [name for expression in expressions for name in _names(expression)]
+    while pending:
+        name = pending.pop()
+        if name in read and name not in reached:
+            reached.add(name)
+            pending += _names(read[name])
+    return reached
+
+
+def geometric_expressions(model: Model) -> Iterator[Expression]:
+    """What frames, points and constraints are given by."""
     mechanism = model.mechanism
     for frame in mechanism.frames:
         yield from frame.translation

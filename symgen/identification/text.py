@@ -45,15 +45,18 @@ def _counts(made: BaseParameters) -> str:
 
 
 def _entry(number: int, one: BaseParameter) -> Iterator[str]:
-    text = one.stays.name
-    for other, form in one.added:
-        text += _added(other, form)
+    text = combination(one)
     value = f"{one.value:.{VALUE_DIGITS}g}"
     wrapped = textwrap.wrap(text, LINE_WIDTH - 20, break_long_words=False, subsequent_indent="    ")
     for k, line in enumerate(wrapped):
         head = f"{number:>4}  " if not k else "      "
         end = f"{value:>14}" if k == len(wrapped) - 1 else ""
         yield f"{head}{line.replace(_TIED, ' '):<{LINE_WIDTH - 20}}{end}".rstrip()
+
+
+def combination(one: BaseParameter) -> str:
+    """A base parameter as a sum; blanks inside its terms do not break."""
+    return one.stays.name + "".join(_added(other, form) for other, form in one.added)
 
 
 # What keeps a coefficient and its parameter in one line.

@@ -18,7 +18,7 @@ from symgen.cli import main as cli
 @pytest.fixture
 def folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Path:
     """With a model, another file, a folder, and the scripts of all shells."""
-    for name in ("car.yaml", "arm.urdf", "notes.txt"):
+    for name in ("car.yaml", "arm.urdf", "notes.txt", "motion.csv"):
         (tmp_path / name).touch()
     (tmp_path / "out").mkdir()
     for shell in ("bash", "zsh", "fish"):
@@ -87,6 +87,7 @@ def test_bash_offers_commands_options_values_and_models(folder: Path) -> None:
     assert "notes.txt" not in in_bash(folder, "")
     assert in_bash(folder, "ver") == {"verify"}
     assert in_bash(folder, "verify", "") == {"car.yaml", "arm.urdf", "out"}
+    assert in_bash(folder, "identify", "car.yaml", "") == {"motion.csv", "out"}
     assert in_bash(folder, "verify", "--tr") == {"--trig"}
     assert in_bash(folder, "verify", "--trig", "") == {"portable", "libm"}
     assert in_bash(folder, "--trig", "=", "l") == {"libm"}

@@ -1,0 +1,1 @@
+"""Estimates: columns and inputs of a log, weighted least squares, parameters of the file, what is written."""

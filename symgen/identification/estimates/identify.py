@@ -1,0 +1,83 @@
+"""The whole way from a model and a log to estimates: read, completed, filtered, fitted, tried on what is set aside."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from symgen.identification.base_parameters import BaseParameters, NoBodiesError, base_parameters
+from symgen.identification.estimates.file_values import file_values
+from symgen.identification.estimates.identification import Identification
+from symgen.identification.estimates.least_squares import estimated
+from symgen.identification.estimates.linear_terms import estimated_names
+from symgen.identification.estimates.observations import Observations, observations
+from symgen.identification.logs.completed import completed_motion
+from symgen.identification.logs.filtering import FilterSettings, filter_settings
+from symgen.identification.logs.read_log import read_log
+from symgen.identification.machine_functions import MachineFunctions
+from symgen.identification.motion_states import NoMotionError
+from symgen.identification.not_identified import NotIdentifiedError
+from symgen.model.load import load_model
+from symgen.model.model import Model
+
+Progress = Callable[[str], None]
+# Of a log, the last part, which is not fitted but predicted.
+SET_ASIDE = 0.25
+
+
+def identified(path: Path, log_path: Path, cutoff: float | None, progress: Progress) -> Identification:
+    """What a log says of the machine of a model file; the cut-off of the filter in Hz, or None for the usual one.
+
+    Raises ModelError for mistakes in either file, and NotIdentifiedError where there is nothing to identify.
+    """
+    progress("reading the model")
+    model = load_model(path)
+    if not model.mechanism.has_mass:
+        raise NotIdentifiedError(
+            "the model has no `bodies`: identification is of their masses, first moments and inertias; "
+            "write the machine with `joints` or `frames` and `bodies`"
+        )
+    progress("reading the log")
+    log = read_log(log_path, model)
+    settings = filter_settings(log, cutoff)
+    progress("base parameters")
+    base = _base(model)
+    progress("making functions")
+    functions = MachineFunctions(model, log.measured)
+    progress("closing loops")
+    motion = completed_motion(functions, log, settings, progress)
+    progress("filtering")
+    names = estimated_names(functions, motion.state)
+    seen = observations(functions, base, names, log, motion, settings)
+    first = len(seen.t) - int(SET_ASIDE * len(seen.t))
+    fitted_to, aside = seen.part(slice(0, first)), seen.part(slice(first, None))
+    _check_enough(fitted_to, settings, log.file)
+    progress("fitting")
+    estimate = estimated(fitted_to)
+    if not estimate.closed_columns:
+        raise NotIdentifiedError("the motion of this log shows no parameter: record another one", log.file)
+    values = file_values(functions.model, base, names, functions.parameters, estimate)
+    return Identification(
+        model, log, settings, motion.open_by, base, names, fitted_to, aside, estimate, values
+    )
+
+
+def _base(model: Model) -> BaseParameters:
+    try:
+        return base_parameters(model)
+    except (NoBodiesError, NoMotionError):
+        raise NotIdentifiedError("no regular motion of the model was found at which parameters count") from None
+
+
+def _check_enough(seen: Observations, settings: FilterSettings, place: str) -> None:
+    samples, drives, count = seen.columns.shape
+    if samples * drives < 2 * count:
+        raise NotIdentifiedError(
+            f"{samples} samples are left at a cut-off of {settings.cutoff:.3g} Hz, too few for {count} parameters: "
+            "record a longer motion",
+            place,
+        )
+    if not np.isfinite(seen.columns).all():
+        raise NotIdentifiedError("it goes through a singularity, where inputs are not determined: leave it out", place)

@@ -1,0 +1,184 @@
+"""Estimates against machines whose parameters are known: errors, unseen motion, preload, outliers."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from identified_machines import MACHINES_WITH_LOGS, ROOT
+from scipy import integrate
+from simulated_logs import Array, Sensors, functions_of, simulated_log
+
+from symgen.identification.estimates.file_values import base_map
+from symgen.identification.estimates.identification import Identification
+from symgen.identification.estimates.identify import identified
+from symgen.identification.estimates.linear_terms import default_like, inertial_values
+from symgen.identification.estimates.notes import notes
+
+# Standard errors, the share of parameters within them, and what parameters may add to the noise of unseen motion.
+WITHIN, SHARE, ADDED = 3.0, 0.97, 1.2
+# Seeds of a campaign: logs of one machine.
+SEEDS = 20
+USUAL_SENSORS = Sensors()
+
+
+def quiet(_message: str) -> None:
+    return
+
+
+def of_log(folder: Path, machine: str, sensors: Sensors, seed: int, seconds: float = 10.0) -> Identification:
+    chosen = MACHINES_WITH_LOGS[machine]
+    (folder / "machine.yaml").write_text(chosen.text, encoding="utf-8")
+    log = simulated_log(chosen.text, chosen.motion, chosen.measured, chosen.truth, sensors, seed, seconds)
+    return identified(folder / "machine.yaml", log.write(folder), None, quiet)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("logs")
+
+
+@cache
+def known(folder: Path, machine: str, sensors: Sensors = USUAL_SENSORS) -> Identification:
+    """One for all tests of the module."""
+    return of_log(folder, machine, sensors, seed=0)
+
+
+def truth(made: Identification, machine: str) -> Array:
+    """Base parameters and linear ones of the machine that the log is of."""
+    chosen = MACHINES_WITH_LOGS[machine]
+    names = tuple(c.name for c in made.model.coordinates if c.name in chosen.motion.leading)
+    numbers = default_like(made.model, functions_of(chosen.text, names).parameters, chosen.truth)
+    combined = base_map(made.base) @ inertial_values(made.model, numbers)
+    return np.array([*combined, *(numbers[name] for name in made.names.linear)])
+
+
+def in_errors(made: Identification, machine: str) -> Array:
+    return np.asarray((made.estimate.values - truth(made, machine)) / made.estimate.errors)
+
+
+def added_to_noise(made: Identification, machine: str) -> Array:
+    """What is left of unseen inputs, by what the true parameters leave of them: noise of all sensors."""
+    seen = made.aside
+    left = np.sqrt(np.mean((seen.inputs - seen.columns @ truth(made, machine)) ** 2, axis=0))
+    return np.asarray(np.sqrt(np.mean(made.residuals(seen) ** 2, axis=0)) / left)
+
+
+@pytest.mark.parametrize("machine", ["arm", "four_bar", pytest.param("rapkm", marks=pytest.mark.campaign)])
+def test_estimates_are_within_their_errors(folder: Path, machine: str) -> None:
+    made = known(folder, machine)
+    assert np.abs(in_errors(made, machine)).max() < WITHIN
+    assert added_to_noise(made, machine).max() < ADDED
+    # the model file is further off than that: the estimates are worth something
+    before = np.array([one.before for one in made.parameters])
+    off = np.abs(before - truth(made, machine)) / made.estimate.errors
+    assert np.sum(off > WITHIN) >= 3
+    assert made.left_over < 0.02
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("machine", [*MACHINES_WITH_LOGS])
+def test_errors_are_honest_over_many_logs(tmp_path: Path, machine: str) -> None:
+    """Within three standard errors for 97 %, and no larger than needed: their rms is about one."""
+    seconds = 20.0 if machine == "four_bar" else 10.0
+    logs = [of_log(tmp_path, machine, USUAL_SENSORS, seed, seconds) for seed in range(SEEDS)]
+    off = np.concatenate([in_errors(made, machine) for made in logs])
+    assert np.mean(np.abs(off) < WITHIN) >= SHARE
+    assert 0.5 < np.sqrt(np.mean(off**2)) < 1.3
+    added = np.concatenate([added_to_noise(made, machine) for made in logs])
+    assert np.mean(added < ADDED) >= SHARE
+
+
+def test_a_preload_changes_nothing(folder: Path) -> None:
+    """Drives that work against each other as hard as they drive: 0.1 of a standard error at most."""
+    plain, loaded = (known(folder, "four_bar", Sensors(preload=p)) for p in (0.0, 1.0))
+    change = np.abs(loaded.estimate.values - plain.estimate.values) / plain.estimate.errors
+    assert change.max() < 0.1
+    inner = [one.inner for one in loaded.drives]
+    assert max(inner) > 0.2 * max(one.inputs for one in loaded.drives)
+    assert max(inner) > 20 * max(one.inner for one in plain.drives)
+
+
+def test_wild_samples_count_less(folder: Path) -> None:
+    plain, wild = (known(folder, "arm", Sensors(outliers=count)) for count in (0, 15))
+    off = np.abs(in_errors(wild, "arm"))
+    assert off.max() < WITHIN
+    assert wild.estimate.outliers > plain.estimate.outliers
+    # without weights the same log is worse
+    seen = wild.fitted_to
+    flat = seen.columns.reshape(-1, seen.columns.shape[2])
+    straight = np.linalg.lstsq(flat, seen.inputs.ravel(), rcond=None)[0]
+    lengths = np.linalg.norm(flat, axis=0)
+    true = truth(wild, "arm")
+    assert np.linalg.norm(lengths * (wild.estimate.values - true)) < np.linalg.norm(lengths * (straight - true)) / 2
+
+
+def test_friction_springs_and_what_is_not_linear(folder: Path) -> None:
+    made = known(folder, "arm")
+    assert made.names.inertial == ("m_1", "c_1", "J_1", "m_2", "c_2", "J_2")
+    assert made.names.linear == ("d_1", "f_1", "d_2", "f_2", "k")
+    assert dict(made.names.kept) == {"w": "the inputs are not linear in it"}
+    values = dict(zip(made.values.names, made.values.values, strict=True))
+    for name in made.names.linear:
+        assert values[name] == pytest.approx(MACHINES_WITH_LOGS["arm"].truth[name], rel=0.05)
+
+
+def test_values_of_the_file_say_what_the_estimates_say(folder: Path) -> None:
+    made = known(folder, "arm")
+    assert made.values.misfit < WITHIN
+    before = functions_of(MACHINES_WITH_LOGS["arm"].text, ("a", "b")).parameters
+    numbers = default_like(made.model, before, dict(zip(made.values.names, made.values.values, strict=True)))
+    combined = base_map(made.base) @ inertial_values(made.model, numbers)
+    off = (combined - made.estimate.values[: len(combined)]) / made.estimate.errors[: len(combined)]
+    assert np.abs(off).max() < WITHIN
+    assert made.values.impossible == ()
+
+
+def test_other_lengths_show_in_the_loops(tmp_path: Path) -> None:
+    """A rocker of 0.72 in place of 0.7: both encoders together say so, and the fit is worse."""
+    chosen = MACHINES_WITH_LOGS["four_bar"]
+    longer = chosen.text.replace("l_3: {value: 0.7,", "l_3: {value: 0.72,")
+    log = simulated_log(longer, chosen.motion, chosen.measured, chosen.truth, USUAL_SENSORS, seconds=5.0)
+    (tmp_path / "machine.yaml").write_text(chosen.text, encoding="utf-8")
+    made = identified(tmp_path / "machine.yaml", log.write(tmp_path), None, quiet)
+    assert "measured coordinates are off closed loops" in " ".join(notes(made))
+    (tmp_path / "machine.yaml").write_text(longer, encoding="utf-8")
+    made = identified(tmp_path / "machine.yaml", tmp_path / "log.csv", None, quiet)
+    assert "measured coordinates are off closed loops" not in " ".join(notes(made))
+
+
+def test_a_car_that_rolls(tmp_path: Path) -> None:
+    """Rolling constraints, all places measured: the mass of the whole car, its inertia about the rear axle."""
+    text = (ROOT / "models" / "front_car_bodies.yaml").read_text(encoding="utf-8")
+    functions = functions_of(text, ("x", "y", "theta", "phi"))
+    truth = {"m_1": 1300.0, "Theta_1": 1800.0, "Theta_2": 2.0}
+    t, w, length = np.arange(0, 20, 0.002), 2 * np.pi / 5, functions.parameters["L"]
+    v, v_d = 4 + 2.5 * np.sin(w * t) + np.sin(2 * w * t + 1), 2.5 * w * np.cos(w * t) + 2 * w * np.cos(2 * w * t + 1)
+    p, p_d, p_dd = (0.4 * w**k * np.sin(w * t + k * np.pi / 2) + 0.2 * (3 * w) ** k * np.sin(3 * w * t + k * np.pi / 2)
+                    for k in range(3))
+    turn, turn_d = v * np.tan(p) / length, (v_d * np.tan(p) + v * p_d / np.cos(p) ** 2) / length
+    heading = integrate.cumulative_simpson(turn, dx=0.002, initial=0)
+    cos, sin = np.cos(heading), np.sin(heading)
+    x, y = (integrate.cumulative_simpson(v * part, dx=0.002, initial=0) for part in (cos, sin))
+    rates = np.stack([v * cos, v * sin, turn, p_d], axis=-1)
+    accelerations = np.stack([v_d * cos - v * turn * sin, v_d * sin + v * turn * cos, turn_d, p_dd], axis=-1)
+    state = np.stack([x, y, heading, p], axis=-1), rates, accelerations
+    u = functions.inputs(state, default_like(functions.model, functions.parameters, truth))
+    u = u + 0.02 * np.std(u, axis=0) * np.random.default_rng(0).standard_normal(u.shape)
+    table = np.column_stack([t, np.round(state[0], 4), u])
+    np.savetxt(tmp_path / "log.csv", table, "%.9g", ",", header="t,x,y,theta,phi,K_f,T", comments="")
+    (tmp_path / "car.yaml").write_text(text, encoding="utf-8")
+    made = identified(tmp_path / "car.yaml", tmp_path / "log.csv", None, quiet)
+    shown = {one.name.split(" ")[0]: one for one in made.parameters}
+    for name, value in (("chassis.m", 1380), ("chassis.Izz", 1800 + 80 * length**2), ("phi.Ir", 2)):
+        assert abs(shown[name].value - value) < WITHIN * shown[name].error
+        assert shown[name].error < 0.01 * value
+
+
+def test_notes_say_what_the_data_do_not_determine(folder: Path) -> None:
+    made = known(folder, "four_bar")
+    text = " ".join(notes(made))
+    assert "may as well be 0" in text
+    assert f"the condition number is {made.estimate.condition:.0f}, limited by" in text
