@@ -9,7 +9,7 @@ CAMPAIGN_FILES := $(CAMPAIGN:%=models/%.yaml)
 MODELS := $(wildcard models/*.yaml)
 MECHANISMS := $(filter-out $(CAMPAIGN_FILES),$(MODELS))
 
-.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms bench-derivatives generation stress skipping passes constants trig zoo zoo-case zoo-sweeps docs api site lock robots jax fmpy
+.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms bench-derivatives generation stress skipping passes constants trig zoo zoo-case zoo-sweeps docs api site lock robots jax fmpy study
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -36,10 +36,10 @@ generated: $(VENV)/installed
 RECORDED := $(BIN)/python tools/campaigns.py
 
 # All that is recorded; and what has changed since then with a sample of the rest, which must give the same.
-campaigns: robots
+campaigns: robots study
 	$(RECORDED) run
 
-campaigns-changed: robots
+campaigns-changed: robots study
 	$(RECORDED) changed $(shell git rev-list --count HEAD)
 
 # Every mechanism given by bodies at more states than `make generated` takes, and the longer witnesses; minutes.
@@ -150,6 +150,9 @@ lock: $(VENV)/installed
 	printf 'fmpy\n' | $(BIN)/uv pip compile --quiet --python-version 3.11 --python-platform x86_64-manylinux_2_28 \
 	    --generate-hashes --constraint requirements.lock --no-emit-package numpy --no-header --no-annotate \
 	    --no-emit-index-url --no-emit-find-links --output-file tests/backends/fmpy.lock -
+	printf 'dask[distributed]\nxarray\nzarr\n' | $(BIN)/uv pip compile --quiet --python-version 3.11 \
+	    --python-platform x86_64-manylinux_2_28 --generate-hashes --constraint requirements.lock --no-header \
+	    --no-annotate --no-emit-index-url --no-emit-find-links --output-file tests/study/study.lock -
 	printf 'mkdocs-material\nmkdocstrings[python]\n' | $(BIN)/uv pip compile --quiet --universal --python-version 3.11 \
 	    --generate-hashes --constraint requirements.lock --no-header --no-annotate --no-emit-index-url \
 	    --no-emit-find-links --output-file docs/site.lock -
@@ -157,6 +160,10 @@ lock: $(VENV)/installed
 # Pinocchio, MuJoCo and published robot descriptions, witnesses of the mechanisms: wheels for Linux and Python 3.11.
 robots: $(VENV)/installed
 	$(BIN)/pip install --quiet --require-hashes --requirement tests/mechanisms/robots.lock
+
+# Dask, xarray and Zarr, on which studies run.
+study: $(VENV)/installed
+	$(BIN)/pip install --quiet --require-hashes --requirement tests/study/study.lock
 
 # JAX, under which docs/array-api.md runs: beside the environment, so that nothing else meets it.
 jax: $(VENV)/installed

@@ -19,10 +19,10 @@ from pdoc.render_helpers import to_html
 
 import symgen
 
-# What the `bench` extra installs is stood in for where it is not installed: modules name it, and call nothing yet.
+# What the extras `bench` and `study` bring is stood in for where it is missing: modules name it, and call nothing yet.
 PEERS = (
     "jax", "jax.numpy", "jax.scipy", "jax.scipy.linalg", "symforce", "symforce.codegen", "symforce.symbolic",
-    "symforce.values", "wrenfold",
+    "symforce.values", "wrenfold", "zarr",
 )  # fmt: skip
 BESIDE_CODE = re.compile(r"(`[^`]*`)|<")
 

@@ -24,7 +24,10 @@ PYTEST = (PYTHON, "-m", "pytest")
 CORES = ("arm-none-eabi-gcc", "qemu-system-arm", "riscv64-unknown-elf-gcc", "qemu-system-riscv32", "gcc", "clang")
 # The packages of Python, and those that some tests need besides.
 LOCK = "requirements.lock"
-MORE_LOCKS = ("tests/mechanisms/robots.lock", "tests/backends/jax.lock", "tests/backends/fmpy.lock")
+MORE_LOCKS = (
+    *("tests/mechanisms/robots.lock", "tests/backends/jax.lock", "tests/backends/fmpy.lock"),
+    "tests/study/study.lock",
+)
 # What looks at the product as a whole.
 PRODUCT = ("symgen", "templates", "models", "pyproject.toml", LOCK)
 # What a campaign's code imports and does not depend on by it: the way from model to C, which its bytes stand for, and
@@ -61,6 +64,7 @@ TESTED = {
     "proof": ("frama-c", "gappa", "gcc", "clang", "cppcheck", "clang-tidy"),
     "simulate": ("gcc",),
     "stress": ("gcc",),
+    "study": ("gcc",),
     "symbolic": (),
     "test_generated.py": ("gcc", "g++", "clang", "clang++"),
     "test_site.py": (),

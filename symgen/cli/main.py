@@ -30,6 +30,7 @@ from symgen.cli.linearizing import add_linearization, explain_linear_system
 from symgen.cli.measuring import BENCH, SIMULATE, STRESS, TARGET
 from symgen.cli.outcome import DONE, MODEL_WRONG, WRONG_USE, check_present, check_writable, guarded
 from symgen.cli.signals import EndedError, signals_end_the_run
+from symgen.cli.studying import STUDY
 from symgen.generation.results import ALL_PARTS, LINEARIZATION, PARTS, Options, Result, WrongUseError
 from symgen.ir.kernel import Scalar
 from symgen.model.expressions.names import did_you_mean
@@ -56,6 +57,7 @@ _EPILOG = """commands:
   symgen target MODEL.yaml --cpu C  instructions, bytes, bits on emulated cores
   symgen simulate MODEL.yaml        integrates: CSV, chart, animation
   symgen identify MODEL.yaml LOG    parameters from a log of the machine
+  symgen study MODEL.yaml           maps over ranges of parameters and places
   symgen new NAME                   a commented model to start from
   symgen explain MODEL.yaml [NAME]  closed forms and structure in the terminal
   symgen schema                     JSON Schema of model files, for editors
@@ -296,6 +298,7 @@ _COMMANDS = {
     "target": TARGET,
     "simulate": SIMULATE,
     "identify": IDENTIFY,
+    "study": STUDY,
     "new": Command(_new_parser, _new),
     "explain": Command(_explain_parser, _explain),
     "schema": Command(_schema_parser, _schema),

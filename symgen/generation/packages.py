@@ -20,6 +20,10 @@ EXTRA_OF = {
     "matplotlib": "report",
     "casadi": "casadi",
     "scipy": "simulate",
+    "dask": "study",
+    "distributed": "study",
+    "xarray": "study",
+    "zarr": "study",
 }
 # What the report needs, and charts along `paths` beside it.
 _OF_THE_REPORT, _OF_CHARTS = ("sympy", "typst"), ("casadi", "scipy", "matplotlib")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -47,6 +48,30 @@ class PathEquations:
     def acceleration(self, q: Array, qd: Array, t: float) -> Array:
         """d²h/dt² at q̈ = 0, k."""
         return np.asarray(self._acceleration(q, qd, t, self._parameters).full().ravel())
+
+    def of(self, parameters: Sequence[float]) -> PathEquations:
+        """The same equations with other values of the parameters, in the order of the model."""
+        return replace(self, _parameters=np.array(parameters, dtype=float))
+
+    @property
+    def parameters_used(self) -> tuple[int, ...]:
+        """The numbers of the parameters that the motion depends on."""
+        _, columns = self._position.jac_sparsity(0, 2).get_triplet()
+        return tuple(sorted(set(columns)))
+
+    def positions(self, q: Array, t: float, p: Array) -> tuple[Array, Array]:
+        """h (c×k) and ∂h/∂q (c×k×n) of c machines with parameters p (c×...) at q (c×n)."""
+        h, jacobian = self._position(q.T, t, p.T)
+        count, n = q.shape
+        return h.full().T, jacobian.full().reshape(-1, count, n).transpose(1, 0, 2)
+
+    def rates(self, q: Array, t: float, p: Array) -> Array:
+        """∂h/∂t of these machines, c×k."""
+        return np.asarray(self._rate(q.T, t, p.T).full().T)
+
+    def accelerations(self, q: Array, qd: Array, t: float, p: Array) -> Array:
+        """d²h/dt² at q̈ = 0 of these machines, c×k."""
+        return np.asarray(self._acceleration(q.T, qd.T, t, p.T).full().T)
 
     def nonholonomic(self, q: Array, qd: Array) -> Array:
         """What the non-holonomic rows leave of 0, r_v."""

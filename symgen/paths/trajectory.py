@@ -36,10 +36,10 @@ class Trajectory:
 class PathSolver:
     """Solves one path at any time near a known sample; geometric rows may depend on each other (Remark 7)."""
 
-    def __init__(self, model: Model, path: Path) -> None:
+    def __init__(self, model: Model, path: Path, equations: PathEquations | None = None) -> None:
         self.model = model
         self.path = path
-        self.equations: PathEquations = path_equations(model, path)
+        self.equations = path_equations(model, path) if equations is None else equations
         self._units: Array | None = None
 
     def start(self) -> Array:
@@ -153,13 +153,15 @@ class PathSolver:
         )
 
 
-def solve_path(model: Model, path: Path) -> Trajectory:
+def solve_path(model: Model, path: Path, equations: PathEquations | None = None) -> Trajectory:
     """The path on `samples` equidistant times, residual of constraints and conditions below 1e-12.
+
+    `equations` are those of the path with other values of the parameters than the model's.
 
     PathError where there is no solution, where the number of conditions is not δ_loc, or where the prescribed motion
     violates the non-holonomic rows: these cannot be solved for positions, so the conditions must respect them.
     """
-    solver = PathSolver(model, path)
+    solver = PathSolver(model, path, equations)
     times = np.linspace(0.0, float(path.duration), path.samples)
     positions = [solver.start()]
     derivatives = [solver.derivatives(positions[0], 0.0)]

@@ -1,0 +1,200 @@
+"""Quantities of interest at the states of a block of points, each with channels of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import combinations
+from math import comb
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symgen.mechanics.genericity import assembly_of
+from symgen.model.model import Model
+from symgen.study.asked.request import CONTROL, INPUTS, POWER, REACH, SINGULARITY, UTILISATION
+from symgen.study.chunks import Array
+from symgen.study.kernels import Codes, StudyKernels
+from symgen.study.plan import KERNELS, StudyPlan
+from symgen.study.states import BlockStates
+
+# Choices of as many inputs as there are degrees of freedom whose determinants are shown.
+MOST_CHOICES_SHOWN = 20
+CHOICE = "choice"
+
+
+@dataclass(frozen=True, slots=True)
+class Interest:
+    """A variable of the results: `channels` along a dimension of that name, if there are several, with their units.
+
+    `smallest` says that small magnitudes are the bad ones; `signed` that it changes its sign where it vanishes.
+    """
+
+    name: str
+    about: str
+    dimension: str
+    channels: tuple[str, ...]
+    units: tuple[str, ...]
+    smallest: bool = False
+    signed: bool = False
+
+    @property
+    def unit(self) -> str:
+        """The unit of all channels, or nothing where they differ."""
+        return self.units[0] if len(set(self.units)) == 1 else ""
+
+
+def interests(plan: StudyPlan) -> tuple[Interest, ...]:
+    """What a study shows, in the order in which it was asked for."""
+    return tuple(one for name in plan.shown for one in _interests(plan.model, name))
+
+
+def _interests(model: Model, name: str) -> tuple[Interest, ...]:
+    drives, units = tuple(one.name for one in model.inputs), tuple(one.unit or "" for one in model.inputs)
+    if name == INPUTS:
+        return (Interest(INPUTS, "inputs that produce the motion", "input", drives, units),)
+    if name == POWER:
+        watts = tuple("W" if unit in ("N", "N*m") else "" for unit in units)
+        return (Interest(POWER, "power of each input, force times velocity along it", "input", drives, watts),)
+    if name == SINGULARITY:
+        measures = "constraint", "input"
+        about = "distances from singularities of constraints and of inputs, 0 to 1"
+        sigma = Interest(SINGULARITY, about, "measure", measures, ("1", "1"), smallest=True)
+        subsets = choices(model)
+        if not subsets:
+            return (sigma,)
+        names = tuple("+".join(drives[k] for k in subset) for subset in subsets)
+        about = "det [B; Mᵀ] with these inputs alone, rows scaled to length 1"
+        return sigma, Interest(CHOICE, about, "drives", names, ("1",) * len(names), smallest=True, signed=True)
+    if name == CONTROL:
+        about = "smallest singular value of the projected control matrix that is not 0 everywhere"
+        return (Interest(CONTROL, about, "", ("",), (" or ".join(dict.fromkeys(units)),), smallest=True),)
+    if name == UTILISATION:
+        return (Interest(UTILISATION, "share of their limits that inputs need at least", "", ("",), ("1",)),)
+    return (Interest(REACH, "1 where there is a configuration, else 0", "", ("",), ("1",), smallest=True),)
+
+
+def choices(model: Model) -> tuple[tuple[int, ...], ...]:
+    """Choices of as many inputs as there are degrees of freedom, where [B; transposed M] is square with them."""
+    freedom = model.n - assembly_of(model).ranks.constraints
+    if model.n - model.r != freedom or not 0 < freedom <= model.m or comb(model.m, freedom) > MOST_CHOICES_SHOWN:
+        return ()
+    return tuple(combinations(range(model.m), freedom))
+
+
+class BlockValues:
+    """The quantities of interest of a block of points; kernels run once, whatever needs them."""
+
+    def __init__(self, plan: StudyPlan, kernels: StudyKernels, states: BlockStates) -> None:
+        self._plan, self._kernels, self._states = plan, kernels, states
+        self._made: dict[str, tuple[Array, Codes]] = {}
+        self.status: Codes = states.placed[states.group]
+
+    def of(self, name: str) -> Array:
+        """A variable of the results, points x channels x states; NaN where a kernel has no result."""
+        return np.ascontiguousarray(_EVALUATED[name](self))
+
+    def reduced(self, name: str) -> tuple[Array, NDArray[np.int64]]:
+        """What the entries of a variable are reduced to along the states, see `StudyKernels.reduced`.
+
+        Where they are those of a kernel and nothing else needs them they are not kept.
+        """
+        quantity = _ENTRIES_OF.get(name)
+        if quantity is None or self._is_shared(quantity):
+            values = self.of(name)
+            return self._kernels.reduced(values.reshape(-1, values.shape[2]))
+        states = self._states
+        figures, places, status = self._kernels.reduced_over(quantity, states.parts, states.group, states.parameters)
+        self._count(status)
+        return figures, places
+
+    def _is_shared(self, quantity: str) -> bool:
+        """Whether several variables are made from a quantity, or it has been evaluated."""
+        return quantity in self._made or sum(quantity in KERNELS[one] for one in self._plan.shown) > 1
+
+    def _count(self, status: Codes) -> None:
+        if status.any():
+            self.status = np.where(self.status == 0, status, self.status)
+
+    def entries(self, name: str) -> Array:
+        """A quantity of the model, points x entries x states; its statuses count where there was none before."""
+        if name not in self._made:
+            entries, status = self._entries(name)
+            self._made[name] = entries, status
+            self._count(status)
+        return self._made[name][0]
+
+    def _entries(self, name: str) -> tuple[Array, Codes]:
+        """Points that differ in places alone are the states of one: the kernel for many states takes them all."""
+        states = self._states
+        if not self._plan.one_machine:
+            return self._kernels.over(name, states.parts, states.group, states.parameters)
+        points, count = self.status.shape
+        together = {part: np.swapaxes(of, 0, 1).reshape(1, -1, points * count) for part, of in states.parts.items()}
+        entries, status = self._kernels.over(name, together, np.zeros(1, dtype=np.uintp), states.parameters[:1])
+        return np.swapaxes(entries.reshape(-1, points, count), 0, 1), status.reshape(points, count)
+
+    def matrices(self, name: str, columns: int) -> Array:
+        """A quantity of the model as matrices, points x states x rows x columns."""
+        entries = np.moveaxis(self.entries(name), 1, 2)
+        return np.asarray(entries.reshape(*entries.shape[:2], -1, columns))
+
+    @property
+    def rates(self) -> Array:
+        """Rates of the points, points x states x n."""
+        return np.asarray(np.moveaxis(self._states.parts["qd"], 1, 2)[self._states.group])
+
+    @property
+    def reached(self) -> Array:
+        """1 where there is a configuration, points x 1 x states."""
+        return np.asarray(self._states.placed[self._states.group] == 0, dtype=np.float64)[:, None]
+
+    @property
+    def model(self) -> Model:
+        """The model of the study."""
+        return self._plan.model
+
+
+def _power(block: BlockValues) -> Array:
+    """Each input times the velocity along it, a column of M times the rates."""
+    columns = block.matrices("control_matrix", block.model.m)
+    velocities = (columns * block.rates[..., None]).sum(axis=2)
+    return np.asarray(block.entries("inverse_dynamics") * np.moveaxis(velocities, 1, 2))
+
+
+def _smallest_singular_value(block: BlockValues) -> Array:
+    model = block.model
+    matrices = block.matrices("projected_control_matrix", model.m)
+    known = np.asarray(np.isfinite(matrices).all(axis=(2, 3)))
+    whole = np.where(known[..., None, None], matrices, 0.0)
+    values: Array = np.linalg.svd(whole, full_matrices=False, compute_uv=False)
+    rank = assembly_of(model).ranks.actuation
+    return np.where(known, values[..., rank - 1] if rank else 0.0, np.nan)[:, None]
+
+
+def _determinants(block: BlockValues) -> Array:
+    """Of [B; transposed M] with rows of length 1, for each choice of inputs."""
+    model = block.model
+    columns = np.swapaxes(block.matrices("control_matrix", model.m), 2, 3)
+    rows = block.matrices("constraint_jacobian", model.n) if model.r else columns[:, :, :0]
+    made = []
+    for subset in choices(model):
+        square = np.concatenate([rows, columns[:, :, list(subset)]], axis=2)
+        known = np.isfinite(square).all(axis=(2, 3))
+        lengths = np.sqrt((square * square).sum(axis=3, keepdims=True))
+        scaled = np.divide(square, lengths, out=np.zeros_like(square), where=lengths > 0)
+        made.append(np.where(known, np.linalg.det(np.where(known[..., None, None], scaled, 0.0)), np.nan))
+    return np.stack(made, axis=1)
+
+
+# Variables that are the entries of a quantity of the model.
+_ENTRIES_OF = {INPUTS: "inverse_dynamics", SINGULARITY: "singularity", UTILISATION: "utilisation"}
+_EVALUATED: dict[str, Callable[[BlockValues], Array]] = {
+    INPUTS: lambda block: block.entries("inverse_dynamics"),
+    POWER: _power,
+    SINGULARITY: lambda block: block.entries("singularity"),
+    CHOICE: _determinants,
+    CONTROL: _smallest_singular_value,
+    UTILISATION: lambda block: block.entries("utilisation"),
+    REACH: lambda block: block.reached,
+}

@@ -1,0 +1,193 @@
+"""The kernels of a study: verified once, derived again by whoever works on it, compiled with loops around them."""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import math
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from threading import local
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symgen.backends.locals import array_arguments
+from symgen.diagnostics import SymgenBug
+from symgen.generation.results import Options, Result, WrongUseError
+from symgen.ir.kernel import Kernel
+from symgen.model.model import Model
+from symgen.pipeline import generate
+from symgen.study.loops import loops_source, over_name, reduced_name, walk_name
+from symgen.verify.running.compile import Compilation, CompilationError, Compiler, CSource, find_compiler
+from symgen.verify.running.sources import generated_sources
+
+Array = NDArray[np.float64]
+Codes = NDArray[np.uint8]
+Progress = Callable[[str], None]
+RECORD_FILE = "derivation.json"
+# Those of the generated Python's `compile()`; without those for this machine where the compiler knows none.
+PORTABLE_FLAGS = ("-std=c99", "-O3", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-shared")
+MACHINE_FLAGS = (("-march=native", "-mprefer-vector-width=512"), ("-march=native",), ())
+
+
+@dataclass(frozen=True, slots=True)
+class MachineCompiler(Compiler):
+    """A compiler that makes vectors of this machine, but of sources that would take it too long."""
+
+    machine: tuple[str, ...] = ()
+
+    def flags(self, source: CSource) -> tuple[str, ...]:
+        """How a source is compiled here."""
+        return Compiler.flags(self, source) if source.large else (*PORTABLE_FLAGS, *self.machine)
+
+
+class NoKernelsError(Exception):
+    """Verification rejects a kernel of the study, or a worker makes other ones; the text says why."""
+
+
+def verified_result(path: Path, quantities: Sequence[str], record: Path | None, progress: Progress) -> Result:
+    """The C of the quantities, verified; what verification led to is taken from `record`/<model> where that is given.
+
+    Raises ModelError, NoKernelsError where a kernel is rejected, WrongUseError where the model does not have one.
+    """
+    options = Options(
+        outputs=tuple(quantities),
+        scalars=("float64",),
+        parts=("c",),
+        verify=record is None,
+        measured=record,
+        as_recorded=record is not None,
+    )
+    result = generate(path, options, progress)
+    reasons = [*result.failures, *(f"{one.quantity}: {one.remedy}" for one in result.left_out)]
+    if reasons:
+        raise NoKernelsError("\n  ".join(("verification rejects what the study needs", *reasons)))
+    made = {kernel.name for kernel in result.programs["float64"].kernels}
+    for name in quantities:
+        if name not in made:
+            why = [one.message for one in result.notices if one.message.startswith(name)]
+            raise WrongUseError(f"{result.model.name}: {why[0] if why else f'it has no {name}'}")
+    return result
+
+
+def kernels_hash(result: Result) -> str:
+    """SHA-256 of the C of a result."""
+    content = sorted((name, text) for name, text in result.files.items() if name.startswith("c/"))
+    return hashlib.sha256(repr(content).encode()).hexdigest()
+
+
+class StudyKernels:
+    """The kernels of a model, compiled; arrays are `[point][component][state]`, statuses `[point][state]`."""
+
+    def __init__(self, result: Result) -> None:
+        self.model: Model = result.model
+        program = result.programs["float64"]
+        self._kernels: Mapping[str, Kernel] = {kernel.name: kernel for kernel in program.kernels}
+        source = generated_sources(self.model, result.files)[0]["float64"]
+        loops = (f"{source.stem}_study.c", loops_source(self.model, program.kernels))
+        used = [(name, text) for name, text in source.companions if "_batch" in name]
+        self._rooms = local()
+        self._library = _compiled(CSource(source.stem, source.header, source.source, (*used, loops)))
+
+    def over(self, name: str, parts: Mapping[str, Array], group: NDArray[np.uintp], p: Array) -> tuple[Array, Codes]:
+        """A quantity at the states of some points: entries (points x size x states) and statuses.
+
+        `parts` are q, qd, ... (groups x length x states), `group` says which of them a point has, `p` (points x
+        parameters) are its parameters.  Entries without a result are NaN.  What is returned holds until this thread
+        asks for the same quantity again.
+        """
+        kernel = self._kernels[name]
+        arguments = [_contiguous(parts[argument.name]) for argument in array_arguments(kernel)]
+        points, count = len(group), arguments[0].shape[-1]
+        result = self._room(name, np.dtype(np.float64), (points, math.prod(kernel.shape), count))
+        status = self._room(name, np.dtype(np.uint8), (points, count))
+        self._call(over_name(name), (points, count), (group, *arguments, p, result, status))
+        return result, status
+
+    def reduced_over(
+        self, name: str, parts: Mapping[str, Array], group: NDArray[np.uintp], p: Array
+    ) -> tuple[Array, NDArray[np.int64], Codes]:
+        """What `reduced` makes of the entries that `over` returns, and the statuses."""
+        kernel = self._kernels[name]
+        arguments = [_contiguous(parts[argument.name]) for argument in array_arguments(kernel)]
+        points, count, size = len(group), arguments[0].shape[-1], math.prod(kernel.shape)
+        room = self._room(name, np.dtype(np.float64), (size, count))
+        figures, places = np.empty((points * size, 6)), np.empty((points * size, 2), dtype=np.int64)
+        status = self._room(name, np.dtype(np.uint8), (points, count))
+        self._call(reduced_name(name), (points, count), (group, *arguments, p, room, figures, places, status))
+        return figures, places, status
+
+    def _room(self, name: str, dtype: np.dtype[Any], shape: tuple[int, ...]) -> NDArray[Any]:
+        """Memory that this thread has written before: what is new has to be mapped by the system, which takes longer
+        than a kernel does."""
+        rooms: dict[tuple[str, str], NDArray[Any]] = self._rooms.__dict__.setdefault("by_use", {})
+        size = math.prod(shape)
+        if (name, dtype.char) not in rooms or rooms[name, dtype.char].size < size:
+            rooms[name, dtype.char] = np.empty(size, dtype=dtype)
+        return rooms[name, dtype.char][:size].reshape(shape)
+
+    def walked(
+        self, name: str, start: tuple[Array, Array, Array], p: Array, given: Array
+    ) -> tuple[Array, Codes]:
+        """Configurations (points x n x states) for what is `given` (points x states x k), from `start`: p, x and q."""
+        points, count = given.shape[:2]
+        q = np.empty((points, self.model.n, count))
+        status = np.empty((points, count), dtype=np.uint8)
+        p_start, x_start, q_start = map(_contiguous, start)
+        arrays = (p_start, p, x_start, _contiguous(given), q_start, q, status)
+        self._call(walk_name(name), (points, count), arrays)
+        return q, status
+
+    def reduced(self, values: Array) -> tuple[Array, NDArray[np.int64]]:
+        """Of rows of values: largest, smallest, sum, sum of squares, number, smallest magnitude (rows x 6); and where
+        the largest and the smallest magnitude are (rows x 2)."""
+        rows, count = values.shape
+        figures, places = np.empty((rows, 6)), np.empty((rows, 2), dtype=np.int64)
+        self._call("study_reduced", (rows, count), (values, figures, places))
+        return figures, places
+
+    def quantiles(self, values: Array, figures: Array, levels: Sequence[float]) -> Array:
+        """Quantiles of rows of values at some levels (rows x levels)."""
+        rows, count = values.shape
+        result = np.empty((rows, len(levels)))
+        level = np.array(levels)
+        self._call("study_quantiles", (rows, count), (values, figures), (len(levels),), (level, result))
+        return result
+
+    def _call(
+        self,
+        name: str,
+        sizes: Sequence[int],
+        arrays: Sequence[NDArray[np.generic]],
+        more_sizes: Sequence[int] = (),
+        more: Sequence[NDArray[np.generic]] = (),
+    ) -> None:
+        """ctypes lets go of Python's lock while the function runs."""
+        function = self._library[name]
+        function.restype = None
+        pointers = [ctypes.c_void_p(array.ctypes.data) for array in arrays]
+        further = [ctypes.c_void_p(array.ctypes.data) for array in more]
+        function(*map(ctypes.c_size_t, sizes), *pointers, *map(ctypes.c_size_t, more_sizes), *further)
+
+
+def _contiguous(array: Array) -> Array:
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def _compiled(source: CSource) -> ctypes.CDLL:
+    compiler = find_compiler()
+    if compiler is None:
+        raise WrongUseError("a study needs a C compiler: install gcc or clang, or name one in CC")
+    problem: CompilationError | None = None
+    with tempfile.TemporaryDirectory(prefix="symgen-study-") as folder:
+        for machine in MACHINE_FLAGS:
+            made = MachineCompiler(compiler.command, compiler.version, compiler.gnu, machine)
+            try:
+                return Compilation(made, source, Path(folder)).library()
+            except CompilationError as error:
+                problem = problem or error
+    raise problem or SymgenBug("no flags to compile with")

@@ -1,0 +1,1 @@
+"""What a study comes to: a summary, pictures, and the page that holds them."""

@@ -1,0 +1,141 @@
+"""The states of points: parameters, and configurations on a path, by a walk from the model's own, or as given."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from threading import Lock
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symgen.generation.requested import configuration_near
+from symgen.mechanics.genericity import assembly_of, parameter_values
+from symgen.mechanics.system import System
+from symgen.model.model import Model
+from symgen.paths.path_equations import path_equations
+from symgen.paths.path_family import PathFamily
+from symgen.study.chunks import Array, along_values
+from symgen.study.kernels import Codes, StudyKernels
+from symgen.study.plan import FROM_MEASURED, FROM_TASK, TASK_PLACE, StudyPlan, VariedName
+
+# The status of the states of a path that cannot be followed, beside those of kernels.
+NO_PATH = 255
+# Bytes of solved paths that are kept: points whose parameters do not change the path share one.
+KEPT_BYTES = 2**27
+
+
+@dataclass(frozen=True, slots=True)
+class BlockStates:
+    """States of some points: parameters (points x parameters), q, qd and qdd by name (groups x n x states), whose
+    states a point has, and why there is no configuration (groups x states, 0 where there is one)."""
+
+    parameters: Array
+    parts: Mapping[str, Array]
+    group: NDArray[np.uintp]
+    placed: Codes
+
+
+class StudyStates:
+    """What makes the states of points; `times` (s) are those of the path, if there is one."""
+
+    def __init__(self, plan: StudyPlan, kernels: StudyKernels) -> None:
+        self._plan, self._kernels = plan, kernels
+        values = parameter_values(System(plan.model))
+        self._defaults = np.array([values[one.name] for one in plan.model.parameters] or [0.0])
+        self._along = along_values(plan)
+        self._path = _SolvedPaths(plan) if plan.placing == "path" else None
+
+    def of(self, values: Array) -> BlockStates:
+        """The states of points with these values of the varied names (points x names)."""
+        p = np.tile(self._defaults, (len(values), 1))
+        for k, one in enumerate(self._plan.over):
+            if one.kind == "parameter":
+                p[:, one.place] = values[:, k]
+        if self._path is not None:
+            return self._path.states(p)
+        q, placed = self._configurations(p, values)
+        still = np.zeros_like(q)
+        return BlockStates(p, {"q": q, "qd": still, "qdd": still}, np.arange(len(p), dtype=np.uintp), placed)
+
+    def _configurations(self, p: Array, values: Array) -> tuple[Array, Codes]:
+        """q (points x n x states) at rest, and statuses."""
+        model = self._plan.model
+        if self._plan.placing == "given":
+            q = self._filled(np.array(configuration_near(model, {})), values, "coordinate")
+            return np.ascontiguousarray(np.swapaxes(q, 1, 2)), np.zeros((len(q), q.shape[1]), dtype=np.uint8)
+        q_start = np.array(assembly_of(model).places[0].q)
+        if self._plan.placing == "measured":
+            x_start, name, kind = q_start[list(model.measured_places)], FROM_MEASURED, "measured"
+        else:
+            x_start, name, kind = self._task_place(q_start), FROM_TASK, "task"
+        return self._kernels.walked(
+            name, (self._defaults, x_start, q_start), p, self._filled(x_start, values, kind)
+        )
+
+    def _task_place(self, q: Array) -> Array:
+        x, _ = self._kernels.over(
+            TASK_PLACE, {"q": q[None, :, None]}, np.zeros(1, dtype=np.uintp), self._defaults[None]
+        )
+        return x[0, :, 0].copy()
+
+    def _filled(self, start: Array, values: Array, kind: str) -> Array:
+        """Places (points x states x k) as they are at the start, but where they are varied."""
+        places = np.tile(start, (len(values), len(self._along), 1))
+        for k, one in _of_kind(self._plan.over, kind):
+            places[:, :, one.place] = values[:, k, None]
+        for k, one in _of_kind(self._plan.along, kind):
+            places[:, :, one.place] = self._along[:, k]
+        return places
+
+
+class _SolvedPaths:
+    """The path of a study at the parameters of points, solved once for all that do not change it."""
+
+    def __init__(self, plan: StudyPlan) -> None:
+        assert plan.request.path is not None
+        name = plan.request.path.name
+        self._model: Model = plan.model
+        self._path = next(one for one in plan.model.paths if one.name == name)
+        equations = path_equations(plan.model, self._path)
+        self._family = PathFamily(plan.model, self._path, equations)
+        self._used = list(equations.parameters_used)
+        self._most_kept = max(1, KEPT_BYTES // (3 * plan.model.n * self._path.samples * 8))
+        self._kept: OrderedDict[bytes, tuple[Array, ...] | None] = OrderedDict()
+        self._lock = Lock()
+
+    def states(self, p: Array) -> BlockStates:
+        """The states of points with these parameters."""
+        changing = np.ascontiguousarray(p[:, self._used])
+        if (changing == changing[0]).all():
+            first, group = np.zeros(1, dtype=np.intp), np.zeros(len(p), dtype=np.intp)
+        else:
+            _, first, group = np.unique(changing, axis=0, return_index=True, return_inverse=True)
+        solved = self._solved(p[first], [changing[k].tobytes() for k in first])
+        empty = np.full((self._model.n, self._path.samples), np.nan)
+        parts = {
+            name: np.stack([empty if one is None else one[k] for one in solved])
+            for k, name in enumerate(("q", "qd", "qdd"))
+        }
+        codes = np.array([NO_PATH if one is None else 0 for one in solved], dtype=np.uint8)
+        placed = np.repeat(codes[:, None], self._path.samples, axis=1)
+        return BlockStates(p, parts, group.ravel().astype(np.uintp), placed)
+
+    def _solved(self, p: Array, keys: Sequence[bytes]) -> list[tuple[Array, ...] | None]:
+        """q, qd, qdd (n x samples) of machines with these parameters, or None where the path has no solution."""
+        with self._lock:
+            missing = [k for k, key in enumerate(keys) if key not in self._kept]
+            if missing:
+                for k, motion in zip(missing, self._family.solved(p[missing]), strict=True):
+                    self._kept[keys[k]] = None if motion is None else (motion.q.T, motion.qd.T, motion.qdd.T)
+            for key in keys:
+                self._kept.move_to_end(key)
+            solved = [self._kept[key] for key in keys]
+            while len(self._kept) > self._most_kept:
+                self._kept.popitem(last=False)
+            return solved
+
+
+def _of_kind(names: Iterable[VariedName], kind: str) -> list[tuple[int, VariedName]]:
+    return [(k, one) for k, one in enumerate(names) if one.kind == kind]
