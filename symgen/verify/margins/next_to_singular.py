@@ -74,13 +74,21 @@ class NextToSingular:
         return {scalar: raised for scalar, raised in made.items() if raised != Raised()}
 
     def _raised(self, kernel: Kernel, programs: Mapping[Scalar, Program], scalar: Scalar) -> Raised | None:
-        raised, every = Raised(), list[State]()
-        for led in self._led(kernel):
-            if lost := list(self._lost(kernel, programs, scalar, led)):
-                raised = replace(raised, **{led.field: self._decades(kernel, programs, scalar, led.field, lost)})
-                every += lost
-        # masses may refuse what is lost next to a drop of rank
-        made = outcomes(with_raised_thresholds(kernel, scalar, raised), programs[scalar].sincos, scalar, every)
+        raised, sincos = Raised(), programs[scalar].sincos
+        by_field = {led.field: list(self._lost(kernel, programs, scalar, led)) for led in self._led(kernel)}
+        for field, lost in by_field.items():
+            if lost:
+                raised = replace(raised, **{field: self._decades(kernel, programs, scalar, field, lost)})
+        every = [state for lost in by_field.values() for state in lost]
+        # what is lost on the way to one may be refused by the thresholds of the other: masses have a place there, too
+        for field in by_field:
+            made = outcomes(with_raised_thresholds(kernel, scalar, raised), sincos, scalar, every)
+            left = [state for state, one in zip(every, made, strict=True) if one.valid]
+            if not left:
+                return raised
+            if getattr(raised, field) is None:
+                raised = replace(raised, **{field: self._decades(kernel, programs, scalar, field, left)})
+        made = outcomes(with_raised_thresholds(kernel, scalar, raised), sincos, scalar, every)
         return None if any(one.valid for one in made) else raised
 
     def _led(self, kernel: Kernel) -> Iterator[_Led]:
