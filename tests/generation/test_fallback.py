@@ -566,21 +566,47 @@ def test_kernels_that_are_too_long_stay_as_they_are(yoke: Path, monkeypatch: pyt
     assert [one.quantity for one in made(yoke).left_out] == ["multipliers"]
 
 
-@pytest.mark.parametrize("digits_help", [True, False])
+@pytest.mark.parametrize(("longer", "digits_help"), [(True, True), (True, False), (False, True)])
 @pytest.mark.campaign
 def test_after_long_methods_twice_the_digits_are_tried_before_the_rest(
-    digits_help: bool, yoke: Path, monkeypatch: pytest.MonkeyPatch
+    longer: bool, digits_help: bool, yoke: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The rest of them comes where more digits are of no help."""
+    """The rest of them comes where more digits are of no help, or where it counts less than what is rejected."""
     spoil_choice(monkeypatch, losing_digits)
     usual = derived(made(yoke))["kernels"]["multipliers"]
     monkeypatch.setattr(fallback, "LONG_TRIED", -1)
+    if longer:
+        counted = Alternative.cost.fget
+        monkeypatch.setattr(Alternative, "cost", property(lambda one: counted(one) + 1000 * (one.known is not None)))
     if not digits_help:
         monkeypatch.setattr(fallback, "WIDENED", 0)
     kernel = derived(made(yoke))["kernels"]["multipliers"]
     assert "twice_the_digits" not in usual
-    assert ("twice_the_digits" in kernel) is digits_help
-    assert digits_help or kernel == usual
+    assert ("twice_the_digits" in kernel) is (longer and digits_help)
+    assert (longer and digits_help) or kernel == usual
+
+
+@pytest.mark.campaign
+def test_where_more_digits_of_one_method_do_not_help_float32_the_rest_is_tried(
+    yoke: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A method that has float64 alone does not keep the others from being tried, long ones included."""
+    spoil_choice(monkeypatch, refusing_float32)
+    monkeypatch.setattr(fallback, "LONG_TRIED", -1)
+    widened = fallback.Fallback._with_pairs
+    tried = []
+
+    def failing(self: Any, draft: Any, one: Alternative, scalars: Any, wide: Any, expected: Any) -> Any:
+        tried.append(one.choice.title)
+        return replace(widened(self, draft, one, scalars, wide, expected), scalars=("float64",))
+
+    monkeypatch.setattr(fallback.Fallback, "_with_pairs", failing)
+    result = made(yoke)
+    assert result.left_out == ()
+    # each once, and what has both types in the end is none of these
+    assert tried
+    assert len(set(tried)) == len(tried)
+    assert "twice_the_digits" not in derived(result)["kernels"]["multipliers"]
 
 
 @pytest.mark.parametrize("asked", [True, False])

@@ -12,7 +12,6 @@ from collections import defaultdict, deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import islice
 from math import inf
 
 from symgen.diagnostics import SymgenBug
@@ -78,7 +77,8 @@ class Fallback:
         self._inaccurate: defaultdict[str, list[Alternative]] = defaultdict(list)
         # by quantities and methods: what float64 loses
         self._lost: defaultdict[str, dict[str, float]] = defaultdict(dict)
-        self._widened: set[str] = set()
+        # by quantities: methods that were tried with twice the digits, and the types that had these
+        self._widened: defaultdict[str, set[tuple[str, tuple[Scalar, ...]]]] = defaultdict(set)
         # by quantities that are made because all are: what they count at least by methods that lose digits
         self._too_wide: dict[str, int] = {}
         # counted cost of methods that were tried for these, and for each quantity
@@ -174,19 +174,32 @@ class Fallback:
     def _next(self, draft: Draft, quantity: str, expected: Expected) -> Passing | None:
         """The next method that passes with a margin, or else the best of those that pass; others are noted."""
         passing, needed = self._passing[quantity], tuple(draft.kernels(quantity))
-        if (first := self._first_of(draft, quantity, expected, LONG_TRIED)) is not None:
-            return first
-        for one in self._with_more_digits(draft, quantity, expected):
-            # more digits in float64, too, are worth a margin only where next to none is left
-            most = MARGIN if one.alternative.choice.wide == needed else NARROW
-            if one.scalars == needed and one.largest <= most:
-                return one
-            if "float64" in one.scalars:
-                passing.append(one)
-        if not passing and (first := self._first_of(draft, quantity, expected, inf)) is not None:
-            return first
-        while passing:
-            best = min(passing, key=lambda one: (-len(one.scalars), one.largest))
+        for operations in (LONG_TRIED, inf):
+            if (first := self._first_of(draft, quantity, expected, operations)) is not None:
+                return first
+            # what passes narrowly may not where it is worst, and is then left to more digits
+            widened = True
+            while widened:
+                widened = False
+                for one in self._with_more_digits(draft, quantity, expected):
+                    widened = True
+                    # more digits in float64, too, are worth a margin only where next to none is left
+                    most = MARGIN if one.alternative.choice.wide == needed else NARROW
+                    if one.scalars == needed and one.largest <= most:
+                        return one
+                    if "float64" in one.scalars:
+                        passing.append(one)
+                if (best := self._best_of(draft, quantity, expected, needed)) is not None:
+                    return best
+        return self._best_of(draft, quantity, expected, ())
+
+    def _best_of(
+        self, draft: Draft, quantity: str, expected: Expected, needed: tuple[Scalar, ...]
+    ) -> Passing | None:
+        """The best of those that pass in the types that are needed, or in any, where it is worst, too."""
+        passing = self._passing[quantity]
+        while left := [one for one in passing if needed in ((), one.scalars)]:
+            best = min(left, key=lambda one: (-len(one.scalars), one.largest))
             passing.remove(best)
             one = self._grouped(draft, best, expected)
             if one.scalars == best.scalars:
@@ -248,10 +261,11 @@ class Fallback:
         return draft.along(one.alternative, one.kernels).rejecting((Rejection(quantity, draft.method(quantity), why),))
 
     def _of_all_tiers(self, draft: Draft, quantity: str, expected: Expected, operations: float) -> Iterator[Passing]:
-        """One tier after the other, until what was tried counts so many operations."""
+        """One tier after the other, until what was tried counts so many operations; short ones in any case."""
         for tier in range(TIERS):
-            candidates = self._candidates(draft, quantity, tier, expected, MARGIN)
-            while self._tried_long(quantity) <= operations and (one := next(candidates, None)) is not None:
+            yield from self._candidates(draft, quantity, tier, expected, MARGIN, draft.taken(quantity).cost)
+            longer = self._candidates(draft, quantity, tier, expected, MARGIN)
+            while self._tried_long(quantity) <= operations and (one := next(longer, None)) is not None:
                 yield one
 
     def _tried_long(self, quantity: str) -> int:
@@ -295,13 +309,13 @@ class Fallback:
 
     def _with_more_digits(self, draft: Draft, quantity: str, expected: Expected) -> Iterator[Passing]:
         """What loses digits in float32 alone with twice as many there, then the shortest with more in both."""
-        if quantity in self._widened or self._options.methods.get(quantity, AUTO) != AUTO:
+        if self._options.methods.get(quantity, AUTO) != AUTO:
             return
-        self._widened.add(quantity)
         scalars = tuple(draft.kernels(quantity))
         passing = [one for one in self._passing[quantity] if "float32" in scalars and one.scalars == ("float64",)]
+        passing = [one for one in passing if self._may_widen(one.alternative, ("float32",))]
         passing.sort(key=lambda one: (one.largest > MARGIN, one.alternative.cost))
-        for one in islice((one for one in passing if one.alternative.cost <= LONGEST_WIDENED), WIDENED):
+        for one in passing[:WIDENED]:
             yield self._with_pairs(draft, one.alternative, scalars, ("float32",), expected)
         # those among them that are beyond what is allowed in float64 where they are worst
         inaccurate = sorted(self._inaccurate.pop(quantity, ()), key=lambda one: one.cost)
@@ -311,7 +325,7 @@ class Fallback:
             return
         shortest: dict[str, Alternative] = {}
         for other in inaccurate:
-            if other.cost <= LONGEST_WIDENED:
+            if self._may_widen(other, scalars):
                 shortest.setdefault(other.choice.title, other)
         # the shortest of all, then those that lose least: what they divide by keeps more digits in float32, too
         candidates, lost = list(shortest.values()), self._lost[quantity]
@@ -319,11 +333,17 @@ class Fallback:
         for other in candidates[:WIDENED]:
             yield self._with_pairs(draft, other, scalars, scalars, expected)
 
+    def _may_widen(self, one: Alternative, wide: tuple[Scalar, ...]) -> bool:
+        """Whether a method may be tried with twice the digits in these types: it is not long, and was not yet."""
+        known = self._widened[one.choice.quantity]
+        return one.cost <= LONGEST_WIDENED and not one.choice.wide and (one.choice.title, wide) not in known
+
     def _with_pairs(
         self, draft: Draft, one: Alternative, scalars: tuple[Scalar, ...], wide: tuple[Scalar, ...], expected: Expected
     ) -> Passing:
         """An alternative with twice the digits in some types, measured."""
         self._progress(f"twice the digits for {one.choice.quantity}, {one.choice.title}")
+        self._widened[one.choice.quantity].add((one.choice.title, wide))
         one = grouped(one)
         one = replace(one, choice=replace(one.choice, wide=wide))
         return self._measured(draft, one, draft.kernels_along(one, scalars), expected)

@@ -11,6 +11,8 @@ from symgen.laboratory.zoo.witness.linear import NOTHING, Vector
 
 # Of an internal force of norm 1, what rounding in balls leaves of an input that takes no part in it.
 NO_PART = 1e-30
+# The same in doubles.
+NO_PART_IN_DOUBLES = 1e-12
 
 
 def members(block: Mapping[str, Any], value: Callable[[str], float]) -> dict[str, float]:
@@ -55,7 +57,7 @@ def holding(at: EquationValues, ranks: GenericRanks) -> EquationValues:
 def directed(
     at: EquationValues, u: Vector, inputs: Sequence[str], block: Mapping[str, Any], values: Mapping[str, Any], one: Any
 ) -> Vector:
-    """u with the internal force of one preload and of the limits added: c z.
+    """u with the internal force of one preload and of the limits added: c z; `one` is 1 as a ball or a double.
 
     c moves from the preload to the nearest value within the limits of every named input, and where these leave none to
     the nearest of those at which no excess shrinks without another one's growing.
@@ -66,10 +68,11 @@ def directed(
         return u
     along = internal_force(at, [values.get(f"weight_{name}", one) for name in inputs])
     amount = values["preload"] if single else one * 0
+    no_part = NO_PART_IN_DOUBLES if isinstance(one, float) else NO_PART
     spans = []
     for name in limits:
         k = inputs.index(name)
-        if abs(float(along[k])) < NO_PART:
+        if abs(float(along[k])) < no_part:
             continue
         ends = [(values[f"limit_{name}_{end}"] - u[k]) / along[k] for end in ("lower", "upper")]
         spans.append(sorted(ends, key=float))
