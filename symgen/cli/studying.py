@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 # What a study needs beside what generates; charts along paths need CasADi, Sobol's points SciPy.
 _NEEDED = ("dask", "distributed", "xarray", "zarr", "casadi", "scipy", "matplotlib")
 # Options that a study file has in their place.
-_IN_FILE = ("over", "along", "show", "sample", "count", "seed", "quantiles")
+_IN_FILE = ("over", "along", "show", "sample", "count", "seed", "quantiles", "size")
 _EPILOG = """examples:
   symgen study robot.yaml --over l_1=0.2:0.5:31 --over m=0:5:11 \\
       --along circle --show utilisation
@@ -52,6 +52,7 @@ def _study_parser() -> argparse.ArgumentParser:
     add("--count", metavar="N", type=int, help="points of a sample that is no grid")
     add("--seed", metavar="N", type=int, help="which of the samples it is (default: 0)")
     add("--quantiles", metavar="P,P", type=names, help="levels between 0 and 1, along the states of each point")
+    add("--size", metavar="CATALOGUE.csv", type=Path, help="motors, of which those are listed that fit each drive")
     add("--workers", metavar="N", type=_workers, help="processes of a local cluster (default: threads)")
     add("--yes", action="store_true", help="run more than 10^9 states")
     add_out(parser)
@@ -68,7 +69,7 @@ def _workers(text: str) -> int:
 
 
 def _study(given: argparse.Namespace) -> int:
-    check_present([given.file])
+    check_present([given.file, *([] if given.size is None else [given.size])])
     check_writable(given.out)
     if lacking := [name for name in _NEEDED if find_spec(name) is None]:
         raise WrongUseError(to_install(lacking, "a study"))
@@ -95,7 +96,7 @@ def _request(given: argparse.Namespace) -> tuple[StudyRequest, StudyMistakes]:
     if not is_study(text):
         return request_of(
             given.file, given.over, given.along, given.show or (), given.sample, given.count, given.seed,
-            given.quantiles or (),
+            given.quantiles or (), given.size,
         )  # fmt: skip
     if named := [name for name in _IN_FILE if getattr(given, name) not in (None, [])]:
         raise WrongUseError(f"--{named[0]}: {given.file} is a study file, which says that; change it there")

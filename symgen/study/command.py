@@ -15,9 +15,11 @@ from symgen.study.chunks import chunk_grid
 from symgen.study.estimate import MOST_UNASKED_STATES, estimated
 from symgen.study.kernels import RECORD_FILE, NoKernelsError, StudyKernels, kernels_hash, verified_result
 from symgen.study.plan import StudyPlan, planned_study
+from symgen.study.shown.compromises import compromise_picture, compromise_table, compromises
 from symgen.study.shown.page import study_page
 from symgen.study.shown.pictures import study_pictures
 from symgen.study.shown.summary import StudySummary, settings_of, settings_rows, summarised
+from symgen.study.sizing.choice import motor_fits, sizing_lines, sizing_tables
 from symgen.study.states import StudyStates
 from symgen.study.store import PARTIAL, ZARR, StudyStore, is_own, kept_settings
 from symgen.study.work import Assignment, ChunkOutcome, StudyWork, by_processes, by_threads
@@ -145,12 +147,15 @@ def _finished(
     progress("drawing")
     with xarray.open_zarr(folder / ZARR) as results:
         pictures = study_pictures(plan, results)
+        fits, variants = motor_fits(plan, results), compromises(plan, results)
+        pictures += map(compromise_picture, variants)
+        tables = (*summary.tables, *sizing_tables(plan, fits), *(compromise_table(plan, results, v) for v in variants))
     title = f"Study of {plan.model.description or plan.model.name}"
-    page = study_page(title, settings_rows(plan, summary), summary.tables, pictures)
+    page = study_page(title, settings_rows(plan, summary), tables, pictures)
     (written,) = write_files(folder, {PAGE: page})
     progress("")
     if not run.quiet:
-        print(*summary.lines, "written:", f"  {folder / ZARR}", f"  {written}", "", sep="\n")
+        print(*summary.lines, *sizing_lines(fits), "written:", f"  {folder / ZARR}", f"  {written}", "", sep="\n")
     _print_failed(failed, summary)
     return 1 if failed else 0
 

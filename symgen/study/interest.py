@@ -12,10 +12,20 @@ from numpy.typing import NDArray
 
 from symgen.mechanics.genericity import assembly_of
 from symgen.model.model import Model
-from symgen.study.asked.request import CONTROL, INPUTS, POWER, REACH, SINGULARITY, UTILISATION
+from symgen.study.asked.request import (
+    CONTROL,
+    DRIVE_SPEED,
+    INPUTS,
+    MOTOR_TORQUE,
+    POWER,
+    REACH,
+    SINGULARITY,
+    UTILISATION,
+)
 from symgen.study.chunks import Array
 from symgen.study.kernels import Codes, StudyKernels
 from symgen.study.plan import KERNELS, StudyPlan
+from symgen.study.sizing.drives import motor_torques, rotors_at
 from symgen.study.states import BlockStates
 
 # Choices of as many inputs as there are degrees of freedom whose determinants are shown.
@@ -46,7 +56,21 @@ class Interest:
 
 def interests(plan: StudyPlan) -> tuple[Interest, ...]:
     """What a study shows, in the order in which it was asked for."""
-    return tuple(one for name in plan.shown for one in _interests(plan.model, name))
+    return tuple(one for name in plan.shown for one in (_sized(plan, name) or _interests(plan.model, name)))
+
+
+def _sized(plan: StudyPlan, name: str) -> tuple[Interest, ...]:
+    """What motors are sized by."""
+    if name not in (DRIVE_SPEED, MOTOR_TORQUE):
+        return ()
+    drives = tuple(one.name for one in plan.drives)
+    if name == DRIVE_SPEED:
+        inputs = {one.name: one.unit for one in plan.model.inputs}
+        units = tuple({"N": "m/s", "N*m": "rad/s"}.get(inputs[drive] or "", "") for drive in drives)
+        return (Interest(DRIVE_SPEED, "speed of each drive", "drive", drives, units),)
+    pairs = tuple(f"{drive} {motor.name}" for drive in drives for motor in plan.request.motors)
+    about = "torque of the shaft of each motor at each drive, its own inertia in place of the model's"
+    return (Interest(MOTOR_TORQUE, about, "drive_motor", pairs, ("N*m",) * len(pairs)),)
 
 
 def _interests(model: Model, name: str) -> tuple[Interest, ...]:
@@ -142,7 +166,25 @@ class BlockValues:
     @property
     def rates(self) -> Array:
         """Rates of the points, points x states x n."""
-        return np.asarray(np.moveaxis(self._states.parts["qd"], 1, 2)[self._states.group])
+        return np.asarray(np.moveaxis(self._of_points("qd"), 1, 2))
+
+    @property
+    def drive_speeds(self) -> Array:
+        """Of the drives that a motor can sit at, points x drives x states."""
+        rates = self._of_points("qd")
+        return np.stack([one.share * rates[:, one.coordinate] for one in self._plan.drives], axis=1)
+
+    @property
+    def motor_torques(self) -> Array:
+        """Of each motor at each of these drives, points x drives * motors x states."""
+        drives = self._plan.drives
+        rotors = rotors_at(self.model, drives, self._states.parameters)
+        u = self.entries("inverse_dynamics")
+        return motor_torques(drives, self._plan.request.motors, u, self._of_points("qdd"), rotors)
+
+    def _of_points(self, part: str) -> Array:
+        """A part of the states of the points, points x n x states."""
+        return np.asarray(self._states.parts[part][self._states.group])
 
     @property
     def reached(self) -> Array:
@@ -197,4 +239,6 @@ _EVALUATED: dict[str, Callable[[BlockValues], Array]] = {
     CONTROL: _smallest_singular_value,
     UTILISATION: lambda block: block.entries("utilisation"),
     REACH: lambda block: block.reached,
+    DRIVE_SPEED: lambda block: block.drive_speeds,
+    MOTOR_TORQUE: lambda block: block.motor_torques,
 }

@@ -11,16 +11,20 @@ from symgen.model.expressions.names import did_you_mean
 from symgen.model.model import Model
 from symgen.study.asked.request import (
     CONTROL,
+    DRIVE_SPEED,
     GRID,
     INPUTS,
+    MOTOR_TORQUE,
     POWER,
     REACH,
+    SHOWN,
     SINGULARITY,
     UTILISATION,
     StudyAxis,
     StudyMistakes,
     StudyRequest,
 )
+from symgen.study.sizing.drives import MotorDrive, drives_of
 
 Kind: TypeAlias = Literal["parameter", "coordinate", "task", "measured"]
 # How the configuration of a state comes about: on a path, from values of the task or of measured coordinates by a walk
@@ -37,6 +41,8 @@ KERNELS = {
     CONTROL: ("projected_control_matrix",),
     UTILISATION: ("utilisation",),
     REACH: (),
+    MOTOR_TORQUE: ("inverse_dynamics",),
+    DRIVE_SPEED: (),
 }
 
 
@@ -52,18 +58,23 @@ class VariedName:
 
 @dataclass(frozen=True, slots=True)
 class StudyPlan:
-    """A study of a model: `over` are the names varied from point to point, `along` those of the states of a point."""
+    """A study of a model: `over` are the names varied from point to point, `along` those of the states of a point.
+
+    `drives` are those for which motors are looked for.
+    """
 
     request: StudyRequest
     model: Model
     over: tuple[VariedName, ...]
     along: tuple[VariedName, ...]
     placing: Placing
+    drives: tuple[MotorDrive, ...] = ()
 
     @property
     def shown(self) -> tuple[str, ...]:
-        """The quantities of interest."""
-        return tuple(dict.fromkeys(one.name for one in self.request.show))
+        """The quantities of interest, those that motors are sized by last."""
+        sized = (DRIVE_SPEED, MOTOR_TORQUE) if self.request.motors else ()
+        return (*dict.fromkeys(one.name for one in self.request.show), *sized)
 
     @property
     def kernels(self) -> tuple[str, ...]:
@@ -114,8 +125,13 @@ def planned_study(model: Model, request: StudyRequest, mistakes: StudyMistakes) 
     placing = _placing(model, request, known, mistakes)
     for one in request.show:
         _check_shown(model, one.name, one.span, mistakes)
+    drives = drives_of(model) if request.motors else ()
+    if request.motors and not drives:
+        remedy = "give an input the `joint` that it drives"
+        message = "no input acts along one coordinate in a constant ratio, as a motor does"
+        mistakes.wrong("size", message, remedy, request.motors_span)
     mistakes.check()
-    return StudyPlan(request, model, tuple(filter(None, over)), tuple(filter(None, along)), placing)
+    return StudyPlan(request, model, tuple(filter(None, over)), tuple(filter(None, along)), placing, drives)
 
 
 def _varied(model: Model, key: str, axis: StudyAxis, mistakes: StudyMistakes) -> VariedName | None:
@@ -180,8 +196,8 @@ def _placing(
 
 def _check_shown(model: Model, name: str, span: Span | None, mistakes: StudyMistakes) -> None:
     """A quantity that the model cannot have."""
-    if name not in KERNELS:
-        _check_name(mistakes, "show", name, KERNELS, "quantity of interest", span)
+    if name not in SHOWN:
+        _check_name(mistakes, "show", name, SHOWN, "quantity of interest", span)
     elif name in (INPUTS, POWER, CONTROL, UTILISATION) and not model.m:
         mistakes.wrong("show", f"`{name}` needs inputs, of which the model has none", "give it `inputs`", span)
     elif name == UTILISATION and (model.allocation is None or len(model.allocation.limits) < model.m):

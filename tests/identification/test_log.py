@@ -60,7 +60,7 @@ def test_rates_and_accelerations_are_columns_of_their_own(tmp_path: Path) -> Non
         ("t,a,b,u_a,u_b,", "log.csv:1:15: a column without a name", "remove the column"),
         ("t,a,b,u_a,u_b,a", "log.csv:1:15: a second column `a`", "remove one of the two"),
         ("t,a [deg],b,u_a,u_b", "log.csv:1:3: the unit of `a`, `deg`, is not read", "write angles in rad"),
-        ("t [ms],a,b,u_a,u_b", "log.csv:1:1: `t` is in ms, which is 10**-3*s: the model has s", "convert"),
+        ("t [ms],a,b,u_a,u_b", "log.csv:1:1: `t` is in ms, which is 10**-3*s: it should be in s", "convert"),
         ("t,a,b,u_a [N],u_b", "`u_a` is in N, which is", "convert"),
         ("t,a,b,u_a [],u_b", "the unit of `u_a` is empty", "write it"),
         ("t,a,a_dot,u_a,u_b", "there is no column `b`, and the other coordinates", "add the column `b`"),

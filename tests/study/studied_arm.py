@@ -86,7 +86,7 @@ def plan_of(
     over: list[str], show: str, model: Path | None = None, along: tuple[str, ...] = (), **more: Any
 ) -> StudyPlan:
     """The plan of a study asked for by options."""
-    asked = {"sample": None, "count": None, "seed": None, "quantiles": (), **more}
+    asked = {"sample": None, "count": None, "seed": None, "quantiles": (), "size": None, **more}
     request, mistakes = request_of(model or arm_file(), over, along, show.split(","), **asked)
     check_request(mistakes, request)
     return planned_study(load_model(request.model), request, mistakes)

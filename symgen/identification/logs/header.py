@@ -40,19 +40,33 @@ def cells_of(line: str) -> list[tuple[str, int]]:
 
 def read_header(model: Model, line: str) -> tuple[dict[str, int], list[Mistake]]:
     """The place of each column by its name, and what is wrong with the line."""
-    if "," not in line and (mark := next((mark for mark in (";", "\t") if mark in line), None)):
-        shown = "tabs" if mark == "\t" else f"`{mark}`"
-        message = f"columns are separated by {shown}"
-        return {}, [Mistake(message, "separate them by commas, and write decimals with a point", Span(1, 1, 2))]
-    units, mistakes = _units(model), list[Mistake]()
+    if (wrong := not_separated(line)) is not None:
+        return {}, [wrong]
+    places, mistakes = read_columns(_units(model), line, "a coordinate, rate, acceleration or input")
+    return places, mistakes + _missing(model, places, Span(1, 1, max(2, len(line) + 1)))
+
+
+def not_separated(line: str) -> Mistake | None:
+    """What is wrong where columns are separated by something else than commas."""
+    mark = next((mark for mark in (";", "\t") if mark in line), None)
+    if mark is None or "," in line:
+        return None
+    message = f"columns are separated by {'tabs' if mark == chr(9) else f'`{mark}`'}"
+    return Mistake(message, "separate them by commas, and write decimals with a point", Span(1, 1, 2))
+
+
+def read_columns(
+    units: Mapping[str, Unit | None], line: str, known: str
+) -> tuple[dict[str, int], list[Mistake]]:
+    """The place of each column with a name of `units`, which are `known` as this, and what is wrong with the others."""
+    mistakes = list[Mistake]()
     places: dict[str, int] = {}
     for place, cell in enumerate(map(_cell, cells_of(line))):
-        wrong = _wrong(cell, units, places)
+        wrong = _wrong(cell, units, places, known)
         if wrong is not None:
             mistakes.append(wrong)
         if cell.name in units and cell.name not in places:
             places[cell.name] = place
-    mistakes += _missing(model, places, Span(1, 1, max(2, len(line) + 1)))
     return places, mistakes
 
 
@@ -83,12 +97,14 @@ def _read(unit: str | None) -> Unit | None:
     return parsed if isinstance(parsed, Unit) else None
 
 
-def _wrong(cell: HeaderCell, units: Mapping[str, Unit | None], places: Mapping[str, int]) -> Mistake | None:
+def _wrong(
+    cell: HeaderCell, units: Mapping[str, Unit | None], places: Mapping[str, int], known: str
+) -> Mistake | None:
     if cell.name in places:
         return Mistake(f"a second column `{cell.name}`", "remove one of the two", cell.span)
     if cell.name not in units:
         shown = f"unknown column `{cell.name}`" if cell.name else "a column without a name"
-        remedy = did_you_mean(cell.name, units, "remove the column, or name a coordinate, rate, acceleration or input")
+        remedy = did_you_mean(cell.name, units, f"remove the column, or name {known}")
         return Mistake(shown, remedy, cell.span, cell.name)
     return None if cell.unit is None else _wrong_unit(cell, units[cell.name])
 
@@ -105,8 +121,8 @@ def _wrong_unit(cell: HeaderCell, expected: Unit | None) -> Mistake | None:
         return Mistake(message, f"{unit.remedy}, the numbers too", cell.span, cell.name)
     if expected is None or unit == expected:
         return None
-    message = f"`{cell.name}` is in {cell.unit}, which is {unit}: the model has {expected}"
-    return Mistake(message, "convert the numbers and write the unit of the model", cell.span)
+    message = f"`{cell.name}` is in {cell.unit}, which is {unit}: it should be in {expected}"
+    return Mistake(message, f"convert the numbers, and write {expected} or no unit", cell.span)
 
 
 def _missing(model: Model, places: Mapping[str, int], span: Span) -> list[Mistake]:

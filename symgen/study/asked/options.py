@@ -7,6 +7,7 @@ from pathlib import Path
 
 from symgen.model.expressions.names import did_you_mean
 from symgen.study.asked.request import GRID, SAMPLES, AskedName, StudyAxis, StudyMistakes, StudyRequest
+from symgen.study.sizing.catalogue import read_catalogue
 
 
 def request_of(
@@ -18,8 +19,12 @@ def request_of(
     count: int | None,
     seed: int | None,
     quantiles: Sequence[str],
+    size: Path | None = None,
 ) -> tuple[StudyRequest, StudyMistakes]:
-    """The request, and the mistakes of the options so far."""
+    """The request, and the mistakes of the options so far; `size` is a catalogue.
+
+    Raises ModelError for mistakes in the catalogue, and OSError where it cannot be read.
+    """
     mistakes = StudyMistakes()
     if not over:
         mistakes.wrong("over", "nothing is varied", "write a range, such as --over l_1=0.2:0.5:31")
@@ -46,6 +51,7 @@ def request_of(
         path=AskedName(paths[0]) if paths else None,
         along=axes_of(mistakes, "along", ranges),
         quantiles=_levels(mistakes, quantiles),
+        motors=() if size is None else read_catalogue(size),
     )
     return request, mistakes
 

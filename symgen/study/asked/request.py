@@ -8,6 +8,7 @@ from pathlib import Path
 
 from symgen.diagnostics import Mistake, ModelError, Span
 from symgen.generation.results import WrongUseError
+from symgen.study.sizing.catalogue import Motor
 
 GRID, RANDOM, LATIN_HYPERCUBE, SOBOL = "grid", "random", "latin_hypercube", "sobol"
 SAMPLES = (GRID, RANDOM, LATIN_HYPERCUBE, SOBOL)
@@ -17,6 +18,8 @@ CONTROL, UTILISATION, REACH = "control", "utilisation", "reach"
 MOST_STRATA = 10_000_000
 # States that are reduced at a point at most: they stand in memory together.
 MOST_REDUCED = 2_000_000
+# What is worked out for a catalogue of motors.
+MOTOR_TORQUE, DRIVE_SPEED = "motor_torque", "drive_speed"
 SHOWN = (INPUTS, POWER, SINGULARITY, CONTROL, UTILISATION, REACH)
 
 
@@ -44,7 +47,8 @@ class StudyRequest:
     """A study before its names are looked up in a model.
 
     Points are `over` these ranges, `sample` says how; at each the states `along` a path or a grid of its own are
-    reduced.  `count` and `seed` are those of samples that are no grid.  `quantiles` are levels between 0 and 1.
+    reduced.  `count` and `seed` are those of samples that are no grid.  `quantiles` are levels between 0 and 1.  Of
+    `motors` those are looked for that can be the drives.
     """
 
     model: Path
@@ -58,6 +62,8 @@ class StudyRequest:
     quantiles: tuple[float, ...] = ()
     quantiles_span: Span | None = None
     sample_span: Span | None = None
+    motors: tuple[Motor, ...] = ()
+    motors_span: Span | None = None
 
 
 @dataclass(slots=True)
@@ -120,6 +126,10 @@ def check_request(mistakes: StudyMistakes, request: StudyRequest) -> None:
     if states > MOST_REDUCED:
         message = f"{states} states at each point are more than {MOST_REDUCED}"
         mistakes.wrong("along", message, "vary some of it under `over`, or more coarsely")
+    if request.motors and request.path is None:
+        remedy = "add --along with the name of a path of the model" if not mistakes.file else "add `along: PATH`"
+        message = "motors are sized for a motion, and the study has none"
+        mistakes.wrong("size", message, remedy, request.motors_span)
     _check_repeated(mistakes, request)
     if not request.show:
         mistakes.wrong("show", "nothing to show", f"choose from {', '.join(SHOWN)}")

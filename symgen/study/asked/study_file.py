@@ -22,6 +22,7 @@ from symgen.model.file.shape import (
 )
 from symgen.model.file.source import MappingNode, Node, ScalarNode, read_tree
 from symgen.study.asked.request import GRID, SAMPLES, SHOWN, AskedName, StudyAxis, StudyMistakes, StudyRequest
+from symgen.study.sizing.catalogue import Motor, read_catalogue
 
 # Of samples and of grids along an axis: more would not end.
 MOST_VALUES = 10**12
@@ -40,6 +41,7 @@ STUDY = RecordShape(
         Key("seed", _NUMBER, "which of the samples it is (0)"),
         Key("along", Either((Word(), _RANGES)), "a path of the model, or ranges; its states are reduced at each point"),
         Key("show", Listing(Word(SHOWN), 1), "quantities of interest", required=True),
+        Key("size", Text(), "a catalogue of motors for the drives, seen from this file"),
         Key("quantiles", Listing(_NUMBER, 1), "levels between 0 and 1 along the states of a point"),
     ),
 )  # fmt: skip
@@ -79,6 +81,8 @@ def _request(scope: Scope, path: Path, tree: MappingNode) -> StudyRequest:
         quantiles=tuple(_numbers(scope, items(tree.get("quantiles")), "a level of `quantiles`")),
         quantiles_span=_span(tree.get("quantiles")),
         sample_span=_span(tree.get("count") or sample),
+        motors=_motors(scope, path, tree.get("size")),
+        motors_span=_span(tree.get("size")),
     )
 
 
@@ -90,6 +94,19 @@ def _model(scope: Scope, path: Path, node: Node | None) -> Path:
         message = f"there is no model file {printable(name)} seen from this one"
         scope.wrong(message, "write a relative path that ends in .yaml", _span(node))
     return model
+
+
+def _motors(scope: Scope, path: Path, node: Node | None) -> tuple[Motor, ...]:
+    """The motors of the catalogue, a file in a place seen from the study."""
+    name = text_of(node)
+    if name is None:
+        return ()
+    catalogue = path.parent / name
+    if Path(name).is_absolute() or not catalogue.is_file():
+        message = f"there is no catalogue {printable(name)} seen from this file"
+        scope.wrong(message, "write a relative path of a CSV file", _span(node))
+        return ()
+    return read_catalogue(catalogue)
 
 
 def _axes(scope: Scope, node: Node | None) -> Iterable[StudyAxis]:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from symgen.paths.drawing import COLOURS, STYLES, svg
-from symgen.study.asked.request import GRID, SINGULARITY
+from symgen.study.asked.request import GRID, MOTOR_TORQUE, SINGULARITY
 from symgen.study.chunks import Array
 from symgen.study.interest import CHOICE, Interest, interests
 from symgen.study.plan import StudyPlan
@@ -51,17 +51,19 @@ def study_pictures(plan: StudyPlan, results: Any) -> list[StudyPicture]:
     """All pictures of the results, an xarray Dataset."""
     made = []
     for one in interests(plan):
+        if one.name == MOTOR_TORQUE:  # a table says which of them fit
+            continue
         channels = _channels(plan, one, results)[:MOST_PANELS]
         if not any(np.isfinite(channel.values).any() for channel in channels):
             continue
         draw, height, caption = _drawing(plan, one, channels, results)
-        made.append(StudyPicture(one.about, caption, _drawn(draw, height)))
+        made.append(StudyPicture(one.about, caption, drawn(draw, height)))
     if curves := _singular_curves(plan, results):
         made.append(curves)
     return made
 
 
-def _drawn(draw: Callable[[Any], None], height: float) -> str:
+def drawn(draw: Callable[[Any], None], height: float) -> str:
     """SVG with numbered clip regions: their usual names hash the last bits of a layout, which differ between runs."""
     text = svg(draw, height)
     names = dict.fromkeys(re.findall(r'<clipPath id="(\w+)">', text))
@@ -214,4 +216,4 @@ def _singular_curves(plan: StudyPlan, results: Any) -> StudyPicture | None:
         panel.legend(title="singular with", loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=min(3, len(labels)))
 
     caption = "Curves are the level sets at which the determinant of a choice of drives vanishes."
-    return StudyPicture("singular curves of choices of drives", caption, _drawn(draw, 4.8))
+    return StudyPicture("singular curves of choices of drives", caption, drawn(draw, 4.8))

@@ -28,13 +28,17 @@ def worst_channel(one: Interest, channels: Sequence[Array]) -> Array:
     return np.where(np.isfinite(worst), worst, np.nan)
 
 
-def _points(plan: StudyPlan, worst: Array, results: Any) -> tuple[Array, Array]:
-    """Values of the varied names and the worst magnitude at some of the points, the worst drawn last."""
+def point_values(plan: StudyPlan, results: Any) -> Array:
+    """Values of the varied names, points x names."""
     if plan.request.sample == GRID:
         axes = [np.linspace(one.axis.first, one.axis.last, one.axis.count or 1) for one in plan.over]
-        values = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
-    else:
-        values = np.stack([results[one.axis.name].values for one in plan.over], axis=-1)
+        return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
+    return np.stack([results[one.axis.name].values for one in plan.over], axis=-1)
+
+
+def _points(plan: StudyPlan, worst: Array, results: Any) -> tuple[Array, Array]:
+    """Values of the varied names and the worst magnitude at some of the points, the worst drawn last."""
+    values = point_values(plan, results)
     step = max(1, -(-len(values) // MOST_SCATTERED))
     chosen, shade = values[::step], worst.ravel()[::step]
     known = np.isfinite(shade)

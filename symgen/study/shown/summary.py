@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 
 from symgen import __version__
 from symgen.ir.kernel import Status
 from symgen.simulate.plant import MEANING
-from symgen.study.asked.request import GRID, REACH
+from symgen.study.asked.request import GRID, MOTOR_TORQUE, REACH
 from symgen.study.chunks import Array, along_values, chunk_values
 from symgen.study.interest import Interest, interests
 from symgen.study.plan import StudyPlan, VariedName
@@ -89,6 +89,7 @@ def settings_of(plan: StudyPlan, kernels: str) -> dict[str, object]:
         "along": {one.axis.name: _range(one) for one in plan.along},
         "show": list(plan.shown),
         "quantiles": list(request.quantiles),
+        "motors": [list(astuple(one)) for one in request.motors],
     }
 
 
@@ -107,6 +108,8 @@ def settings_rows(plan: StudyPlan, summary: StudySummary) -> list[tuple[str, str
     if request.path is not None:
         rows.append(("along", f"path {request.path.name}, {plan.states} states"))
     rows += [("along", _range_text(one)) for one in plan.along]
+    if request.motors:
+        rows.append(("motors", ", ".join(one.name for one in request.motors)))
     rows.append(("states", f"{plan.points * plan.states}, of which {summary.valid} have a result"))
     rows.append(("made by", f"symgen {__version__}"))
     return rows
@@ -157,7 +160,7 @@ def _worst_rows(
     work: StudyWork, one: Interest, kept: Sequence[tuple[int, tuple[float, int, int]] | None]
 ) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = []
-    if one.name == REACH:
+    if one.name in (REACH, MOTOR_TORQUE):
         return []
     for label, unit, entry in zip(one.channels, one.units, kept, strict=True):
         if entry is not None:
