@@ -51,7 +51,9 @@ def rotors_at(model: Model, drives: tuple[MotorDrive, ...], p: Array) -> Array:
     return np.array([evaluate(dict(zip(names, map(float, row), strict=False))) for row in p])
 
 
-def motor_torques(drives: tuple[MotorDrive, ...], motors: tuple[Motor, ...], u: Array, qdd: Array, rotors: Array) -> Array:
+def motor_torques(
+    drives: tuple[MotorDrive, ...], motors: tuple[Motor, ...], u: Array, qdd: Array, rotors: Array
+) -> Array:
     """Torques of the shafts of motors (points x drives * motors x states), each motor at each drive by itself.
 
     u (points x m x states) are the inputs of the model, whose own `rotors` I (points x drives) are taken out.  Of a
