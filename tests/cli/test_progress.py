@@ -8,9 +8,12 @@ import signal
 import subprocess
 import threading
 import time
+from pathlib import Path
 
 import pytest
 
+from symgen import pipeline
+from symgen.generation.results import Options
 from symgen.runtime import activity, clock
 from symgen.runtime.activity import described, each, working
 from symgen.terminal import Progress
@@ -145,6 +148,26 @@ def test_what_work_usually_takes_is_told_until_it_has_taken_that(at: list[float]
         at[0] = 11.0
         assert described() == "verifying, compiling 20 MB of C"
     assert described() == ""
+
+
+def test_a_run_that_takes_longer_than_its_step_is_told(at: list[float]) -> None:
+    with working("") as whole, working("compiling", seconds=10):
+        whole.seconds = 120.0
+        assert described() == "compiling, about 120 s more"
+        at[0] = 115.0
+        assert described() == "compiling, about 5 s more"
+
+
+def test_the_time_of_a_run_is_foreseen_from_its_derivation(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Before that nothing is known, and without verification the derivation is most of it."""
+    monkeypatch.setattr(pipeline, "WHOLE_PER_DERIVING", 1e5)
+    model = Path(__file__).parents[2] / "models" / "differential_drive.yaml"
+    for verify in (True, False):
+        seen: dict[str, str] = {}
+        options = Options(parts=("c", "python"), verify=verify, states=8)
+        pipeline.generate(model, options, lambda text, seen=seen: seen.setdefault(text, described()))
+        assert "more" not in seen["reading the model"] + seen["deriving"]
+        assert ("s more" in seen["writing"]) is verify
 
 
 def test_a_step_that_fails_is_over() -> None:
