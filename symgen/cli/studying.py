@@ -54,6 +54,7 @@ def _study_parser() -> argparse.ArgumentParser:
     add("--quantiles", metavar="P,P", type=names, help="levels between 0 and 1, along the states of each point")
     add("--size", metavar="CATALOGUE.csv", type=Path, help="motors, of which those are listed that fit each drive")
     add("--workers", metavar="N", type=_workers, help="processes of a local cluster (default: threads)")
+    add("--scheduler", metavar="ADDRESS", help="a Dask cluster that exists, whose workers see the same files")
     add("--yes", action="store_true", help="run more than 10^9 states")
     add_out(parser)
     add_quiet(parser)
@@ -71,6 +72,8 @@ def _workers(text: str) -> int:
 def _study(given: argparse.Namespace) -> int:
     check_present([given.file, *([] if given.size is None else [given.size])])
     check_writable(given.out)
+    if given.workers is not None and given.scheduler is not None:
+        raise WrongUseError("--workers and --scheduler are two clusters: name one of them")
     if lacking := [name for name in _NEEDED if find_spec(name) is None]:
         raise WrongUseError(to_install(lacking, "a study"))
     progress = Progress(given.file.stem, given.quiet)
@@ -79,7 +82,8 @@ def _study(given: argparse.Namespace) -> int:
         from symgen.study.command import StudyRun, run_study
 
         request, mistakes = _request(given)
-        return run_study(request, mistakes, StudyRun(given.out, given.workers, given.yes, given.quiet), progress)
+        run = StudyRun(given.out, given.workers, given.scheduler, given.yes, given.quiet)
+        return run_study(request, mistakes, run, progress)
 
     try:
         return guarded(study)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from symgen.generation.results import Result, WrongUseError
@@ -22,7 +22,15 @@ from symgen.study.shown.summary import StudySummary, settings_of, settings_rows,
 from symgen.study.sizing.choice import motor_fits, sizing_lines, sizing_tables
 from symgen.study.states import StudyStates
 from symgen.study.store import PARTIAL, ZARR, StudyStore, is_own, kept_settings
-from symgen.study.work import Assignment, ChunkOutcome, StudyWork, by_processes, by_threads
+from symgen.study.work import (
+    Assignment,
+    ChunkOutcome,
+    NoSchedulerError,
+    StudyWork,
+    by_processes,
+    by_scheduler,
+    by_threads,
+)
 
 Progress = Callable[[str], None]
 PAGE = "study.html"
@@ -33,10 +41,12 @@ MOST_LISTED_CHUNKS = 5
 
 @dataclass(frozen=True, slots=True)
 class StudyRun:
-    """How a study is run: `workers` are processes, none of them threads; `agreed` takes any number of states."""
+    """How a study is run: by so many processes as `workers`, by those of a `scheduler` at an address, or by threads;
+    `agreed` takes any number of states."""
 
     out: Path
     workers: int | None
+    scheduler: str | None
     agreed: bool
     quiet: bool
 
@@ -58,7 +68,7 @@ def run_study(request: StudyRequest, mistakes: StudyMistakes, run: StudyRun, pro
         progress("")
         _announce(work, run)
         outcomes = _worked(work, assignment, run, progress)
-    except NoKernelsError as error:
+    except (NoKernelsError, NoSchedulerError) as error:
         progress("")
         print(f"{request.model}: {error}", file=sys.stderr)
         return 1
@@ -75,7 +85,10 @@ def _study_work(plan: StudyPlan, folder: Path, progress: Progress) -> tuple[Stud
     store = StudyStore(partial, plan, chunks)
     work = StudyWork(plan, chunks, StudyStates(plan, kernels), kernels, store)
     store.begin(settings_of(plan, kernels_hash(result)), {_record(plan): result.files[RECORD_FILE]})
-    return work, Assignment(plan.request, partial, partial / RECORD_FOLDER, kernels_hash(result))
+    # workers may have been started elsewhere
+    request = replace(plan.request, model=plan.request.model.resolve())
+    there = partial.resolve()
+    return work, Assignment(request, there, there / RECORD_FOLDER, kernels_hash(result))
 
 
 def _record(plan: StudyPlan) -> str:
@@ -116,6 +129,8 @@ def _worked(work: StudyWork, assignment: Assignment, run: StudyRun, progress: Pr
 
     counted(0)
     try:
+        if run.scheduler is not None:
+            return by_scheduler(assignment, run.scheduler, numbers, counted)
         if run.workers is None:
             return by_threads(work, numbers, counted)
         return by_processes(assignment, run.workers, numbers, counted)

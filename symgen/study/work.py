@@ -1,13 +1,19 @@
-"""Chunks worked out: by threads of this process, or by processes of a local cluster; the same bytes either way."""
+"""Chunks worked out: by threads of this process, by processes of a local cluster, or by the workers of a scheduler.
+
+The same bytes whoever works on them.
+"""
 
 from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Sequence
+from concurrent.futures import CancelledError
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
+from symgen import __version__
 from symgen.model.load import load_model
 from symgen.study.asked.request import StudyMistakes, StudyRequest
 from symgen.study.chunks import ChunkGrid, chunk_grid, chunk_values
@@ -19,7 +25,13 @@ from symgen.study.store import StudyStore
 
 # How often a chunk is worked on: what fails a second time is reported.
 TRIES = 2
+# Of the time in which a scheduler has to answer.
+CONNECTION_SECONDS = 10
 Count = Callable[[int], None]
+
+
+class NoSchedulerError(Exception):
+    """A scheduler that does not answer any more, or has no workers that can work; the text says why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +99,7 @@ def by_threads(work: StudyWork, numbers: Sequence[int], counted: Count) -> list[
 
 def by_processes(assignment: Assignment, workers: int, numbers: Sequence[int], counted: Count) -> list[ChunkOutcome]:
     """Chunks by processes of a local cluster; each makes the kernels anew from the model file."""
-    from distributed import Client, LocalCluster, as_completed
+    from distributed import Client, LocalCluster
 
     with (
         tempfile.TemporaryDirectory(prefix="symgen-study-") as folder,
@@ -100,12 +112,52 @@ def by_processes(assignment: Assignment, workers: int, numbers: Sequence[int], c
         ) as cluster,
         Client(cluster) as client,
     ):
-        futures = client.map(work_in_process, [assignment] * len(numbers), numbers, pure=False)
-        outcomes = []
-        for done, (_, outcome) in enumerate(as_completed(futures, with_results=True), 1):
-            outcomes.append(outcome)
-            counted(done)
+        return _by_client(client, assignment, numbers, counted)
+
+
+def by_scheduler(assignment: Assignment, address: str, numbers: Sequence[int], counted: Count) -> list[ChunkOutcome]:
+    """Chunks by the workers of a scheduler that exists, which see the same files.  Raises NoSchedulerError."""
+    from distributed import Client
+
+    try:
+        client = Client(address, timeout=CONNECTION_SECONDS, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise NoSchedulerError(f"no scheduler of Dask answers at {address}: {error}") from error
+    with client:
+        _check_workers(client, address)
+        try:
+            return _by_client(client, assignment, numbers, counted)
+        except (OSError, CancelledError) as error:
+            raise NoSchedulerError(f"the scheduler at {address} is lost") from error
+
+
+def _by_client(client: Any, assignment: Assignment, numbers: Sequence[int], counted: Count) -> list[ChunkOutcome]:
+    from distributed import as_completed
+
+    futures = client.map(work_in_process, [assignment] * len(numbers), numbers, pure=False)
+    outcomes = []
+    for done, (_, outcome) in enumerate(as_completed(futures, loop=client.loop, with_results=True), 1):
+        if isinstance(outcome, BaseException):  # a chunk that is lost with its scheduler
+            raise outcome
+        outcomes.append(outcome)
+        counted(done)
     return sorted(outcomes, key=lambda one: one.number)
+
+
+def _check_workers(client: Any, address: str) -> None:
+    """Every worker has this version of symgen."""
+    workers = client.run(version_in_process, on_error="return")
+    if not workers:
+        raise NoSchedulerError(f"the scheduler at {address} has no workers: start some")
+    for name, version in sorted(workers.items()):
+        if version != __version__:
+            has = f"symgen {version}" if isinstance(version, str) else f"no symgen that can be used ({version})"
+            raise NoSchedulerError(f"the worker {name} has {has}, and {__version__} is here: install the same")
+
+
+def version_in_process() -> str:
+    """The version of symgen of a worker."""
+    return __version__
 
 
 def work_in_process(assignment: Assignment, number: int) -> ChunkOutcome:

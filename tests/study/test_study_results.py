@@ -161,4 +161,4 @@ def test_the_study_file_of_the_documentation_is_one() -> None:
     plan = planned_study(load_model(request.model), request, mistakes)
     assert (plan.points, plan.states, plan.shown) == (4096, 201, ("inputs", "power"))
     options = set(re.findall(r"`--(\w+)", page)) - {"yes"}
-    assert options == {"over", "along", "show", "sample", "count", "seed", "quantiles", "size", "workers"}
+    assert options == {"over", "along", "show", "sample", "count", "seed", "quantiles", "size", "workers", "scheduler"}

@@ -120,7 +120,7 @@ def test_a_chunk_that_fails_twice_is_reported_with_its_states(
 
     monkeypatch.setattr(work_module, "chunk_results", failing)
     request, mistakes = request_of(arm_file(), ["m=1:8:21", "g=5:10:399"], ["swing"], ["inputs"], None, None, None, ())
-    code = run_study(request, mistakes, StudyRun(tmp_path, None, False, True), lambda _: None)
+    code = run_study(request, mistakes, StudyRun(tmp_path, None, None, False, True), lambda _: None)
     complaint = capsys.readouterr().err
     assert code == 1
     assert "failed twice: ArithmeticError: struck by lightning" in complaint
@@ -144,7 +144,7 @@ def test_a_full_disk_ends_a_study_that_goes_on_later(
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "study.zarr")
         write(self, number, *given)
 
-    run = StudyRun(tmp_path / "a", None, False, True)
+    run = StudyRun(tmp_path / "a", None, None, False, True)
     with monkeypatch.context() as context, threads(1):
         context.setattr(StudyStore, "write", full)
         with pytest.raises(OSError, match="No space left"):
@@ -152,7 +152,7 @@ def test_a_full_disk_ends_a_study_that_goes_on_later(
     assert "chunks are kept: the same command continues" in capsys.readouterr().err
     assert not (tmp_path / "a" / "arm" / "study.zarr").exists()
     assert run_study(request, mistakes, run, lambda _: None) == 0
-    assert run_study(request, mistakes, StudyRun(tmp_path / "b", None, False, True), lambda _: None) == 0
+    assert run_study(request, mistakes, StudyRun(tmp_path / "b", None, None, False, True), lambda _: None) == 0
     assert tree(tmp_path / "a") == tree(tmp_path / "b")
 
 
@@ -181,7 +181,7 @@ def test_results_of_others_are_not_replaced(tmp_path: Path) -> None:
     (foreign / "precious").write_text("data")
     request, mistakes = request_of(arm_file(), ["m=1:8:5"], ["swing"], ["inputs"], None, None, None, ())
     with pytest.raises(WrongUseError, match="was not made by a study"):
-        run_study(request, mistakes, StudyRun(tmp_path, None, False, True), lambda _: None)
+        run_study(request, mistakes, StudyRun(tmp_path, None, None, False, True), lambda _: None)
     assert (foreign / "precious").read_text() == "data"
 
 
