@@ -151,10 +151,11 @@ def quantities() -> str:
 def picture() -> str:
     """docs/rapkm_determinants.svg: Fig. 6 of the paper."""
     from symgen.paths.charts import charts
+    from symgen.paths.drawing import with_numbered_regions
     from symgen.paths.figures import figure_data
 
     model = load_model(ROOT / "models/rapkm_2rrr_rr.yaml")
-    return charts(model, figure_data(model, model.paths[0]))["determinants"]
+    return with_numbered_regions(charts(model, figure_data(model, model.paths[0]))["determinants"])
 
 
 DETERMINISTIC: dict[str, Callable[[], str]] = {

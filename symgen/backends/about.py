@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from symgen.backends.comments import docstring_lines, indent_of, one_line
-from symgen.backends.locals import Names
+from symgen.backends.locals import Names, array_arguments
 from symgen.backends.operations import count_operations
+from symgen.backends.quantities import meaning
 from symgen.ir.bounded import Bound, bounds_of
 from symgen.ir.bounded_coordinates import CoordinateBound, coordinate_bounds_of
 from symgen.ir.kernel import Kernel, Program, Status
@@ -163,6 +164,12 @@ def shape_text(kernel: Kernel) -> str:
     """The shape of a result, such as `4 x 2, row-major`."""
     shape = " x ".join(str(extent) for extent in kernel.shape)
     return f"{shape}, row-major" if len(kernel.shape) > 1 else f"length {shape}"
+
+
+def array_line(kernel: Kernel) -> str:
+    """What a function of arrays is: its meaning, and the last axes of its arguments and of its result."""
+    given = ", ".join(f"{one.name} (..., {one.length})" for one in array_arguments(kernel))
+    return f"{meaning(kernel)}: {given} -> (..., {', '.join(map(str, kernel.shape))})"
 
 
 def unit_text(unit: str | None) -> str:

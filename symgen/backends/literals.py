@@ -2,35 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache
 
 from symgen.ir.kernel import Literal, Program, Scalar
-
-# Binary digits of a float32.
-_FLOAT32_DIGITS = 24
-# The power of two of the smallest float32, a subnormal one.
-_FLOAT32_LOWEST_EXPONENT = -149
-# What no float32 reaches: what is rounded to this is infinite.
-_FLOAT32_LIMIT = Fraction(2**128)
-
-
-def round_to_float32(value: Fraction) -> float:
-    """The binary32 number nearest to `value` (ties to even), exactly held in a Python float; no double rounding."""
-    if value == 0:
-        return 0.0
-    magnitude = abs(value)
-    exponent = magnitude.numerator.bit_length() - magnitude.denominator.bit_length()
-    if magnitude < Fraction(2) ** exponent:
-        exponent -= 1
-    unit = Fraction(2) ** max(exponent - (_FLOAT32_DIGITS - 1), _FLOAT32_LOWEST_EXPONENT)
-    rounded = round(magnitude / unit) * unit  # Fraction rounds half to even
-    if rounded >= _FLOAT32_LIMIT:
-        raise OverflowError(f"{float(value):.6g} does not fit in float32")
-    return math.copysign(float(rounded), value)
+from symgen.ir.rounding import round_to_float32
 
 
 def round_to(scalar: Scalar, value: Fraction) -> float:

@@ -30,7 +30,7 @@ def names_of(
     model: Model,
     program: Program,
     is_taken: Callable[[str], bool],
-    own_names: Iterable[str] = (),
+    own_names: Iterable[str],
     inside: Iterable[str] = (),
 ) -> Names:
     """Names for all kernels of the program in a language where some are taken.

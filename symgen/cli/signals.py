@@ -26,7 +26,7 @@ class EndedError(SystemExit):
 
 
 @contextmanager
-def signals_end_the_run(process_ends: bool = False) -> Iterator[None]:
+def signals_end_the_run(process_ends: bool) -> Iterator[None]:
     """A signal becomes an EndedError, unless it is ignored already, as under nohup; outside the main thread nothing.
 
     Where the process ends with the run, more of them are ignored once one came: the same signal is often sent twice,

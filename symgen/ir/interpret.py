@@ -13,6 +13,7 @@ from fractions import Fraction
 
 from symgen.ir.kernel import Block, Check, Function, Kernel, Literal, Operand, Scalar, Statement, Status
 from symgen.ir.pairs.wide_functions import is_wide, wide_function
+from symgen.ir.rounding import round_to_float32
 
 
 def _divide(a: float, b: float) -> float:
@@ -71,17 +72,13 @@ def round_float32(value: float) -> float:
 
 
 def round_literal(value: Fraction, scalar: Scalar) -> float:
-    """An exact number rounded once to the scalar type."""
+    """An exact number rounded once to the scalar type; infinite where no float32 reaches it."""
     if scalar == "float64":
         return float(value)
-    if value == 0:
-        return 0.0
-    magnitude = abs(value)
-    exponent = magnitude.numerator.bit_length() - magnitude.denominator.bit_length()
-    if magnitude < Fraction(2) ** exponent:
-        exponent -= 1
-    quantum = Fraction(2) ** (max(exponent, -126) - 23)
-    return round_float32(float(round(value / quantum) * quantum))
+    try:
+        return round_to_float32(value)
+    except OverflowError:
+        return math.copysign(math.inf, value)
 
 
 class Interpreter:

@@ -63,7 +63,7 @@ def angle_limit(scalar: Scalar, wide: bool) -> Fraction:
     return (WIDE_ANGLE_LIMIT if wide else ANGLE_LIMIT)[scalar]
 
 
-def half_pi_parts(scalar: Scalar, wide: bool = False) -> tuple[Fraction, ...]:
+def half_pi_parts(scalar: Scalar, wide: bool) -> tuple[Fraction, ...]:
     """pi/2 as a sum of short parts and a rest."""
     rest = PI / 2
     parts = []

@@ -14,7 +14,7 @@ from symgen.linear_algebra.null_space.proportional_columns import families, fold
 from symgen.mechanics.system import System
 from symgen.model.configurations.assembly import Assembly
 from symgen.model.configurations.branches import branches
-from symgen.model.configurations.mechanics import NumericSystem as Numbers
+from symgen.model.configurations.mechanics import NumericSystem
 from symgen.model.configurations.sparse import PLAIN, clear_rank
 from symgen.model.model import Model
 from symgen.records import dataclass
@@ -77,15 +77,8 @@ def assembly_of(model: Model) -> Assembly:
     """What loading found about the configurations; found here where the model was not read from a file."""
     if model.assembly is not None:
         return model.assembly
-    seen = Numbers(
-        model.coordinates,
-        model.parameters,
-        model.definitions,
-        model.constraints,
-        model.kinetic_energy,
-        model.mechanism,
-    )
-    assembly = branches(seen, model.inputs, {name: float(value) for name, value in model.configuration})
+    start = {name: float(value) for name, value in model.configuration}
+    assembly = branches(NumericSystem.of(model), model.inputs, start)
     if not isinstance(assembly, Assembly):
         raise SymgenBug(f"genericity: no configuration of {model.name} satisfies its constraints")
     return assembly

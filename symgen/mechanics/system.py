@@ -6,11 +6,11 @@ because several quantities are evaluated along a projected velocity rather than 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import cached_property, lru_cache
 
 from symgen.mechanics.absolute_angles import AbsoluteAngles
-from symgen.mechanics.christoffel import by_products_of_rates
+from symgen.mechanics.christoffel import Slopes, by_christoffel_symbols, by_products_of_rates, slopes_of, with_zeros
+from symgen.mechanics.given_forces import GivenForces
 from symgen.mechanics.held_rows import HeldRows, acceleration_bias, geometric_jacobian
 from symgen.mechanics.rigid_bodies.bodies import Bodies, Vector3
 from symgen.mechanics.rigid_bodies.joint_axes import along_joints
@@ -21,12 +21,11 @@ from symgen.model.kinematics.triples import Rows
 from symgen.model.model import Model
 from symgen.model.quantities import MEASURED_ARGUMENTS, FurtherName
 from symgen.symbolic.calculus import derivative_along, gradient
-from symgen.symbolic.hidden_zeros import without_hidden_zeros
-from symgen.symbolic.matrix import Matrix, Vector, dot, matvec, subtract_vectors, transpose
+from symgen.symbolic.matrix import Matrix, Vector, matvec, subtract_vectors, transpose
 from symgen.symbolic.passes.factoring import Factoring
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.translate import translate
-from symgen.symbolic.traverse import cost, reached, substitute
+from symgen.symbolic.traverse import cost, substitute
 
 
 class System:
@@ -141,10 +140,10 @@ class System:
     @cached_property
     def potential_energy(self) -> Scalar:
         """U(q)."""
-        return self._written_potential + self.bodies.potential_energy
+        return self.written_potential + self.bodies.potential_energy
 
     @cached_property
-    def _written_potential(self) -> Scalar:
+    def written_potential(self) -> Scalar:
         """U as far as it is written out in the model."""
         return translate(self.graph, self.model.potential_energy, self.names)
 
@@ -163,43 +162,18 @@ class System:
         return tuple(tuple(rows[min(i, j)][max(i, j)] for j in range(self.n)) for i in range(self.n))
 
     @cached_property
-    def _mass_slopes(self) -> tuple[dict[tuple[int, int], Scalar], ...]:
-        """The entries of dG/dq^k that are not zero, i <= j, for every k; rows of many machines have few."""
-        graph, n = self.graph, self.n
-        upper = {(i, j): x for i in range(n) for j in range(i, n) if (x := self.mass_matrix[i][j]).op != "const"}
-        moved: dict[Scalar, list[tuple[int, int]]] = {}
-        for place, entry in upper.items():
-            for node in reached([entry]):
-                if node.op == "symbol":
-                    moved.setdefault(node, []).append(place)
-        slopes = []
-        for q in self.q:
-            places = moved.get(q, [])
-            entries = without_hidden_zeros(derivative_along(graph, [upper[place] for place in places], {q: graph.one}))
-            slopes.append({place: x for place, x in zip(places, entries, strict=True) if not x.is_zero})
-        return tuple(slopes)
+    def _mass_slopes(self) -> tuple[Slopes, ...]:
+        """The entries of dG/dq^k that are not zero, for every k."""
+        return slopes_of(self.graph, self.mass_matrix, self.q)
 
     @cached_property
     def mass_matrix_gradient(self) -> tuple[Matrix, ...]:
         """dG/dq^k for every k."""
-        zeros = (self.graph.zero,) * self.n
-        gradients = []
-        for slopes in self._mass_slopes:
-            rows = {i: list(zeros) for place in slopes for i in place}
-            for (i, j), slope in slopes.items():
-                rows[i][j] = rows[j][i] = slope
-            gradients.append(tuple(tuple(rows[i]) if i in rows else zeros for i in range(self.n)))
-        return tuple(gradients)
+        return with_zeros(self.graph, self._mass_slopes, self.n)
 
     def coriolis_matrix(self, velocity: Vector) -> Matrix:
-        """C (3) from Christoffel symbols, 1/2 sum_k (d_k G_ij + d_j G_ik - d_i G_jk) v_k: G_dot - 2 C is skew."""
-        graph, n, d = self.graph, self.n, self.mass_matrix_gradient
-        symmetric = [[dot(graph, [d[k][i][j] for k in range(n)], velocity) for j in range(n)] for i in range(n)]
-        gyroscopic = [[dot(graph, [d[j][i][k] for k in range(n)], velocity) for j in range(n)] for i in range(n)]
-        half = graph.const(1) / 2
-        return tuple(
-            tuple((symmetric[i][j] + (gyroscopic[i][j] - gyroscopic[j][i])) * half for j in range(n)) for i in range(n)
-        )
+        """C (3) along a velocity, from Christoffel symbols."""
+        return by_christoffel_symbols(self.graph, self.mass_matrix_gradient, velocity)
 
     @cached_property
     def potential_force(self) -> Vector:
@@ -209,13 +183,13 @@ class System:
     @cached_property
     def applied_force(self) -> Vector:
         """Q_a(q, q_dot), on the right-hand side."""
-        (_, given), *others = self._applied
+        (_, given), *others = self.applied_parts
         for magnitude, column in others:
             given = tuple(x + magnitude * y for x, y in zip(given, column, strict=True))
         return given
 
     @cached_property
-    def _applied(self) -> list[tuple[Scalar, Vector]]:
+    def applied_parts(self) -> list[tuple[Scalar, Vector]]:
         """What acts on the coordinates themselves, and the magnitude of each force with what a unit of it does."""
         forces = {f.coordinate: translate(self.graph, f.expression, self.names) for f in self.model.applied_forces}
         direct = self._components(tuple(forces.get(c.name, self.graph.zero) for c in self.model.coordinates))
@@ -245,7 +219,7 @@ class System:
         """G a + C q_dot + Q; with bodies in one recursion, where weight is an acceleration of the world."""
         if self.model.mechanism.has_mass:
             inertial = self._inertial_force_of_bodies(acceleration, self.working_gravity)
-            potential: Vector = tuple(gradient(self.graph, self._written_potential, self.q))
+            potential: Vector = tuple(gradient(self.graph, self.written_potential, self.q))
         else:
             inertial, potential = self._inertial_force(acceleration), self.potential_force
         return tuple(i + f for i, f in zip(inertial, potential, strict=True))
@@ -370,28 +344,9 @@ class System:
         return subtract_vectors(matvec(self.graph, self.control_matrix, self.u), self.bias_force)
 
     @cached_property
-    def given_force(self) -> Vector:
-        """M u + Q_a less the gradient of the written potential: f without the weights and inertial forces of bodies."""
-        driven = matvec(self.graph, self.control_matrix, self.u)
-        slopes = gradient(self.graph, self._written_potential, self.q)
-        return tuple(u + a - f for u, a, f in zip(driven, self.applied_force, slopes, strict=True))
-
-    @cached_property
-    def given_parts(self) -> list[tuple[Scalar, Vector, Expression | None]]:
-        """`given_force` part by part: a magnitude, the force of 1, and the rate that it works on where it has one."""
-        slopes: Vector = tuple(gradient(self.graph, self._written_potential, self.q))
-        rates = [*(i.velocity for i in self.model.inputs), None, *(force.velocity for force in self.model.forces)]
-        forces = [*zip(self.u, self.inputs, strict=True), *self._applied]
-        parts = [(x, force, velocity) for (x, force), velocity in zip(forces, rates, strict=True)]
-        return [*parts, (self.graph.const(-1), slopes, None)]
-
-    def given_along(self, direction: Mapping[int, Scalar]) -> Scalar:
-        """The component of `given_force` along a direction in the coordinates.
-
-        Input by input and force by force, because it is exactly 0 of each of them that does no work there.
-        """
-        along = ((x, self.graph.sum(force[j] * d for j, d in direction.items())) for x, force, _ in self.given_parts)
-        return self.graph.sum(x * component for x, component in along if not component.is_zero)
+    def given(self) -> GivenForces:
+        """M u + Q_a and the written potential: f without the weights and inertial forces of bodies."""
+        return GivenForces(self)
 
     @cached_property
     def bias_force(self) -> Vector:

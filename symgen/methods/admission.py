@@ -132,7 +132,7 @@ class OfInputs:
         return self.least(system)
 
 
-def validity_of(candidate: Candidate, measures: Sequence[Scalar], first_only: bool = False) -> Validity:
+def validity_of(candidate: Candidate, measures: Sequence[Scalar], first_only: bool) -> Validity:
     """What is known of the divisors of a candidate; with `first_only` one singular denominator is enough."""
     system = candidate.system
     proof = proof_for(system, measures)

@@ -91,7 +91,6 @@ class Plant:
 def _units(model: Model) -> list[float]:
     """For each geometric row, by its gradient where the mechanism is known to be assembled."""
     known = assembly_of(model)
-    parts = model.coordinates, model.parameters, model.definitions, model.constraints, model.kinetic_energy
-    numbers = NumericSystem(*parts, model.mechanism)
+    numbers = NumericSystem.of(model)
     rows = numbers.residuals(known.places[0].q, range(len(numbers.geometric)))[1]
     return [row_unit(row.values()) for row in rows]

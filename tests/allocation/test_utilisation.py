@@ -207,3 +207,30 @@ def test_it_needs_limits_of_every_input() -> None:
     made = System(f"{models.AXIS}allocation: {{limits: {{left: [-1, 1]}}}}\n", ("utilisation", "mass_matrix"))
     assert made.names == ["mass_matrix"]
     assert ("utilisation", "it needs `limits` of every input, under `allocation`") in made.derivations.absent
+
+
+def leaning(directions: int, drives: int) -> str:
+    """Drives that push a carriage along one line, but for a share e of what each does beside it."""
+    source = np.random.default_rng(3)
+    names, shares = "abc"[: directions - 1], source.uniform(-1, 1, (directions - 1, drives)).round(3)
+    inputs = ""
+    for k in range(drives):
+        pushes = (f"{s[0]}*cos(q) + e*{s[k]}*sin(q + {k})" for s in shares)
+        acts = ", ".join(f"{name}: {push}" for name, push in zip(names, pushes, strict=True))
+        inputs += f"  d_{k}: {{acts_on: {{{acts}, q: {3 + k}/10}}}}\n"
+    return (
+        f"model: leaning\ncoordinates: {{{''.join(f'{name}: {{}}, ' for name in names)}q: {{unit: rad}}}}\n"
+        f"parameters: {{e: {{value: 1, range: [1/1000000, 1]}}}}\n"
+        f"kinetic_energy: ({' + '.join(f'{name}_dot**2' for name in names)} + q_dot**2)/2\ninputs:\n{inputs}"
+        f"allocation: {{limits: {{{', '.join(f'd_{k}: [-1, 1]' for k in range(drives))}}}}}\n"
+    )
+
+
+@pytest.mark.parametrize(("directions", "drives"), [(3, 5), (4, 5), (4, 6)])
+def test_inputs_that_all_but_agree_cost_no_digits(directions: int, drives: int) -> None:
+    """Determinants of four columns that are a ten thousandth apart would lose a hundred times what is allowed."""
+    made, source = System(leaning(directions, drives), ("utilisation",)), np.random.default_rng(1)
+    for share in (1.0, 1e-2, 1e-4):
+        for _ in range(6):
+            q, rest = [0.1] * (directions - 1) + [0.7], [0.0] * directions
+            made.assert_right(made.state(q, rest, source.uniform(-1, 1, directions).tolist(), parameters={"e": share}))

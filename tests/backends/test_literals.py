@@ -10,9 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from symgen.backends.c.statements import c_literal
-from symgen.backends.literals import LiteralRangeError, decimal_text, round_to_float32
+from symgen.backends.literals import LiteralRangeError, decimal_text
 from symgen.backends.python.statements import numpy_literal
 from symgen.ir.kernel import Scalar
+from symgen.ir.rounding import round_to_float32
 
 FRACTIONS = st.fractions(min_value=-(10**12), max_value=10**12, max_denominator=10**12)
 

@@ -327,7 +327,6 @@ POINTS = """\
 points:
   tip: {frame: lower, at: [l, 0, 0]}
 """
-GOOD_ARM = ARM + FRAMES + MASSES + POINTS
 
 
 def arm(frames: str = FRAMES, bodies: str = MASSES, points: str = POINTS, more: str = "") -> str:

@@ -31,7 +31,7 @@ from symgen.ir.kernel import (
 )
 from symgen.ir.lifted import Lifted, same_kernel
 from symgen.ir.pairs.sharp_thresholds import LOWERED, with_sharp_thresholds
-from symgen.ir.pairs.wide import widened
+from symgen.ir.pairs.wide import GAINED, widened
 from symgen.ir.pairs.wide_angles import MOST_PARTS
 from symgen.ir.pairs.wide_functions import WIDE, wide_function
 from symgen.ir.sincos import sincos
@@ -182,6 +182,24 @@ def assert_digits_come_back(
 def test_what_plain_kernels_lose(build: Callable[[Lines], str], scalar: Scalar) -> None:
     """The plain kernel has nothing but rounding errors."""
     assert_digits_come_back(build, scalar, given(scalar))
+
+
+@pytest.mark.parametrize("build", [squared, roots], ids=lambda build: build.__name__)
+def test_digits_that_a_pair_in_float32_has_more_than_one_number(build: Callable[[Lines], str]) -> None:
+    """Of x and y next to each other nothing is left but what rounding takes of pairs of the size of x."""
+    lines, source, eps = Lines(), random.Random(7), float(UNIT_ROUNDOFF["float32"])
+    plain = lines.kernel(build(lines))
+    wide, interpreter = widened(plain, "float32"), Interpreter(sincos("float32"), "float32")
+    taken = []
+    for _ in range(300):
+        x = round_literal(Fraction(source.uniform(1, 2)), "float32")
+        y = x + source.randint(1, 3) * 2 * eps
+        one = {"q": (0.5,), "qd": (x, y), "qdd": (), "u": (), "p": (0.01,)}
+        with precision(200):
+            (exact,) = ExactFunction(plain)(_state(one))
+            _, (entry,) = interpreter.run(wide, one, one["p"])
+            taken.append(float(abs(arb(entry) - exact)) / x**2)
+    assert 2.0 ** -(GAINED + 4) < max(taken) / eps < 2.0**-GAINED
 
 
 @pytest.mark.parametrize("scalar", SCALARS)

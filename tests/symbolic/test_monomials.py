@@ -45,10 +45,6 @@ class Drawn:
 
         return sum(float(value) * power(key) for key, value in terms.items())
 
-    def square_of_sine(self, key: int) -> bool:
-        nodes = self.monomials._graph
-        return any(nodes.at(atom).op == "sin" and power > 1 for atom, power in self.monomials.read(key))
-
 
 @pytest.mark.parametrize("seed", range(20))
 @pytest.mark.parametrize("powers", [(0, 3), (-2, 2), (-1, 5)])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Callable
+from fractions import Fraction
 
 import pytest
 import shipped
@@ -81,3 +82,34 @@ inputs: {{u: {{acts_on: {{x: 1}}}}}}
     if reached is not None:
         state = dict(reached)
         assert coupling(state["x"], state["y"], corner, most) > 0.999
+
+
+@pytest.mark.parametrize("tenths", range(-9, 10, 2))
+@pytest.mark.parametrize("rest", [Fraction(1, 10**5), Fraction(1, 10)])
+def test_an_inertia_is_measured_by_what_it_is_in_a_tenth_of_the_range(tenths: int, rest: Fraction) -> None:
+    """Elsewhere it is the rest alone: next to nothing beside that, or enough."""
+    text = f"""
+model: slide
+coordinates: {{x: {{range: [-1, 1]}}, y: {{range: [-1, 1]}}}}
+kinetic_energy: x_dot**2*({rest} + exp(-(10*x - ({tenths}))**2))/2 + y_dot**2/2
+constraints: {{nonholonomic: {{row: y_dot}}}}
+inputs: {{u: {{acts_on: {{x: 1}}}}}}
+"""
+    reached = place(load_text(text, "slide.yaml"))
+    assert (reached is not None) is (rest < Fraction(1, 10**4))
+    if reached is not None:
+        assert math.exp(-((10 * dict(reached)["x"] - tenths) ** 2)) < 1e-4
+
+
+@pytest.mark.parametrize("thousandths", [-873, -411, -37, 298, 556, 939])
+def test_a_single_place_where_masses_are_singular_is_met_to_a_thousandth_of_the_range(thousandths: int) -> None:
+    """The smallest pivot is half of the square of the way there: a sixtieth of the range away it counts as some."""
+    text = f"""
+model: slides
+coordinates: {{x: {{range: [-1, 1]}}, y: {{range: [-1, 1]}}}}
+kinetic_energy: (x_dot**2 + y_dot**2)/2 + x_dot*y_dot*(1 - (x - ({thousandths})/1000)**2/4)
+inputs: {{u: {{acts_on: {{x: 1}}}}}}
+"""
+    reached = place(load_text(text, "slides.yaml"))
+    assert reached is not None
+    assert abs(dict(reached)["x"] - thousandths / 1000) < 2e-3

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from symgen.backends.about import module_lines, parameter_text, status_meaning, statuses_of
+from symgen.backends.about import array_line, module_lines, parameter_text, status_meaning, statuses_of
 from symgen.backends.array_api.reserved import WORDS
 from symgen.backends.array_api.statements import ArrayStatements, array_helper
 from symgen.backends.comments import docstring_lines
 from symgen.backends.defaults import default_values
 from symgen.backends.literals import in_range
 from symgen.backends.locals import Names, all_statements, array_arguments, names_of, used_locals
-from symgen.backends.quantities import meaning
 from symgen.backends.render import render
 from symgen.backends.scalars import file_stem
 from symgen.backends.statements import Helper
@@ -83,12 +82,10 @@ def _function(program: Program, kernel: Kernel, names: Names) -> ArrayFunctionVi
             body.append(f"{names.locals[load.local]} = {place}")
     body += [line for block in kernel.blocks for line in printer.block(block)]
     arguments = tuple((argument.name, argument.length) for argument in array_arguments(kernel))
-    given = ", ".join(f"{name} (..., {length})" for name, length in arguments)
-    result = ", ".join(str(extent) for extent in kernel.shape)
     return ArrayFunctionView(
         name=kernel.name,
         arguments=arguments,
-        docstring=docstring_lines(f"{meaning(kernel)}: {given} -> (..., {result}), and the status of each state."),
+        docstring=docstring_lines(f"{array_line(kernel)}, and the status of each state."),
         body=tuple(body),
         entries=tuple(map(printer.argument, kernel.outputs)),
         shape=kernel.shape,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symgen import __version__
-from symgen.backends.about import module_lines, parameter_text, status_meaning, statuses_of
+from symgen.backends.about import array_line, module_lines, parameter_text, status_meaning, statuses_of
 from symgen.backends.c.endings import BATCH
 from symgen.backends.c.reserved import is_taken as is_taken_in_c
 from symgen.backends.comments import docstring_lines
@@ -12,7 +12,7 @@ from symgen.backends.literals import decimal_text
 from symgen.backends.locals import Names, all_statements, array_arguments, names_of, used_locals
 from symgen.backends.python.reserved import WORDS
 from symgen.backends.python.statements import NumpyStatements, numpy_helper
-from symgen.backends.quantities import BATCHED, meaning
+from symgen.backends.quantities import BATCHED
 from symgen.backends.render import render
 from symgen.backends.scalars import file_stem
 from symgen.backends.statements import Helper
@@ -129,16 +129,13 @@ def _kernel(kernel: Kernel, names: Names, sincos: str | None) -> NumpyFunctionVi
             body.append(f"{names.locals[load.local]} = {place}")
     body += [line for block in kernel.blocks for line in printer.block(block)]
     arguments = tuple((argument.name, argument.length) for argument in array_arguments(kernel))
-    given = ", ".join(f"{name} (..., {length})" for name, length in arguments)
-    result = ", ".join(str(extent) for extent in kernel.shape)
-    about = f"{meaning(kernel)}: {given} -> (..., {result})."
     return NumpyFunctionView(
         name=kernel.name,
         arguments=arguments,
         signature=", ".join([*(f"{name}: ArrayLike" for name, _ in arguments), "p: Parameters = PARAMETERS"]),
         unpacked=", ".join([*(name for name, _ in arguments), "batch"]),
         lengths=tuple(length for _, length in arguments),
-        docstring=docstring_lines(about),
+        docstring=docstring_lines(f"{array_line(kernel)}."),
         body=tuple(body),
         entries=tuple(printer.operand(operand).strip("()") for operand in kernel.outputs),
         shape=kernel.shape,

@@ -28,7 +28,6 @@ from symgen.records import dataclass
 
 OF_CONSTRAINTS = "constraint_pseudoinverse"
 PROJECTOR = "nullspace_projector"
-PROJECTED = "projected_control_matrix"
 INVERSE = "projected_control_pseudoinverse"
 
 MOST_MINOR_OPERATIONS = 1000

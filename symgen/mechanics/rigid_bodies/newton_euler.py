@@ -62,7 +62,7 @@ def newton_euler(
     qd: Vector,
     qdd: Vector,
     gravity: Vector3,
-    lumped: bool = False,
+    lumped: bool,
     twists: Mapping[str, Sequence[int]] = MappingProxyType({}),
 ) -> Vector:
     """d/dt dT/dq_dot - dT/dq + dU/dq of all bodies and rotors for the accelerations `qdd`.

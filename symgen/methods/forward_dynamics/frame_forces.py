@@ -49,7 +49,7 @@ class FrameForces:
         """
         direct: list[tuple[Scalar, Vector]] = []
         wrenches: dict[str, Six] = {}
-        for magnitude, force, velocity in self._mechanics.given_parts:
+        for magnitude, force, velocity in self._mechanics.given.parts:
             if velocity is None or sum(not x.is_zero for x in force) < 2:
                 direct.append((magnitude, force))
                 continue
@@ -57,7 +57,7 @@ class FrameForces:
             direct.append((magnitude, own))
             wrenches = added_loads(wrenches, loads, magnitude)
         if not wrenches:
-            return self._mechanics.given_force, {}
+            return self._mechanics.given.total, {}
         columns = zip(*(force for _, force in direct), strict=True)
         sizes = [magnitude for magnitude, _ in direct]
         return tuple(dot(self._graph, sizes, column) for column in columns), wrenches

@@ -52,7 +52,7 @@ class HeldLengths:
         rows = mechanics.constraint_jacobian
         equations = []
         for joint, i, slope in zip(self.joints, self.rows, self.slopes, strict=True):
-            force = mechanics.given_along(dict(zip(joint.parts, joint.values, strict=True)))
+            force = mechanics.given.along(dict(zip(joint.parts, joint.values, strict=True)))
             couplings = {k: joint.along_length([rows[k][j] for j in joint.parts]) for k in self.others(len(rows))}
             equations.append((i, force, {k: x for k, x in couplings.items() if not x.is_zero}, slope))
 

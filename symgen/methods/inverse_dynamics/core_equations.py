@@ -37,7 +37,7 @@ class CoreSolution:
 
 
 def core_equations(
-    mechanics: System, generic: Genericity, steps: Callable[[System], Elimination] = Elimination
+    mechanics: System, generic: Genericity, steps: Callable[[System], Elimination]
 ) -> CoreEquations | None:
     """The core of a system, or None where elimination does not apply; `mechanics` may be in absolute angles.
 

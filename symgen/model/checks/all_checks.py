@@ -38,7 +38,7 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
     """
     if not model.coordinates:
         return model
-    written = mechanics = _mechanics(model)
+    written = mechanics = NumericSystem.of(model)
     before = len(scope.mistakes)
     # where frames hang on themselves nothing can be said about their motion
     turning = mechanics.turning() if whole else {}
@@ -72,7 +72,7 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
         if numbers:
             before_numbers, model = model, with_numbers(model, numbers, mechanics.defaults)
             _add(scope, _notices_of_numbers(before_numbers, model))
-            written = mechanics = _mechanics(model)
+            written = mechanics = NumericSystem.of(model)
         rows, reports = check_empty_rows(mechanics)
         _add(scope, reports)
         model = replace(model, constraints=rows)
@@ -100,17 +100,6 @@ def check_mechanics(scope: Scope, tree: MappingNode, model: Model, kinetic: Expr
                 _add(scope, check_locking(model, steps, of_motion))
                 return replace(model, friction_steps=steps, motion_steps=of_motion)
     return model
-
-
-def _mechanics(model: Model) -> NumericSystem:
-    return NumericSystem(
-        model.coordinates,
-        model.parameters,
-        model.definitions,
-        model.constraints,
-        model.kinetic_energy,
-        model.mechanism,
-    )
 
 
 def _notices_of_numbers(before: Model, model: Model) -> Iterator[Notice]:

@@ -36,7 +36,7 @@ _CHECK_TERMS = "check the terms, and the units declared for their names"
 JOINT_UNITS = {"m": METRE, "rad": NUMBER}
 
 
-def check_units(tree: MappingNode, model: Model, fits: tuple[Fit, ...] = ()) -> list[Mistake]:
+def check_units(tree: MappingNode, model: Model, fits: tuple[Fit, ...]) -> list[Mistake]:
     """Units that are not read, and contradictions between those that are; `fits` come from springs and friction."""
     mistakes: list[Mistake] = []
     units = _declared(tree, mistakes)

@@ -30,14 +30,7 @@ def friction_shares(model: Model, assembly: Assembly, of_motion: bool) -> list[l
     For a motion the smallest inputs supply friction, `of_motion` for inputs the accelerations do.
     """
     released = released_model(model)
-    mechanics = NumericSystem(
-        released.coordinates,
-        released.parameters,
-        released.definitions,
-        released.constraints,
-        released.kinetic_energy,
-        released.mechanism,
-    )
+    mechanics = NumericSystem.of(released)
     samples = []
     for q, values in _points(model, assembly):
         try:
@@ -108,9 +101,7 @@ def _solved(matrix: list[list[float]], right: Sequence[list[float]]) -> list[lis
 
 def _points(model: Model, assembly: Assembly) -> Iterator[tuple[Sequence[float], dict[str, float]]]:
     """Configurations with values of the parameters: where loading has been, then all over the ranges."""
-    numbers = NumericSystem(
-        model.coordinates, model.parameters, model.definitions, model.constraints, model.kinetic_energy, model.mechanism
-    )
+    numbers = NumericSystem.of(model)
     for place in assembly.places:
         yield place.q, numbers.defaults
     source, met = random.Random(SHARE_SEED), 0

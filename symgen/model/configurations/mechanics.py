@@ -17,7 +17,7 @@ from symgen.model.expressions.expression import Expression
 from symgen.model.expressions.walk import evaluate, exact_value
 from symgen.model.kinematics.float_kinematics import FloatKinematics
 from symgen.model.mechanism import NO_MECHANISM, Body, Mechanism, component
-from symgen.model.model import ConstraintRow, Coordinate, Definition, Input, Parameter
+from symgen.model.model import ConstraintRow, Coordinate, Definition, Input, Model, Parameter
 
 # The seed of random configurations and parameters: the same model is looked at at the same ones.
 ANYWHERE_SEED = 20140211
@@ -53,6 +53,18 @@ class NumericSystem:
         self._expanded: dict[int, tuple[Expression, list[Polynomial]]] = {}
         self.defaults = default_values(parameters)
         self.numbers = FLOATS
+
+    @classmethod
+    def of(cls, model: Model) -> NumericSystem:
+        """That of a model, as its formulas and its mechanism say how it moves."""
+        return cls(
+            model.coordinates,
+            model.parameters,
+            model.definitions,
+            model.constraints,
+            model.kinetic_energy,
+            model.mechanism,
+        )
 
     def having(
         self,

@@ -60,7 +60,7 @@ def typical(samples: Iterable[Sequence[Row]]) -> list[Row]:
     return largest
 
 
-def clear_rank(rows: Sequence[Row], plain: float = PLAIN) -> int | None:
+def clear_rank(rows: Sequence[Row], plain: float) -> int | None:
     """The rank of scaled rows by elimination with complete pivoting; None where it is not clear-cut."""
     sizes = pivots(rows)
     return None if sizes is None or (sizes and sizes[-1] < plain) else len(sizes)

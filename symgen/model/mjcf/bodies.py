@@ -25,7 +25,6 @@ class _OpenBody:
     name: str
     place: AxesPlace
     span: Span
-    is_moving: bool
     inertial: Element | None
     solids: list[Solid]
     joints: list[MachineJoint]
@@ -46,7 +45,7 @@ class BodyReader(JointReader):
     def read_world(self, element: Element) -> None:
         """All bodies on the world, parents first."""
         self.attributes(element, BODY)
-        world = _OpenBody(WORLD, AxesPlace(), element.span, False, None, [], [], [])
+        world = _OpenBody(WORLD, AxesPlace(), element.span, None, [], [], [])
         self._parts(element, world, AxesPlace(), element.attributes.get("childclass", ""))
         self.links.setdefault(WORLD, MachineLink(WORLD, (), element.span))
         waiting = [(WORLD, *part) for part in reversed(world.inner)]
@@ -72,8 +71,7 @@ class BodyReader(JointReader):
             self.twice("body", element, self.links[name].span)
         place = outer.then(self.place(settings, what))
         span = element.place("name") if "name" in element.attributes else element.span
-        has_joints = any(True for part in element.children if part.tag in ("joint", "freejoint"))
-        body = _OpenBody(name, place, span, has_joints, self.only(element, "inertial"), [], [], [])
+        body = _OpenBody(name, place, span, self.only(element, "inertial"), [], [], [])
         self.poses[name] = self.poses[parent].then(place)
         self._parts(element, body, AxesPlace(), element.attributes.get("childclass", inherited))
         self._enter(parent, body)

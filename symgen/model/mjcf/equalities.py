@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from fractions import Fraction
 
 from symgen.model.expressions.names import did_you_mean
@@ -30,11 +31,7 @@ class EqualityReader(BodyReader):
 
     def read_equalities(self, element: Element) -> None:
         """Rows that hold, but those that are switched off."""
-        if self._too_many(element):
-            return
-        for number, child in enumerate(element.children, 1):
-            name = child.attributes.get("name", "").strip() or f"{child.tag}_{number}"
-            self.owner = name
+        for name, child in self._entries(element):
             if child.tag in REFUSED_EQUALITIES:
                 self.refuse(child, *REFUSED_EQUALITIES[child.tag])
             elif child.tag == "joint":
@@ -48,11 +45,15 @@ class EqualityReader(BodyReader):
             else:
                 self.unknown_child(child, ("connect", "weld", "joint"), "equality")
 
-    def _too_many(self, element: Element) -> bool:
-        if len(element.children) <= MAXIMUM_LINKS:
-            return False
-        self.wrong(f"`{element.tag}` has more than {MAXIMUM_LINKS} entries", "remove what does not act", element.span)
-        return True
+    def _entries(self, element: Element) -> Iterator[tuple[str, Element]]:
+        """Each with its name, to which mistakes belong until the next; none of too many."""
+        if len(element.children) > MAXIMUM_LINKS:
+            what = f"`{element.tag}` has more than {MAXIMUM_LINKS} entries"
+            self.wrong(what, "remove what does not act", element.span)
+            return
+        for number, child in enumerate(element.children, 1):
+            self.owner = child.attributes.get("name", "").strip() or f"{child.tag}_{number}"
+            yield self.owner, child
 
     def _is_active(self, settings: Settings, name: str) -> bool:
         active = settings.get("active", "true") == "true"
@@ -133,11 +134,7 @@ class EqualityReader(BodyReader):
 
     def read_actuators(self, element: Element) -> None:
         """Motors at joints; what is no force is refused."""
-        if self._too_many(element):
-            return
-        for number, child in enumerate(element.children, 1):
-            name = child.attributes.get("name", "").strip() or f"{child.tag}_{number}"
-            self.owner = name
+        for name, child in self._entries(element):
             if child.tag not in ACTUATORS:
                 self.refuse(child, SERVO, TORQUE)
                 continue

@@ -112,7 +112,7 @@ class ElementReader:
         return self.numbers_in(text, lambda start, length: element.place(key, start, length), what, least, most)
 
     def numbers_in(
-        self, text: str, place: Callable[[int, int], Span], what: str, least: int = 3, most: int = 3
+        self, text: str, place: Callable[[int, int], Span], what: str, least: int, most: int
     ) -> tuple[WrittenNumber, ...]:
         """The numbers of a text with spaces between them; `place` tells where characters of it are."""
         entries: list[WrittenNumber] = []

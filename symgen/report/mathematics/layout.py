@@ -163,11 +163,6 @@ Layout: TypeAlias = (
 )
 
 
-def negative(node: Layout) -> bool:
-    """Whether the node begins with a minus sign."""
-    return isinstance(node, Sum) and len(node.terms) == 1 and node.terms[0][0] == "-"
-
-
 def minus(node: Layout) -> Layout:
     """The node with its sign turned; a sum is set in parentheses."""
     if isinstance(node, Sum):

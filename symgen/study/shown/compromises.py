@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symgen.paths.drawing import COLOURS
+from symgen.paths.drawing import COLOURS, svg, with_numbered_regions
 from symgen.records import dataclass
 from symgen.study.asked.request import DRIVE_SPEED, MOTOR_TORQUE, REACH
 from symgen.study.chunks import Array
@@ -16,7 +16,7 @@ from symgen.study.interest import Interest, interests
 from symgen.study.plan import StudyPlan
 from symgen.study.reductions import LARGEST_OF, MINIMUM_OF
 from symgen.study.shown.labels import value_label
-from symgen.study.shown.pictures import StudyPicture, drawn
+from symgen.study.shown.pictures import StudyPicture
 from symgen.study.shown.scatter import MOST_SCATTERED, point_values, worst_channel
 from symgen.study.shown.summary import TableRows
 
@@ -87,7 +87,8 @@ def compromise_picture(one: Compromise) -> StudyPicture:
     known = int(np.isfinite(one.x + one.y).sum())
     caption = f"{len(one.best)} of {known} variants are best: no other is as good in both and better in one."
     title = f"{one.first.name} against {one.second.name}"
-    return StudyPicture(title, caption, drawn(lambda figure: _draw(figure, one), COMPROMISE_HEIGHT))
+    text = with_numbered_regions(svg(lambda figure: _draw(figure, one), COMPROMISE_HEIGHT))
+    return StudyPicture(title, caption, text)
 
 
 def _draw(figure: Any, one: Compromise) -> None:

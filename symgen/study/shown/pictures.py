@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from symgen.paths.drawing import COLOURS, STYLES, svg
+from symgen.paths.drawing import COLOURS, STYLES, svg, with_numbered_regions
 from symgen.study.asked.request import GRID, MOTOR_TORQUE, SINGULARITY
 from symgen.study.chunks import Array
 from symgen.study.interest import CHOICE, Interest, interests
@@ -57,19 +56,10 @@ def study_pictures(plan: StudyPlan, results: Any) -> list[StudyPicture]:
         if not any(np.isfinite(channel.values).any() for channel in channels):
             continue
         draw, height, caption = _drawing(plan, one, channels, results)
-        made.append(StudyPicture(one.about, caption, drawn(draw, height)))
+        made.append(StudyPicture(one.about, caption, with_numbered_regions(svg(draw, height))))
     if curves := _singular_curves(plan, results):
         made.append(curves)
     return made
-
-
-def drawn(draw: Callable[[Any], None], height: float) -> str:
-    """SVG with numbered clip regions: their usual names hash the last bits of a layout, which differ between runs."""
-    text = svg(draw, height)
-    names = dict.fromkeys(re.findall(r'<clipPath id="(\w+)">', text))
-    for number, name in enumerate(names):
-        text = text.replace(name, f"region{number}")
-    return text
 
 
 def _channels(plan: StudyPlan, one: Interest, results: Any) -> list[_ShownChannel]:
@@ -216,4 +206,4 @@ def _singular_curves(plan: StudyPlan, results: Any) -> StudyPicture | None:
         panel.legend(title="singular with", loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=min(3, len(labels)))
 
     caption = "Curves are the level sets at which the determinant of a choice of drives vanishes."
-    return StudyPicture("singular curves of choices of drives", caption, drawn(draw, 4.8))
+    return StudyPicture("singular curves of choices of drives", caption, with_numbered_regions(svg(draw, 4.8)))

@@ -6,7 +6,8 @@ from collections.abc import Callable
 from importlib.util import find_spec
 from typing import Any, TypeAlias
 
-from symgen.laboratory.bench.candidate import CCandidate, CUnit, straight_candidate
+from symgen.laboratory.bench.candidate import CCandidate, CUnit
+from symgen.laboratory.bench.peers.engine_candidate import engine_candidate
 from symgen.laboratory.bench.peers.engines.casadi_engine import CasadiEngine, array_adaptor, generated
 from symgen.laboratory.bench.peers.engines.casadi_ssa import CasadiSsaEngine
 from symgen.laboratory.bench.peers.engines.engine import Engine, Symbol
@@ -152,13 +153,5 @@ def _matrix_candidate(model: Model, s: Lagrange, method: str, balance: Callable[
 
 def _candidate(engine: Engine, model: Model, method: str, derive: Route, build: Build) -> CCandidate:
     entry = f"{engine.tool}_{method}_float64".lower().replace(" ldlᵀ", "_ldl").replace(" ", "_")
-    name = f"function_of_{entry}"
     system = derive(engine, model)
-    outputs = build(engine, system)
-    if (lines := engine.straight(system.inputs, outputs)) is not None:
-        return straight_candidate(engine.tool, method, entry, lines)
-    source, functions, needs_adaptor = engine.c_function(name, system.inputs, outputs)
-    units: tuple[CUnit, ...] = (CUnit(source, renamed={name: entry}),)
-    if needs_adaptor:
-        units = (CUnit(source), CUnit(array_adaptor(entry, name), is_adaptor=True))
-    return CCandidate(engine.tool, method, "float64", entry, units, functions)
+    return engine_candidate(engine, method, entry, system.inputs, build(engine, system))

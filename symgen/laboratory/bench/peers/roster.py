@@ -8,6 +8,7 @@ from importlib.util import find_spec
 from typing import Any, TypeAlias
 
 from symgen.laboratory.bench.candidate import CCandidate, CUnit, PythonCandidate, Task, adaptor, straight_candidate
+from symgen.laboratory.bench.peers.engine_candidate import engine_candidate
 from symgen.laboratory.bench.peers.engines.engine import Engine, Symbol
 from symgen.laboratory.bench.peers.formulas.mechanics import PeerSystem
 from symgen.laboratory.bench.peers.formulas.recursion import is_recursive
@@ -201,21 +202,11 @@ def _engines() -> list[type[Engine]]:
 
 
 def _candidate(engine: Engine, model: Model, method: str, build: Build) -> CCandidate:
-    from symgen.laboratory.bench.peers.engines.casadi_engine import array_adaptor
     from symgen.laboratory.bench.peers.formulas.mechanics import mechanics
 
     entry = f"{engine.tool.lower()}_{method}_float64".replace(" LDLᵀ", "_ldl").replace(" ", "_")
-    name = f"function_of_{entry}"
     system = mechanics(engine, model)
-    outputs = build(engine, system)
-    if (lines := engine.straight(system.inputs, outputs)) is not None:
-        return straight_candidate(engine.tool, method, entry, lines)
-    source, functions, needs_adaptor = engine.c_function(name, system.inputs, outputs)
-    if needs_adaptor:
-        units: tuple[CUnit, ...] = (CUnit(source), CUnit(array_adaptor(entry, name), is_adaptor=True))
-    else:
-        units = (CUnit(source, renamed={name: entry}),)
-    return CCandidate(engine.tool, method, "float64", entry, units, functions)
+    return engine_candidate(engine, method, entry, system.inputs, build(engine, system))
 
 
 def _native_value(model: Model, s: Lagrange, task: Task) -> Any:

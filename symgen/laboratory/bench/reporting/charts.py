@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from math import isfinite, log10
 from typing import Any
 
 from symgen.laboratory.bench.run import SCALARS, Comparison, MeasuredCandidate
-from symgen.paths.drawing import COLOURS, svg
+from symgen.paths.drawing import COLOURS, svg, with_numbered_regions
 
 LOOKS = {
     "symgen": (COLOURS[0], "o"),
@@ -44,15 +43,7 @@ def time_against_error(comparison: Comparison) -> str:
         figure.supylabel("relative error: 99 % of the states (mark), largest (line)", fontsize=9)
         axes[-1].set_xlabel("median time of one state in ns")
 
-    return _numbered(svg(draw, height=sum(heights)))
-
-
-def _numbered(text: str) -> str:
-    """Clip regions numbered: their usual names hash the last bits of a layout that are not the same every time."""
-    names = dict.fromkeys(re.findall(r'<clipPath id="(\w+)">', text))
-    for number, name in enumerate(names):
-        text = text.replace(name, f"region{number}")
-    return text
+    return with_numbered_regions(svg(draw, height=sum(heights)))
 
 
 def _panel(panel: Any, measured: Sequence[MeasuredCandidate]) -> None:

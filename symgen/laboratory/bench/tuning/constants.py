@@ -216,7 +216,7 @@ SAME
 ## Samples, steps and thresholds
 
 Half and twice of these are not tried on models. Tests of the modules notice where a number that counts points, steps,
-powers or shares changes, but for `LOOKED_AT`, `LENGTH_POINTS` and `MOST_BY_DETERMINANTS`; tolerances lie between what
+powers or shares changes; tolerances lie between what
 rounding leaves and what counts, in gaps of several powers of ten.
 
 NUMERICAL

@@ -28,8 +28,9 @@ PACKAGES = (
 # Seeds, digits, numbers of mathematics and of types, how many of a thing there are, and what messages show.
 NOT_TUNED = {
     "PIVOT_SEED", "SEARCH_SEED", "CONSTANT_BITS", "FIELD_BITS", "GRADIENT_BITS", "POINT_DIGITS", "STEPS", "WHOLE",
-    "PRIME", "TWO_OVER_PI", "PI", "UNIT_BASE", "BETWEEN_TYPES", "_HEAD", "TIERS", "TOGETHER", "MOST_NAMES",
+    "PRIME", "TWO_OVER_PI", "PI", "UNIT_BASE", "BETWEEN_TYPES", "_HEAD", "TIERS", "MOST_NAMES",
     "LONGEST_FORMULA", "LONGEST_TEXT", "DECIMALS", "WIDEST_TEXT", "BITS",
+    "_FLOAT32_DIGITS", "_FLOAT32_LOWEST_EXPONENT", "_FLOAT32_LIMIT",
 }
 # Samples, steps and thresholds of numerical decisions: what they stand for is right or wrong, not long or short.
 NUMERICAL = {

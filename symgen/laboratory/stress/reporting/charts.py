@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, get_args
 
 from symgen.generation.runnable import SCALARS, STRESSED
 from symgen.ir.kernel import UNIT_ROUNDOFF, Scalar
+from symgen.laboratory.stress.families import Kind
 from symgen.laboratory.stress.reporting.axes import logarithmic
 from symgen.laboratory.stress.reporting.method_charts import method_chart
 from symgen.laboratory.stress.run import Stress
@@ -28,17 +29,6 @@ LOOKS: Mapping[str, tuple[str, str, str]] = {
 NOTHING = 10.0  # where a method without any result is drawn: an error of more than everything
 PANEL = 2.5
 DECIMALS = re.compile(r"(\d\d\.\d{2})\d+")  # a hundredth of a point is enough; scales of glyphs stay
-KINDS = (
-    "constraint",
-    "input",
-    "parameter",
-    "large angles",
-    "small angles",
-    "mass ratios",
-    "drift",
-    "near-redundant",
-    "incompatible inputs",
-)
 
 
 def stress_charts(result: Stress) -> dict[str, str]:
@@ -123,7 +113,7 @@ def _curves(panel: Any, methods: Mapping[str, Series], scalar: Scalar, marked: b
 
 def _families(result: Stress) -> str:
     """symgen's largest error in units of the tolerance along every family, one panel for each kind of trouble."""
-    kinds = [kind for kind in KINDS if any(family.kind == kind for family in result.families)]
+    kinds = [kind for kind in get_args(Kind) if any(family.kind == kind for family in result.families)]
     rows = math.ceil(len(kinds) / 2)
 
     def draw(figure: Any) -> None:

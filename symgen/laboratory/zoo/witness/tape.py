@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import Any
 
 # how often an expression may be differentiated is bounded by what it is asked for: twice for a force
-ZERO, ONE, TWO = Fraction(0), Fraction(1), Fraction(2)
+ZERO, ONE = Fraction(0), Fraction(1)
 
 
 @dataclass(frozen=True)
