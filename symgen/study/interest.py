@@ -19,6 +19,7 @@ from symgen.study.asked.request import (
     MOTOR_TORQUE,
     POWER,
     REACH,
+    SENSITIVITY,
     SINGULARITY,
     UTILISATION,
 )
@@ -80,6 +81,11 @@ def _interests(model: Model, name: str) -> tuple[Interest, ...]:
     if name == POWER:
         watts = tuple("W" if unit in ("N", "N*m") else "" for unit in units)
         return (Interest(POWER, "power of each input, force times velocity along it", "input", drives, watts),)
+    if name == SENSITIVITY:
+        about = "most that an input changes by where a parameter changes by its own value, the configuration staying"
+        changed = tuple(one.name for one in model.parameters)
+        common = units[0] if len(set(units)) == 1 else ""
+        return (Interest(SENSITIVITY, about, "parameter", changed, (common,) * len(changed)),)
     if name == SINGULARITY:
         measures = "constraint", "input"
         about = "distances from singularities of constraints and of inputs, 0 to 1"
@@ -187,6 +193,11 @@ class BlockValues:
         return np.asarray(self._states.parts[part][self._states.group])
 
     @property
+    def parameters(self) -> Array:
+        """Of the points, points x parameters."""
+        return self._states.parameters
+
+    @property
     def reached(self) -> Array:
         """1 where there is a configuration, points x 1 x states."""
         return np.asarray(self._states.placed[self._states.group] == 0, dtype=np.float64)[:, None]
@@ -202,6 +213,13 @@ def _power(block: BlockValues) -> Array:
     columns = block.matrices("control_matrix", block.model.m)
     velocities = (columns * block.rates[..., None]).sum(axis=2)
     return np.asarray(block.entries("inverse_dynamics") * np.moveaxis(velocities, 1, 2))
+
+
+def _sensitivity(block: BlockValues) -> Array:
+    """For each parameter the largest magnitude of p du/dp."""
+    slopes = block.entries("inverse_dynamics_parameter_jacobian")
+    by_input = slopes.reshape(len(slopes), block.model.m, len(block.model.parameters), -1)
+    return np.asarray(np.abs(by_input).max(axis=1) * np.abs(block.parameters)[:, :, None])
 
 
 def _smallest_singular_value(block: BlockValues) -> Array:
@@ -236,6 +254,7 @@ _EVALUATED: dict[str, Callable[[BlockValues], Array]] = {
     POWER: _power,
     SINGULARITY: lambda block: block.entries("singularity"),
     CHOICE: _determinants,
+    SENSITIVITY: _sensitivity,
     CONTROL: _smallest_singular_value,
     UTILISATION: lambda block: block.entries("utilisation"),
     REACH: lambda block: block.reached,

@@ -17,6 +17,7 @@ from symgen.study.asked.request import (
     MOTOR_TORQUE,
     POWER,
     REACH,
+    SENSITIVITY,
     SHOWN,
     SINGULARITY,
     UTILISATION,
@@ -38,6 +39,7 @@ KERNELS = {
     INPUTS: ("inverse_dynamics",),
     POWER: ("inverse_dynamics", "control_matrix"),
     SINGULARITY: ("singularity", "constraint_jacobian", "control_matrix"),
+    SENSITIVITY: ("inverse_dynamics_parameter_jacobian",),
     CONTROL: ("projected_control_matrix",),
     UTILISATION: ("utilisation",),
     REACH: (),
@@ -198,8 +200,10 @@ def _check_shown(model: Model, name: str, span: Span | None, mistakes: StudyMist
     """A quantity that the model cannot have."""
     if name not in SHOWN:
         _check_name(mistakes, "show", name, SHOWN, "quantity of interest", span)
-    elif name in (INPUTS, POWER, CONTROL, UTILISATION) and not model.m:
+    elif name in (INPUTS, POWER, SENSITIVITY, CONTROL, UTILISATION) and not model.m:
         mistakes.wrong("show", f"`{name}` needs inputs, of which the model has none", "give it `inputs`", span)
+    elif name == SENSITIVITY and not model.parameters:
+        mistakes.wrong("show", f"`{name}` is by parameters, of which the model has none", "give it `parameters`", span)
     elif name == UTILISATION and (model.allocation is None or len(model.allocation.limits) < model.m):
         remedy = "give the model `limits` of every input under `allocation`"
         mistakes.wrong("show", "`utilisation` is the share of limits, which the inputs do not have", remedy, span)

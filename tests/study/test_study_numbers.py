@@ -135,3 +135,13 @@ def test_what_is_reduced_at_once_is_what_is_reduced_from_entries(along: tuple[st
     for name, values in results_of(tmp_path / "b" / "partial", plan).items():
         if not name.startswith("power") and not name.endswith("quantiles"):
             assert np.array_equal(values, at_once[name], equal_nan=True), name
+
+
+def test_sensitivities_are_what_the_inputs_change_by(tmp_path: Path) -> None:
+    """Of the arm at rest p du/dp is the weight's share: u is proportional to m, to g and to l, and no limit is met."""
+    results = results_of(tmp_path / "partial", plan_of(["m=1:3:3", "b=0.4:2.4:5"], "sensitivity,inputs"))
+    largest = np.abs(results.inputs.values).max(axis=-1)
+    for name in ("m", "l", "g"):
+        assert np.allclose(results.sensitivity.sel(parameter=name).values, largest, rtol=1e-13)
+    assert (results.sensitivity.sel(parameter="u_max").values == 0).all()
+    assert results.sensitivity.attrs["units"] == "N*m"
