@@ -9,7 +9,7 @@ Nothing else knows of it; its templates lie in the folder of its name in `templa
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib import import_module
 from typing import TypeAlias
 
@@ -20,6 +20,7 @@ from symgen.records import dataclass
 
 Emit: TypeAlias = Callable[[Model, Program], dict[str, str]]
 Around: TypeAlias = Callable[[Model, Sequence[Program]], dict[str, str]]
+Lacks: TypeAlias = Callable[[Model, frozenset[str]], Iterable[str]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +41,8 @@ class Backend:
     Each of `variants` prints a file for each of `extensions`, by `paths`.  They are made of the program of each scalar
     type that is asked for, or of the one in float64 alone.  `verified_as` names the backend whose files are run for its
     own: another one where the same kernels are judged by those.  Files lie in `folder` (empty: that of the name), and
-    `stem` is what they are called before the dot.  What is made once of all programs stands `around` them.
+    `stem` is what they are called before the dot.  What is made once of all programs stands `around` them.  `lacks`
+    tells from the quantities that are made what these files cannot do without others.
     """
 
     name: str
@@ -52,6 +54,7 @@ class Backend:
     folder: str = ""
     stem: Callable[[str, Scalar, str], str] = file_stem
     around: Around | None = None
+    lacks: Lacks | None = None
 
     def paths(self, model: Model, scalar: Scalar, ending: str = "") -> tuple[str, ...]:
         """Where the files of a variant are, under the folder of a model, in the order of extensions."""

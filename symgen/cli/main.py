@@ -155,7 +155,7 @@ def _generate_parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--scalar", choices=tuple(_SCALARS), default="both", help="scalar types of the C (default: both)"
     )
-    known = f"of {','.join(ALL_PARTS)} (default: {','.join(PARTS)})"
+    known = f"some of {', '.join(ALL_PARTS)}, with commas between (default: {', '.join(PARTS)})"
     parser.add_argument("--only", metavar="PARTS", type=parts, help=known)
     parser.add_argument("--no-verify", dest="verify", action="store_false", help="write without verification")
     parser.add_argument(

@@ -218,6 +218,8 @@ class _FormWriter:
             yield from self._actuation_forms(projector)
         if self.columns is not None:
             yield self._regressor(self.columns)
+        if model.task:
+            yield self._direct("task_jacobian", lambda: mechanics.task_jacobian)
         if self.places:
             yield self._direct("point_position", lambda: mechanics.places(self.places))
             yield self._direct("point_jacobian", lambda: mechanics.rate_coefficients(self.velocities))

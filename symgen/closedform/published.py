@@ -163,7 +163,7 @@ class _Judge:
         shown = ImmutableDenseMatrix([[self.speller.quotient(entry) for entry in row] for row in difference])
         index = next(i for i, entry in enumerate(flat) if entry)
         place = divmod(index, len(difference[0]))
-        text = f"entry ({place[0] + 1}, {place[1] + 1}): derived minus printed is {shown[place]}{finding.text}"
+        text = f"entry ({place[0] + 1}, {place[1] + 1}): derived minus printed is `{shown[place]}`{finding.text}"
         return _FormVerdict(finding.verdict, text, shown)
 
     def derived(self, quantity: str, independent: Sequence[str]) -> Matrix | None:
@@ -269,7 +269,7 @@ class _Judge:
         if finding.verdict == IDENTICAL:
             return _FormVerdict(IDENTICAL, "a combination c(q)^T of the motion equations (3), identically")
         shown = self.speller.quotient(remainder)
-        return _FormVerdict(finding.verdict, f"the remainder over the motion equations (3) is {shown}{finding.text}")
+        return _FormVerdict(finding.verdict, f"the remainder over the motion equations (3) is `{shown}`{finding.text}")
 
     def _kinematic(self, residual: Quotient) -> _FormVerdict:
         """A combination of the rows of B times qd, or a function of q that vanishes on V."""
@@ -284,7 +284,7 @@ class _Judge:
         finding = self._zero([residual])
         if finding.verdict == ON_MANIFOLD and not any(slopes):
             return _FormVerdict(CHECKED, "it vanishes on V as checked at 40 digits")
-        return replace(finding, text=f"left minus right is {self.speller.quotient(residual)}{finding.text}")
+        return replace(finding, text=f"left minus right is `{self.speller.quotient(residual)}`{finding.text}")
 
     # singular sets
 
@@ -316,7 +316,7 @@ class _Judge:
         return bool(abs(first) > ZERO_AT_40_DIGITS) and all(abs(x - first) < ZERO_AT_40_DIGITS for x in others)
 
     def _list(self, factors: set[PolyElement]) -> str:
-        return " or ".join(sorted(str(self.speller.polynomial(self.ring.normal(f))) for f in factors))
+        return " or ".join(sorted(f"`{self.speller.polynomial(self.ring.normal(f))}`" for f in factors))
 
 
 def _shown(name: str) -> str:

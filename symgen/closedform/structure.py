@@ -116,7 +116,7 @@ def _evidence(model: Model, mechanics: ExactSystem, row: tuple[Quotient, ...], k
         value = _exterior(model, mechanics, row, x, y)
         if value and len(value.numerator) + len(value.denominator) <= LONGEST_CURVATURE:
             shown = Speller(mechanics.ring).quotient(value)
-            return f"its exterior derivative on columns {i} and {j} of the null-space basis W is {shown}, not zero; "
+            return f"its exterior derivative on columns {i} and {j} of the null-space basis W is `{shown}`, not zero; "
         if value:
             return f"its exterior derivative on columns {i} and {j} of the null-space basis W is not zero; "
     return "its exterior derivative vanishes on all admissible velocities, but "

@@ -9,7 +9,7 @@ from pathlib import Path
 from symgen.closedform.algebra.limits import TooLargeError
 from symgen.generation.acceptance.recorded import as_recorded
 from symgen.generation.draft import Draft
-from symgen.generation.explain_text import methods_text, overview, quantity_text
+from symgen.generation.explain_text import methods_text, overview, quantity_text, wrapped
 from symgen.generation.facts import facts
 from symgen.generation.notices import replaced
 from symgen.generation.requested import unknown_quantity
@@ -53,7 +53,7 @@ def explain(
     compared = ((name, _compared(draft, name)) for name in names)
     parts = [text, *(methods_text(name, choice) for name, choice in compared if choice is not None)]
     notices = [*draft.notes, *(notice.message for notice in replaced(draft, None if quantity is None else names))]
-    return "\n".join([*parts, *(f"\n{notice}" for notice in notices)])
+    return "\n".join([*parts, *("\n" + "\n".join(wrapped(notice)) for notice in notices)])
 
 
 def _compared(draft: Draft, quantity: str) -> MethodChoice | None:

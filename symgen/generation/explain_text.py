@@ -4,33 +4,44 @@ from __future__ import annotations
 
 import shutil
 import textwrap
+from collections.abc import Sequence
 
 from symgen.methods.selection import MethodChoice
 from symgen.methods.table import label
 from symgen.report.content import ReportInput
-from symgen.report.terminal import render_text_math
+from symgen.report.context import Context
+from symgen.report.prose import worded
+from symgen.report.sections.singular import ORDER, dependent_rows_lose_rank, measured_by, sets_by_determinants
+from symgen.report.terminal import block_lines, render_text_math, sentence_text
 
-# Characters of a line at most, in however wide a terminal.
+# Characters of a line at most, in however wide a terminal, and where there is none.
 WIDEST_TEXT = 120
+# Characters of a line of a formula where there is no terminal.
+FORMULA_TEXT = 100
 
 
 def overview(report: ReportInput) -> str:
     """Sizes, freedom, actuation, what is skipped, singular sets, integrability, published formulas, closed forms."""
     model, structure = report.model, report.structure
     lines = [
-        f"{model.name}: {model.description}".rstrip(": "),
+        *wrapped(f"{model.name}: {model.description}".rstrip(": ")),
         "",
-        f"n = {model.n} coordinates, r = {model.r} constraints of rank {structure.constraint_rank}, "
-        f"m = {model.m} inputs",
-        f"δ_loc = {structure.local_freedom}, δ_diff = {structure.differential_freedom}, "
-        f"degree of actuation {structure.degree_of_actuation}: {structure.actuation}",
+        *wrapped(
+            f"n = {model.n} coordinates, r = {model.r} constraints of rank {structure.constraint_rank}, "
+            f"m = {model.m} inputs"
+        ),
+        *wrapped(
+            f"δ_loc = {structure.local_freedom}, δ_diff = {structure.differential_freedom}, "
+            f"degree of actuation {structure.degree_of_actuation}: {structure.actuation}"
+        ),
     ]
-    lines += _section("not needed", [f"{what}: {why}" for what, why in report.skipped])
-    lines += _section("integrability", [f"{row.row}: {row.verdict}; {row.explanation}" for row in report.integrability])
-    lines += _section("singular sets", _singular(report))
+    lines += _section("not needed", [f"{what}: {_set(why)}" for what, why in report.skipped])
+    integrable = [f"{row.row}: {row.verdict}; {_set(row.explanation)}" for row in report.integrability]
+    lines += _section("integrability", integrable)
+    lines += _singular(report)
     lines += _section(
         "published equations",
-        [f"{model.published[v.position].equation}: {v.verdict}. {v.explanation}" for v in report.verdicts],
+        [f"{model.published[v.position].equation}: {v.verdict}. {_set(v.explanation)}" for v in report.verdicts],
     )
     printed = [name for name, form in report.forms.items() if form.matrix is not None]
     lines += _section("closed forms (name one to see it)", [", ".join(printed)])
@@ -41,10 +52,10 @@ def quantity_text(report: ReportInput, quantity: str) -> str:
     """One quantity: its closed form with intermediates, or why there is none, and what its kernel costs."""
     lines: list[str] = []
     form = report.forms.get(quantity)
-    width = min(WIDEST_TEXT, shutil.get_terminal_size((100, 24)).columns)
+    width = _width(FORMULA_TEXT)
     if form is None or form.matrix is None:
         note = form.note if form is not None else "the closed form of this quantity is not printed"
-        lines.append(f"{quantity}: {note}")
+        lines += wrapped(f"{quantity}: {note}")
     else:
         lines.append(render_text_math(form.matrix, report.model, quantity, width))
         if form.intermediates:
@@ -73,17 +84,52 @@ def _marks(quantity: str, name: str, choice: MethodChoice) -> list[str]:
     return [mark for mark in ("taken" * (name == choice.name), label(quantity, name)) if mark]
 
 
+def _set(message: str) -> str:
+    """A message with the formulas that it quotes."""
+    return sentence_text(worded(message))
+
+
+def wrapped(text: str) -> list[str]:
+    """The text in lines that the terminal has room for."""
+    return textwrap.wrap(text, _width(WIDEST_TEXT), break_long_words=False, break_on_hyphens=False)
+
+
+def _width(elsewhere: int) -> int:
+    """Characters of a line: those of the terminal, or so many where there is none."""
+    return min(WIDEST_TEXT, shutil.get_terminal_size((elsewhere, 24)).columns)
+
+
 def _singular(report: ReportInput) -> list[str]:
-    lines = []
-    for singular in report.singular_sets:
-        where = ", ".join(render_text_math(zero, report.model) for zero in singular.vanishing)
-        place = f"{where} = 0" if where else "nowhere" if singular.decided else "not worked out"
-        lines.append(f"{singular.kind} singularity of {singular.quantity}: {place} ({singular.explanation})")
-    return lines
+    """Sets as expressions where these are short, else as the determinants of the report."""
+    context = Context(report)
+    definitions, determinants = sets_by_determinants(context)
+    room = _width(WIDEST_TEXT) - 4
+    lines = [f"  {line}" for line in block_lines(definitions, room)]
+    expressions = {one.kind: one for one in report.singular_sets}
+    for kind in ORDER:
+        if blocks := determinants.get(kind) or dependent_rows_lose_rank(context, kind):
+            lines += [f"  {kind} singularity:", *(f"    {line}" for line in block_lines(blocks, room))]
+            continue
+        if kind not in expressions:
+            continue
+        singular = expressions[kind]
+        name = f"{kind} singularity of {singular.quantity}"
+        zeros = [render_text_math(zero, report.model, width=room - 2) for zero in singular.vanishing]
+        if len(zeros) > 1:
+            lines += _entry(f"{name}: {singular.explanation}")
+            lines += [textwrap.indent(zero, " " * 6) for zero in zeros]
+        elif zeros or singular.decided:
+            lines += _entry(f"{name}: {f'{zeros[0]} = 0' if zeros else 'nowhere'} ({singular.explanation})")
+        else:
+            lines += _entry(f"{name}: {singular.explanation}.{measured_by(singular)}")
+    return ["", "singular sets:", *lines] if lines else []
 
 
-def _section(title: str, entries: list[str]) -> list[str]:
-    if not entries:
-        return []
-    wrapped = [line for entry in entries for line in textwrap.wrap(entry, WIDEST_TEXT - 4, subsequent_indent="    ")]
-    return ["", f"{title}:", *(f"  {line}" for line in wrapped)]
+def _section(title: str, entries: Sequence[str]) -> list[str]:
+    return ["", f"{title}:", *(line for entry in entries for line in _entry(entry))] if entries else []
+
+
+def _entry(text: str) -> list[str]:
+    """One entry of a section, indented, its further lines more so."""
+    room = _width(WIDEST_TEXT) - 4
+    return [f"  {line}" for line in textwrap.wrap(text, room, subsequent_indent="    ", break_on_hyphens=False)]

@@ -6,6 +6,7 @@ from collections.abc import Container, Iterator
 from math import inf
 from typing import TYPE_CHECKING
 
+from symgen.backends.backend import backend
 from symgen.backends.defaults import default_values
 from symgen.backends.operations import count_operations
 from symgen.diagnostics import Notice
@@ -20,6 +21,7 @@ from symgen.model.open_task import left_open, norm_of_motions
 from symgen.model.quantities import ROWS, TASK_PLACES, TASK_RATES
 from symgen.quantities.everything import OF_ALL
 from symgen.quantities.finish import short_of_inputs
+from symgen.registered import BACKENDS
 
 if TYPE_CHECKING:
     from symgen.verify.certificate import Certificate
@@ -50,7 +52,16 @@ def notices(draft: Draft, options: Options, certificate: Certificate | None) -> 
     others = (*said, *_near_bounds(draft), *_out_of_ranges(draft), *dense_motions(draft, options))
     recorded = draft.notes if options.as_recorded else ()
     of_kernels = (*absent, *others, *_size(draft, options), *idle, *map(Notice, (*unverified, *recorded)))
-    return (*_renamed(draft.model), *_friction(draft), *of_kernels)
+    return (*_renamed(draft.model), *_friction(draft), *of_kernels, *_lacking(draft, options))
+
+
+def _lacking(draft: Draft, options: Options) -> Iterator[Notice]:
+    """What files for other tools cannot do without quantities that are not made."""
+    made = frozenset(kernel.name for kernel in draft.program.kernels)
+    for name in BACKENDS:
+        lacks = backend(name).lacks if name in asked_for(options) else None
+        if lacks is not None:
+            yield from (Notice(f"{name}: {what}") for what in lacks(draft.model, made))
 
 
 def _friction(draft: Draft) -> Iterator[Notice]:

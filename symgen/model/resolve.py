@@ -26,7 +26,7 @@ from symgen.model.checks.dimensions import check_units
 from symgen.model.configurations.mechanics import default_values
 from symgen.model.expressions.combine import plus
 from symgen.model.expressions.expression import Call, Expression, Number
-from symgen.model.expressions.names import did_you_mean, name_mistake, nearest
+from symgen.model.expressions.names import name_mistake, nearest
 from symgen.model.file.constants import constant
 from symgen.model.file.declarations import (
     declare_names,
@@ -189,7 +189,7 @@ def _coordinate_list(scope: Scope, tree: MappingNode, key: str, names: tuple[str
         if name is None:
             continue
         if name not in names:
-            remedy = did_you_mean(name, names, "name coordinates, without _dot")
+            remedy = scope.coordinate_meant(name, names, "name coordinates, without _dot")
             if name.removesuffix("_dot") in names:
                 remedy = f"write the coordinate: `{name.removesuffix('_dot')}`"
             scope.wrong_about(name, f"`{name}` in `{key}` is no coordinate", remedy, item.span)
@@ -207,7 +207,7 @@ def _configuration(
     start: list[tuple[str, Fraction]] = []
     for key, value in entries(node):
         if key.value not in names:
-            remedy = did_you_mean(key.value, names, "name coordinates")
+            remedy = scope.coordinate_meant(key.value, names, "name coordinates")
             scope.wrong_about(key.value, f"`{key.value}` in `configuration` is no coordinate", remedy, key.span)
             continue
         number = constant(scope, value, f"the start value of `{key.value}`")

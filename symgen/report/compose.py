@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from symgen.report.content import ReportInput
 from symgen.report.context import Context, sentence, text_of
-from symgen.report.document import Document, Section, Text
+from symgen.report.document import Document, Section, Text, layouts
+from symgen.report.mathematics.layout import rounded
+from symgen.report.mathematics.numerals import MOST_DIGITS, ROUNDED_DIGITS
 from symgen.report.prose import say
 from symgen.report.sections.bookkeeping import omissions, operations
 from symgen.report.sections.equations import equations_of_motion
@@ -17,6 +19,11 @@ from symgen.report.sections.singular import singular
 from symgen.report.sections.system import system
 from symgen.report.sections.targets import targets
 from symgen.report.sections.verification import charts, verification
+
+MEASURED_ELSEWHERE = (
+    " What verification measures, and charts along paths, are in the PDF: other machines measure other numbers."
+)
+"""What HTML and LaTeX, whose bytes are the same everywhere, leave to the PDF."""
 
 
 def compose(report_input: ReportInput) -> Document:
@@ -36,13 +43,15 @@ def compose(report_input: ReportInput) -> Document:
     sections += [*published(context), *verification(context), *targets(context), *proof(context), *charts(context)]
     model = report_input.model
     return Document(
+        name=model.c_name,
         title=text_of(model.description) or model.name,
         subtitle=f"Inverse dynamics of the model {model.name}",
-        summary=_summary(context),
+        summary=(*_summary(context), *_on_digits(sections)),
         sections=tuple(sections),
         colophon=f"Derived by symgen {report_input.version}. Numbers with the word paper refer to A. Müller, "
         "Motion equations in redundant "
-        "coordinates with application to inverse dynamics of constrained mechanical systems.",
+        "coordinates with application to inverse dynamics of constrained mechanical systems."
+        + ("" if report_input.verification else MEASURED_ELSEWHERE),
     )
 
 
@@ -60,6 +69,13 @@ def _summary(context: Context) -> Text:
         _counted(model.m, "input"),
         source,
     )
+
+
+def _on_digits(sections: list[Section]) -> Text:
+    """That numbers are shown in fewer digits than they have, where some are."""
+    if not any(rounded(node) for section in sections for node in layouts(section.blocks)):
+        return ()
+    return say(f" Numbers of more than {MOST_DIGITS} digits are shown with {ROUNDED_DIGITS}; the code has all of them.")
 
 
 def _counted(count: int, noun: str) -> str:

@@ -42,6 +42,11 @@ def name_order(model: Model) -> Mapping[str, tuple[int, int]]:
     return order
 
 
+def row_names(quantity: str, model: Model) -> tuple[Layout, ...]:
+    """What the entries of a column are called in the model: those of u by their inputs."""
+    return tuple(name_layout(one.name) for one in model.inputs) if quantity == "inverse_dynamics" else ()
+
+
 class Context:
     """One report being composed."""
 
@@ -86,7 +91,8 @@ class Context:
         if form.intermediates:
             blocks += self.intermediates(form.intermediates, f"with_{quantity}")
         if form.matrix is not None:
-            blocks += matrix_blocks(shown, form.matrix, self.layout, self.denominators, label)
+            names = row_names(quantity, self.model)
+            blocks += matrix_blocks(shown, form.matrix, self.layout, self.denominators, label, names)
         if form.note:
             blocks.append(_remark(shown, form.note, form.matrix is not None))
         return tuple(blocks)

@@ -36,13 +36,20 @@ class FormulaReference:
 
 
 @dataclass(frozen=True, slots=True)
+class FigureReference:
+    """The number of a figure, after the word."""
+
+    label: str
+
+
+@dataclass(frozen=True, slots=True)
 class Emphasis:
     """A few words in italics."""
 
     text: str
 
 
-Inline: TypeAlias = str | InlineMath | InlineCode | FormulaReference | Emphasis
+Inline: TypeAlias = str | InlineMath | InlineCode | FormulaReference | FigureReference | Emphasis
 Text: TypeAlias = tuple[Inline, ...]
 
 
@@ -80,10 +87,11 @@ class Table:
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A drawing as SVG text, with its caption; at its own size, or as wide as the page (`wide`)."""
+    """A drawing as SVG text, with its caption, numbered; at its own size, or as wide as the page (`wide`)."""
 
     svg: str
     caption: Text
+    label: str
     wide: bool = True
 
 
@@ -97,6 +105,26 @@ class CodeLine:
 def displayed(equations: Iterable[Layout], label: str | None = None) -> Formula:
     """A formula of these equations, long ones broken into lines of at most ROOM."""
     return Formula(tuple(break_lines(node, page_width, ROOM) for node in equations), label)
+
+
+def layouts(blocks: Iterable[Block]) -> Iterator[Layout]:
+    """All formulas in blocks, displayed ones line by line."""
+    for block in blocks:
+        match block:
+            case Formula(equations=equations):
+                yield from (line for rows in equations for line in rows)
+            case Paragraph(text=text) | Figure(caption=text):
+                yield from _inline((text,))
+            case Items(items=items):
+                yield from _inline(items)
+            case Table(headings=headings, rows=rows, caption=caption):
+                yield from _inline((*headings, *(cell for row in rows for cell in row), caption))
+            case CodeLine():
+                pass
+
+
+def _inline(texts: Iterable[Text]) -> Iterator[Layout]:
+    return (part.node for text in texts for part in text if isinstance(part, InlineMath))
 
 
 Block: TypeAlias = Paragraph | Formula | Items | Table | Figure | CodeLine
@@ -113,8 +141,9 @@ class Section:
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """A whole report."""
+    """A whole report; `name` is that of its files and of its labels."""
 
+    name: str
     title: str
     subtitle: str
     summary: Text
@@ -132,6 +161,14 @@ class Document:
         """The number of every labelled formula, counted from 1 in order of appearance."""
         labels = (formula.label for formula in self.formulas() if formula.label is not None)
         return {label: str(position) for position, label in enumerate(labels, start=1)}
+
+    def figures(self) -> Iterator[Figure]:
+        """All figures in order."""
+        return (block for section in self.sections for block in section.blocks if isinstance(block, Figure))
+
+    def figure_numbers(self) -> dict[str, str]:
+        """The number of every figure, counted from 1 in order of appearance."""
+        return {figure.label: str(position) for position, figure in enumerate(self.figures(), start=1)}
 
     def section_numbers(self) -> tuple[str, ...]:
         """The number of every section: 1, 2, 2.1, 2.2, 3."""

@@ -12,8 +12,8 @@ from symgen.report.compose import compose
 from symgen.report.facts import Facts, ReportFiles
 from symgen.report.gather import gather, path_charts, with_measurements
 from symgen.report.html import render_html
-from symgen.report.latex import render_latex
-from symgen.report.pdf import render_pdf
+from symgen.report.latex import drawing_file, render_latex
+from symgen.report.pdf import render_drawing, render_pdf
 from symgen.report.proof import ProofFacts
 from symgen.report.targets import TargetCore
 from symgen.verify.certificate import Certificate
@@ -54,4 +54,5 @@ def report_files(model: Model, receive: Callable[[], Any], measured: bool) -> Re
     if certificate is None:
         return ReportFiles(files, notices)
     pdf = render_pdf(compose(with_measurements(report, certificate, charts, targets, proof)))
-    return ReportFiles({**files, f"report/{stem}.pdf": pdf}, notices)
+    drawings = {f"report/{drawing_file(stem, figure)}": render_drawing(figure) for figure in document.figures()}
+    return ReportFiles({**files, f"report/{stem}.pdf": pdf, **drawings}, notices)

@@ -50,13 +50,19 @@ class _HtmlView(Markup):
     def emphasis(self, text: str) -> str:
         return f"<em>{plain(text)}</em>"
 
-    def reference(self, number: str) -> str:
+    def reference(self, label: str) -> str:
+        number = self.number(label)
         return f'<a href="#e{number}">({number})</a>'
+
+    def figure_reference(self, label: str) -> str:
+        number = self.figure_number(label)
+        return f'<a href="#f{number}">Figure {number}</a>'
 
     def paragraph(self, body: str) -> str:
         return f"<p>{body}</p>"
 
-    def formula(self, equations: tuple[tuple[Row, ...], ...], number: str | None) -> str:
+    def formula(self, equations: tuple[tuple[Row, ...], ...], label: str | None) -> str:
+        number = None if label is None else self.number(label)
         lines = []
         for rows in equations:
             for position, line in enumerate(rows):
@@ -75,7 +81,9 @@ class _HtmlView(Markup):
         return f"<pre><code>{plain(text)}</code></pre>"
 
     def figure(self, figure: Figure) -> str:
-        return f"<figure>\n{svg_element(figure.svg)}\n<figcaption>{self.text(figure.caption)}</figcaption>\n</figure>"
+        number = self.figure_number(figure.label)
+        caption = f"<figcaption>Figure {number}. {self.text(figure.caption)}</figcaption>"
+        return f'<figure id="f{number}">\n{svg_element(figure.svg)}\n{caption}\n</figure>'
 
     def table(self, table: Table) -> str:
         head = "".join(f"<th>{self.text(heading)}</th>" for heading in table.headings)

@@ -1,4 +1,4 @@
-"""The report as LaTeX source for pdflatex with amsmath."""
+"""The report as LaTeX source: a document by itself, and its sections where another one has it by \\input."""
 
 from __future__ import annotations
 
@@ -23,14 +23,22 @@ from symgen.report.mathematics.measure import page_width
 LINE = 44.0
 TABLE_GAP = 1.3
 """Widths in em of a line of text, and of the space between the columns of a table."""
+# Of the width of a line, that of a drawing.
+FIGURE_SHARE = 0.8
 SPECIAL: dict[str, str] = {
     "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%", "_": r"\_",
     "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "<": r"\textless{}", ">": r"\textgreater{}",
-    "|": r"\textbar{}", '"': r"\textquotedbl{}", "`": r"\textasciigrave{}", "–": "--", "—": "---", "’": "'",
+    "|": r"\textbar{}", '"': r"\symbol{34}", "`": r"\textasciigrave{}", "–": "--", "—": "---", "’": "'",
     "‘": "`", "“": "``", "”": "''", "…": r"\ldots{}", "\u00a0": "~", "−": "$-$", "·": r"$\cdot$", "×": r"$\times$",
     "°": r"$^\circ$", "√": r"$\surd$", "→": r"$\to$", "\n": " ", "\r": " ", "\t": " ",
-    "⁻": r"$^{-}$", **{character: f"$^{digit}$" for digit, character in enumerate("⁰¹²³⁴⁵⁶⁷⁸⁹")},
+    "⁻": r"$^{-}$", "⁺": r"$^{+}$", "ᵀ": r"$^{\mathrm{T}}$",
+    **{character: f"$^{digit}$" for digit, character in enumerate("⁰¹²³⁴⁵⁶⁷⁸⁹")},
 }  # fmt: skip
+
+
+def drawing_file(name: str, figure: Figure) -> str:
+    """The file beside the source that has the drawing of a figure."""
+    return f"{name}_{figure.label}.pdf"
 
 
 def latex_text(text: str) -> str:
@@ -60,6 +68,7 @@ class _LatexView(Markup):
 
     def __init__(self, document: Document) -> None:
         super().__init__(document)
+        self.name = document.name
         self.sections = [self._section(section) for section in document.sections]
 
     def _section(self, section: Section) -> str:
@@ -78,19 +87,24 @@ class _LatexView(Markup):
     def emphasis(self, text: str) -> str:
         return rf"\emph{{{latex_text(text)}}}"
 
-    def reference(self, number: str) -> str:
-        return f"({number})"
+    def reference(self, label: str) -> str:
+        return rf"\eqref{{eq:{self.name}:{label}}}"
 
-    def formula(self, equations: tuple[tuple[Row, ...], ...], number: str | None) -> str:
+    def figure_reference(self, label: str) -> str:
+        return rf"Figure~\ref{{fig:{self.name}:{label}}}"
+
+    def formula(self, equations: tuple[tuple[Row, ...], ...], label: str | None) -> str:
         lines = []
         for rows in equations:
             for position, line in enumerate(rows):
                 indent = r"\quad " if position else ""
                 lines.append(f"& {indent}{latex_math(line).strip()}")
-        if number is not None:
-            lines[0] += rf" \tag{{{number}}}"
+        if label is None:
+            body = " \\\\\n".join(lines)
+            return f"\\begin{{align*}}\n{body}\n\\end{{align*}}"
+        lines = [rf"{lines[0]} \label{{eq:{self.name}:{label}}}", *(rf"{line} \notag" for line in lines[1:])]
         body = " \\\\\n".join(lines)
-        return f"\\begin{{align*}}\n{body}\n\\end{{align*}}"
+        return f"\\begin{{align}}\n{body}\n\\end{{align}}"
 
     def items(self, items: list[str]) -> str:
         body = "\n".join(rf"\item {item}" for item in items)
@@ -100,7 +114,12 @@ class _LatexView(Markup):
         return rf"\noindent\texttt{{{latex_text(text)}}}"
 
     def figure(self, figure: Figure) -> str:
-        return rf"\emph{{Figure (drawn in the PDF and HTML versions): {self.text(figure.caption)}}}"
+        file = drawing_file(self.name, figure)
+        drawn = rf"\IfFileExists{{{file}}}{{\includegraphics[width={FIGURE_SHARE}\linewidth]{{{file}}}}}"
+        return (
+            f"\\begin{{figure}}[htbp]\n\\centering\n{drawn}{{\\emph{{(drawn in {self.plain(self.name)}.html)}}}}\n"
+            f"\\caption{{{self.text(figure.caption)}}}\n\\label{{fig:{self.name}:{figure.label}}}\n\\end{{figure}}"
+        )
 
     def table(self, table: Table) -> str:
         columns = "".join(_columns(table))

@@ -10,6 +10,7 @@ from symgen.report.document import (
     Document,
     Emphasis,
     Figure,
+    FigureReference,
     Formula,
     FormulaReference,
     Inline,
@@ -28,6 +29,7 @@ class Markup(ABC):
 
     def __init__(self, document: Document) -> None:
         self._numbers = document.numbers()
+        self._figures = document.figure_numbers()
         self.title = self.plain(document.title)
         self.subtitle = self.plain(document.subtitle)
         self.summary = self.text(document.summary)
@@ -43,7 +45,7 @@ class Markup(ABC):
             case Paragraph(text=text):
                 return self.paragraph(self.text(text))
             case Formula(equations=equations, label=label):
-                return self.formula(equations, None if label is None else self._numbers[label])
+                return self.formula(equations, label)
             case Items(items=items):
                 return self.items([self.text(item) for item in items])
             case CodeLine(text=line):
@@ -64,7 +66,17 @@ class Markup(ABC):
             case Emphasis(text=text):
                 return self.emphasis(text)
             case FormulaReference(label=label):
-                return self.reference(self._numbers[label])
+                return self.reference(label)
+            case FigureReference(label=label):
+                return self.figure_reference(label)
+
+    def number(self, label: str) -> str:
+        """The number of a labelled formula."""
+        return self._numbers[label]
+
+    def figure_number(self, label: str) -> str:
+        """The number of a figure."""
+        return self._figures[label]
 
     @abstractmethod
     def plain(self, text: str) -> str:
@@ -87,16 +99,20 @@ class Markup(ABC):
         """Words in italics."""
 
     @abstractmethod
-    def reference(self, number: str) -> str:
+    def reference(self, label: str) -> str:
         """The number of a formula, in parentheses, linked to it where the language can."""
+
+    @abstractmethod
+    def figure_reference(self, label: str) -> str:
+        """`Figure` and its number, linked to it where the language can."""
 
     def paragraph(self, body: str) -> str:
         """Sentences that are markup already."""
         return body
 
     @abstractmethod
-    def formula(self, equations: tuple[tuple[Row, ...], ...], number: str | None) -> str:
-        """Displayed equations, each on its lines."""
+    def formula(self, equations: tuple[tuple[Row, ...], ...], label: str | None) -> str:
+        """Displayed equations, each on its lines, numbered where they have a label."""
 
     @abstractmethod
     def items(self, items: list[str]) -> str:
@@ -108,7 +124,7 @@ class Markup(ABC):
 
     @abstractmethod
     def figure(self, figure: Figure) -> str:
-        """A drawing over its caption."""
+        """A drawing over its number and caption."""
 
     @abstractmethod
     def table(self, table: Table) -> str:

@@ -17,6 +17,14 @@ def render_pdf(document: Document) -> bytes:
     return bytes(typst.compile(render_typst(document).encode(), format="pdf", ignore_system_fonts=True))
 
 
+def render_drawing(figure: Figure) -> bytes:
+    """The drawing of a figure alone as PDF, for LaTeX; as wide as it is."""
+    import typst
+
+    source = f"#set page(width: auto, height: auto, margin: 0pt)\n#image(bytes({quoted(svg_element(figure.svg))}))"
+    return bytes(typst.compile(source.encode(), format="pdf", ignore_system_fonts=True))
+
+
 def render_typst(document: Document) -> str:
     """The source given to Typst."""
     return render("report/report.typ.j2", _TypstView(document))
@@ -52,10 +60,16 @@ class _TypstView(Markup):
     def emphasis(self, text: str) -> str:
         return f"#emph({quoted(text)});"
 
-    def reference(self, number: str) -> str:
+    def reference(self, label: str) -> str:
+        number = self.number(label)
         return f"#link(label({quoted('e' + number)}), {quoted(f'({number})')});"
 
-    def formula(self, equations: tuple[tuple[Row, ...], ...], number: str | None) -> str:
+    def figure_reference(self, label: str) -> str:
+        number = self.figure_number(label)
+        return f"#link(label({quoted('f' + number)}), {quoted(f'Figure {number}')});"
+
+    def formula(self, equations: tuple[tuple[Row, ...], ...], label: str | None) -> str:
+        number = None if label is None else self.number(label)
         lines = []
         for rows in equations:
             for position, line in enumerate(rows):
@@ -71,7 +85,8 @@ class _TypstView(Markup):
 
     def figure(self, figure: Figure) -> str:
         width = "92%" if figure.wide else "auto"
-        return f"#chart(bytes({quoted(svg_element(figure.svg))}), [{self.text(figure.caption)}], width: {width})"
+        number, source = quoted(self.figure_number(figure.label)), quoted(svg_element(figure.svg))
+        return f"#chart({number}, bytes({source}), [{self.text(figure.caption)}], width: {width})"
 
     def _cell(self, cell: Text) -> str:
         """A cell of a table, with more room where it holds a fraction."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from typing import TypeAlias
 
 from symgen.diagnostics import Mistake, Span
@@ -12,6 +13,7 @@ from symgen.model.file.source import ScalarNode
 from symgen.model.quantities import QUANTITIES
 from symgen.report.document import (
     Emphasis,
+    FigureReference,
     FormulaReference,
     Inline,
     InlineCode,
@@ -19,6 +21,7 @@ from symgen.report.document import (
     Paragraph,
     Text,
 )
+from symgen.report.mathematics.breaking import break_lines
 from symgen.report.mathematics.from_expression import expression_layout
 from symgen.report.mathematics.layout import (
     Accent,
@@ -34,9 +37,13 @@ from symgen.report.mathematics.layout import (
     Scripts,
     Sum,
 )
+from symgen.report.mathematics.measure import page_width
 from symgen.report.mathematics.symbols import symbol_layout
 
-Slot: TypeAlias = str | Layout | InlineCode | Emphasis | FormulaReference
+Slot: TypeAlias = str | Layout | InlineCode | Emphasis | FormulaReference | FigureReference
+
+
+_WORDS = (str, InlineCode, Emphasis, FormulaReference, FigureReference)
 
 
 def say(pattern: str, *slots: Slot) -> Text:
@@ -46,11 +53,13 @@ def say(pattern: str, *slots: Slot) -> Text:
         raise ValueError(f"{len(slots)} slots for {len(pieces) - 1} places: {pattern}")
     parts: list[Inline] = [pieces[0]]
     for slot, piece in zip(slots, pieces[1:], strict=True):
-        parts.append(slot if isinstance(slot, (str, InlineCode, Emphasis, FormulaReference)) else InlineMath(slot))
+        parts.append(slot if isinstance(slot, _WORDS) else InlineMath(slot))
         parts.append(piece)
     return tuple(part for part in parts if part != "")
 
 
+# Em of a formula in a sentence that stays whole.
+INLINE_ROOM = 18.0
 # What messages quote, and projected matrices and their pseudoinverses, which they write in ASCII.
 _MARKED = re.compile(r"`([^`]+)`|\b([A-Z])~(\+?)")
 
@@ -61,7 +70,7 @@ def worded(text: str) -> Text:
     end = 0
     for match in _MARKED.finditer(text):
         quoted, letter, plus = match.groups()
-        parts += [text[end : match.start()], _projected(letter, plus) if quoted is None else _quoted(quoted)]
+        parts += [text[end : match.start()], *([_projected(letter, plus)] if quoted is None else _quoted(quoted))]
         end = match.end()
     return tuple(part for part in (*parts, text[end:]) if part != "")
 
@@ -71,9 +80,15 @@ def _projected(letter: str, plus: str) -> InlineMath:
     return InlineMath(pseudoinverse(tilde) if plus else tilde)
 
 
-def _quoted(text: str) -> InlineMath | InlineCode:
+def _quoted(text: str) -> Iterator[Inline]:
+    """A formula in pieces that fit into a line of a table, or code."""
     tree = None if is_name(text) else parse_expression(ScalarNode(text, Span(1, 1, 1), text, quoted=False))
-    return InlineCode(text) if tree is None or isinstance(tree, Mistake) else InlineMath(expression_layout(tree))
+    if tree is None or isinstance(tree, Mistake):
+        yield InlineCode(text)
+        return
+    for position, line in enumerate(break_lines(expression_layout(tree), page_width, INLINE_ROOM)):
+        yield from ((" ",) if position else ())
+        yield InlineMath(line)
 
 
 def paragraph(pattern: str, *slots: Slot) -> Paragraph:

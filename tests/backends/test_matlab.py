@@ -137,6 +137,15 @@ def test_the_interpreters_bits_and_statuses(tool: Callable[[str], str], tmp_path
 
 
 @pytest.mark.toolchain
+def test_functions_that_are_not_compiled_say_so(tool: Callable[[str], str], tmp_path: Path) -> None:
+    folder = written(handmade.model(), handmade.program(), tmp_path)
+    call = f"addpath('{folder}'); {caught(f'toy.{handmade.program().kernels[0].name}(1, 2, 3)')}"
+    command = [tool("octave-cli"), "--norc", "--no-gui", "--eval", call]
+    made = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=60)
+    assert made.stdout == "toy:build|the functions of toy are not compiled yet: call build_toy() once\n", made.stderr
+
+
+@pytest.mark.toolchain
 @pytest.mark.slow
 def test_mistakes_of_a_caller_are_named(tool: Callable[[str], str], tmp_path: Path) -> None:
     folder = written(shipped.model("front_car"), shipped.short("front_car", "float64"), tmp_path)

@@ -12,7 +12,7 @@ import pytest
 from symgen import pipeline
 from symgen.cli import main as cli
 from symgen.diagnostics import Notice, SymgenBug
-from symgen.generation.results import LargestError, Options, Result, Summary, WrongUseError
+from symgen.generation.results import ALL_PARTS, LargestError, Options, Result, Summary, WrongUseError
 from symgen.ir.kernel import Scalar
 from symgen.model.load import load_model
 
@@ -307,6 +307,8 @@ def test_help_fits_into_eighty_columns(
     lines = capsys.readouterr().out.splitlines()
     assert lines
     assert [line for line in lines if len(line) > 80] == []
+    words = set(" ".join(lines).replace(",", " ").split())
+    assert command or set(ALL_PARTS) <= words  # none is broken at the end of a line
 
 
 @pytest.mark.slow
@@ -321,3 +323,22 @@ def test_a_report_without_a_pdf_says_why(
     assert why in capsys.readouterr().err
     assert not (tmp_path / "skate/report/skate.pdf").exists()
     assert (tmp_path / "skate/report/skate.tex").exists()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("part", "outputs", "said"),
+    [
+        ("fmi", "forward_dynamics", "fmi: the plant drifts off its constraints; what brings it back comes of "
+         "`--outputs admissible_velocity,forward_dynamics`"),
+        ("fmi", "mass_matrix", "fmi: there are no units, only the C"),
+        ("ros2", "mass_matrix", "ros2: there is no plugin, only the C"),
+        ("fmi", "forward_dynamics,admissible_velocity", ""),
+    ],
+)  # fmt: skip
+def test_files_for_other_tools_say_what_they_lack(
+    part: str, outputs: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main([SKATE, "--only", part, "--no-verify", "--outputs", outputs, "--out", str(tmp_path)]) == 0
+    notices = [line for line in capsys.readouterr().err.splitlines() if f"notice: {part}: " in line]
+    assert [said in line for line in notices] == [True] * bool(said)

@@ -17,6 +17,7 @@ from symgen.closedform.laws.choice import Laws, derive_laws
 from symgen.closedform.laws.terms import (
     DefinedFactor,
     DerivedFactor,
+    IndependentRows,
     LawDifference,
     LawFactor,
     LawInverse,
@@ -82,6 +83,8 @@ class Values:
                 return self.term(term)
             case DerivedFactor(column=column):
                 return self.derivatives(column)
+            case IndependentRows(places=places):
+                return mpmath.matrix([self.known["B"].tolist()[i] for i in places])
             case PartFactor(whole=whole, places=places):
                 rows = self.known[whole].tolist()
                 return mpmath.matrix(
@@ -242,6 +245,45 @@ def test_gears_of_drives_are_in_the_laws() -> None:
     forms = derive_closed_forms(load_text(GEARED, "geared.yaml"))
     laws = derive_laws(forms)
     assert any(factor.name == "M_a" for law in laws["inverse_dynamics"] for factor in law.factors)
+    for point in generic_points(forms.exact.model, forms.exact.mechanics, 2):
+        for law in (law for several in laws.values() for law in several):
+            assert error(forms, point, law) < 1e-25, (law.quantity, law.kind)
+
+
+ROCKERS = """
+model: rockers
+gravity: [0, -9.81, 0]
+parameters: {l: {value: 0.4, unit: m}, d: {value: 0.6, unit: m}}
+joints:
+  left: {type: revolute, axis: z, coordinate: a}
+  right: {type: revolute, axis: z, at: [d, 0, 0], coordinate: b}
+  middle: {type: revolute, axis: z, at: [d/2, 0, 0], coordinate: c}
+  table: {type: revolute, parent: left, at: [l, 0, 0], axis: z, coordinate: e}
+bodies:
+  left: {mass: 1, com: [l/2, 0, 0], inertia: {zz: 0.02}}
+  table: {mass: 2, com: [d/2, 0, 0], inertia: {zz: 0.1}}
+points:
+  end: {frame: table, at: [d, 0, 0]}
+  right_end: {frame: right, at: [l, 0, 0]}
+  half: {frame: table, at: [d/2, 0, 0]}
+  middle_end: {frame: middle, at: [l, 0, 0]}
+loops:
+  first: {type: point, between: [end, right_end]}
+  second: {type: point, between: [half, middle_end]}
+inputs:
+  u: {unit: N*m, acts_on: {a: 2}}
+configuration: {a: 1, b: 1, c: 1, e: -1}
+outputs: [inverse_dynamics]
+"""
+
+
+def test_rows_that_depend_on_each_other_have_laws() -> None:
+    """A table on three rockers: of the four rows of its pins three are independent, and lambda is the smallest."""
+    mp.dps = 50
+    forms = derive_closed_forms(load_text(ROCKERS, "rockers.yaml"))
+    assert (forms.structure.constraint_rank, forms.exact.model.r) == (3, 4)
+    laws = derive_laws(forms)
+    assert {"nullspace_projector", "projected_control_pseudoinverse", "inverse_dynamics", "multipliers"} <= set(laws)
     for point in generic_points(forms.exact.model, forms.exact.mechanics, 2):
         for law in (law for several in laws.values() for law in several):
             assert error(forms, point, law) < 1e-25, (law.quantity, law.kind)

@@ -73,4 +73,7 @@ FIRST = {
     "only_comments": "# a model\n\n# to come\n",
     "tab": motor("  s: {", "\ts: {"),
     "greek": motor("  r: {", "  ρ: {"),
+    "misspelt_joint_of_an_input": arm("joint: a", "joint: sholder"),
+    "no_joint_of_an_input": arm("joint: a", "joint: base"),
+    "misspelt_joint_at_the_start": f"{ARM}configuration: {{elbw: 0.1}}\n",
 }

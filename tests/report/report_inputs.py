@@ -10,6 +10,7 @@ from symgen.closedform.forms import derive_closed_forms
 from symgen.closedform.laws.choice import derive_laws
 from symgen.closedform.laws.singular_sets import derive_determinant_sets
 from symgen.closedform.published import Verdict
+from symgen.drawing.svg import drawing
 from symgen.model.load import load_model
 from symgen.report.compose import compose
 from symgen.report.content import Chart, ErrorRow, ReportInput, Verification
@@ -41,6 +42,7 @@ def report_input(name: str) -> ReportInput:
             Verdict(k, item.equation, "", ("identical", "misprinted")[k % 2], None, "a < b & c")
             for k, item in enumerate(model.published)
         ),
+        drawing=drawing(model),
         notices=("a notice with <angle> brackets & $dollars$",),
     )
 

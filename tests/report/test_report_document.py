@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -10,17 +11,23 @@ import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
+import sympy
+import typst
 from report_inputs import HERE, document, measured_document, report_input
 
 from symgen.report.compose import compose
+from symgen.report.content import Verification
 from symgen.report.document import ROOM, InlineMath, Items, Paragraph, Table
 from symgen.report.html import render_html
-from symgen.report.latex import latex_text, render_latex
+from symgen.report.latex import drawing_file, latex_text, render_latex
 from symgen.report.mathematics.measure import page_width
-from symgen.report.pdf import render_pdf, render_typst
-from symgen.report.prose import say
+from symgen.report.pdf import render_drawing, render_pdf, render_typst
+from symgen.report.prose import INLINE_ROOM, say
+from symgen.report.terminal import render_text_math
+from symgen.verify.invariants import _laws
 
 NAMES = ("skate", "front_car", "double_pendulum", "slider_crank", "delta", "rapkm_bodies", "gough_stewart", "hostile")
 HTML = "{http://www.w3.org/1999/xhtml}"
@@ -81,14 +88,55 @@ def test_latex_has_balanced_braces_and_environments(name: str) -> None:
     assert source.count(r"\left") == source.count(r"\right")
 
 
+PAPER = r"""\documentclass{article}
+\usepackage[T1]{fontenc}
+\usepackage{amsmath,amssymb,array,longtable,graphicx}
+\usepackage[a4paper,margin=25mm]{geometry}
+\begin{document}
+\section{Methods}
+\input{report}
+\end{document}
+"""
+
+
+def test_latex_has_labels_in_place_of_numbers() -> None:
+    source = render_latex(document("delta"))
+    assert r"\tag" not in source
+    labels = re.findall(r"\\label\{([^}]*)\}", source)
+    assert len(labels) == len(set(labels))
+    assert set(re.findall(r"\\(?:eq)?ref\{([^}]*)\}", source)) <= set(labels)
+    assert {"eq:delta:motion", "fig:delta:mechanism"} <= set(labels)
+
+
+@pytest.mark.parametrize("name", ["delta", "front_car"])
+def test_figures_are_numbered_and_referred_to(name: str) -> None:
+    shown = measured_document(name)
+    assert [*shown.figure_numbers().values()] == [str(k + 1) for k in range(len([*shown.figures()]))]
+    page = render_html(shown)
+    for number in shown.figure_numbers().values():
+        assert f'<a href="#f{number}">Figure {number}</a>' in page
+        assert f"<figcaption>Figure {number}. " in page
+        assert f'link(label("f{number}"), "Figure {number}")' in render_typst(shown)
+
+
 @pytest.mark.toolchain
 @pytest.mark.parametrize("name", ["front_car", "delta", "hostile"])
 def test_latex_compiles(name: str, tmp_path: Path, tool: Callable[[str], str]) -> None:
+    """By itself, and brought into another document: references are found, nothing sticks out of the page."""
     (tmp_path / "report.tex").write_text(render_latex(document(name)), encoding="utf-8")
-    command = [tool("pdflatex"), "-interaction=nonstopmode", "-halt-on-error", "report.tex"]
-    run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, errors="replace", check=False)
-    assert run.returncode == 0, run.stdout[-2000:]
-    assert not re.search(r"Overfull \\hbox \((\d{2,})\.", run.stdout), run.stdout
+    (tmp_path / "paper.tex").write_text(PAPER, encoding="utf-8")
+    figures = document(name).figures()
+    drawings = {drawing_file(document(name).name, figure): render_drawing(figure) for figure in figures}
+    for file, drawn in drawings.items():
+        (tmp_path / file).write_bytes(drawn)
+    for file in ("report.tex", "paper.tex"):
+        command = [tool("pdflatex"), "-interaction=nonstopmode", "-halt-on-error", file]
+        for _ in range(2):
+            run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, errors="replace", check=False)
+            assert run.returncode == 0, run.stdout[-2000:]
+        assert not re.search(r"Overfull \\hbox \((\d{2,})\.", run.stdout), run.stdout
+        assert "undefined" not in run.stdout, run.stdout
+        assert all(f"<./{drawn}>" in run.stdout.replace("\n", "") for drawn in drawings)
 
 
 @pytest.mark.parametrize("name", ["front_car", "hostile"])
@@ -111,6 +159,8 @@ def test_measurements_stand_in_their_own_sections() -> None:
     assert len(measured.sections) == len(plain.sections) + 2
     assert "64 admissible states" in render_typst(measured)
     assert "admissible states" not in render_html(plain)
+    assert "charts along paths, are in the PDF" in render_html(plain)
+    assert "are in the PDF" not in render_typst(measured)
 
 
 def test_report_names_what_there_is_not() -> None:
@@ -132,6 +182,14 @@ def test_report_says_all_about_the_front_car() -> None:
         "distance of the axles",
     ):
         assert text in source, text
+
+
+def test_components_of_u_are_called_as_their_inputs() -> None:
+    source = render_latex(document("front_car"))
+    assert r"& K_{f} = \frac{" in source
+    assert r"& T = \Theta _{2} \ddot{\varphi }" in source
+    car = report_input("front_car")
+    assert "\n  T = Θ₂ φ̈" in render_text_math(car.forms["inverse_dynamics"].matrix, car.model, "inverse_dynamics", 80)
 
 
 def test_verdicts_that_are_not_identical_show_the_printed_form() -> None:
@@ -210,7 +268,73 @@ def test_minors_of_two_directions_are_one_matrix() -> None:
     assert r"where $\boldsymbol{\Phi}$ vanishes, that is where $\Sigma _{\Phi } = 0$" in source
 
 
+def test_formulas_in_tables_break() -> None:
+    """A reason that quotes a long formula, as that of a method of the Delta robot does."""
+    delta = report_input("delta")
+    factor = "(2*cos(a_{0})*l_1*(z + l_1*sin(a_{0})) + 2*sin(a_{0})*l_1*(x + r - (R + l_1*cos(a_{0}))))"
+    reason = f"this method is singular where `{'*'.join(map(factor.format, (1, 2, 3)))}` = 0"
+    shown = compose(replace(delta, skipped=(("method nullspace of u", reason), ("(B Bᵀ)⁻¹", "3 minors"))))
+    table = next(block for block in shown.sections[6].blocks if isinstance(block, Table))
+    pieces = [part.node for part in table.rows[0][1] if isinstance(part, InlineMath)]
+    assert len(pieces) > 3
+    assert all(page_width(piece) <= INLINE_ROOM for piece in pieces)
+    assert r"(B B$^{\mathrm{T}}$)$^{-}$$^1$" in render_latex(shown)
+
+
+UNKNOWN: Any = None  # what laws are evaluated on, which their names do not need
+
+
+@pytest.mark.parametrize("law", [name for _, (name, _, _) in _laws(UNKNOWN, admissible=True)])
+def test_laws_are_set(law: str) -> None:
+    verification = Verification(8, (), (("C float64", law, "0.1"),), ())
+    shown = compose(replace(report_input("skate"), verification=verification))
+    table = [block for block in shown.sections[-1].blocks if isinstance(block, Table)][-1]
+    words = "".join(part for part in table.rows[0][0] if isinstance(part, str))
+    assert not re.search(r"[=~']", words), words
+
+
 def test_a_long_jacobian_is_a_product() -> None:
     source = " ".join(render_latex(document("gough_stewart")).split())
     assert r"\mathbf{B} = \mathbf{K} \mathbf{J}" in source
     assert r"\mathbf{K}_{1, 1} = 2 x_{\mathrm{head~1}} - 2 x_{\mathrm{foot~1}}" in source
+
+
+def test_numbers_from_robot_files_are_short() -> None:
+    source = render_latex(document("five_bar"))
+    assert max(len(digits) for digits in re.findall(r"\d+", source)) <= 9
+    assert "Numbers of more than 9 digits are shown with 6" in source
+    assert "digits are shown" not in render_latex(document("front_car"))
+
+
+def test_the_derivatives_of_a_task_are_printed() -> None:
+    source = " ".join(render_latex(document("five_bar")).split())
+    assert r"Their rates are $\dot{x} = \mathbf{J}_{x} \dot{\mathbf{q}}$" in source
+    assert r"\label{eq:five_bar:Jx}" in source
+    jacobian = report_input("five_bar").forms["task_jacobian"].matrix
+    assert jacobian is not None
+    assert jacobian.shape == (2, 4)
+    motor, elbow = sympy.symbols("left_motor left_elbow")
+    ends = [0.16 * sympy.sin(motor) + 0.22 * sympy.sin(motor + elbow), 0.22 * sympy.sin(motor + elbow)]
+    values = {motor: 0.3, elbow: -1.1}
+    assert [-jacobian[0, k].evalf(subs=values) for k in (0, 2)] == pytest.approx([e.subs(values) for e in ends])
+
+
+def test_no_last_page_is_left_to_what_the_report_is_by() -> None:
+    """It stands at the foot of the first page, once."""
+    source = render_typst(measured_document("front_car"))
+    by = "Derived by symgen 1.2.3."
+    assert source.count(by) == 1
+    assert source.index(by) < source.index("here().page() == 1") + 200 < source.index("= #")
+
+
+def test_a_short_formula_stays_on_its_page() -> None:
+    """Seven formulas of four lines on pages that have room for five lines: each begins where there is room for all."""
+    head = render_typst(document("skate")).split("#align(center)[")[0]
+    small = head.replace('paper: "a4"', "width: 120mm, height: 100mm").replace("here().page() == 1", "false")
+    four = "#formula(none, " + ", ".join(["$ a = b $"] * 4) + ")"
+    mark = "#context [#metadata(here().page()) <page>]"
+    body = "\n\n".join(f"{four.replace('$ a = b $', f'[$ a = b $ {mark}]')}" for _ in range(7))
+    pages = [one["value"] for one in json.loads(typst.query((small + body).encode(), "<page>"))]
+    assert len(pages) == 28
+    assert max(pages) > 1
+    assert all(len(set(pages[k : k + 4])) == 1 for k in range(0, 28, 4))

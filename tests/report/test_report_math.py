@@ -15,7 +15,7 @@ from symgen.report.mathematics.breaking import break_lines
 from symgen.report.mathematics.from_expression import expression_layout
 from symgen.report.mathematics.from_sympy import COORDINATE, PARAMETER, SympyLayout
 from symgen.report.mathematics.latex import latex_math
-from symgen.report.mathematics.layout import Layout
+from symgen.report.mathematics.layout import Layout, Letter, minus, rounded, total
 from symgen.report.mathematics.mathml import mathml
 from symgen.report.mathematics.measure import page_width
 from symgen.report.mathematics.names import name_layout
@@ -67,6 +67,54 @@ def test_numbers_stay_exact() -> None:
     assert latex_math(rational_layout(Fraction("3e-12"))) == r"3 \cdot 10^{-12}"
     assert latex_math(rational_layout(Fraction(1, 3))) == r"\frac{1}{3}"
     assert latex_math(rational_layout(Fraction("0.05"), prefer_decimal=True)) == "0.05"
+
+
+@pytest.mark.parametrize(
+    ("number", "text"),
+    [
+        ("4.26861086943407", "4.26861"),
+        ("123456789012", "1.23457·10¹¹"),
+        ("1.23456789012e-13", "1.23457·10⁻¹³"),
+        ("2.1e11", "2.1·10¹¹"),
+        ("1e400", "10⁴⁰⁰"),
+        ("0.123456789", "0.123456789"),
+        ("22/7", "22/7"),
+        ("7294375000000091491935483871/312500000000000000000000000000", "0.023342"),
+    ],
+)
+def test_long_numbers_are_rounded_and_marked(number: str, text: str) -> None:
+    node = rational_layout(Fraction(number))
+    assert text_math(node) == text
+    assert rounded(node) == (abs(Fraction(number) - _meant(text)) > 0)
+    assert rounded(total((Letter("x"), minus(node)))) == rounded(node)
+
+
+def _meant(text: str) -> Fraction:
+    """The number that is shown."""
+    mantissa, ten, exponent = text.partition("·10")
+    if text.startswith("10"):
+        mantissa, ten, exponent = "1", "10", text[2:]
+    raised = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
+    return Fraction(mantissa) * (Fraction(10) ** int(exponent.translate(raised)) if ten else 1)
+
+
+def test_decimals_go_into_sums_and_signs_out_of_them() -> None:
+    y, z = sympy.symbols("y z")
+    assert text_math(layout(z * (-7744 * X - 3872 * y) / 10**6)) == "−z (0.007744x + 0.003872y)"
+    assert text_math(layout(z * (11 * X + 11 * y) * sympy.cos(X) / 50)) == "0.22z (x + y) cos x"
+    assert text_math(layout(-z * (-5 * X - 20 * y) / 4)) == "1/4 z (5x + 20y)"
+    assert text_math(layout(X / (-y - 1) ** 3)) == "−x/(y + 1)³"
+    assert text_math(layout(sympy.Rational(426861086943407, 10**14) * X / (y + 1))) == "4.26861x/(y + 1)"
+
+
+def test_names_in_denominators_are_cancelled_where_that_is_shorter() -> None:
+    y = sympy.Symbol("y")
+    assert text_math(layout((L * X + L**2 * y + PHI) / L)) == "L y + φ/L + x"
+    assert text_math(layout((X + y + L) / M2)) == "(L + x + y)/m₂"
+
+
+def test_a_factor_one_is_not_written() -> None:
+    assert text_math(expression_layout(Binary("*", Number(Fraction(-1)), Name("z")))) == "−z"
 
 
 def test_every_function_of_the_language_has_a_printer_everywhere() -> None:

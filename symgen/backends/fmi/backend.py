@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from symgen.backends.backend import Backend, Variant
 from symgen.backends.c.elsewhere import emit_c_into
-from symgen.backends.fmi.mockup_units import emit_mockup_units
+from symgen.backends.fmi.mockup_units import emit_mockup_units, lacking_quantities
 
 BACKEND = Backend(
     "fmi",
@@ -15,4 +15,5 @@ BACKEND = Backend(
     of_each_scalar=False,
     folder="fmi/sources",
     around=emit_mockup_units,
+    lacks=lacking_quantities,
 )

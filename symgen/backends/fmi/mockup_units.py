@@ -7,7 +7,7 @@ the token in the source belongs.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
@@ -78,6 +78,23 @@ def emit_mockup_units(model: Model, programs: Sequence[Program]) -> dict[str, st
     return {f"fmi/{path}": text for path, text in files.items()}
 
 
+def lacking_quantities(model: Model, made: frozenset[str]) -> Iterator[str]:
+    """That there are no units, or that the plant drifts."""
+    if not made & {*WORKED_OUT.values()}:
+        names = " or ".join(f"`{quantity}` ({role})" for role, quantity in WORKED_OUT.items())
+        yield f"there are no units, only the C: they work out {names}, which outputs have not"
+    lacking = _projections(model) - made if WORKED_OUT["plant"] in made else ()
+    if lacking:
+        names = ",".join(sorted((*made & {*WORKED_OUT.values()}, *_projections(model))))
+        yield f"the plant drifts off its constraints; what brings it back comes of `--outputs {names}`"
+
+
+def _projections(model: Model) -> set[str]:
+    """What brings the plant of this model back."""
+    geometric = any(row.kind == "geometric" for row in model.constraints)
+    return {name for name, there in zip(PROJECTIONS, (geometric, model.r > 0), strict=True) if there}
+
+
 def _unit(view: MockupUnitView, model_hash: str) -> dict[str, str]:
     """The files of one unit: its token is told by the model and by all that the description says of variables."""
     description = f"fmi/description{view.version}.xml.jinja"
@@ -98,15 +115,11 @@ def _view(
 ) -> MockupUnitView:
     calls = {name: kernel_call(model, program, kernel) for name, kernel in kernels.items()}
     is_plant = role == "plant"
-    has_rows = any(row.kind == "geometric" for row in model.constraints), model.r > 0
-    placed, admitted = (
-        calls.get(name) if is_plant and there else None for name, there in zip(PROJECTIONS, has_rows, strict=True)
-    )
+    needed = _projections(model) if is_plant else set()
+    placed, admitted = (calls.get(name) if name in needed else None for name in PROJECTIONS)
     variables = variables_of(model, Settled(placed is not None, admitted is not None) if is_plant else None)
     members = {f"p.{name}": f"p.{member}" for name, member in c_members(model, program).items()}
-    lacking = [
-        name for name, there in zip(PROJECTIONS, has_rows, strict=True) if is_plant and there and name not in kernels
-    ]
+    lacking = [name for name in PROJECTIONS if name in needed and name not in kernels]
     drifts = f"; drifts off its constraints without {' and '.join(lacking)}" if lacking else ""
     description = titled(model, f" ({role}{drifts})")
     return MockupUnitView(

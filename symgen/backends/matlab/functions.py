@@ -60,13 +60,17 @@ class OneFunctionView:
 
 
 def emit_functions(model: Model, programs: Sequence[Program]) -> dict[str, str]:
-    """`matlab/+<model>/*.m`, the gateway, what builds it, and the block; nothing without kernels."""
+    """`matlab/+<model>/*.m`, the gateway, what stands for it until it is built, what builds it, and the block.
+
+    Nothing without kernels.
+    """
     (program,) = programs
     if not program.kernels:
         return {}
     view = _view(model, program)
     files = {
         f"{view.gateway}.c": render("matlab/gateway.c.jinja", view),
+        f"{view.gateway}.m": render("matlab/unbuilt.m.jinja", view),
         f"build_{view.name}.m": render("matlab/build.m.jinja", view),
         f"+{view.name}/parameters.m": render("matlab/parameters.m.jinja", view),
     }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from symgen.backends.backend import Backend, Variant
 from symgen.backends.c.elsewhere import emit_c_into
-from symgen.backends.ros2.plugin import emit_plugin
+from symgen.backends.ros2.plugin import emit_plugin, lacking_torques
 
 BACKEND = Backend(
     "ros2",
@@ -15,4 +15,5 @@ BACKEND = Backend(
     of_each_scalar=False,
     folder="ros2/src",
     around=emit_plugin,
+    lacks=lacking_torques,
 )

@@ -6,7 +6,7 @@ accelerations, here the coordinates in the order of the model file; torques, her
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from symgen import __version__
 from symgen.backends.c.elsewhere import CallerNames, KernelCall, caller_names, heading, kernel_call, titled
@@ -47,6 +47,12 @@ class PluginView:
     answers: dict[str, KernelCall]
     friction: KernelCall | None
     depends: bool
+
+
+def lacking_torques(_: Model, made: frozenset[str]) -> Iterator[str]:
+    """That there is no plugin."""
+    if ANSWERS["getTorques"] not in made:
+        yield f"there is no plugin, only the C: it answers with `{ANSWERS['getTorques']}`, which outputs have not"
 
 
 def emit_plugin(model: Model, programs: Sequence[Program]) -> dict[str, str]:

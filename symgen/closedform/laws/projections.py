@@ -11,6 +11,7 @@ from symgen.closedform.laws.bases import ShortBasis
 from symgen.closedform.laws.known import KnownNames
 from symgen.closedform.laws.terms import (
     DefinedFactor,
+    IndependentRows,
     LawDifference,
     LawInverse,
     LawMatrix,
@@ -23,6 +24,7 @@ from symgen.closedform.laws.terms import (
     flipped,
     product,
 )
+from symgen.closedform.points import generic_points, rank
 from symgen.closedform.structured import name_minors
 from symgen.records import dataclass
 
@@ -107,9 +109,9 @@ def _pseudoinverse_by_minors(exact: Exact, known: KnownNames, minors: NamedMinor
 
 
 def laws_by_squares(exact: Exact) -> tuple[MatrixLaw, ...]:
-    """B^+ = B^T S^-1 and N_B = I - B^T S^-1 B with S = B B^T, for independent rows."""
+    """B^+ = B^T S^-1 and N_B = I - B^T S^-1 B with S = B B^T; of rows that depend on each other N_B by some of them."""
     if exact.structure.constraint_rank < exact.model.r:
-        return ()
+        return _projector_by_rows(exact)
     squares = DefinedFactor("S", product("B", flipped("B")))
     left = product(flipped("B"), LawInverse(LawMatrix("S")))
     projector = LawDifference(LawUnit(), product(*left.factors, "B"))
@@ -117,6 +119,21 @@ def laws_by_squares(exact: Exact) -> tuple[MatrixLaw, ...]:
         MatrixLaw(OF_CONSTRAINTS, "squares", left, (squares,)),
         MatrixLaw(PROJECTOR, "squares", projector, (squares,)),
     )
+
+
+def _projector_by_rows(exact: Exact) -> tuple[MatrixLaw, ...]:
+    """N_B = I - B_i^T S^-1 B_i with S = B_i B_i^T, for rows i that are independent where a generic point is."""
+    points = generic_points(exact.model, exact.mechanics, 1)
+    if not points:
+        return ()
+    jacobian = points[0].matrix(exact.mechanics.jacobian)
+    chosen: list[int] = []
+    for i in range(len(jacobian)):
+        if rank([jacobian[k] for k in (*chosen, i)]) > len(chosen):
+            chosen.append(i)
+    factors = (IndependentRows("B_i", tuple(chosen)), DefinedFactor("S", product("B_i", flipped("B_i"))))
+    held = product(flipped("B_i"), LawInverse(LawMatrix("S")), "B_i")
+    return (MatrixLaw(PROJECTOR, "rows", LawDifference(LawUnit(), held), factors),)
 
 
 def laws_by_basis(exact: Exact, basis: ShortBasis) -> tuple[MatrixLaw, ...]:

@@ -100,6 +100,14 @@ class PartFactor:
 
 
 @dataclass(frozen=True, slots=True)
+class IndependentRows:
+    """Rows of B by their places, as many as its rank, which are independent at almost every configuration."""
+
+    name: str
+    places: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class DerivedFactor:
     """The derivatives of a listed column of named values by the coordinates, a row for each."""
 
@@ -107,10 +115,10 @@ class DerivedFactor:
     column: str
 
 
-LawFactor: TypeAlias = ListedFactor | DefinedFactor | PartFactor | DerivedFactor
+LawFactor: TypeAlias = ListedFactor | DefinedFactor | PartFactor | IndependentRows | DerivedFactor
 
 
-LawKind: TypeAlias = Literal["minors", "squares", "basis", "kernel", "driven", "chain"]
+LawKind: TypeAlias = Literal["minors", "squares", "rows", "basis", "kernel", "driven", "chain"]
 
 
 @dataclass(frozen=True, slots=True)

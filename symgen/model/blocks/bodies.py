@@ -73,9 +73,7 @@ def _rotor_inertias(scope: Scope, tree: MappingNode) -> tuple[RotorInertia, ...]
         inertia = scope.expression(node, f"the rotor inertia of `{key.value}`", PARAMETERS)
         if scope.kinds.get(key.value) != "coordinate":
             coordinates = [name for name, kind in scope.kinds.items() if kind == "coordinate"]
-            remedy = did_you_mean(key.value, coordinates, "name a coordinate")
-            if key.value in scope.moved_by:
-                remedy = f"name the coordinate of that joint: {' or '.join(scope.moved_by[key.value])}"
+            remedy = scope.coordinate_meant(key.value, coordinates, "name a coordinate")
             scope.wrong_about(key.value, f"`{key.value}` in `rotor_inertias` is no coordinate", remedy, key.span)
         elif inertia is not None:
             rotors.append(RotorInertia(key.value, inertia, key.span))

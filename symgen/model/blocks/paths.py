@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from symgen.model.expressions.expression import Expression, Number
-from symgen.model.expressions.names import counted, did_you_mean, name_mistake
+from symgen.model.expressions.names import counted, name_mistake
 from symgen.model.file.constants import constant, whole_number
 from symgen.model.file.reading import description_of, entries, member
 from symgen.model.file.scope import PATH_CONDITION, PATH_DEFINITION, Scope
@@ -57,7 +57,7 @@ def _path(scope: Scope, key: ScalarNode, node: Node, coordinates: tuple[str, ...
     start: list[tuple[str, Fraction]] = []
     for coordinate, value in entries(member(node, "start")):
         if coordinate.value not in coordinates:
-            remedy = did_you_mean(coordinate.value, coordinates, "name coordinates")
+            remedy = scope.coordinate_meant(coordinate.value, coordinates, "name coordinates")
             message = f"`{coordinate.value}` in `start` is no coordinate"
             scope.wrong_about(coordinate.value, message, remedy, coordinate.span)
             continue

@@ -8,7 +8,7 @@ from fractions import Fraction
 from symgen.diagnostics import Mistake, Span
 from symgen.model.blocks.joint_forms import JointCoordinate, declare_joints
 from symgen.model.expressions.expression import Expression, Number
-from symgen.model.expressions.names import MOST_LISTED, QUOTING, did_you_mean, is_name
+from symgen.model.expressions.names import QUOTING, did_you_mean, is_name
 from symgen.model.expressions.parser import parse_expression
 from symgen.model.expressions.walk import evaluate, names_in
 from symgen.model.file.constants import range_of
@@ -190,10 +190,9 @@ def is_coordinate(scope: Scope, key: ScalarNode, where: str, why: str = "forces 
     if scope.kinds.get(key.value) == "coordinate":
         return True
     coordinates = [name for name, kind in scope.kinds.items() if kind == "coordinate"]
-    listed = f": {', '.join(coordinates)}" if 0 < len(coordinates) <= MOST_LISTED else ""
-    remedy = did_you_mean(key.value, coordinates, f"{why}; name one of them{listed}")
-    if key.value in scope.moved_by:
-        remedy = f"name the coordinate of that joint: {' or '.join(f'`{one}`' for one in scope.moved_by[key.value])}"
+    listed = scope.listed_coordinates()
+    otherwise = f"{why}; name one of them{f': {listed}' if listed else ''}"
+    remedy = scope.coordinate_meant(key.value, coordinates, otherwise)
     if not is_name(key.value):
         remedy = QUOTING
     scope.wrong_about(key.value, f"`{key.value}` in {where} is no coordinate", remedy, key.span)

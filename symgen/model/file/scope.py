@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field, replace
 from typing import Literal, TypeAlias
 
 from symgen.diagnostics import Mistake, Notice, Span
 from symgen.model.expressions.expression import Expression
-from symgen.model.expressions.names import did_you_mean, name_mistake
+from symgen.model.expressions.names import MOST_LISTED, did_you_mean, name_mistake, nearest
 from symgen.model.expressions.parser import parse_expression
 from symgen.model.expressions.walk import names_in
 from symgen.model.file.source import Node, ScalarNode
@@ -91,6 +91,28 @@ class Scope:
     def wrong(self, message: str, remedy: str, span: Span | None, about: str = "") -> None:
         """Records a mistake; `about` is the name that tells it from the same one made elsewhere."""
         self.mistakes.append(Mistake(message, remedy, span, about))
+
+    def coordinate_meant(self, name: str, coordinates: Collection[str], otherwise: str) -> str:
+        """The remedy for a name that is no coordinate: a coordinate or a joint that it may stand for, else this."""
+        joints = {joint: moved for joint, moved in self.moved_by.items() if moved}
+        meant = nearest(name, sorted({*coordinates, *joints}))
+        if meant in coordinates:
+            return f"did you mean `{meant}`?"
+        if meant not in joints:
+            return otherwise
+        moved = " or ".join(f"`{one}`" for one in joints[meant])
+        if meant == name:
+            return f"name the coordinate of that joint: {moved}"
+        return f"did you mean the joint `{meant}`? Name its coordinate: {moved}"
+
+    def listed_coordinates(self) -> str:
+        """The coordinates with the joints that they move, as `a (joint crank), b`; empty where they are many."""
+        names = [name for name, kind in self.kinds.items() if kind == "coordinate"]
+        moved_by: dict[str, str] = {}
+        for joint, moved in self.moved_by.items():
+            for name in moved:
+                moved_by.setdefault(name, "" if name == joint else f" (joint {joint})")
+        return ", ".join(name + moved_by.get(name, "") for name in names) if len(names) <= MOST_LISTED else ""
 
     def wrong_about(self, name: str, message: str, remedy: str, span: Span | None) -> None:
         """Records a mistake about what a name stands for; one in its declaration is enough to be told."""

@@ -77,5 +77,6 @@ def _product(expression: Binary) -> Layout:
         node = node.left
     factors.append(node)
     sign, first = signed(expression_layout(factors.pop()))
-    result = product([first, *(expression_layout(factor) for factor in reversed(factors))])
+    others = [expression_layout(factor) for factor in reversed(factors)]
+    result = product(others if first == Numeral("1") else [first, *others])
     return result if sign == "+" else Sum((("-", result),))

@@ -24,9 +24,10 @@ from symgen.report.mathematics.layout import (
     Sum,
     minus,
     signed,
+    size,
 )
 from symgen.report.mathematics.names import name_layout
-from symgen.report.mathematics.numerals import rational_layout
+from symgen.report.mathematics.numerals import decimal_coefficient, long_number, rational_layout
 from symgen.report.mathematics.setting import call, power, product
 
 Key: TypeAlias = tuple[Any, ...]
@@ -83,7 +84,9 @@ class SympyLayout:
         return Sum(tuple(terms))
 
     def _product(self, node: Any) -> Layout:
-        coefficient, over, under = Rational(1), [], []
+        coefficient = Rational(1)
+        over: list[tuple[Any, Any]] = []
+        under: list[tuple[Any, Any]] = []
         for factor in node.args if node.is_Mul else (node,):
             if factor.is_Rational:
                 coefficient *= Rational(int(factor.p), int(factor.q))
@@ -93,10 +96,26 @@ class SympyLayout:
                 over.append((factor.base, factor.exp))
             else:
                 over.append((factor, sympy.S.One))
+        coefficient, over = _without_shared_sign(coefficient, over)
+        coefficient, under = _without_shared_sign(coefficient, under)
+        if decimal_coefficient(coefficient) and not under:
+            coefficient, over = _multiplied_in(coefficient, over)
         numerator = [self._power(*pair) for pair in sorted(over, key=self._factor_key)]
         denominator = [self._power(*pair) for pair in sorted(under, key=self._factor_key)]
         result = _quotient(abs(coefficient), numerator, denominator)
-        return minus(result) if coefficient < 0 else result
+        result = minus(result) if coefficient < 0 else result
+        divided = self._divided(node, over, under)
+        return result if divided is None or size(divided) >= size(result) else divided
+
+    def _divided(self, node: Any, over: list[tuple[Any, Any]], under: list[tuple[Any, Any]]) -> Layout | None:
+        """A sum over a product of names, term by term: shorter where most terms have these as factors."""
+        if len(over) != 1 or not under or not all(base.is_Symbol for base, _ in under):
+            return None
+        ((base, exponent),) = over
+        if not base.is_Add or exponent != 1:
+            return None
+        divided = sympy.Add(*(node / base * term for term in base.args))
+        return self.expression(divided) if divided.is_Add else None
 
     def _power(self, base: Any, exponent: Any) -> Layout:
         inside = self.expression(base)
@@ -136,11 +155,43 @@ class SympyLayout:
         return (0, *sorted(self._factor_key(pair) for pair in factors))
 
 
+def _without_shared_sign(
+    coefficient: Rational, factors: list[tuple[Any, Any]]
+) -> tuple[Rational, list[tuple[Any, Any]]]:
+    """Sums all of whose terms are negative, with their signs turned."""
+    turned = []
+    for base, exponent in factors:
+        if base.is_Add and exponent.is_Integer and exponent % 2 == 1 and all(_number(term) < 0 for term in base.args):
+            base, coefficient = sympy.Add(*(-term for term in base.args)), -coefficient
+        turned.append((base, exponent))
+    return coefficient, turned
+
+
+def _multiplied_in(coefficient: Rational, factors: list[tuple[Any, Any]]) -> tuple[Rational, list[tuple[Any, Any]]]:
+    """0.0075 x + 0.0038 y for 0.0001 (75 x + 38 y): a decimal goes into a sum that it only takes digits from."""
+    for place, (base, exponent) in enumerate(factors):
+        if not base.is_Add or exponent != 1 or all(abs(_number(term)) == 1 for term in base.args):
+            continue
+        sizes = {abs(_number(term)) for term in base.args}
+        shared = sizes.pop() if len(sizes) == 1 else 1 / abs(coefficient)
+        scaled = sympy.Add(*(term / sympy.Rational(shared.numerator, shared.denominator) for term in base.args))
+        return coefficient * shared, [*factors[:place], (scaled, exponent), *factors[place + 1 :]]
+    return coefficient, factors
+
+
+def _number(term: Any) -> Rational:
+    """The rational factor of a term."""
+    number = term.as_coeff_Mul()[0]
+    return Rational(int(number.p), int(number.q)) if number.is_Rational else Rational(1)
+
+
 def _quotient(coefficient: Rational, numerator: list[Layout], denominator: list[Layout]) -> Layout:
     """coefficient · numerator / denominator; numbers stand before a product and inside a fraction with symbols."""
     if not denominator:
         number = rational_layout(coefficient)
         return number if not numerator else product(numerator if coefficient == 1 else [number, *numerator])
+    if long_number(coefficient):
+        return Fraction(_inside([rational_layout(coefficient), *numerator]), _inside(denominator))
     if coefficient.denominator != 1:
         denominator = [Numeral(str(coefficient.denominator)), *denominator]
     if coefficient.numerator != 1 or not numerator:

@@ -17,9 +17,10 @@ CLOSING: dict[str, str] = {"(": ")", "[": "]", "|": "|", "": ""}
 
 @dataclass(frozen=True, slots=True)
 class Numeral:
-    """Digits, perhaps with a decimal point."""
+    """Digits, perhaps with a decimal point; `rounded` where the number has more of them."""
 
     text: str
+    rounded: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -266,3 +267,26 @@ def size(node: Layout) -> int:
             return 1 + sum(size(entry) for row in rows for entry in row)
         case _:
             return 1
+
+
+def rounded(node: Layout) -> bool:
+    """Whether a number in the node has more digits than are set."""
+    match node:
+        case Numeral(rounded=fewer):
+            return fewer
+        case Scripts(base=base, lower=lower, upper=upper):
+            return any(rounded(part) for part in (base, lower, upper) if part is not None)
+        case Fraction(numerator=left, denominator=right) | Application(function=left, argument=right):
+            return rounded(left) or rounded(right)
+        case Accent(base=inner) | Root(radicand=inner) | Fenced(body=inner):
+            return rounded(inner)
+        case Product(factors=children) | Row(pieces=children):
+            return any(rounded(child) for child in children)
+        case Sum(terms=terms):
+            return any(rounded(term) for _, term in terms)
+        case Array(rows=rows):
+            return any(rounded(entry) for row in rows for entry in row)
+        case Delimiter(upper=upper):
+            return upper is not None and rounded(upper)
+        case _:
+            return False

@@ -37,8 +37,10 @@ DENOMINATOR_NAMES = ("a", "d", "h", "w")
 ZERO = Numeral("0")
 
 
-def array_blocks(symbol: Layout, array: Array, label: str | None) -> tuple[Block, ...]:
-    """symbol = array in one formula, or one equation per entry that is not zero."""
+def array_blocks(
+    symbol: Layout, array: Array, label: str | None, names: tuple[Layout, ...] = ()
+) -> tuple[Block, ...]:
+    """symbol = array in one formula, or one equation per entry that is not zero; `names` are those of its rows."""
     whole = equation(symbol, array)
     if page_width(whole) <= ROOM:
         return (displayed((whole,), label),)
@@ -46,7 +48,7 @@ def array_blocks(symbol: Layout, array: Array, label: str | None) -> tuple[Block
     column = len(rows[0]) == 1
     symmetric = len(rows) == len(rows[0]) and all(rows[i][j] == rows[j][i] for i in range(len(rows)) for j in range(i))
     entries = tuple(
-        equation(_entry_symbol(symbol, i, None if column else j), entry)
+        equation(_named(symbol, names[i]) if names else _entry_symbol(symbol, i, None if column else j), entry)
         for i, row in enumerate(rows)
         for j, entry in enumerate(row)
         if entry != ZERO and not (symmetric and j < i)
@@ -116,13 +118,19 @@ class Denominators:
 
 
 def matrix_blocks(
-    symbol: Layout, matrix: Any, layout: SympyLayout, denominators: Denominators, label: str | None
-) -> tuple[Block, ...]:
-    """A SymPy matrix, with the denominator most entries share set before it under a name of its own."""
+    symbol: Layout, matrix: Any, layout: SympyLayout, denominators: Denominators, label: str | None,
+    names: tuple[Layout, ...] = (),
+) -> tuple[Block, ...]:  # fmt: skip
+    """A SymPy matrix, with the denominator most entries share set before it under a name of its own.
+
+    `names` are those of the rows of a column, where they have some.
+    """
     shared = denominators.common(matrix)
     if shared is None:
         array = layout.matrix(matrix)
-        return array_blocks(symbol, array, label) if size(array) <= MOST_NODES else (_too_long(symbol, size(array)),)
+        if size(array) > MOST_NODES:
+            return (_too_long(symbol, size(array)),)
+        return array_blocks(symbol, array, label, names)
     factor, exponent = shared
     name, new = denominators.name(factor)
     array = layout.matrix(matrix.applyfunc(lambda entry: _times(entry, factor, sympy.Symbol(name), exponent)))
@@ -139,7 +147,7 @@ def matrix_blocks(
     opening: tuple[Block, ...] = ()
     if new:
         opening = (paragraph("With the common denominator"), displayed((where,), f"denominator_{name}"))
-    return (*opening, *array_blocks(Product((scale, symbol)), array, label))
+    return (*opening, *array_blocks(Product((scale, symbol)), array, label, names))
 
 
 def _entry_symbol(symbol: Layout, i: int, j: int | None) -> Layout:
@@ -152,6 +160,11 @@ def _entry_symbol(symbol: Layout, i: int, j: int | None) -> Layout:
     if isinstance(symbol, (Letter, Accent)):
         return Scripts(symbol, index)
     return Scripts(Fenced(symbol), index)
+
+
+def _named(symbol: Layout, name: Layout) -> Layout:
+    """One entry of a column whose entries have names, with the factor that stands before the column."""
+    return Product((symbol.factors[0], name)) if isinstance(symbol, Product) else name
 
 
 def _too_long(symbol: Layout, nodes: int) -> Block:

@@ -88,8 +88,11 @@ def columns(text: str) -> int:
     return len(text) - sum(text.count(mark) for mark in MARKS.values())
 
 
-def text_lines(node: Layout, width: int) -> list[str]:
-    """The node wrapped to `width` columns; a matrix as a grid where it fits, otherwise entry by entry."""
+def text_lines(node: Layout, width: int, names: tuple[Layout, ...] = ()) -> list[str]:
+    """The node wrapped to `width` columns; a matrix as a grid where it fits, otherwise entry by entry.
+
+    `names` are those of the rows of a column, where they have some.
+    """
     prefix, array = _split(node)
     if array is not None:
         grid = _grid(array)
@@ -97,11 +100,13 @@ def text_lines(node: Layout, width: int) -> list[str]:
         if columns(grid[0]) + columns(head) <= width:
             middle = (len(grid) - 1) // 2
             return [(head if k == middle else " " * columns(head)) + line for k, line in enumerate(grid)]
-        lines = [f"{head}{len(array.rows)}×{len(array.rows[0])} matrix, entries that are not zero:"]
+        kind = "determinant" if array.fence == "|" else "matrix"
+        lines = [f"{head}{len(array.rows)}×{len(array.rows[0])} {kind}, entries that are not zero:"]
         for i, row in enumerate(array.rows):
             for j, entry in enumerate(row):
                 if entry != Numeral("0"):
-                    lines += text_lines(Row((Letter(f"  [{i + 1},{j + 1}]"), Relation("="), entry)), width)
+                    place = Letter(f"  {text_math(names[i])}" if names else f"  [{i + 1},{j + 1}]")
+                    lines += text_lines(Row((place, Relation("="), entry)), width)
         return lines
     rows = break_lines(node, terminal_width, float(width), float(len(CONTINUATION)))
     return [(CONTINUATION if k else "") + text_math(row).strip("\n").rstrip() for k, row in enumerate(rows)]
@@ -121,10 +126,11 @@ def _grid(array: Array) -> list[str]:
     """The lines of a matrix with columns aligned."""
     cells = [[text_math(entry) for entry in row] for row in array.rows]
     widths = [max(columns(cell) for cell in column) for column in zip(*cells, strict=True)]
+    left, right = ("|", "|") if array.fence == "|" else ("[", "]")
     lines = []
     for row in cells:
         padded = (cell + " " * (width - columns(cell)) for cell, width in zip(row, widths, strict=True))
-        lines.append("[ " + "  ".join(padded) + " ]")
+        lines.append(f"{left} {'  '.join(padded)} {right}")
     return lines
 
 

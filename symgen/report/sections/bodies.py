@@ -82,7 +82,8 @@ def _bodies(context: Context) -> Table:
             for name, value in elements
             if exact_value(value) != 0
         )
-        inertia = _math(listed(given)) if given else NOTHING
+        # several formulas: a line of text breaks between them
+        inertia = say(", ".join("{}" for _ in given), *given) if given else NOTHING
         rows.append(
             (
                 (InlineCode(body.name),),

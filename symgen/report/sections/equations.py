@@ -15,6 +15,7 @@ from symgen.report.mathematics.layout import (
     Scripts,
     Sum,
     equation,
+    size,
 )
 from symgen.report.prose import (
     HALF,
@@ -51,6 +52,8 @@ from symgen.report.sections.by_laws.constraints import jacobian_law, rate_law
 from symgen.report.sections.recursion import recursion
 
 D = bold("D")
+# Nodes up to which the potential forces are printed where the recursion of Newton and Euler follows.
+LONG_BEFORE_RECURSION = 600
 
 
 def equations_of_motion(context: Context) -> Section:
@@ -135,6 +138,9 @@ def _potential(context: Context) -> list[Block]:
     if context.vanishes("potential_force"):
         return [paragraph("There are no potential forces, {}.", equals(Q, ZERO))]
     gradient = equals(Q, transposed(Fenced(_partial(U, q))))
+    matrix = context.matrix("potential_force")
+    if context.input.frame_steps and (matrix is None or size(context.layout.matrix(matrix)) > LONG_BEFORE_RECURSION):
+        return [paragraph("The potential forces, {}, are long; the recursion below has them with the rest.", gradient)]
     return [paragraph("The potential forces, {}, are", gradient), *context.quantity("potential_force", "Q")]
 
 

@@ -17,6 +17,7 @@ from symgen.report.prose import (
     say,
     small_m,
     small_r,
+    worded,
 )
 
 ACTUATION = {
@@ -115,4 +116,5 @@ def _actuation(context: Context) -> Block:
 def _integrable(row: str, verdict: str, explanation: str) -> Text:
     if not explanation:
         return say("{} is {}.", InlineCode(row), verdict)
-    return say("{} is {}: {}", InlineCode(row), verdict, sentence(explanation)[0].lower() + sentence(explanation)[1:])
+    why = sentence(explanation)
+    return (*say("{} is {}: ", InlineCode(row), verdict), *worded(why[0].lower() + why[1:]))

@@ -94,6 +94,8 @@ def _projector(context: Context) -> list[Block]:
     form, laws = context.form("nullspace_projector"), projector_laws(context)
     if form is None or laws:
         return laws
+    if form.matrix is None:
+        return [*context.quantity("nullspace_projector", "NB")]
     if form.intermediates:
         opening = paragraph(
             "In the signed minors of {}, named below, it is a quotient of polynomials without any matrix inverse.", B

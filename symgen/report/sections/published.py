@@ -16,7 +16,7 @@ from symgen.report.mathematics.from_expression import expression_layout
 from symgen.report.mathematics.layout import Array, Layout, Letter, Relation, Row, equation
 from symgen.report.mathematics.matrices import array_blocks
 from symgen.report.mathematics.names import name_layout
-from symgen.report.prose import SYMBOLS, ZERO, listed, paragraph, say
+from symgen.report.prose import SYMBOLS, ZERO, listed, paragraph, say, worded
 
 
 def published(context: Context) -> tuple[Section, ...]:
@@ -30,7 +30,7 @@ def published(context: Context) -> tuple[Section, ...]:
             say("{}", item.equation),
             _subject(item),
             say("{}", verdicts[k].verdict),
-            say("{}", sentence(verdicts[k].explanation)),
+            worded(sentence(verdicts[k].explanation)),
         )
         for k, item in items
         if k in verdicts

@@ -6,11 +6,11 @@ from symgen.closedform.laws.singular_sets import DeterminantSet
 from symgen.closedform.singular import Kind, SingularSet
 from symgen.report.context import Context
 from symgen.report.document import Block, Section, displayed
-from symgen.report.mathematics.layout import Layout, Relation, Row, size
+from symgen.report.mathematics.layout import Fenced, Layout, Letter, Relation, Row, Scripts, size
 from symgen.report.mathematics.matrices import packed
-from symgen.report.prose import SYMBOLS, ZERO, paragraph, say
-from symgen.report.sections.by_laws.determinants import Determinants
-from symgen.report.sections.by_laws.projections import matrix_of_minors
+from symgen.report.prose import SYMBOLS, ZERO, B, equals, juxtaposed, number, paragraph, say, transposed
+from symgen.report.sections.by_laws.determinants import MEANING, Determinants
+from symgen.report.sections.by_laws.projections import ROWS, matrix_of_minors
 
 OPENING = {
     "constraint": "At constraint singularities the rank of {} drops and {} does not exist",
@@ -28,18 +28,43 @@ LARGEST_LOCUS = 1500
 
 def singular(context: Context) -> Section:
     """Where ranks drop."""
-    determinants = {one.kind: one for one in context.input.determinants}
     expressions = {one.kind: one for one in context.input.singular_sets}
-    printed = Determinants(context)
-    blocks = printed.definitions()
+    blocks, determinants = sets_by_determinants(context)
     for kind in ORDER:
         if kind in determinants:
-            blocks += _by_determinants(printed, determinants[kind])
+            blocks += determinants[kind]
+        elif by_squares := dependent_rows_lose_rank(context, kind):
+            blocks += by_squares
         elif kind in expressions:
             blocks += _one(context, expressions[kind])
     if not blocks:
         blocks.append(paragraph("Without constraints, inputs and chosen velocities no rank can drop."))
     return Section(say("Singular configurations"), tuple(blocks))
+
+
+def sets_by_determinants(context: Context) -> tuple[list[Block], dict[Kind, list[Block]]]:
+    """Determinants that have names, and what is said of each kind of set that determinants are for."""
+    printed = Determinants(context)
+    return printed.definitions(), {one.kind: _by_determinants(printed, one) for one in context.input.determinants}
+
+
+def dependent_rows_lose_rank(context: Context, kind: Kind) -> list[Block]:
+    """Sets that were not worked out of rows that depend on each other, by squares of parts of B; nothing for others."""
+    known = any(one.kind == kind and (one.vanishing or one.decided) for one in context.input.singular_sets)
+    rank = context.structure.constraint_rank
+    if known or rank == context.model.r:
+        return []
+    if kind == "constraint":
+        text = "; this happens where {} for every choice {} of {} of the rows of {}."
+        part = Scripts(B, ROWS)
+        square = equals(Fenced(juxtaposed(part, transposed(part)), "|"), ZERO)
+        return [paragraph(OPENING[kind] + text, *_slots(kind), square, ROWS, number(rank), B)]
+    if kind == "input" and any(law.kind == "driven" for law in context.laws("projected_control_pseudoinverse")):
+        text = "; this happens where {}, {} being the columns of the coordinates that no input drives. {}"
+        part = Scripts(B, Letter("p"))
+        square = equals(Fenced(juxtaposed(transposed(part), part), "|"), ZERO)
+        return [paragraph(OPENING[kind] + text, *_slots(kind), square, part, MEANING[kind])]
+    return []
 
 
 def _by_determinants(printed: Determinants, one: DeterminantSet) -> list[Block]:
@@ -52,7 +77,8 @@ def _one(context: Context, locus: SingularSet) -> list[Block]:
     if locus.decided and not locus.vanishing:
         return [paragraph(_nowhere(locus.kind), *_slots(locus.kind))]
     if not locus.vanishing:
-        return [paragraph(OPENING[locus.kind] + "; {}.", *_slots(locus.kind), locus.explanation.rstrip("."))]
+        why = locus.explanation.rstrip(".")
+        return [paragraph(OPENING[locus.kind] + "; {}.{}", *_slots(locus.kind), why, measured_by(locus))]
     minors = matrix_of_minors(context, locus.vanishing)
     if minors and not locus.decided:
         where = "; this happens where {} vanishes, that is where {}."
@@ -68,6 +94,13 @@ def _one(context: Context, locus: SingularSet) -> list[Block]:
         OPENING[locus.kind] + "; this happens where all of these expressions vanish at once:", *_slots(locus.kind)
     )
     return [opening, displayed(tuple(packed(equations)))]
+
+
+def measured_by(locus: SingularSet) -> str:
+    """What tells in numbers where a set is that was not worked out."""
+    if locus.kind not in ("constraint", "input"):
+        return ""
+    return " The quantity singularity (0 there) says in numbers how far away a configuration is."
 
 
 def _slots(kind: Kind) -> list[Layout]:

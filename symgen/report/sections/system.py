@@ -12,6 +12,7 @@ from symgen.report.context import Context, text_of
 from symgen.report.document import (
     Block,
     Figure,
+    FigureReference,
     InlineCode,
     InlineMath,
     Section,
@@ -32,7 +33,7 @@ from symgen.report.mathematics.layout import (
 )
 from symgen.report.mathematics.matrices import packed
 from symgen.report.mathematics.names import name_layout
-from symgen.report.mathematics.numerals import rational_text
+from symgen.report.mathematics.numerals import decimal_text, rational_text
 from symgen.report.mathematics.setting import product
 from symgen.report.prose import (
     ONE,
@@ -44,11 +45,13 @@ from symgen.report.prose import (
     T,
     U,
     equals,
+    juxtaposed,
     lam,
     listed,
     number,
     paragraph,
     q,
+    qd,
     say,
     small_m,
     small_n,
@@ -60,12 +63,13 @@ from symgen.report.sections.bodies import mechanism
 SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
-def _drawing(context: Context) -> tuple[Figure, ...]:
+def _drawing(context: Context) -> tuple[Block, ...]:
     """The machine, where it has frames."""
     if context.input.drawing is None:
         return ()
     caption = say("The mechanism where its start leads, with its coordinates; driven joints are filled.")
-    return (Figure(context.input.drawing, caption, wide=False),)
+    figure = Figure(context.input.drawing, caption, "mechanism", wide=False)
+    return (paragraph("{} shows the mechanism.", FigureReference(figure.label)), figure)
 
 
 def system(context: Context) -> Section:
@@ -93,7 +97,7 @@ def system(context: Context) -> Section:
         blocks += [paragraph("These expressions have names of their own:"), displayed(tuple(packed(named)))]
     blocks += mechanism(context)
     blocks += [*_energies(context), *_constraints(context), *_inputs(context), *_applied_forces(context)]
-    blocks += _given(context.model)
+    blocks += _given(context)
     return Section(say("The system"), tuple(blocks))
 
 
@@ -150,7 +154,7 @@ def _parameters(context: Context) -> Table:
 
 
 def _default(value: Expression) -> Text:
-    if isinstance(value, Number) and "e" not in rational_text(value.value):
+    if isinstance(value, Number) and decimal_text(value.value) is not None:
         return say("{}", rational_text(value.value))
     return (InlineMath(expression_layout(value)),)
 
@@ -215,8 +219,9 @@ def _constraints(context: Context) -> list[Block]:
     return blocks
 
 
-def _given(model: Model) -> list[Block]:
-    """What is measured, and the task."""
+def _given(context: Context) -> list[Block]:
+    """What is measured, and the task with its derivatives by the coordinates."""
+    model = context.model
     blocks: list[Block] = []
     if model.measured:
         names = listed(tuple(name_layout(name) for name in model.measured))
@@ -227,6 +232,11 @@ def _given(model: Model) -> list[Block]:
         blocks += [
             paragraph(f"Motions are planned in {'this coordinate' if one else 'these coordinates'} of a task:"),
             displayed(equations, "task"),
+            paragraph(
+                f"{'Its rate is' if one else 'Their rates are'} {{}}, with the derivatives by the coordinates",
+                equals(SYMBOLS["task_velocity"], juxtaposed(SYMBOLS["task_jacobian"], qd)),
+            ),
+            *context.quantity("task_jacobian", "Jx"),
         ]
         blocks += _least_motion(model)
     return blocks

@@ -4,9 +4,48 @@ from __future__ import annotations
 
 from symgen.report.content import ErrorRow, Verification
 from symgen.report.context import Context, sentence
-from symgen.report.document import Block, Figure, InlineCode, Section, Table
-from symgen.report.prose import paragraph, say, worded
+from symgen.report.document import Block, Figure, FigureReference, InlineCode, Section, Table, Text
+from symgen.report.mathematics.layout import Accent, Layout, Letter, Scripts
+from symgen.report.prose import (
+    NB,
+    TWO,
+    ZERO,
+    B,
+    C,
+    G,
+    Mt,
+    N,
+    bold,
+    equals,
+    juxtaposed,
+    minus_sum,
+    paragraph,
+    pseudoinverse,
+    qd,
+    say,
+    transposed,
+    worded,
+)
 
+Nx, Jx, Gt, Ct = Scripts(N, Letter("x")), Scripts(bold("J"), Letter("x")), Accent(G, "tilde"), Accent(C, "tilde")
+Mp = pseudoinverse(Mt)
+"""Matrices that laws are about: of a task, projected ones, and the pseudoinverse of M̃."""
+LAWS: dict[str, tuple[str, Layout] | tuple[str, Layout, Layout]] = {
+    "N N = N": ("{}", equals(juxtaposed(NB, NB), NB)),
+    "N' = N": ("{}", equals(transposed(NB), NB)),
+    "B N = 0": ("{}", equals(juxtaposed(B, NB), ZERO)),
+    "A X A = A (A = M~, X = M~+)": ("{}", equals(juxtaposed(Mt, Mp, Mt), Mt)),
+    "X A X = X": ("{}", equals(juxtaposed(Mp, Mt, Mp), Mp)),
+    "(A X)' = A X": ("{} is symmetric", juxtaposed(Mt, Mp)),
+    "(X A)' = X A": ("{} is symmetric", juxtaposed(Mp, Mt)),
+    "N_x N_x = N_x": ("{}", equals(juxtaposed(Nx, Nx), Nx)),
+    "N_x' = N_x": ("{}", equals(transposed(Nx), Nx)),
+    "B N_x = 0": ("{}", equals(juxtaposed(B, Nx), ZERO)),
+    "J_x N_x = 0": ("{}", equals(juxtaposed(Jx, Nx), ZERO)),
+    "N_x qd = 0 (qd the least rates)": ("{} for the least rates {}", equals(juxtaposed(Nx, qd), ZERO), qd),
+    "d/dt G~ - 2 C~ is skew": ("{} is skew-symmetric", minus_sum((Accent(Gt, "dot"),), (juxtaposed(TWO, Ct),))),
+}
+"""How laws that verification names are set."""
 # Units of error: less than this is shown as less.
 SMALLEST_SHOWN = 1e-3
 
@@ -43,8 +82,16 @@ def charts(context: Context) -> tuple[Section, ...]:
     """The drawings of the model's paths."""
     if not context.input.charts:
         return ()
-    figures = tuple(Figure(chart.svg, say("{}", sentence(chart.caption))) for chart in context.input.charts)
-    return (Section(say("Charts"), figures),)
+    figures = tuple(
+        Figure(chart.svg, say("{}", sentence(chart.caption)), f"chart_{position}")
+        for position, chart in enumerate(context.input.charts, start=1)
+    )
+    first, last = FigureReference(figures[0].label), FigureReference(figures[-1].label)
+    if len(figures) == 1:
+        intro = paragraph("{} is drawn along a path of the model.", first)
+    else:
+        intro = paragraph("{} to {} are drawn along paths of the model.", first, last)
+    return (Section(say("Charts"), (intro, *figures)),)
 
 
 def _targets(measured: Verification) -> list[str]:
@@ -75,10 +122,16 @@ def _laws(measured: Verification) -> Table:
     targets = list(dict.fromkeys(target for target, _, _ in measured.invariants))
     values = {(target, law): value for target, law, value in measured.invariants}
     rows = tuple(
-        (worded(law), *(say("{}", values.get((target, law), "")) for target in targets))
+        (_law(law), *(say("{}", values.get((target, law), "")) for target in targets))
         for law in dict.fromkeys(law for _, law, _ in measured.invariants)
     )
     return Table(tuple(say("{}", heading) for heading in ("Law", *targets)), rows, (0, *(1 for _ in targets)))
+
+
+def _law(law: str) -> Text:
+    """A law as it is set; what it is not known by is in words."""
+    known = LAWS.get(law)
+    return worded(law) if known is None else say(*known)
 
 
 def _spread(row: ErrorRow) -> str:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from symgen.closedform.laws.terms import DefinedFactor, ListedFactor, MatrixLaw, PartFactor
+from symgen.closedform.laws.terms import DefinedFactor, IndependentRows, ListedFactor, MatrixLaw, PartFactor
 from symgen.report.context import Context
-from symgen.report.document import Block, displayed
+from symgen.report.document import Block, InlineCode, displayed
 from symgen.report.mathematics.from_law import law_layout, matrix_layout
 from symgen.report.mathematics.layout import Fenced, Layout, Letter, Scripts, equation
 from symgen.report.mathematics.matrices import matrix_blocks, packed
@@ -24,7 +24,7 @@ from symgen.report.prose import (
     pseudoinverse,
 )
 
-A, P = Letter("a"), Letter("p")
+A, P, ROWS = Letter("a"), Letter("p"), Letter("i")
 
 
 def projector_laws(context: Context) -> list[Block]:
@@ -37,9 +37,21 @@ def projector_laws(context: Context) -> list[Block]:
             case "squares":
                 blocks.append(paragraph("With a matrix of the size of the constraints to invert, {} is", NB))
                 blocks.append(displayed(tuple(packed((_statement(law), *_definitions(law)))), "NB"))
+            case "rows":
+                blocks += _projector_by_rows(context, law)
             case _:
                 blocks += _projector_by_basis(context, law)
     return blocks
+
+
+def _projector_by_rows(context: Context, law: MatrixLaw) -> list[Block]:
+    """Which rows, and the product."""
+    (rows,) = (factor for factor in law.factors if isinstance(factor, IndependentRows))
+    names = [InlineCode(context.model.constraints[i].name) for i in rows.places]
+    text = f"Of the rows of {{}} let the index {{}} stand for {', '.join('{}' for _ in names)}. Where these are "
+    text += "independent, as they are at almost every configuration, {} is"
+    statements = tuple(packed((_statement(law), *_definitions(law))))
+    return [paragraph(text, B, ROWS, *names, NB), displayed(statements, "NB")]
 
 
 def _projector_by_minors(context: Context, law: MatrixLaw) -> list[Block]:
