@@ -55,15 +55,21 @@ def generate(path: Path, options: Options, progress: Progress) -> Result:
     mistakes in the file and WrongUseError for outputs that do not exist; verification failures come back in the result.
     """
     with working("") as whole:
-        return _generated(path, options, progress, whole)
+        progress("reading the model")
+        # nearly all of what takes longer than a moment there
+        with working("where its loops close"):
+            model = load_model(path)
+        return _generated(path, model, options, progress, whole)
 
 
-def _generated(path: Path, options: Options, progress: Progress, whole: Work) -> Result:
+def generate_of(path: Path, model: Model, options: Options, progress: Progress) -> Result:
+    """The same of a model that was read from the file at `path`, and changed since then if need be."""
+    with working("") as whole:
+        return _generated(path, model, options, progress, whole)
+
+
+def _generated(path: Path, model: Model, options: Options, progress: Progress, whole: Work) -> Result:
     """The same; `whole` is told what the run takes as soon as that can be foreseen."""
-    progress("reading the model")
-    # nearly all of what takes longer than a moment there
-    with working("where its loops close"):
-        model = load_model(path)
     options, report_notices = without_report(model, options)
     outputs = requested_outputs(model, options)
     draft: Draft | None = None

@@ -167,6 +167,13 @@ def not_negative(text: str) -> float:
     return value
 
 
+def seed(text: str) -> int:
+    """A whole number from 0 up."""
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"{text!r} is no whole number from 0 up")
+    return int(text)
+
+
 def two_weights(text: str) -> tuple[float, float]:
     """`1,0.1` as two positive numbers."""
     numbers = [positive(part.strip()) for part in text.split(",")]

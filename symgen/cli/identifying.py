@@ -1,4 +1,4 @@
-"""Which combinations of inertial parameters count, and what a log of the machine says of them."""
+"""Which combinations of inertial parameters count, what a log of the machine says of them, and how it should move."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from symgen.cli.arguments import add_out, add_quiet, make_parser, positive
+from symgen.cli.arguments import add_out, add_quiet, make_parser, positive, seed
 from symgen.cli.command import Command
 from symgen.cli.outcome import DONE, MODEL_WRONG, each_file
 from symgen.generation.results import WrongUseError
@@ -70,3 +70,37 @@ _LOG_FORMAT = """the log: a line of names, then a line for each sample, at equal
   a unit may stand behind a name in brackets, as in `a_1 [rad]`
 """
 IDENTIFY = Command(_identify_parser, _identify)
+
+
+def _excite_parser() -> argparse.ArgumentParser:
+    parser = make_parser(
+        "symgen excite",
+        "A motion to identify by: a Fourier series within ranges, limits of drives and a\n"
+        "distance from singularities, of the smallest condition number: CSV, chart, path.",
+    )
+    parser.add_argument("model", metavar="MODEL.yaml", type=Path, help="model file, in bodies form")
+    parser.add_argument("--period", metavar="S", type=positive, default=5.0, help="seconds (default: 5)")
+    parser.add_argument(
+        "--distance",
+        metavar="D",
+        type=positive,
+        help="from singularities at least, 0 to 1 (default: half of what the configuration of the model has)",
+    )
+    parser.add_argument("--seed", metavar="N", type=seed, default=0, help="of the motions that are drawn (default: 0)")
+    add_out(parser)
+    add_quiet(parser)
+    return parser
+
+
+def _excite(given: argparse.Namespace) -> int:
+    def one(path: Path, progress: Progress) -> int:
+        from symgen.identification.excitation.command import run_excite
+        from symgen.identification.excitation.excitation import ExcitationRequest
+
+        request = ExcitationRequest(given.period, given.distance, given.seed)
+        return run_excite(path, given.out, request, given.quiet, progress)
+
+    return each_file([given.model], given.out, given.quiet, one)
+
+
+EXCITE = Command(_excite_parser, _excite)

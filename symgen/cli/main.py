@@ -25,7 +25,7 @@ from symgen.cli.arguments import (
     parts,
 )
 from symgen.cli.command import Command
-from symgen.cli.identifying import IDENTIFY, explain_base_parameters
+from symgen.cli.identifying import EXCITE, IDENTIFY, explain_base_parameters
 from symgen.cli.linearizing import add_linearization, explain_linear_system
 from symgen.cli.measuring import BENCH, SIMULATE, STRESS, TARGET
 from symgen.cli.outcome import DONE, MODEL_WRONG, WRONG_USE, check_present, check_writable, guarded
@@ -56,6 +56,7 @@ _EPILOG = """commands:
   symgen stress MODEL.yaml...       errors near singularities, in long runs
   symgen target MODEL.yaml --cpu C  instructions, bytes, bits on emulated cores
   symgen simulate MODEL.yaml        integrates: CSV, chart, animation
+  symgen excite MODEL.yaml          a motion to identify parameters by
   symgen identify MODEL.yaml LOG    parameters from a log of the machine
   symgen study MODEL.yaml           maps over ranges of parameters and places
   symgen new NAME                   a commented model to start from
@@ -297,6 +298,7 @@ _COMMANDS = {
     "stress": STRESS,
     "target": TARGET,
     "simulate": SIMULATE,
+    "excite": EXCITE,
     "identify": IDENTIFY,
     "study": STUDY,
     "new": Command(_new_parser, _new),

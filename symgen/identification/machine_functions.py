@@ -2,76 +2,92 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
+from typing import Literal, TypeAlias
 
 import numpy as np
 
-from symgen.generation.draft import draft_of
-from symgen.generation.files import sources_of
-from symgen.generation.results import Options
+from symgen.generation.rejections import rejected_lines
+from symgen.generation.results import Options, Result
 from symgen.identification.arrays import Array
 from symgen.identification.not_identified import NotIdentifiedError
 from symgen.model.checks.feasibility import measures_places
 from symgen.model.configurations.mechanics import NumericSystem, default_values
 from symgen.model.model import Model
+from symgen.pipeline import generate_of
 from symgen.verify.running.python_module import PythonModule
 
+Progress = Callable[[str], None]
+# What a motion is given by: coordinates that are measured, or those of the task.
+GivenBy: TypeAlias = Literal["measured", "task"]
 # States of one call: more of them do not fit into the cache of a processor.
 STATES_AT_ONCE = 4096
-_PLACE, _RATE, _ACCELERATION = (
-    "configuration_from_measured",
-    "velocity_from_measured",
-    "acceleration_from_measured",
-)
 _PROJECTION = ("projected_control_matrix", "projected_control_pseudoinverse")
 
 
 class MachineFunctions:
-    """Functions of states (N, n), with the coordinates that a log has as `measured`.
+    """Functions of states (N, n), with the coordinates that a log has as `measured`; they are `verified`.
 
+    Where a motion is given by the task, rows of given places, rates and accelerations (N, k) are those of the task.
+    `further` quantities are made beside those that identification takes.
     Inputs are least ones, whatever the file's allocation says: drives that work against each other are no motion.
-    Raises NotIdentifiedError for a model that has no regressor.
+    Raises NotIdentifiedError for a model that has no regressor, and where verification rejects a function; ModelError,
+    about the file at `path`, where there are no states to verify at.
     """
 
-    def __init__(self, model: Model, measured: Sequence[str]) -> None:
+    def __init__(
+        self,
+        path: Path,
+        model: Model,
+        measured: Sequence[str],
+        progress: Progress,
+        given_by: GivenBy = "measured",
+        further: Sequence[str] = (),
+    ) -> None:
         self.model = _prepared(model, measured)
         self.parameters = default_values(model.parameters)
         self.directions = model.m if model.assembly is None else model.assembly.ranks.actuation
         self.is_redundant = model.m > self.directions
         geometric = any(row.kind == "geometric" for row in model.constraints)
-        outputs = ["inverse_dynamics", "regressor"]
-        outputs += [_PLACE] if geometric else []
-        outputs += [_RATE, _ACCELERATION] if model.constraints else []
+        self._place, self._rate, self._acceleration = (
+            f"{what}_from_{given_by}" for what in ("configuration", "velocity", "acceleration")
+        )
+        outputs = ["inverse_dynamics", "regressor", *further]
+        outputs += [self._place] if geometric or given_by == "task" else []
+        outputs += [self._rate, self._acceleration] if model.constraints or given_by == "task" else []
         outputs += _PROJECTION if self.is_redundant else []
-        options = Options(outputs=tuple(outputs), scalars=("float64",), parts=("python",), verify=False)
-        sources = sources_of(draft_of(self.model, tuple(outputs), options), options)
-        (source,) = (text for path, text in sources.items() if path.endswith(".py"))
-        self._module = PythonModule(source).module
-        if lacking := [name for name in outputs if not hasattr(self._module, name)]:
-            raise NotIdentifiedError(f"the model has no {lacking[0]}, which identification is made of")
+        options = Options(outputs=tuple(outputs), scalars=("float64",), parts=("python",))
+        self.verified = _accepted(generate_of(path, self.model, options, progress), outputs)
+        (source,) = (text for name, text in self.verified.files.items() if name.endswith(".py"))
+        self._module = PythonModule(str(source)).module
 
     @property
     def closes_loops(self) -> bool:
-        """Whether configurations follow from measured coordinates."""
-        return hasattr(self._module, _PLACE)
+        """Whether configurations follow from what is given."""
+        return hasattr(self._module, self._place)
 
-    def one_configuration(self, measured: Array, near: Array) -> tuple[Array, str]:
-        """q (n) with the measured coordinates, near another; what the status means where there is none."""
+    def one_configuration(self, given: Array, near: Array) -> tuple[Array, str]:
+        """q (n) for given places (k), near another; what the status means where there is none."""
         try:
-            return np.asarray(self._module.configuration_from_measured(measured, near)), ""
+            return np.asarray(getattr(self._module, self._place)(given, near)), ""
         except self._module.StateError as refusal:
             return near, str(refusal)
 
-    def configurations(self, measured: Array, near: Array) -> Array:
-        """q (N, n) with measured coordinates (N, k), each near another (N, n); NaN where there is none."""
-        return self._called(_PLACE, (measured, near))
+    def configurations(self, given: Array, near: Array) -> Array:
+        """q (N, n) for given places (N, k), each near another (N, n); NaN where there is none."""
+        return self.quantity(self._place, given, near)
 
     def motion(self, q: Array, rates: Array, accelerations: Array) -> tuple[Array, Array]:
-        """Admissible rates and accelerations (N, n), nearest to measured ones (N, k)."""
-        if not self.model.constraints:
+        """Admissible rates and accelerations (N, n), nearest to given ones (N, k)."""
+        if not hasattr(self._module, self._rate):
             return rates, accelerations
-        return self._called(_RATE, (q, rates)), self._called(_ACCELERATION, (q, rates, accelerations))
+        return self.quantity(self._rate, q, rates), self.quantity(self._acceleration, q, rates, accelerations)
+
+    def quantity(self, name: str, *given: Array) -> Array:
+        """A quantity (N, ...) that was made, at arrays (N, k), with all parameters of the file as they are."""
+        return self._called(name, given)
 
     def inputs(self, state: tuple[Array, Array, Array], changed: Mapping[str, float] | None = None) -> Array:
         """Least inputs u (N, m) at (q, qd, qdd), with some parameters changed."""
@@ -80,13 +96,13 @@ class MachineFunctions:
 
     def regressor(self, state: tuple[Array, Array, Array]) -> Array:
         """Y (N, m, p) at (q, qd, qdd), with all parameters of the file as they are."""
-        return self._called("regressor", state)
+        return self.quantity("regressor", *state)
 
     def least(self, q: Array, u: Array) -> Array:
         """The least inputs (N, m) with the same effect: what drives do against each other is taken out."""
         if not self.is_redundant:
             return u
-        matrices = [self._called(name, (q,)) for name in _PROJECTION]
+        matrices = [self.quantity(name, q) for name in _PROJECTION]
         return np.asarray(np.einsum("smn,snk,sk->sm", matrices[1], matrices[0], u), dtype=np.float64)
 
     def _called(self, name: str, given: tuple[Array, ...], values: Mapping[str, float] | None = None) -> Array:
@@ -100,6 +116,16 @@ class MachineFunctions:
 def parts_of(count: int) -> Iterator[slice]:
     """So many states in parts."""
     return (slice(k, k + STATES_AT_ONCE) for k in range(0, count, STATES_AT_ONCE))
+
+
+def _accepted(result: Result, outputs: Sequence[str]) -> Result:
+    """The same, where nothing of it was rejected and nothing lacks."""
+    if rejected := rejected_lines(result):
+        raise NotIdentifiedError("\n".join(("verification rejects what would be fitted with", *rejected)))
+    made = {kernel.name for kernel in result.programs["float64"].kernels}
+    if lacking := [name for name in outputs if name not in made]:
+        raise NotIdentifiedError(f"the model has no {lacking[0]}, which identification is made of")
+    return result
 
 
 def _prepared(model: Model, measured: Sequence[str]) -> Model:

@@ -36,6 +36,8 @@ class Coordinate:
     acceleration_range: Range
     span: Span | None = None
     has_range: bool = True  # told, not taken for granted
+    has_rate_range: bool = True
+    has_acceleration_range: bool = True
 
     @property
     def rate(self) -> str:

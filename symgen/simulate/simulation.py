@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from symgen.drawing.scene import scene
+from symgen.generation.rejections import rejected_lines
 from symgen.generation.requested import check_known, configuration_near
 from symgen.generation.results import Options, Result
 from symgen.generation.runnable import Runner
@@ -102,12 +103,8 @@ def verified_kernels(path: Path, quantities: Sequence[str], progress: Progress) 
     result = generate(path, Options(outputs=tuple(quantities), scalars=("float64",), parts=(part,)), progress)
     kernels = {kernel.name for kernel in result.programs["float64"].kernels}
     reasons: list[str] = []
-    if result.failures or result.left_out:
-        reasons.append("verification rejects what would be integrated")
-        reasons += [f"  {failure}" for failure in result.failures]
-        for one in result.left_out:
-            reasons += [f"  {one.quantity}, {method}: {why}" for method, why in one.tried]
-            reasons.append(f"  {one.quantity}: remedy: {one.remedy}")
+    if rejected := rejected_lines(result):
+        reasons += ["verification rejects what would be integrated", *rejected]
     elif ACCELERATIONS not in kernels:
         # other quantities may be missing: a system without constraints has no violations of them
         reasons += [notice.message for notice in result.notices if notice.message.startswith(ACCELERATIONS)]

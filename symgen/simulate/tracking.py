@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from symgen.model.model import Model
+from symgen.model.input_limits import input_limits
 from symgen.simulate.controllers import Array, Controller, ModelKernels, Planned
 from symgen.simulate.integrate import SimulatedMotion
 from symgen.simulate.plant import Plant, PlantError
@@ -98,7 +98,8 @@ def tracked(
     progress: Callable[[float], None],
 ) -> TrackedMotion:
     """The motion under sampled control; `times` are the frames.  Where the machine has no acceleration it ends."""
-    limits = _limits(plant.model, plant.parameters)
+    names = (p.name for p in plant.model.parameters)
+    limits = np.array(input_limits(plant.model, dict(zip(names, plant.parameters, strict=True)))).T
     q, qd = np.array(start[0]), np.array(start[1])
     frames: list[tuple[float, Array, Array, Array, Array]] = []
     applied: deque[Array] = deque()
@@ -169,12 +170,3 @@ def _moved(plant: Plant, q: Array, qd: Array, u: Array, duration: float) -> tupl
     return np.array(there), np.array(plant.admissible(there, x[n:].tolist()))
 
 
-def _limits(model: Model, parameters: Sequence[float]) -> tuple[Array, Array]:
-    """The limits of all inputs: none where the model has none."""
-    value = dict(zip((p.name for p in model.parameters), parameters, strict=True))
-    low, high = np.full(model.m, -np.inf), np.full(model.m, np.inf)
-    names = [item.name for item in model.inputs]
-    for limit in model.allocation.limits if model.allocation is not None else ():
-        k = names.index(limit.input)
-        low[k], high[k] = value[limit.lower], value[limit.upper]
-    return low, high

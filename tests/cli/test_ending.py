@@ -158,7 +158,8 @@ def test_a_hangup_that_is_ignored_stays_ignored() -> None:
     script = (
         "import os, signal, sys\nfrom symgen.cli.signals import signals_end_the_run\n"
         "signal.signal(signal.SIGHUP, signal.SIG_IGN)\n"
-        "with signals_end_the_run():\n    os.kill(os.getpid(), signal.SIGHUP)\n    print('still here')\n"
+        "with signals_end_the_run(process_ends=False):\n    os.kill(os.getpid(), signal.SIGHUP)\n"
+        "    print('still here')\n"
     )
     assert subprocess.run([sys.executable, "-c", script], capture_output=True, text=True).stdout == "still here\n"
 
@@ -242,7 +243,7 @@ def test_the_same_signal_once_more_does_not_kill_a_process_that_ends() -> None:
     assert (done.returncode, done.stdout) == (129, "told\n")
     # where the process goes on, signals are the caller's again
     done = subprocess.run(
-        [sys.executable, "-c", code.replace("process_ends=True", "")], capture_output=True, text=True, check=False
+        [sys.executable, "-c", code.replace("True", "False")], capture_output=True, text=True, check=False
     )
     assert (done.returncode, done.stdout) == (-signal.SIGHUP, "")
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from symgen.identification.estimates.identify import IdentifiableMachine, identifiable
 from symgen.identification.estimates.linear_terms import default_like
 from symgen.identification.machine_functions import MachineFunctions
 from symgen.model.load import load_text
@@ -54,9 +55,14 @@ class SimulatedLog:
 
 
 @cache
+def machine_of(text: str, measured: tuple[str, ...]) -> IdentifiableMachine:
+    """A model in a text, made and verified once for all logs with these measured coordinates."""
+    return identifiable(Path("machine.yaml"), load_text(text, "machine.yaml"), measured, lambda _: None)
+
+
 def functions_of(text: str, leading: tuple[str, ...]) -> MachineFunctions:
     """The generated functions of a model in a text."""
-    return MachineFunctions(load_text(text, "machine.yaml"), leading)
+    return machine_of(text, leading).functions
 
 
 def simulated_log(

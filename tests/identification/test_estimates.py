@@ -9,13 +9,15 @@ import numpy as np
 import pytest
 from identified_machines import MACHINES_WITH_LOGS, ROOT
 from scipy import integrate
-from simulated_logs import Array, Sensors, functions_of, simulated_log
+from simulated_logs import Array, Sensors, functions_of, machine_of, simulated_log
 
 from symgen.identification.estimates.file_values import base_map
 from symgen.identification.estimates.identification import Identification
-from symgen.identification.estimates.identify import identified
+from symgen.identification.estimates.identify import identified, identified_by
 from symgen.identification.estimates.linear_terms import default_like, inertial_values
 from symgen.identification.estimates.notes import notes
+from symgen.identification.logs.filtering import filter_settings
+from symgen.identification.logs.read_log import read_log
 
 # Standard errors, the share of parameters within them, and what parameters may add to the noise of unseen motion.
 WITHIN, SHARE, ADDED = 3.0, 0.97, 1.2
@@ -30,9 +32,15 @@ def quiet(_message: str) -> None:
 
 def of_log(folder: Path, machine: str, sensors: Sensors, seed: int, seconds: float = 10.0) -> Identification:
     chosen = MACHINES_WITH_LOGS[machine]
-    (folder / "machine.yaml").write_text(chosen.text, encoding="utf-8")
     log = simulated_log(chosen.text, chosen.motion, chosen.measured, chosen.truth, sensors, seed, seconds)
-    return identified(folder / "machine.yaml", log.write(folder), None, quiet)
+    return of_file(log.write(folder), chosen.text, chosen.measured)
+
+
+def of_file(path: Path, text: str, measured: tuple[str, ...]) -> Identification:
+    """What a log says; the machine is made once for all of its logs."""
+    machine = machine_of(text, measured)
+    log = read_log(path, machine.base.model)
+    return identified_by(machine, log, filter_settings(log, None), quiet)
 
 
 @pytest.fixture(scope="module")
@@ -141,11 +149,9 @@ def test_other_lengths_show_in_the_loops(tmp_path: Path) -> None:
     chosen = MACHINES_WITH_LOGS["four_bar"]
     longer = chosen.text.replace("l_3: {value: 0.7,", "l_3: {value: 0.72,")
     log = simulated_log(longer, chosen.motion, chosen.measured, chosen.truth, USUAL_SENSORS, seconds=5.0)
-    (tmp_path / "machine.yaml").write_text(chosen.text, encoding="utf-8")
-    made = identified(tmp_path / "machine.yaml", log.write(tmp_path), None, quiet)
+    made = of_file(log.write(tmp_path), chosen.text, chosen.measured)
     assert "measured coordinates are off closed loops" in " ".join(notes(made))
-    (tmp_path / "machine.yaml").write_text(longer, encoding="utf-8")
-    made = identified(tmp_path / "machine.yaml", tmp_path / "log.csv", None, quiet)
+    made = of_file(tmp_path / "log.csv", longer, chosen.measured)
     assert "measured coordinates are off closed loops" not in " ".join(notes(made))
 
 

@@ -43,10 +43,7 @@ def nearest(text: str, names: tuple[str, ...], changes: dict[str, float], error:
     for name, value in changes.items():
         target[[one.stays.name for one in base.base].index(name)] = value
     count = len(target)
-    errors = np.full(count, error)
-    estimate = LinearEstimate(
-        target, errors, np.diag(errors**2), (), np.ones(1), 1.0, np.zeros(count), 0.0
-    )
+    estimate = LinearEstimate(target, error * np.eye(count), (), np.ones(1), 1.0, np.zeros(count), 0.0)
     return file_values(model, base, EstimatedNames(names, (), ()), numbers, estimate)
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +13,15 @@ import pytest
 from identified_machines import FOUR_BAR_WITH_NAMES, MACHINES_WITH_LOGS
 from simulated_logs import Sensors, simulated_log
 
+from symgen.backends.backend import Variant
+from symgen.backends.python import backend
+from symgen.backends.python.module import emit_python
 from symgen.cli.main import main
+from symgen.generation.results import Options
+from symgen.identification import machine_functions
+from symgen.ir.kernel import Program
 from symgen.model.load import load_model
+from symgen.model.model import Model
 
 ARM_MACHINE = MACHINES_WITH_LOGS["arm"]
 
@@ -25,6 +34,12 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     log = simulated_log(ARM_MACHINE.text, ARM_MACHINE.motion, ARM_MACHINE.measured, ARM_MACHINE.truth, Sensors())
     log.write(made)
     return made
+
+
+@pytest.fixture(autouse=True)
+def few_states(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Functions are verified at few states: they are the same."""
+    monkeypatch.setattr(machine_functions, "Options", partial(Options, states=8))
 
 
 def run(folder: Path, log: str, out: str, *options: str) -> int:
@@ -132,6 +147,23 @@ def test_a_log_without_motion(folder: Path, capsys: pytest.CaptureFixture[str]) 
     assert run(folder, name, "still") == 1
     assert "still.csv: not identified: nothing moves in this log" in capsys.readouterr().err.replace("\n  ", " ")
     assert not (folder / "still").exists()
+
+
+def test_functions_that_verification_rejects_are_not_fitted_with(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Differences that are sums in the Python are refused by name, and nothing is written."""
+
+    def wrong(model: Model, program: Program) -> dict[str, str]:
+        return {path: text.replace(" - ", " + ") for path, text in emit_python(model, program).items()}
+
+    monkeypatch.setattr(backend, "BACKEND", replace(backend.BACKEND, variants=(Variant(wrong),)))
+    assert run(folder, "log.csv", "rejected") == 1
+    errors = capsys.readouterr().err.replace("\n  ", " ")
+    assert "arm.yaml: not identified: verification rejects what would be fitted with" in errors
+    for text in ("inverse_dynamics,", "inverse_dynamics: remedy: give narrower `ranges`"):
+        assert text in errors
+    assert not (folder / "rejected").exists()
 
 
 def test_one_joint_that_stands_still(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

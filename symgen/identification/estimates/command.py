@@ -12,7 +12,7 @@ from symgen.identification.estimates.notes import contradiction
 from symgen.identification.estimates.page import identification_page
 from symgen.identification.estimates.parameter_file import WrittenFile, with_values
 from symgen.identification.estimates.record import identification_json
-from symgen.identification.estimates.summary import summary, wrapped
+from symgen.identification.estimates.summary import reason_lines, summary, wrapped
 from symgen.identification.not_identified import NotIdentifiedError
 from symgen.output.write import write_files
 
@@ -28,7 +28,7 @@ def run_identify(path: Path, log: Path, out: Path, cutoff: float | None, quiet: 
         made = identified(path, log, cutoff, progress)
     except NotIdentifiedError as reason:
         progress("")
-        print(*wrapped(f"{reason.place or path}: not identified: {reason}", ""), sep="\n", file=sys.stderr)
+        print(*reason_lines(f"{reason.place or path}: not identified: {reason}"), sep="\n", file=sys.stderr)
         return 1
     progress("drawing")
     written = _model_file(path, made)

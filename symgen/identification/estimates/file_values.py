@@ -15,6 +15,7 @@ from scipy import optimize
 
 from symgen.identification.arrays import Array
 from symgen.identification.base_parameters import BaseParameters
+from symgen.identification.estimates.inverse_root import inverse_root
 from symgen.identification.estimates.least_squares import LinearEstimate
 from symgen.identification.estimates.linear_terms import EstimatedNames, default_like, inertial_values
 from symgen.model.expressions.walk import exact_value
@@ -87,11 +88,10 @@ class _Nearest:
         self._map = base_map(base)
         closed = estimate.closed_columns
         self._closed, self._target = closed, estimate.values[closed]
-        covariance = estimate.covariance[np.ix_(closed, closed)]
-        self._scales = np.sqrt(np.diag(covariance))
-        # correlations, so that small and large units do not mix
-        root = np.linalg.cholesky(_regular(covariance / np.outer(self._scales, self._scales)))
-        self._whitening = np.linalg.inv(root) / self._scales
+        scales = estimate.errors[closed]
+        # rows of one length, so that small and large units do not mix; what has no error at all says nothing
+        root = estimate.root[np.ix_(closed, closed)] / scales[:, None]
+        self._whitening = np.linalg.pinv(root) / scales
         self._held = np.array([_held(model, name, known[name]) for name in self._names])
 
     def result(self) -> FileValues:
@@ -105,7 +105,7 @@ class _Nearest:
             values = self._possible()
             kept = bool(self._impossible(values))
             values = self._kept(values) if kept else values
-        errors = np.sqrt(np.diag(np.linalg.inv(jacobian.T @ jacobian)))
+        errors = np.linalg.norm(inverse_root(jacobian), axis=1)
         off = self._whitening @ (self._combined(values) - self._target)
         misfit = float(np.sqrt(np.mean(off**2))) if len(off) else 0.0
         return FileValues(self._names, self._before, values, errors, misfit, impossible, kept)
@@ -191,11 +191,6 @@ def _central(mass: float, first: Array, about_origin: Array) -> Array:
     tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     square = np.outer(first, first)
     return np.asarray(tensor - (np.trace(square) * np.eye(3) - square) / (mass or np.inf), dtype=np.float64)
-
-
-def _regular(correlations: Array) -> Array:
-    """The same where columns are nearly alike and rounding makes it singular."""
-    return np.asarray(correlations + 1e-12 * np.eye(len(correlations)), dtype=np.float64)
 
 
 def _held(model: Model, name: str, value: float) -> float:

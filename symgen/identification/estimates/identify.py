@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -15,16 +15,25 @@ from symgen.identification.estimates.linear_terms import estimated_names
 from symgen.identification.estimates.observations import Observations, observations
 from symgen.identification.logs.completed import completed_motion
 from symgen.identification.logs.filtering import FilterSettings, filter_settings
-from symgen.identification.logs.read_log import read_log
+from symgen.identification.logs.read_log import MeasuredLog, read_log
 from symgen.identification.machine_functions import MachineFunctions
 from symgen.identification.motion_states import NoMotionError
 from symgen.identification.not_identified import NotIdentifiedError
 from symgen.model.load import load_model
 from symgen.model.model import Model
+from symgen.records import dataclass
 
 Progress = Callable[[str], None]
 # Of a log, the last part, which is not fitted but predicted.
 SET_ASIDE = 0.25
+
+
+@dataclass(frozen=True, slots=True)
+class IdentifiableMachine:
+    """A model before any log: its base parameters, and its verified functions of what a log measures."""
+
+    base: BaseParameters
+    functions: MachineFunctions
 
 
 def identified(path: Path, log_path: Path, cutoff: float | None, progress: Progress) -> Identification:
@@ -34,18 +43,38 @@ def identified(path: Path, log_path: Path, cutoff: float | None, progress: Progr
     """
     progress("reading the model")
     model = load_model(path)
+    check_bodies(model)
+    progress("reading the log")
+    log = read_log(log_path, model)
+    settings = filter_settings(log, cutoff)
+    return identified_by(identifiable(path, model, log.measured, progress), log, settings, progress)
+
+
+def check_bodies(model: Model) -> None:
+    """Raises NotIdentifiedError for a model without bodies."""
     if not model.mechanism.has_mass:
         raise NotIdentifiedError(
             "the model has no `bodies`: identification is of their masses, first moments and inertias; "
             "write the machine with `joints` or `frames` and `bodies`"
         )
-    progress("reading the log")
-    log = read_log(log_path, model)
-    settings = filter_settings(log, cutoff)
+
+
+def identifiable(path: Path, model: Model, measured: Sequence[str], progress: Progress) -> IdentifiableMachine:
+    """What logs with these measured coordinates are compared with; `path` is the model's file.
+
+    Raises NotIdentifiedError where no parameter counts or verification rejects a function.
+    """
     progress("base parameters")
-    base = _base(model)
+    base = base_of(model)
     progress("making functions")
-    functions = MachineFunctions(model, log.measured)
+    return IdentifiableMachine(base, MachineFunctions(path, model, measured, progress))
+
+
+def identified_by(
+    machine: IdentifiableMachine, log: MeasuredLog, settings: FilterSettings, progress: Progress
+) -> Identification:
+    """What a log says of a machine.  Raises NotIdentifiedError where it says nothing."""
+    base, functions = machine.base, machine.functions
     progress("closing loops")
     motion = completed_motion(functions, log, settings, progress)
     progress("filtering")
@@ -60,11 +89,12 @@ def identified(path: Path, log_path: Path, cutoff: float | None, progress: Progr
         raise NotIdentifiedError("the motion of this log shows no parameter: record another one", log.file)
     values = file_values(functions.model, base, names, functions.parameters, estimate)
     return Identification(
-        model, log, settings, motion.open_by, base, names, fitted_to, aside, estimate, values
+        base.model, log, settings, motion.open_by, base, names, fitted_to, aside, estimate, values
     )
 
 
-def _base(model: Model) -> BaseParameters:
+def base_of(model: Model) -> BaseParameters:
+    """Its base parameters; NotIdentifiedError where no motion shows any."""
     try:
         return base_parameters(model)
     except (NoBodiesError, NoMotionError):

@@ -12,8 +12,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from scipy import linalg
 
 from symgen.identification.arrays import Array
+from symgen.identification.estimates.inverse_root import inverse_root
 from symgen.identification.estimates.observations import Observations
 from symgen.records import dataclass
 
@@ -37,20 +39,29 @@ MOST_ROUNDS = 50
 
 @dataclass(frozen=True, slots=True)
 class LinearEstimate:
-    """Values and standard errors (c) with their covariance (c, c); NaN where the columns leave a value open.
+    """Values (c) with a root (c, c) of their covariance; NaN where the columns leave a value open.
 
     `sigmas` (m) are the residuals of drives, `condition` that of the weighted columns at unit length, `weakest` (c)
     the combination of unit length that these show least.  `outliers` is the share of samples that count less than half.
     """
 
     values: Array
-    errors: Array
-    covariance: Array
+    root: Array
     open_columns: tuple[int, ...]
     sigmas: Array
     condition: float
     weakest: Array
     outliers: float
+
+    @property
+    def covariance(self) -> Array:
+        """Of the values (c, c): the root times itself, transposed."""
+        return np.asarray(self.root @ self.root.T, dtype=np.float64)
+
+    @property
+    def errors(self) -> Array:
+        """Standard errors (c)."""
+        return np.asarray(np.linalg.norm(self.root, axis=1), dtype=np.float64)
 
     @property
     def closed_columns(self) -> list[int]:
@@ -65,29 +76,27 @@ class LinearEstimate:
 def estimated(seen: Observations) -> LinearEstimate:
     """The estimate of all columns of a log."""
     count = seen.columns.shape[2]
-    kept = _independent(seen)
+    kept = independent_columns(_flat(seen.columns))
     columns = seen.columns[..., kept]
     lengths = np.linalg.norm(columns, axis=(0, 1))
     rounds = _Rounds(columns / lengths, seen.inputs, seen.directions)
-    solution, covariance = rounds.solution / lengths, rounds.covariance() / np.outer(lengths, lengths)
-    values, errors, full = (np.full(shape, math.nan) for shape in (count, count, (count, count)))
-    values[kept], errors[kept] = solution, np.sqrt(np.diag(covariance))
-    full[np.ix_(kept, kept)] = covariance
+    left = tuple(k for k in range(count) if k not in kept)
+    values, root = np.full(count, math.nan), np.zeros((count, count))
+    values[kept], root[np.ix_(kept, kept)] = rounds.solution / lengths, rounds.covariance_root() / lengths[:, None]
+    root[list(left)] = math.nan
     condition, least = rounds.condition()
     weakest = np.zeros(count)
     weakest[kept] = least
-    left = tuple(k for k in range(count) if k not in kept)
     outliers = float(np.mean(rounds.weights < 0.5))
-    return LinearEstimate(values, errors, full, left, rounds.sigmas, condition, weakest, outliers)
+    return LinearEstimate(values, root, left, rounds.sigmas, condition, weakest, outliers)
 
 
-def _independent(seen: Observations) -> list[int]:
-    """Columns that no combination of those before them gives, in their order."""
-    flat = seen.columns.reshape(-1, seen.columns.shape[2])
+def independent_columns(flat: Array) -> list[int]:
+    """Columns of (N, c) that no combination of those before them gives, in their order."""
     lengths = np.linalg.norm(flat, axis=0)
     kept: list[int] = []
     basis = np.empty((len(flat), 0))
-    for k in np.flatnonzero(lengths > ROUNDED_LENGTH * np.max(lengths)):
+    for k in np.flatnonzero(lengths > ROUNDED_LENGTH * np.max(lengths, initial=0.0)):
         own = flat[:, k] / lengths[k]
         for _ in range(2):  # the second time takes what rounding left
             own = own - basis @ (basis.T @ own)
@@ -122,33 +131,38 @@ class _Rounds:
         """Measured less fitted inputs (S, m)."""
         return np.asarray(self._inputs - self._columns @ self.solution, dtype=np.float64)
 
-    def covariance(self) -> Array:
-        """Of the solution (c, c); samples beyond the corner of Huber's function take no part in its slope."""
-        columns = self._weighted()
-        inverse: Array = np.asarray(np.linalg.pinv(_normal(columns[self.weights >= 1])), dtype=np.float64)
+    def covariance_root(self) -> Array:
+        """A root (c, c) of the covariance of the solution.
+
+        Samples beyond the corner of Huber's function take no part in its slope.  Columns are taken along directions in
+        which those of the other samples are orthonormal: squares of their condition number never occur.
+        """
+        weighted = self._weighted()
+        inverse = inverse_root(_flat(weighted[self.weights >= 1]))
+        columns = np.asarray(weighted @ inverse, dtype=np.float64)
         samples, drives, count = columns.shape
         bounded: Array = np.asarray(self.residuals / self.sigmas * self.weights[:, None], dtype=np.float64)
         # what drives share in one direction is one error
         spare = max(1, samples * self._directions - count) / (samples * drives)
-        white = inverse @ _normal(columns) @ inverse * float(np.mean(bounded**2)) / spare
-        middle = _of_neighbours(np.einsum("smc,sm->sc", columns, _as_if_left_out(columns, inverse, bounded)))
-        alike = inverse @ middle @ inverse
-        factors = np.sqrt(np.maximum(1.0, np.diag(alike) / np.maximum(np.diag(white), 1e-300)))
-        return np.asarray(white * np.outer(factors, factors), dtype=np.float64)
+        triangle = linalg.qr(_flat(columns), mode="r")[0][:count]
+        white = inverse @ triangle.T * math.sqrt(float(np.mean(bounded**2)) / spare)
+        middle = _of_neighbours(np.einsum("smc,sm->sc", columns, _as_if_left_out(columns, bounded)))
+        alike = np.einsum("ck,kl,cl->c", inverse, middle, inverse)
+        factors = np.sqrt(np.maximum(1.0, alike / np.maximum(np.sum(white**2, axis=1), 1e-300)))
+        return np.asarray(white * factors[:, None], dtype=np.float64)
 
     def condition(self) -> tuple[float, Array]:
         """The condition number of the weighted columns at unit length, and the combination that they show least."""
-        normal = _normal(self._weighted())
-        lengths = np.sqrt(np.diag(normal))
-        values, vectors = np.linalg.eigh(normal / np.outer(lengths, lengths))
-        return math.sqrt(float(values[-1]) / max(float(values[0]), 1e-300)), vectors[:, 0]
+        columns = _flat(self._weighted())
+        _, values, rows = linalg.svd(columns / np.linalg.norm(columns, axis=0), full_matrices=False)
+        return float(values[0]) / max(float(values[-1]), 1e-300), np.asarray(rows[-1], dtype=np.float64)
 
     def _weighted(self) -> Array:
         return np.asarray(self._columns / self.sigmas[:, None], dtype=np.float64)
 
     def _solved(self) -> Array:
         root = np.sqrt(self.weights)[:, None]
-        flat = (self._weighted() * root[..., None]).reshape(-1, self._columns.shape[2])
+        flat = _flat(self._weighted() * root[..., None])
         lengths = np.linalg.norm(flat, axis=0)
         solved = np.linalg.lstsq(flat / lengths, (self._inputs / self.sigmas * root).ravel(), rcond=None)[0]
         return np.asarray(solved / lengths, dtype=np.float64)
@@ -159,16 +173,14 @@ class _Rounds:
         return np.asarray(np.maximum(sizes, np.maximum(floor, 1e-300)), dtype=np.float64)
 
 
-def _normal(columns: Array) -> Array:
-    """The matrix of normal equations (c, c) of columns (S, m, c)."""
-    flat = columns.reshape(-1, columns.shape[2])
-    return np.asarray(flat.T @ flat, dtype=np.float64)
+def _flat(columns: Array) -> Array:
+    """Columns (S, m, c) as one matrix (S m, c)."""
+    return columns.reshape(-1, columns.shape[2])
 
 
-def _as_if_left_out(columns: Array, inverse: Array, residuals: Array) -> Array:
-    """Residuals (S, m) that each sample would have if the others alone were fitted."""
-    shares = np.einsum("smc,cd,snd->smn", columns, inverse, columns)
-    left = np.eye(columns.shape[1]) - shares
+def _as_if_left_out(columns: Array, residuals: Array) -> Array:
+    """Residuals (S, m) that each sample would have if the others alone were fitted; columns are orthonormal."""
+    left = np.eye(columns.shape[1]) - np.einsum("smc,snc->smn", columns, columns)
     # a sample that the fit rests on alone says nothing of its error
     left += np.eye(columns.shape[1]) * np.maximum(0.0, LEAST_SPARE - np.linalg.eigvalsh(left)[:, 0])[:, None, None]
     return np.asarray(np.linalg.solve(left, residuals[..., None])[..., 0], dtype=np.float64)

@@ -54,7 +54,7 @@ def observations(
     model = functions.model
     measured = np.stack([log.columns[one.name] for one in model.inputs], axis=-1)
     given = functions.least(motion.q, measured)
-    made = [_equations(functions, base, names, _part(motion.state, part)) for part in parts_of(len(log.t))]
+    made = [equations(functions, base, names, _part(motion.state, part)) for part in parts_of(len(log.t))]
     known, columns = (np.concatenate([one[k] for one in made]) for k in (0, 1))
     kept = settings.places(len(log.t))
     inner = settings.kept(measured - given)
@@ -73,7 +73,7 @@ def _part(state: State, part: slice) -> State:
     return state[0][part], state[1][part], state[2][part]
 
 
-def _equations(
+def equations(
     functions: MachineFunctions, base: BaseParameters, names: EstimatedNames, state: State
 ) -> tuple[Array, Array]:
     """What is known (N, m), and the columns (N, m, c)."""

@@ -50,6 +50,11 @@ def wrapped(text: str, margin: str) -> list[str]:
     )
 
 
+def reason_lines(text: str) -> list[str]:
+    """Why a command ended, line by line, each in lines that fit."""
+    return [part for line in text.splitlines() for part in wrapped(line, "")]
+
+
 def _parameter(one: EstimatedParameter) -> Iterator[str]:
     name = one.name.replace("\u00a0", " ")
     name = name if len(name) <= MOST_OF_A_SUM else name[: MOST_OF_A_SUM - 3].rstrip(" +-([") + " ..."

@@ -44,7 +44,7 @@ def read_coordinates(
                 ranges.get(f"{name}_dot", UNIT_RANGE),
                 ranges.get(f"{name}_ddot", UNIT_RANGE),
                 key.span,
-                name in ranges,
+                *_stated(name, ranges),
             )
         )
     for joint in joints:
@@ -54,9 +54,14 @@ def read_coordinates(
         rates = ranges.get(f"{name}_dot", UNIT_RANGE), ranges.get(f"{name}_ddot", UNIT_RANGE)
         where = ranges.get(name, usual)
         coordinates.append(
-            Coordinate(name, joint.unit, joint.description, is_angle, where, *rates, joint.span, name in ranges)
+            Coordinate(name, joint.unit, joint.description, is_angle, where, *rates, joint.span, *_stated(name, ranges))
         )
     return tuple(coordinates)
+
+
+def _stated(name: str, ranges: DeclaredRanges) -> tuple[bool, bool, bool]:
+    """Whether the file has ranges of a coordinate, its rate, its acceleration."""
+    return name in ranges, f"{name}_dot" in ranges, f"{name}_ddot" in ranges
 
 
 def _uses(definitions: tuple[Definition, ...], expressions: Iterable[Expression]) -> tuple[set[str], set[str]]:
