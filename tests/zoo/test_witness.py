@@ -13,6 +13,7 @@ import pytest
 import yaml
 
 from symgen.generation.results import Options
+from symgen.laboratory.zoo.draws.families import draw
 from symgen.laboratory.zoo.run import run_command
 from symgen.laboratory.zoo.witness import states
 from symgen.laboratory.zoo.witness.expressions import FUNCTIONS, NotReadError, read_expression
@@ -22,7 +23,7 @@ from symgen.laboratory.zoo.witness.kkt import GenericRanks
 from symgen.laboratory.zoo.witness.linear import basis
 from symgen.laboratory.zoo.witness.mechanics import equations
 from symgen.laboratory.zoo.witness.reader import SystemReader
-from symgen.laboratory.zoo.witness.states import FloatState
+from symgen.laboratory.zoo.witness.states import CLOSED, FloatState
 from symgen.laboratory.zoo.witness.tape import NodeProgram, NodeTape
 from symgen.laboratory.zoo.witness.witness import Witness
 from symgen.pipeline import generate
@@ -674,3 +675,13 @@ outputs: [inverse_dynamics]
     assert len(ranks.lengths) > ranks.constraints
     # u alone moves the loop, and is what it has to be, within its limits or not
     assert all(witness._known("inverse_dynamics", state, ranks) is not None for state in visited)
+
+
+def test_a_step_that_closes_stays_where_it_closed_best() -> None:
+    """Rows of a Bennett linkage depend on each other on V: Newton's steps there follow what rounding leaves of one."""
+    bennett = draw(51001, 379, None)
+    witness = Witness(bennett.text, bennett.start, bennett.text)
+    walker, defaults = witness.walker(), witness.defaults()
+    reached = walker.points(defaults, 66)
+    assert len(reached) > 60
+    assert max(np.abs(walker.numbers(q, defaults).residual).max() for q in reached) < CLOSED

@@ -246,7 +246,7 @@ class Walker:
         geometric = sum(row.geometric for row in self._system.rows)
         if not geometric:
             return q
-        best, stalled = math.inf, 0
+        best, stalled, nearest = math.inf, 0, q
         for _ in range(STEPS):
             try:
                 at = self.numbers(q, parameters)
@@ -259,13 +259,15 @@ class Walker:
             gap = float(np.abs(residual / lengths).max())
             if gap >= best:
                 stalled += 1
-            best = min(best, gap)
+            else:
+                best, nearest = gap, q
             if stalled >= 3 or gap == 0:
                 break
             steep = rows / lengths[:, None]
             steep[np.linalg.norm(rows, axis=1) <= NOTHING] = 0
             q = q - np.linalg.lstsq(steep, residual / lengths, rcond=SAME)[0]
-        return q if best < CLOSED else None
+        # where rows depend on each other, steps after that follow what rounding leaves of a direction
+        return nearest if best < CLOSED else None
 
     def refined(self, q: Any, parameters: Mapping[str, float], rank: int | None = None) -> Any:
         """The float nearest to a configuration that satisfies the rows to 30 digits; None where that is another one, or
