@@ -69,7 +69,11 @@ class MachineSketch:
 
 def sketch(pose: MachinePose) -> MachineSketch:
     """The picture of a machine."""
-    view = view_of(pose)
+    return sketch_in(pose, view_of(pose))
+
+
+def sketch_in(pose: MachinePose, view: View) -> MachineSketch:
+    """The picture of a machine in a certain view."""
     links = _Links(pose, view)
     return MachineSketch(
         (*_world(pose, view), *links.base(), *_wheels(pose, view), *links.strokes(), *_ties(pose, view)),

@@ -46,11 +46,19 @@ def view_of(pose: MachinePose) -> View:
     return _aside(upward or Z)
 
 
+def views_along_axes(pose: MachinePose) -> tuple[View, ...]:
+    """Straight onto planes of the world along which the machine moves, its links at any heights above them."""
+    return tuple(_straight_on(near, up, up) for near, up in USUAL_PLANES if _moves_along(pose, near))
+
+
 def _is_planar(pose: MachinePose, normal: Place) -> bool:
     """Whether the machine stays in a plane with this normal."""
     heights = [inner(place, normal) for place in pose.places.values()]
-    if max(heights) - min(heights) > NEXT_TO_NOTHING * pose.size:
-        return False
+    return max(heights) - min(heights) <= NEXT_TO_NOTHING * pose.size and _moves_along(pose, normal)
+
+
+def _moves_along(pose: MachinePose, normal: Place) -> bool:
+    """Whether all joints turn about this normal, and slide at right angles to it."""
     axles = [pose.axis(wheel.frame, wheel.axle) for wheel in pose.mechanism.wheels]
     turns = [turn for joint in pose.joints for turn in joint.turns]
     slides = [slide for joint in pose.joints for slide in joint.slides]

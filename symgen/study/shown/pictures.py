@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from symgen.drawing.sketch import MachineSketch
 from symgen.paths.drawing import COLOURS, STYLES, svg, with_numbered_regions
 from symgen.study.asked.request import GRID, MOTOR_TORQUE, SINGULARITY
 from symgen.study.chunks import Array
@@ -15,6 +16,7 @@ from symgen.study.interest import CHOICE, Interest, interests
 from symgen.study.plan import StudyPlan
 from symgen.study.reductions import MAXIMUM_OF, MEAN_OF, MINIMUM_OF, QUANTILES_OF
 from symgen.study.shown.labels import axis_label, value_label
+from symgen.study.shown.machine import draw_machine, machine_in_map
 from symgen.study.shown.scatter import parallel, scattered, worst_channel
 
 # Inches: the height of a panel with a curve, and of one with a map.
@@ -49,15 +51,16 @@ class _ShownChannel:
 def study_pictures(plan: StudyPlan, results: Any) -> list[StudyPicture]:
     """All pictures of the results, an xarray Dataset."""
     made = []
+    machine = machine_in_map(plan)
     for one in interests(plan):
         if one.name == MOTOR_TORQUE:  # a table says which of them fit
             continue
         channels = _channels(plan, one, results)[:MOST_PANELS]
         if not any(np.isfinite(channel.values).any() for channel in channels):
             continue
-        draw, height, caption = _drawing(plan, one, channels, results)
+        draw, height, caption = _drawing(plan, one, channels, results, machine)
         made.append(StudyPicture(one.about, caption, with_numbered_regions(svg(draw, height))))
-    if curves := _singular_curves(plan, results):
+    if curves := _singular_curves(plan, results, machine):
         made.append(curves)
     return made
 
@@ -94,7 +97,7 @@ def _split(one: Interest, values: Array) -> list[tuple[str, Array]]:
 
 
 def _drawing(
-    plan: StudyPlan, one: Interest, channels: Sequence[_ShownChannel], results: Any
+    plan: StudyPlan, one: Interest, channels: Sequence[_ShownChannel], results: Any, machine: MachineSketch | None
 ) -> tuple[Callable[[Any], None], float, str]:
     """What draws a picture, its height and its caption."""
     gridded = plan.request.sample == GRID
@@ -111,7 +114,8 @@ def _drawing(
         kept = "smallest magnitude" if one.smallest else "largest magnitude"
         caption = f"The {kept} along the states of each point. " if plan.states > 1 else ""
         caption += "Lines join equal values" + ("; the thick one is where it vanishes." if one.signed else ".")
-        return lambda figure: _maps(figure, plan, one, channels), MAP_HEIGHT * rows, caption
+        caption += "" if machine is None else " The machine is drawn where it starts."
+        return lambda figure: _maps(figure, plan, one, channels, machine), MAP_HEIGHT * rows, caption
     worst = worst_channel(one, [channel.values for channel in channels])
     if len(plan.over) > MOST_PAIRED_AXES:
         return lambda figure: parallel(figure, plan, one, worst, results), 3.2, "Each line is a point of the study."
@@ -133,13 +137,17 @@ def _curves(figure: Any, plan: StudyPlan, one: Interest, channels: Sequence[_Sho
     axes[-1].set_xlabel(axis_label(plan, 0))
 
 
-def _maps(figure: Any, plan: StudyPlan, one: Interest, channels: Sequence[_ShownChannel]) -> None:
+def _maps(
+    figure: Any, plan: StudyPlan, one: Interest, channels: Sequence[_ShownChannel], machine: MachineSketch | None
+) -> None:
     columns = 1 if len(channels) == 1 else 2
     panels = figure.subplots(-(-len(channels) // columns), columns, squeeze=False).ravel()
     for panel in panels[len(channels) :]:
         panel.set_axis_off()
     for panel, channel in zip(panels, channels, strict=False):
         _map(figure, panel, plan, channel.values, one.signed)
+        if machine is not None:
+            draw_machine(panel, machine)
         if channel.label:
             panel.set_title(value_label(one, channel.label), loc="left", fontsize=9)
 
@@ -180,7 +188,7 @@ def _frame(panel: Any, plan: StudyPlan) -> None:
         panel.set_aspect("equal")
 
 
-def _singular_curves(plan: StudyPlan, results: Any) -> StudyPicture | None:
+def _singular_curves(plan: StudyPlan, results: Any, machine: MachineSketch | None) -> StudyPicture | None:
     """Where each choice of drives is singular, over what all of them together leave."""
     if plan.request.sample != GRID or len(plan.over) != 2 or plan.states > 1 or CHOICE not in results:
         return None
@@ -203,6 +211,8 @@ def _singular_curves(plan: StudyPlan, results: Any) -> StudyPicture | None:
             if float(values.min()) < 0 < float(values.max()):
                 panel.contour(x, y, values, levels=[0.0], colors=colour, linewidths=1.8, linestyles=style)
             panel.plot([], [], style, color=colour, label=label.replace("+", ", "))
+        if machine is not None:
+            draw_machine(panel, machine)
         panel.legend(title="singular with", loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=min(3, len(labels)))
 
     caption = "Curves are the level sets at which the determinant of a choice of drives vanishes."
