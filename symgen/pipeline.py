@@ -45,6 +45,8 @@ if TYPE_CHECKING:
 Progress = Callable[[str], None]
 # What a run with verification takes, times its derivation: 5 to 14 for models that were measured, mostly 6 to 11.
 WHOLE_PER_DERIVING = 8
+# Seconds from which that is told.
+WORTH_FORESEEING = 20
 
 
 def generate(path: Path, options: Options, progress: Progress) -> Result:
@@ -82,7 +84,7 @@ def _generated(path: Path, model: Model, options: Options, progress: Progress, w
                 began = time.monotonic()
                 draft = _derive(model, outputs, options)
                 if options.verify and verified(options):
-                    whole.seconds = WHOLE_PER_DERIVING * (time.monotonic() - began)
+                    whole.part = _foreseen(time.monotonic() - began)
                     from symgen.generation.acceptance.coordinate_bounds import CoordinateBounds
                     from symgen.generation.acceptance.parameter_bounds import ParameterBounds
                     from symgen.generation.acceptance.trial import Trial
@@ -147,6 +149,12 @@ def _finished(
         remedy = "; `--only c,report` measures it" if options.verify else ""
         notices.append(Notice(f"the report has no PDF: that is made of what verification measures, too{remedy}"))
     return replace(result, files={**result.files, **report.files}, notices=tuple(notices))
+
+
+def _foreseen(deriving: float) -> str:
+    """How long the run takes as a whole, where its derivation took so many seconds; nothing for short ones."""
+    seconds = WHOLE_PER_DERIVING * deriving
+    return f"about {round(seconds, -1):.0f} s in all" if seconds >= WORTH_FORESEEING else ""
 
 
 def _derive(model: Model, outputs: tuple[str, ...], options: Options) -> Draft:

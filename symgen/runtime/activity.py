@@ -17,10 +17,7 @@ LEAST_SHARE, WORTH_SHOWING = 0.02, 2.0
 
 
 class Work:
-    """A piece of work: `whole` counts all of it in any unit (0: unknown), `done` what is behind.
-
-    `seconds` is what it usually takes from its beginning, 0 as long as that is not known.
-    """
+    """A piece of work: `whole` counts all of it in any unit (0: unknown), `done` what is behind."""
 
     __slots__ = ("began", "done", "part", "seconds", "what", "whole")
 
@@ -63,14 +60,14 @@ def each(what: str, items: Sequence[Item], named: Callable[[Item], str] = lambda
 
 
 def described() -> str:
-    """What the run is at, from the outside inwards, and how long the longest of it will take yet."""
+    """What the run is at, from the outside inwards, and how long the innermost counted work will take yet."""
     now = time.monotonic()
     words = []
-    left = 0.0
+    left: float | None = None
     for work in tuple(_works):
         words += [" ".join(word for word in (work.what, work.part) if word)]
-        left = max(left, work.left(now) or 0.0)
-    if left >= WORTH_SHOWING:
+        left = work.left(now) if work.left(now) is not None else left
+    if left is not None and left >= WORTH_SHOWING:
         words.append(f"about {_rounded(left)} s more")
     return ", ".join(word for word in words if word)
 

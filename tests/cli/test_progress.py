@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 import signal
 import subprocess
 import threading
@@ -150,24 +151,16 @@ def test_what_work_usually_takes_is_told_until_it_has_taken_that(at: list[float]
     assert described() == ""
 
 
-def test_a_run_that_takes_longer_than_its_step_is_told(at: list[float]) -> None:
-    with working("") as whole, working("compiling", seconds=10):
-        whole.seconds = 120.0
-        assert described() == "compiling, about 120 s more"
-        at[0] = 115.0
-        assert described() == "compiling, about 5 s more"
-
-
 def test_the_time_of_a_run_is_foreseen_from_its_derivation(monkeypatch: pytest.MonkeyPatch) -> None:
     """Before that nothing is known, and without verification the derivation is most of it."""
-    monkeypatch.setattr(pipeline, "WHOLE_PER_DERIVING", 1e5)
     model = Path(__file__).parents[2] / "models" / "differential_drive.yaml"
-    for verify in (True, False):
+    for longer, verify in ((True, True), (True, False), (False, True)):
+        monkeypatch.setattr(pipeline, "WHOLE_PER_DERIVING", 1e5 if longer else 1e-5)
         seen: dict[str, str] = {}
         options = Options(parts=("c", "python"), verify=verify, states=8)
         pipeline.generate(model, options, lambda text, seen=seen: seen.setdefault(text, described()))
-        assert "more" not in seen["reading the model"] + seen["deriving"]
-        assert ("s more" in seen["writing"]) is verify
+        assert "in all" not in seen["reading the model"] + seen["deriving"]
+        assert (re.fullmatch(r"about \d+0 s in all", seen["writing"]) is not None) is (longer and verify)
 
 
 def test_a_step_that_fails_is_over() -> None:
