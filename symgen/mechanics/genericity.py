@@ -15,10 +15,11 @@ from symgen.mechanics.system import System
 from symgen.model.configurations.assembly import Assembly
 from symgen.model.configurations.branches import branches
 from symgen.model.configurations.mechanics import NumericSystem
-from symgen.model.configurations.sparse import PLAIN, clear_rank
+from symgen.model.configurations.sparse import NEGLIGIBLE, PLAIN, clear_rank
 from symgen.model.model import Model
 from symgen.records import dataclass
 from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.matrix import Matrix, flatten
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.translate import translate
 
@@ -91,6 +92,23 @@ def configurations(mechanics: System) -> list[dict[str, float]]:
     return [parameters | dict(zip(names, place.q, strict=True)) for place in assembly_of(mechanics.model).places]
 
 
+def at_configurations(mechanics: System, rows: Matrix) -> list[list[list[float]]]:
+    """The rows of B, or what they are gathered to, at each of the `configurations`.
+
+    A row is 0 where it vanishes and rounding alone is left of it: its length there would be no measure.
+    """
+    assembly, width = assembly_of(mechanics.model), len(rows[0]) if rows else 0
+    done = mechanics.model.row_units or (0,) * len(rows)
+    least = [math.ldexp(NEGLIGIBLE, unit - own) for own, unit in zip(assembly.own_units, done, strict=True)]
+    evaluate = Evaluator(flatten(rows))
+    made = []
+    for point in configurations(mechanics):
+        values = evaluate(point)
+        at = [list(values[i * width : (i + 1) * width]) for i in range(len(rows))]
+        made.append([[0.0] * width if math.hypot(*row) <= size else row for row, size in zip(at, least, strict=True)])
+    return made
+
+
 def rank(rows: Sequence[Sequence[float]], plain: float = PLAIN) -> int | None:
     """Rank by elimination with complete pivoting of the row-normalised matrix; None where it is not clear-cut."""
     work = []
@@ -122,11 +140,9 @@ def _locked(mechanics: System, held: Sequence[int]) -> tuple[int, ...]:
     if not held and not gathered:
         return ()
     rows = tuple(folded(row, column_families) for row in mechanics.constraint_jacobian)
-    evaluate, width = Evaluator([entry for row in rows for entry in row]), len(column_families)
-    flat = [evaluate(point) for point in configurations(mechanics)]
-    places = [[at[start : start + width] for start in range(0, len(at), width)] for at in flat]
+    places = at_configurations(mechanics, rows)
     if gathered:
-        still = [k for k in range(width) if all(_holds(at, k) for at in places)]
+        still = [k for k in range(len(column_families)) if all(_holds(at, k) for at in places)]
     else:
         still = [k for k, family in enumerate(column_families) if family.members[0] in held]
     own = [i for i, row in enumerate(rows) if _lies_in(row, still)]

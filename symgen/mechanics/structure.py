@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from math import comb
 
 from symgen.linear_algebra.blocks import ConnectedComponent, ConstraintBlock, components, named
-from symgen.mechanics.genericity import Genericity, configurations, rank
+from symgen.mechanics.genericity import Genericity, at_configurations, rank
 from symgen.mechanics.system import System
 from symgen.mechanics.workless_forces import workless_forces
 from symgen.model.expressions.names import counted
@@ -14,7 +14,6 @@ from symgen.model.model import ConstraintRow, Model
 from symgen.records import dataclass
 from symgen.symbolic.angles.angle_forms import angle_form
 from symgen.symbolic.angles.sharing import angles_of, share_angles
-from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.matrix import flatten
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import topological
@@ -75,17 +74,14 @@ def _rows_in_order(mechanics: System) -> list[ConstraintRow]:
 
 def _ranked(mechanics: System, generic: Genericity) -> tuple[tuple[ConstraintBlock, ...], tuple[str, ...]]:
     """The blocks with their generic ranks, and the rows that can be left out without lowering the rank (Remark 7)."""
-    n, r = mechanics.n, mechanics.r
+    r = mechanics.r
     rows = [row.name for row in _rows_in_order(mechanics)]
     coordinates = [c.name for c in mechanics.model.coordinates]
     parts = list(components(mechanics.constraint_jacobian))
     ranks = [generic.rank] * len(parts)
     dependent: tuple[str, ...] = ()
     if len(parts) > 1 or generic.rank < r:
-        evaluate = Evaluator(flatten(mechanics.constraint_jacobian))
-        for point in configurations(mechanics):
-            values = evaluate(point)
-            b = [values[i * n : (i + 1) * n] for i in range(r)]
+        for b in at_configurations(mechanics, mechanics.constraint_jacobian):
             part_ranks = [_rank(b, part) for part in parts]
             if rank(b) == generic.rank == sum(part_ranks):
                 spare = [i for i in range(r) if rank([*b[:i], *b[i + 1 :]]) == generic.rank]

@@ -10,10 +10,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from symgen.linear_algebra.blocks import components
-from symgen.mechanics.genericity import Genericity, configurations, rank
+from symgen.mechanics.genericity import Genericity, at_configurations, rank
 from symgen.mechanics.system import System
 from symgen.model.model import Model
-from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.matrix import dot
 
 
@@ -32,11 +31,9 @@ def where_inputs_act(model: Model, generic: Genericity) -> tuple[Model, Generici
         return None
     rows = [model.constraints[i] for i in kept]
     geometric = sum(row.kind == "geometric" for row in rows)  # the first ones
-    evaluate, n = Evaluator([entry for i in kept for entry in b[i]]), mechanics.n
     ranks = set[tuple[int | None, int | None]]()
-    for point in configurations(mechanics):
-        values = evaluate(point)
-        at = [values[k * n : (k + 1) * n] for k in range(len(kept))]
+    for of_all_rows in at_configurations(mechanics, b):
+        at = [of_all_rows[i] for i in kept]
         ranks.add((rank(at), rank(at[:geometric])))
     if len(ranks) != 1:
         return None

@@ -13,6 +13,7 @@ from symgen.model.model import Model
 from symgen.model.open_task import left_open, norm_of_motions
 from symgen.model.quantities import MOTIONS, REGRESSOR
 from symgen.quantities.excess import with_test_of_excess
+from symgen.quantities.locked_rates import vanishing_with_locked_rates
 from symgen.quantities.moving_axes import in_moving_axes
 from symgen.quantities.row_units import in_units_of_the_file
 from symgen.quantities.vanishing_parameters import vanishing_with_parameters
@@ -41,6 +42,7 @@ def complete(mechanics: System, generic: Genericity, derived: Quantity) -> Quant
     needless = is_fixed(outputs) and not (generic.locked and is_fixed(derived.outputs))
     derived = replace(derived, outputs=outputs, guards=() if needless else derived.guards)
     derived = vanishing_with_parameters(mechanics, derived)
+    derived = vanishing_with_locked_rates(mechanics, generic, derived)
     tested = with_test_of_excess(mechanics, generic, derived)
     tested = in_units_of_the_file(mechanics, generic, tested)
     return _remarked(tested, generic, mechanics.model)

@@ -61,3 +61,13 @@ def test_a_rank_is_given_only_where_it_is_clear() -> None:
     assert rank([[0.0, 0.0]]) == 0
     assert rank([[float("nan"), 0.0]]) is None
     assert rank([]) == 0
+
+
+def test_a_row_that_vanishes_on_v_locks_nothing() -> None:
+    # what is left of its gradient is a rounding, as long as itself; another row holds b, and touches a as well
+    vanishing, slope = "0.25*cos(b) + sin(b) - sqrt(1.0625)", "(0.25*sin(b) - cos(b))"
+    text = TINY.replace("second: x - l*cos(b)", f"second: {vanishing}, third: {slope}*(2 + cos(a))")
+    generic = genericity(System(load_text(text.format(length="1"), "tiny.yaml")))
+    assert (generic.rank, generic.locked) == (2, ())
+    alone = text.replace("*(2 + cos(a))", "")
+    assert genericity(System(load_text(alone.format(length="1"), "tiny.yaml"))).locked == (2,)
