@@ -53,7 +53,7 @@ LONGEST_WEIGHED = 6_000
 # Methods that are tried once more with twice the digits.
 WIDENED = 3
 # Counted cost of the longest of them.
-LONGEST_WIDENED = 40_000
+LONGEST_WIDENED = 60_000
 # Counted cost of all long methods together that are tried for a quantity, or for accelerations and multipliers, before
 # twice the digits are: the rest may do with fewer digits, but each takes seconds to be derived and measured.
 LONG_TRIED = 20_000
