@@ -9,12 +9,13 @@ of what is cancelled (the symmetry of Chaplygin systems: Bloch, Nonholonomic Mec
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice, permutations
 
 from symgen.linear_algebra.guards import Guard
 from symgen.mechanics.system import System
+from symgen.methods.graphs import moved
 from symgen.methods.method import counted_weight
 from symgen.methods.quantity import Quantity, scalars
 from symgen.records import dataclass
@@ -22,7 +23,8 @@ from symgen.symbolic.evaluate import Evaluator, inner_point
 from symgen.symbolic.hidden_zeros import ROUNDING_OF_ZEROS
 from symgen.symbolic.identity import same_values
 from symgen.symbolic.matrix import Vector
-from symgen.symbolic.scalar import Scalar
+from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.transplant import rebuilt, transplanted
 from symgen.symbolic.traverse import reached, substitute
 
 # Scalars that are made in trying the headings of one quantity, each of which makes it anew.
@@ -46,9 +48,11 @@ def in_moving_axes(mechanics: System, derived: Quantity) -> Quantity:
     best, least = derived, counted_weight(derived)
     numbers = _TurnedNumbers(mechanics, derived.outputs)
     for heading in islice(_headings(mechanics, held), MOST_TURNED // (1 + len(held))):
-        turned = _turned(mechanics, derived, heading) if numbers.may_turn(heading) else None
-        if turned is not None and (weight := counted_weight(turned)) < least:
-            best, least = turned, weight
+        # beside what it is made of, some parts find others to share, and some the longer functions they are to replace
+        for graph in (mechanics.graph, Graph()) if numbers.may_turn(heading) else ():
+            turned = _turned(mechanics, derived, heading, graph)
+            if turned is not None and (weight := counted_weight(turned)) < least:
+                best, least = turned, weight
     return best
 
 
@@ -124,34 +128,38 @@ def _forward(mechanics: System, heading: _Heading, entries: Sequence[Scalar]) ->
     return turned
 
 
-def _turned(mechanics: System, derived: Quantity, heading: _Heading) -> Quantity | None:
-    """The quantity at heading 0 with what comes in turned back; None where that is another one."""
-    graph, angle = mechanics.graph, mechanics.q[heading.angle]
-    cosine, sine = graph.trig("cos", angle), graph.trig("sin", angle)
+def _turned(mechanics: System, derived: Quantity, heading: _Heading, graph: Graph) -> Quantity | None:
+    """The quantity at heading 0 with what comes in turned back, made on a graph; None where that is another one."""
+    angle = mechanics.q[heading.angle]
+    (own,) = transplanted(graph, [angle])
+    cosine, sine = graph.trig("cos", own), graph.trig("sin", own)
     back = {angle: graph.zero}
     for vector in (mechanics.qd, mechanics.qdd) if heading.carried else ():
-        x, y = (vector[k] for k in heading.carried)
-        back |= {x: cosine * x + sine * y, y: cosine * y - sine * x}
-    outputs = substitute(graph, derived.outputs, back)
+        along, across = (vector[k] for k in heading.carried)
+        x, y = transplanted(graph, [along, across])
+        back |= {along: cosine * x + sine * y, across: cosine * y - sine * x}
+    outputs = rebuilt(graph, derived.outputs, back)
     if not _same(derived.outputs, outputs):
         if not heading.carried or len(outputs) != mechanics.n:
             return None
-        outputs = _forward(mechanics, heading, outputs)
+        first, second = heading.carried
+        x, y = outputs[first], outputs[second]
+        outputs[first], outputs[second] = cosine * x - sine * y, sine * x + cosine * y
         if not _same(derived.outputs, outputs):
             return None
-    guards = [_turned_guard(guard, back) for guard in derived.guards]
+    guards = [_turned_guard(guard, graph, back) for guard in derived.guards]
     turned_guards = tuple(guard for guard in guards if guard is not None)
     if len(turned_guards) < len(guards):
         return None
     same_values("turning axes", derived.outputs, outputs)
-    return replace(derived, outputs=tuple(outputs), guards=turned_guards)
+    return moved(mechanics.graph, replace(derived, outputs=tuple(outputs), guards=turned_guards))
 
 
-def _turned_guard(guard: Guard, back: dict[Scalar, Scalar]) -> Guard | None:
-    """A guard that does not change with the heading; None where it does."""
+def _turned_guard(guard: Guard, graph: Graph, back: Mapping[Scalar, Scalar]) -> Guard | None:
+    """A guard that does not change with the heading, on a graph; None where it does."""
     given = (guard.denominator,) if guard.scale is None else (guard.denominator, guard.scale)
-    turned = substitute(guard.denominator.graph, given, back)
-    first = [_turned_guard(one, back) for one in guard.first]
+    turned = rebuilt(graph, given, back)
+    first = [_turned_guard(one, graph, back) for one in guard.first]
     kept = tuple(one for one in first if one is not None)
     if not _same(given, turned) or len(kept) < len(first):
         return None

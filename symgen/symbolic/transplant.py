@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 
 from symgen.symbolic.scalar import Graph, Scalar
-from symgen.symbolic.traverse import topological
+from symgen.symbolic.traverse import rebuild, topological
 
 
 def transplanted(
@@ -27,17 +27,31 @@ def transplanted(
     image = {} if image is None else image
     for node in topological(outputs, image):
         args = tuple(map(image.__getitem__, node.args))
-        if node.op == "symbol":
-            name = str(node.payload)
-            if name in symbols:
-                image[node] = symbols[name]
-            else:
-                image[node] = graph.stand_in(name) if node.stands else graph.symbol(name)
-        elif node.constant is not None:
-            image[node] = graph.const(node.constant)
+        if node.op == "symbol" and (name := str(node.payload)) in symbols:
+            image[node] = symbols[name]
+        elif (leaf := _leaf(graph, node)) is not None:
+            image[node] = leaf
         elif node.op in ("sin", "cos"):
             # keyed by the angle, as the addition theorem expects them
             image[node] = graph.trig(node.op, args[0])
         else:
             image[node] = graph.raw(node.op, args, node.payload)
     return [image[output] for output in outputs]
+
+
+def rebuilt(graph: Graph, outputs: Iterable[Scalar], replaced: Mapping[Scalar, Scalar]) -> list[Scalar]:
+    """The same scalars on a graph through the rules of its constructors, with nodes replaced by some of that graph."""
+    outputs = list(outputs)
+    image = dict(replaced)
+    for node in topological(outputs, image):
+        leaf = _leaf(graph, node)
+        image[node] = rebuild(graph, node, tuple(map(image.__getitem__, node.args))) if leaf is None else leaf
+    return [image[output] for output in outputs]
+
+
+def _leaf(graph: Graph, node: Scalar) -> Scalar | None:
+    """A symbol or number on another graph; None for what is made of others."""
+    if node.op == "symbol":
+        name = str(node.payload)
+        return graph.stand_in(name) if node.stands else graph.symbol(name)
+    return None if node.constant is None else graph.const(node.constant)

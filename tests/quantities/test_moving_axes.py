@@ -107,3 +107,16 @@ def test_long_results_are_not_made_anew_for_each_heading(tmp_path: Path, monkeyp
     monkeypatch.setattr(moving_axes, "MOST_TURNED", 3 * most)
     _selection(tmp_path, LEVEL)
     assert 0 < len(tried) < usual
+
+
+def test_what_was_derived_beside_does_not_hide_what_a_turn_is_worth(tmp_path: Path) -> None:
+    """Equal functions are one node: on the graph of all null spaces the turned one was replaced by what it is to
+    replace."""
+    path = tmp_path / "tractor.yaml"
+    path.write_text(LEVEL, encoding="utf-8")
+    model = load_model(path)
+    selection = derive_quantities(model, MOTIONS)
+    assert {choice.method for choice in selection.choices} == {"minor"}
+    alone = derive_quantities(model, MOTIONS, dict.fromkeys(MOTIONS, "minor"))
+    for one, other in zip(selection.quantities, alone.quantities, strict=True):
+        assert cost(scalars(one)).weight <= 1.02 * cost(scalars(other)).weight
