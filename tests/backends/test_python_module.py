@@ -162,6 +162,8 @@ def test_compiled_functions_are_those_of_the_module(toy: ModuleType, tool: Calla
     for functions in (toy, compiled):
         with pytest.raises(ValueError, match=r"q has shape \(3,\), expected \(..., 2\)"):
             functions.inverse_dynamics([1.0, 2.0, 3.0], [0, 0], [0, 0])
+        with pytest.raises(ValueError, match=r"leading axes .*: q has shape \(3, 2\), qd has shape \(4, 2\)"):
+            functions.inverse_dynamics(np.zeros((3, 2)), np.zeros((4, 2)), np.zeros(2))
         with pytest.raises(TypeError, match=r"missing a required argument|required positional argument"):
             functions.inverse_dynamics([1.0, 2.0])
 
