@@ -16,8 +16,9 @@ from symgen.generation.draft import Draft
 from symgen.ir.bounded import Bound
 from symgen.ir.bounded_coordinates import CoordinateBound
 from symgen.ir.given_trig import given_trig
-from symgen.ir.kernel import Kernel
+from symgen.ir.kernel import Kernel, Program
 from symgen.ir.prepare import prepare
+from symgen.ir.together import together_of
 from symgen.methods.selection import MethodChoice
 from symgen.model.model import Model
 from symgen.quantities.select import Choice, Rejection
@@ -91,8 +92,18 @@ def derivation_json(draft: Draft) -> str:
         "method_of_inverse_dynamics": _method(derivations.method_of_u),
         **{f"method_of_{quantity}": _method(one) for quantity, one in derivations.named},
         "kernels": kernels,
+        **_together(model, program),
     }
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
+
+
+def _together(model: Model, program: Program) -> dict[str, Any]:
+    """What is wanted in one call, with the operations of that."""
+    made = together_of(model.together, program)
+    groups = [
+        {"quantities": [part.name for part in one.parts], "operations": _operations(one.kernel)} for one in made
+    ]
+    return {"together": groups} if groups else {}
 
 
 def _friction(model: Model) -> dict[str, Any]:

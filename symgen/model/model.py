@@ -278,6 +278,7 @@ class Model:
     its configurations.  `row_units` are set where rows stand here times 2 to these powers (`quantities/row_units.py`).
     What is `measured` leaves places open where rows hold rates alone (`measures_places`); so may a `task`.
     `taken` are parameters of the file that are numbers here (`as_numbers`).
+    `together` are outputs that have a function in common as well.
     `released` are the joints of `rough` places whose reactions are no multipliers, `friction_steps` how their
     friction is worked out for a motion, `motion_steps` the same for inputs.
     """
@@ -312,6 +313,7 @@ class Model:
     allocation: Allocation | None = None
     trig_range: Literal["normal", "wide"] = "normal"
     derivatives: bool = False
+    together: tuple[tuple[str, ...], ...] = ()
     measured: tuple[str, ...] = ()
     measures_places: bool = True
     task: tuple[TaskCoordinate, ...] = ()

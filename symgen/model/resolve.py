@@ -96,6 +96,7 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
         allocation=allocation,
         applied_forces=forces,
         outputs=_outputs(tree.get("outputs"), bool(inputs)),
+        together=_together(tree.get("outputs")),
         independent_velocities=_coordinate_list(scope, tree, "independent_velocities", names),
         measured=_coordinate_list(scope, tree, "measured", names) or _driven(tree.get("outputs"), inputs),
         task=read_task(scope, tree),
@@ -161,21 +162,34 @@ def _model_name(scope: Scope, tree: MappingNode) -> str:
 
 
 def _outputs(node: Node | None, has_inputs: bool) -> tuple[str, ...]:
-    requested = (node,) if isinstance(node, ScalarNode) else items(node)
+    """What is to be made, in the order in which it is named first, together with others or by itself."""
     known = {"all", *(quantity.name for quantity in QUANTITIES)}
     outputs: list[str] = []
-    for item in requested:
-        name = text_of(item)
-        if name in known and name not in outputs:
-            outputs.append(name)
+    for item in (node,) if isinstance(node, ScalarNode) else items(node):
+        for one in _members(item) or (item,):
+            name = text_of(one)
+            if name in known and name not in outputs:
+                outputs.append(name)
     if "all" in outputs:  # what is named beside it is made however long it is
         outputs.sort(key=lambda name: name != "all")
     return tuple(outputs) or (("inverse_dynamics",) if has_inputs else ("forward_dynamics",))
 
 
+def _members(output: Node) -> tuple[Node, ...]:
+    """The quantities that one call is to have; none for one that is named by itself."""
+    return tuple(items(output.get("together"))) if isinstance(output, MappingNode) else ()
+
+
+def _together(outputs: Node | None) -> tuple[tuple[str, ...], ...]:
+    """The groups of quantities that have a function in common, each once."""
+    groups = (tuple(dict.fromkeys(map(text_of, _members(item)))) for item in items(outputs))
+    return tuple(dict.fromkeys(tuple(name for name in group if name in ROWS) for group in groups if len(group) > 1))
+
+
 def _driven(outputs: Node | None, inputs: tuple[Input, ...]) -> tuple[str, ...]:
     """The coordinates that inputs drive alone: what is measured where outputs need it and the file does not say."""
-    asked = any(text_of(item) in ROWS and ROWS[str(text_of(item))].is_of_measured for item in items(outputs))
+    named = (text_of(one) for item in items(outputs) for one in _members(item) or (item,))
+    asked = any(name in ROWS and ROWS[name].is_of_measured for name in named if name is not None)
     columns = [given.acts_on for given in inputs if given.velocity is None] if asked else []
     driven = (column[0] for column in columns if len(column) == 1)
     return tuple(dict.fromkeys(name for name, force in driven if isinstance(force, Number)))

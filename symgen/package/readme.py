@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from symgen.backends.about import status_meaning, statuses_of
-from symgen.backends.c.endings import PREPARED, SINES_GIVEN
+from symgen.backends.c.endings import PREPARED, SINES_GIVEN, TOGETHER
 from symgen.backends.c.identity import status_text_name
 from symgen.backends.c.names import c_names, global_name, status_name
 from symgen.backends.defaults import default_values
@@ -81,6 +81,7 @@ _VARIANTS = {
         "given sines and cosines of coordinates",
         "where encoders give these, or several functions are called at one configuration; angles have no limit",
     ),
+    TOGETHER: ("several results", "where all of them are needed: what they share is worked out once"),
 }
 
 

@@ -14,7 +14,7 @@ import flint
 
 import symgen
 from symgen.backends.backend import backend
-from symgen.backends.c.endings import BATCH, PREPARED, SINES_GIVEN
+from symgen.backends.c.endings import BATCH, PREPARED, SINES_GIVEN, TOGETHER
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.model.model import Model
 from symgen.runtime.activity import each, working
@@ -38,6 +38,7 @@ from symgen.verify.running.compile import (
 from symgen.verify.running.given_trig import run_given_trig
 from symgen.verify.running.prepared import run_prepared
 from symgen.verify.running.python_module import PythonModule
+from symgen.verify.running.several_results import run_several
 from symgen.verify.sampling.states import USUAL_STATES, Sample, VerificationError
 
 # Characters of what a compiler said that are kept in a fault.
@@ -221,6 +222,8 @@ def _run_c(
         if (header := companions.get(_header(model, scalar, SINES_GIVEN))) is not None:
             made = run_given_trig(library, model, kernels, scalar, samples[scalar], header)
             others["sines given"] = made, []
+        if (header := companions.get(_header(model, scalar, TOGETHER))) is not None:
+            others["together"] = run_several(library, model, kernels, scalar, samples[scalar], outcomes, header)
         for kind, (made, differing) in others.items():
             faults += differing
             if made:

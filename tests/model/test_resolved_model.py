@@ -83,6 +83,13 @@ def test_outputs(extra: str, outputs: tuple[str, ...]) -> None:
     assert load(extra).outputs == outputs
 
 
+def test_outputs_in_one_call_are_made_by_themselves_too() -> None:
+    model = load("outputs: [energy, {together: [mass_matrix, energy, mass_matrix]}, {together: [energy, energy]}]\n")
+    assert model.outputs == ("energy", "mass_matrix")
+    assert model.together == (("mass_matrix", "energy"),)
+    assert load("outputs: [energy, all]\n").together == ()
+
+
 def test_configuration_and_tolerances_are_exact() -> None:
     model = load("configuration: {x: 0.1, a: -1/3}\ntolerances: {constraint_rank: 1e-9}\n")
     assert model.configuration == (("x", Fraction(1, 10)), ("a", Fraction(-1, 3)))

@@ -17,6 +17,7 @@ from symgen.laboratory.zoo.draws.draw_energy import _surplus
 from symgen.laboratory.zoo.draws.endings import MAIN, independent
 from symgen.laboratory.zoo.draws.families import FAMILIES, draw
 from symgen.laboratory.zoo.draws.sketch import Sketch
+from symgen.laboratory.zoo.features import features
 from symgen.laboratory.zoo.witness.fields import Floats
 from symgen.laboratory.zoo.witness.mechanics import equations
 from symgen.laboratory.zoo.witness.reader import SystemReader
@@ -117,10 +118,27 @@ def test_outputs_that_are_named_hold_what_the_witness_compares() -> None:
         description = draw(31, index, "geared")
         outputs = description.blocks.get("outputs")
         if isinstance(outputs, list) and MISTAKE not in description.marks:
-            assert set(MAIN) <= set(outputs)
-            assert len(set(outputs)) == len(outputs)
+            names = [output for output in outputs if isinstance(output, str)]
+            assert set(MAIN) <= set(names)
+            assert len(set(names)) == len(names)
             firsts.add(outputs[0])
     assert firsts == set(MAIN)
+
+
+def test_some_systems_want_outputs_in_one_call() -> None:
+    """Of those that they name; the commands' own table says how many of them there are."""
+    drawn = [draw(1600, index, "") for index in range(60)]
+    groups = [
+        (output["together"], description.blocks["outputs"])
+        for description in drawn
+        for output in description.blocks.get("outputs") or ()
+        if isinstance(output, dict)
+    ]
+    assert len(groups) > 2
+    for group, outputs in groups:
+        assert 2 <= len(group) <= 4
+        assert set(group) <= {name for name in outputs if isinstance(name, str)}
+    assert sum("outputs in one call" in features(description) for description in drawn) == len(groups)
 
 
 def test_a_link_with_a_reserved_name_is_a_mistake() -> None:

@@ -3,3 +3,4 @@
 BATCH = "_batch"
 PREPARED = "_prepared"
 SINES_GIVEN = "_sc"
+TOGETHER = "_together"

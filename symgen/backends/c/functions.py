@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from typing import TypeAlias
 
 from symgen.backends.c.causes import Cause, CauseView, cause_view, causes_of, operands_of, place
 from symgen.backends.c.finite import SUM, FiniteTest
@@ -20,6 +21,9 @@ from symgen.ir.pairs.wide_functions import works_with_pairs
 from symgen.model.model import Model
 from symgen.records import dataclass
 
+# Arrays that a function stores its outputs in, and how many entries each has.
+Results: TypeAlias = tuple[tuple[str, int], ...]
+
 
 @dataclass(frozen=True, slots=True)
 class CFunctionView:
@@ -32,17 +36,28 @@ class CFunctionView:
 
 
 def kernel_function(
-    model: Model, program: Program, kernel: Kernel, names: Names, about: str, given: Mapping[str, str], ending: str = ""
+    model: Model,
+    program: Program,
+    kernel: Kernel,
+    names: Names,
+    about: str,
+    given: Mapping[str, str],
+    ending: str = "",
+    results: Results = (),
 ) -> CFunctionView:
-    """The function of a kernel; `given` declares what it gets besides arrays: `*p` behind them, and before `*sc`."""
+    """The function of a kernel; `given` declares what it gets besides arrays: `*p` behind them, and before `*sc`.
+
+    Outputs are stored in one array, or one behind the other in those of `results`.
+    """
     scalar, name = C_TYPE[program.scalar], global_name(model.c_name, program.scalar, kernel.name, ending)
+    results = results or ((names.outputs[kernel.name], len(kernel.outputs)),)
     arguments = [given[struct] for struct in ("sc",) if struct in given]
     arguments += [f"const {scalar} {argument.name}[{argument.length}]" for argument in array_arguments(kernel)]
-    arguments += [given["p"], f"{scalar} {names.outputs[kernel.name]}[{len(kernel.outputs)}]"]
+    arguments += [given["p"], *(f"{scalar} {result}[{length}]" for result, length in results)]
     return CFunctionView(
         c_comment_lines(about),
         f"{model.c_name}_status {name}({', '.join(arguments)})",
-        _body(model, program, kernel, names, name),
+        _body(model, program, kernel, names, name, results),
         _causes(model, program, kernel, names, name, given),
     )
 
@@ -77,10 +92,12 @@ def _printer(model: Model, program: Program, kernel: Kernel, names: Names, cause
     )
 
 
-def _body(model: Model, program: Program, kernel: Kernel, names: Names, function: str) -> tuple[str, ...]:
+def _body(
+    model: Model, program: Program, kernel: Kernel, names: Names, function: str, results: Results
+) -> tuple[str, ...]:
     """The lines of `function`, of one state; the parameters, or what stands for them, are the members of `*p`."""
     if works_with_pairs(kernel):
-        return _body_of_steps(model, program, kernel, names, function)
+        return _body_of_steps(model, program, kernel, names, function, results)
     suffix = SUFFIX[program.scalar]
     causes = causes_of(kernel, function)
     printer = _printer(model, program, kernel, names, causes)
@@ -116,24 +133,25 @@ def _body(model: Model, program: Program, kernel: Kernel, names: Names, function
             lines += [*due(operands_of(check, causes)), *printer.check(check)]
     lines += due(kernel.outputs)
     lines += finite.remaining()
-    return (*lines, *_ending(model, kernel, printer, names))
+    return (*lines, *_ending(model, kernel, printer, results))
 
 
-def _ending(model: Model, kernel: Kernel, printer: CStatements, names: Names) -> list[str]:
+def _ending(model: Model, kernel: Kernel, printer: CStatements, results: Results) -> list[str]:
     """The test that all results are finite, and what is stored where they are."""
     lines: list[str] = []
-    output = names.outputs[kernel.name]
+    places = [f"{result}[{index}]" for result, length in results for index in range(length)]
     if any(isinstance(entry, Local) for entry in kernel.outputs):
         failed = status_name(model, Status.NOT_FINITE)
         lines += [f"if ({printer.rare}(isnan({SUM}) != 0)) {{", f"    return {failed};", "}"]
-    lines += [
-        f"{output}[{index}] = {printer.operand(operand).strip('()')};" for index, operand in enumerate(kernel.outputs)
-    ]
+    entries = zip(places, kernel.outputs, strict=True)
+    lines += [f"{where} = {printer.operand(entry).strip('()')};" for where, entry in entries]
     lines.append(f"return {status_name(model, Status.OK)};")
     return lines
 
 
-def _body_of_steps(model: Model, program: Program, kernel: Kernel, names: Names, function: str) -> tuple[str, ...]:
+def _body_of_steps(
+    model: Model, program: Program, kernel: Kernel, names: Names, function: str, results: Results
+) -> tuple[str, ...]:
     """The lines of a function that runs through tables of steps."""
     suffix, scalar = SUFFIX[program.scalar], C_TYPE[program.scalar]
     steps: StepTable = table(kernel, program)
@@ -152,7 +170,7 @@ def _body_of_steps(model: Model, program: Program, kernel: Kernel, names: Names,
             inside = {target: names.locals[target] for target in _targets_on_failure(check)}
             lines += replace(printer, names={**placed.locals, **inside}).check(check)
     finite = FiniteTest(scalar, (placed.locals[o.name] for o in kernel.outputs if isinstance(o, Local)))
-    return (*lines, *finite.remaining(), *_ending(model, kernel, printer, names))
+    return (*lines, *finite.remaining(), *_ending(model, kernel, printer, results))
 
 
 def _targets_on_failure(check: Check) -> set[str]:

@@ -53,7 +53,8 @@ ALL = (
     *(f"{name} in a potential" for name in FUNCTIONS), "exp of a length",
     "parameter that is zero", "parameters that are equal", "parameters 1e9 apart", "parameter with a range",
     *(f"names that hurt in {language}" for language in LEGAL_BY_LANGUAGE), "reserved name",
-    "outputs chosen at random", "all outputs", "outputs by default", "one scalar type", "start told", "start left out",
+    "outputs chosen at random", "all outputs", "outputs by default", "outputs in one call", "one scalar type",
+    "start told", "start left out",
     "independent velocities", "measured coordinates", "task", "weights", "one preload", "preloads", "limits",
     "wide range of angles",
     "spring", "damper", "friction", "force element", "rotor", "applied force", "skew axis", "fixed turn",
@@ -96,6 +97,8 @@ def _of_text(description: Description, blocks: Mapping[str, Any]) -> Iterator[st
             yield f"names that hurt in {language}"
     outputs = blocks.get("outputs")
     yield "all outputs" if outputs == "all" else "outputs chosen at random" if outputs else "outputs by default"
+    if isinstance(outputs, list) and any(not isinstance(name, str) for name in outputs):
+        yield "outputs in one call"
     if description.options:
         yield "one scalar type"
     yield "start told" if "configuration" in blocks else "start left out"

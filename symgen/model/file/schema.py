@@ -29,6 +29,11 @@ _DESCRIPTION = Key("description", Text(), "what it is, in a few words; stands in
 _MATRIX = Listing(Either((ExpressionShape(), Listing(ExpressionShape(), 1))), 1)
 _NAMES = Listing(Word())
 _OUTPUT = Word(("all", *(quantity.name for quantity in QUANTITIES)))
+_QUANTITY_NAME = Word(tuple(quantity.name for quantity in QUANTITIES))
+_TOGETHER = RecordShape(
+    "an output",
+    (Key("together", Listing(_QUANTITY_NAME, 2), "quantities that one call is to have: C that shares", required=True),),
+)
 _EQUATION = Key("equation", Text(), 'its number where it was printed, such as "(44)"', required=True)
 _QUANTITY = Key("quantity", Word(), "name of a quantity, as in `outputs`", required=True)
 _INDEPENDENT = Key("independent", _NAMES, "the independent velocities the formula is for")
@@ -355,8 +360,8 @@ MODEL = RecordShape(
         ),
         Key(
             "outputs",
-            Either((_OUTPUT, Listing(_OUTPUT))),
-            "quantities to generate, or all",
+            Either((_OUTPUT, Listing(Either((_OUTPUT, _TOGETHER))))),
+            "quantities to generate, or all; {together: [...]}: these in one function as well",
         ),
         Key("independent_velocities", _NAMES, "coordinates whose rates serve in F and the minimal form"),
         Key("measured", _NAMES, "coordinates that encoders say, from which the others are found"),

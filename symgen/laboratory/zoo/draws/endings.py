@@ -36,6 +36,8 @@ OF_INDEPENDENT = ("orthogonal_complement", "minimal_mass_matrix", "minimal_corio
 
 # Shares of systems that measure, and that have a task.
 MEASURED_SHARE, TASK_SHARE = 0.15, 0.12
+# Of systems that name several outputs, those that want some in one call.
+TOGETHER_SHARE = 0.15
 # Of allocations without limits those that get some, and of how many inputs at most.
 LIMITED_SHARE, MOST_LIMITED = 0.6, 4
 
@@ -83,7 +85,16 @@ def finish(sketch: Sketch) -> Description:
         _task(sketch)
     if "limits" not in blocks.get("allocation", {"limits": {}}) and dice.chance(LIMITED_SHARE):
         _limit(sketch)
+    if len(named := _outputs_by_name(sketch)) > 1 and dice.chance(TOGETHER_SHARE):
+        group = dice.sample(named, dice.whole(2, min(4, len(named))))
+        blocks["outputs"] = [*blocks["outputs"], {"together": group}]
     return Description(sketch.family, blocks, dict(start), tuple(sketch.marks), sketch.files)
+
+
+def _outputs_by_name(sketch: Sketch) -> list[str]:
+    """Those of a system without mistakes that names them."""
+    outputs = sketch.blocks.get("outputs")
+    return list(dict.fromkeys(outputs)) if isinstance(outputs, list) and MISTAKE not in sketch.marks else []
 
 
 def _names(blocks: Mapping[str, Any], start: Mapping[str, float]) -> Iterator[str]:
