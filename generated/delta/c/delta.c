@@ -173,7 +173,7 @@ delta_params delta_default_params(void) {
     return p;
 }
 
-delta_status delta_configuration_from_measured(const double q_m[3], const double q[6], const delta_params *p, double q_found[6]) {
+delta_status delta_configuration_from_measured(const double q_m[3], const double q[6], const delta_params *p, double q_result[6]) {
     const double r = p->r;
     if (DELTA_RARELY(!(0.7 >= r))) {
         return DELTA_PARAMETER_RANGE;
@@ -1137,12 +1137,12 @@ delta_status delta_configuration_from_measured(const double q_m[3], const double
     if (DELTA_RARELY(isnan(rest) != 0)) {
         return DELTA_NOT_FINITE;
     }
-    q_found[0] = a_1_measured;
-    q_found[1] = a_2_measured;
-    q_found[2] = a_3_measured;
-    q_found[3] = t788;
-    q_found[4] = t798;
-    q_found[5] = t804;
+    q_result[0] = a_1_measured;
+    q_result[1] = a_2_measured;
+    q_result[2] = a_3_measured;
+    q_result[3] = t788;
+    q_result[4] = t798;
+    q_result[5] = t804;
     return DELTA_OK;
 }
 
@@ -1368,7 +1368,7 @@ static DELTA_APART delta_status delta_velocity_from_measured_cause(const double 
     return DELTA_MEASURED_RANK;
 }
 
-delta_status delta_velocity_from_measured(const double q[6], const double qd_m[3], const delta_params *p, double qd_found[6]) {
+delta_status delta_velocity_from_measured(const double q[6], const double qd_m[3], const delta_params *p, double qd_result[6]) {
     const double r = p->r;
     if (DELTA_RARELY(!(0.39 >= r))) {
         return DELTA_PARAMETER_RANGE;
@@ -1547,16 +1547,16 @@ delta_status delta_velocity_from_measured(const double q[6], const double qd_m[3
     if (DELTA_RARELY(isnan(rest) != 0)) {
         return DELTA_NOT_FINITE;
     }
-    qd_found[0] = a_1_dot_measured;
-    qd_found[1] = a_2_dot_measured;
-    qd_found[2] = a_3_dot_measured;
-    qd_found[3] = t328;
-    qd_found[4] = t337;
-    qd_found[5] = t344;
+    qd_result[0] = a_1_dot_measured;
+    qd_result[1] = a_2_dot_measured;
+    qd_result[2] = a_3_dot_measured;
+    qd_result[3] = t328;
+    qd_result[4] = t337;
+    qd_result[5] = t344;
     return DELTA_OK;
 }
 
-delta_status delta_acceleration_from_measured(const double q[6], const double qd_m[3], const double qdd_m[3], const delta_params *p, double qdd_found[6]) {
+delta_status delta_acceleration_from_measured(const double q[6], const double qd_m[3], const double qdd_m[3], const delta_params *p, double qdd_result[6]) {
     const double r = p->r;
     if (DELTA_RARELY(!(0.39 >= r))) {
         return DELTA_PARAMETER_RANGE;
@@ -2040,16 +2040,16 @@ delta_status delta_acceleration_from_measured(const double q[6], const double qd
     if (DELTA_RARELY(isnan(rest) != 0)) {
         return DELTA_NOT_FINITE;
     }
-    qdd_found[0] = a_1_ddot_measured;
-    qdd_found[1] = a_2_ddot_measured;
-    qdd_found[2] = a_3_ddot_measured;
-    qdd_found[3] = t415;
-    qdd_found[4] = t424;
-    qdd_found[5] = t431;
+    qdd_result[0] = a_1_ddot_measured;
+    qdd_result[1] = a_2_ddot_measured;
+    qdd_result[2] = a_3_ddot_measured;
+    qdd_result[3] = t415;
+    qdd_result[4] = t424;
+    qdd_result[5] = t431;
     return DELTA_OK;
 }
 
-delta_status delta_configuration_from_task(const double x_t[3], const double q[6], const delta_params *p, double q_found[6]) {
+delta_status delta_configuration_from_task(const double x_t[3], const double q[6], const delta_params *p, double q_result[6]) {
     const double a_1 = q[0];
     const double t1 = fabs(a_1);
     const double a_2 = q[1];
@@ -2732,16 +2732,16 @@ delta_status delta_configuration_from_task(const double x_t[3], const double q[6
     if (DELTA_RARELY(isnan(rest) != 0)) {
         return DELTA_NOT_FINITE;
     }
-    q_found[0] = t427;
-    q_found[1] = t437;
-    q_found[2] = t446;
-    q_found[3] = x_task;
-    q_found[4] = y_task;
-    q_found[5] = z_task;
+    q_result[0] = t427;
+    q_result[1] = t437;
+    q_result[2] = t446;
+    q_result[3] = x_task;
+    q_result[4] = y_task;
+    q_result[5] = z_task;
     return DELTA_OK;
 }
 
-delta_status delta_velocity_from_task(const double q[6], const double xd_t[3], const delta_params *p, double qd_found[6]) {
+delta_status delta_velocity_from_task(const double q[6], const double xd_t[3], const delta_params *p, double qd_result[6]) {
     const double a_1 = q[0];
     const double t1 = fabs(a_1);
     const double a_2 = q[1];
@@ -3516,16 +3516,16 @@ delta_status delta_velocity_from_task(const double q[6], const double xd_t[3], c
     if (DELTA_RARELY(isnan(rest) != 0)) {
         return DELTA_NOT_FINITE;
     }
-    qd_found[0] = t691;
-    qd_found[1] = t708;
-    qd_found[2] = t724;
-    qd_found[3] = x_dot_task;
-    qd_found[4] = y_dot_task;
-    qd_found[5] = z_dot_task;
+    qd_result[0] = t691;
+    qd_result[1] = t708;
+    qd_result[2] = t724;
+    qd_result[3] = x_dot_task;
+    qd_result[4] = y_dot_task;
+    qd_result[5] = z_dot_task;
     return DELTA_OK;
 }
 
-delta_status delta_acceleration_from_task(const double q[6], const double xd_t[3], const double xdd_t[3], const delta_params *p, double qdd_found[6]) {
+delta_status delta_acceleration_from_task(const double q[6], const double xd_t[3], const double xdd_t[3], const delta_params *p, double qdd_result[6]) {
     const double a_1 = q[0];
     const double t1 = fabs(a_1);
     const double a_2 = q[1];
@@ -4407,12 +4407,12 @@ delta_status delta_acceleration_from_task(const double q[6], const double xd_t[3
     if (DELTA_RARELY(isnan(rest) != 0)) {
         return DELTA_NOT_FINITE;
     }
-    qdd_found[0] = t721;
-    qdd_found[1] = t775;
-    qdd_found[2] = t828;
-    qdd_found[3] = x_ddot_task;
-    qdd_found[4] = y_ddot_task;
-    qdd_found[5] = z_ddot_task;
+    qdd_result[0] = t721;
+    qdd_result[1] = t775;
+    qdd_result[2] = t828;
+    qdd_result[3] = x_ddot_task;
+    qdd_result[4] = y_ddot_task;
+    qdd_result[5] = z_ddot_task;
     return DELTA_OK;
 }
 

@@ -189,23 +189,23 @@ typedef struct {
 delta_params delta_default_params(void);
 
 /** q(q_m): the configuration with the measured coordinates, or nearest to them, on the branch of q; length 6 */
-delta_status delta_configuration_from_measured(const double q_m[3], const double q[6], const delta_params *p, double q_found[6]);
+delta_status delta_configuration_from_measured(const double q_m[3], const double q[6], const delta_params *p, double q_result[6]);
 
 /** q̇(q̇_m): the admissible velocity with the measured rates, or nearest to them; length 6 */
-delta_status delta_velocity_from_measured(const double q[6], const double qd_m[3], const delta_params *p, double qd_found[6]);
+delta_status delta_velocity_from_measured(const double q[6], const double qd_m[3], const delta_params *p, double qd_result[6]);
 
 /** q̈(q̈_m): the admissible acceleration with the measured ones, or nearest to them, at the measured velocity;
     length 6 */
-delta_status delta_acceleration_from_measured(const double q[6], const double qd_m[3], const double qdd_m[3], const delta_params *p, double qdd_found[6]);
+delta_status delta_acceleration_from_measured(const double q[6], const double qd_m[3], const double qdd_m[3], const delta_params *p, double qdd_result[6]);
 
 /** q(x): the configuration with these coordinates of the task, or nearest to them, on the branch of q; length 6 */
-delta_status delta_configuration_from_task(const double x_t[3], const double q[6], const delta_params *p, double q_found[6]);
+delta_status delta_configuration_from_task(const double x_t[3], const double q[6], const delta_params *p, double q_result[6]);
 
 /** q̇(ẋ): the admissible velocity with these rates of the task, or nearest to them; length 6 */
-delta_status delta_velocity_from_task(const double q[6], const double xd_t[3], const delta_params *p, double qd_found[6]);
+delta_status delta_velocity_from_task(const double q[6], const double xd_t[3], const delta_params *p, double qd_result[6]);
 
 /** q̈(ẍ): the admissible acceleration with these ones of the task, or nearest to them, at that velocity; length 6 */
-delta_status delta_acceleration_from_task(const double q[6], const double xd_t[3], const double xdd_t[3], const delta_params *p, double qdd_found[6]);
+delta_status delta_acceleration_from_task(const double q[6], const double xd_t[3], const double xdd_t[3], const delta_params *p, double qdd_result[6]);
 
 /** u: the smallest inputs that produce the motion, (27); length 3 */
 delta_status delta_inverse_dynamics(const double q[6], const double qd[6], const double qdd[6], const delta_params *p, double u[3]);

@@ -160,7 +160,7 @@ delta_params_f delta_default_params_f(void) {
     return p;
 }
 
-delta_status delta_configuration_from_measured_f(const float q_m[3], const float q[6], const delta_params_f *p, float q_found[6]) {
+delta_status delta_configuration_from_measured_f(const float q_m[3], const float q[6], const delta_params_f *p, float q_result[6]) {
     const float r = p->r;
     if (DELTA_RARELY_F(!(0.7f >= r))) {
         return DELTA_PARAMETER_RANGE;
@@ -1127,12 +1127,12 @@ delta_status delta_configuration_from_measured_f(const float q_m[3], const float
     if (DELTA_RARELY_F(isnan(rest) != 0)) {
         return DELTA_NOT_FINITE;
     }
-    q_found[0] = a_1_measured;
-    q_found[1] = a_2_measured;
-    q_found[2] = a_3_measured;
-    q_found[3] = t788;
-    q_found[4] = t798;
-    q_found[5] = t804;
+    q_result[0] = a_1_measured;
+    q_result[1] = a_2_measured;
+    q_result[2] = a_3_measured;
+    q_result[3] = t788;
+    q_result[4] = t798;
+    q_result[5] = t804;
     return DELTA_OK;
 }
 
@@ -1358,7 +1358,7 @@ static DELTA_APART_F delta_status delta_velocity_from_measured_f_cause(const flo
     return DELTA_MEASURED_RANK;
 }
 
-delta_status delta_velocity_from_measured_f(const float q[6], const float qd_m[3], const delta_params_f *p, float qd_found[6]) {
+delta_status delta_velocity_from_measured_f(const float q[6], const float qd_m[3], const delta_params_f *p, float qd_result[6]) {
     const float r = p->r;
     if (DELTA_RARELY_F(!(0.39f >= r))) {
         return DELTA_PARAMETER_RANGE;
@@ -1540,16 +1540,16 @@ delta_status delta_velocity_from_measured_f(const float q[6], const float qd_m[3
     if (DELTA_RARELY_F(isnan(rest) != 0)) {
         return DELTA_NOT_FINITE;
     }
-    qd_found[0] = a_1_dot_measured;
-    qd_found[1] = a_2_dot_measured;
-    qd_found[2] = a_3_dot_measured;
-    qd_found[3] = t328;
-    qd_found[4] = t337;
-    qd_found[5] = t344;
+    qd_result[0] = a_1_dot_measured;
+    qd_result[1] = a_2_dot_measured;
+    qd_result[2] = a_3_dot_measured;
+    qd_result[3] = t328;
+    qd_result[4] = t337;
+    qd_result[5] = t344;
     return DELTA_OK;
 }
 
-delta_status delta_acceleration_from_measured_f(const float q[6], const float qd_m[3], const float qdd_m[3], const delta_params_f *p, float qdd_found[6]) {
+delta_status delta_acceleration_from_measured_f(const float q[6], const float qd_m[3], const float qdd_m[3], const delta_params_f *p, float qdd_result[6]) {
     const float r = p->r;
     if (DELTA_RARELY_F(!(0.39f >= r))) {
         return DELTA_PARAMETER_RANGE;
@@ -2033,16 +2033,16 @@ delta_status delta_acceleration_from_measured_f(const float q[6], const float qd
     if (DELTA_RARELY_F(isnan(rest) != 0)) {
         return DELTA_NOT_FINITE;
     }
-    qdd_found[0] = a_1_ddot_measured;
-    qdd_found[1] = a_2_ddot_measured;
-    qdd_found[2] = a_3_ddot_measured;
-    qdd_found[3] = t415;
-    qdd_found[4] = t424;
-    qdd_found[5] = t431;
+    qdd_result[0] = a_1_ddot_measured;
+    qdd_result[1] = a_2_ddot_measured;
+    qdd_result[2] = a_3_ddot_measured;
+    qdd_result[3] = t415;
+    qdd_result[4] = t424;
+    qdd_result[5] = t431;
     return DELTA_OK;
 }
 
-delta_status delta_configuration_from_task_f(const float x_t[3], const float q[6], const delta_params_f *p, float q_found[6]) {
+delta_status delta_configuration_from_task_f(const float x_t[3], const float q[6], const delta_params_f *p, float q_result[6]) {
     const float l_1 = p->l_1;
     if (DELTA_RARELY_F(!(l_1 >= 0.0045f))) {
         return DELTA_PARAMETER_RANGE;
@@ -2734,16 +2734,16 @@ delta_status delta_configuration_from_task_f(const float x_t[3], const float q[6
     if (DELTA_RARELY_F(isnan(rest) != 0)) {
         return DELTA_NOT_FINITE;
     }
-    q_found[0] = t427;
-    q_found[1] = t437;
-    q_found[2] = t446;
-    q_found[3] = x_task;
-    q_found[4] = y_task;
-    q_found[5] = z_task;
+    q_result[0] = t427;
+    q_result[1] = t437;
+    q_result[2] = t446;
+    q_result[3] = x_task;
+    q_result[4] = y_task;
+    q_result[5] = z_task;
     return DELTA_OK;
 }
 
-delta_status delta_velocity_from_task_f(const float q[6], const float xd_t[3], const delta_params_f *p, float qd_found[6]) {
+delta_status delta_velocity_from_task_f(const float q[6], const float xd_t[3], const delta_params_f *p, float qd_result[6]) {
     const float l_2 = p->l_2;
     if (DELTA_RARELY_F(!(l_2 >= 2.4e-07f))) {
         return DELTA_PARAMETER_RANGE;
@@ -3522,16 +3522,16 @@ delta_status delta_velocity_from_task_f(const float q[6], const float xd_t[3], c
     if (DELTA_RARELY_F(isnan(rest) != 0)) {
         return DELTA_NOT_FINITE;
     }
-    qd_found[0] = t691;
-    qd_found[1] = t708;
-    qd_found[2] = t724;
-    qd_found[3] = x_dot_task;
-    qd_found[4] = y_dot_task;
-    qd_found[5] = z_dot_task;
+    qd_result[0] = t691;
+    qd_result[1] = t708;
+    qd_result[2] = t724;
+    qd_result[3] = x_dot_task;
+    qd_result[4] = y_dot_task;
+    qd_result[5] = z_dot_task;
     return DELTA_OK;
 }
 
-delta_status delta_acceleration_from_task_f(const float q[6], const float xd_t[3], const float xdd_t[3], const delta_params_f *p, float qdd_found[6]) {
+delta_status delta_acceleration_from_task_f(const float q[6], const float xd_t[3], const float xdd_t[3], const delta_params_f *p, float qdd_result[6]) {
     const float l_2 = p->l_2;
     if (DELTA_RARELY_F(!(l_2 >= 2.4e-07f))) {
         return DELTA_PARAMETER_RANGE;
@@ -4417,12 +4417,12 @@ delta_status delta_acceleration_from_task_f(const float q[6], const float xd_t[3
     if (DELTA_RARELY_F(isnan(rest) != 0)) {
         return DELTA_NOT_FINITE;
     }
-    qdd_found[0] = t721;
-    qdd_found[1] = t775;
-    qdd_found[2] = t828;
-    qdd_found[3] = x_ddot_task;
-    qdd_found[4] = y_ddot_task;
-    qdd_found[5] = z_ddot_task;
+    qdd_result[0] = t721;
+    qdd_result[1] = t775;
+    qdd_result[2] = t828;
+    qdd_result[3] = x_ddot_task;
+    qdd_result[4] = y_ddot_task;
+    qdd_result[5] = z_ddot_task;
     return DELTA_OK;
 }
 

@@ -191,23 +191,23 @@ typedef struct {
 delta_params_f delta_default_params_f(void);
 
 /** q(q_m): the configuration with the measured coordinates, or nearest to them, on the branch of q; length 6 */
-delta_status delta_configuration_from_measured_f(const float q_m[3], const float q[6], const delta_params_f *p, float q_found[6]);
+delta_status delta_configuration_from_measured_f(const float q_m[3], const float q[6], const delta_params_f *p, float q_result[6]);
 
 /** q̇(q̇_m): the admissible velocity with the measured rates, or nearest to them; length 6 */
-delta_status delta_velocity_from_measured_f(const float q[6], const float qd_m[3], const delta_params_f *p, float qd_found[6]);
+delta_status delta_velocity_from_measured_f(const float q[6], const float qd_m[3], const delta_params_f *p, float qd_result[6]);
 
 /** q̈(q̈_m): the admissible acceleration with the measured ones, or nearest to them, at the measured velocity;
     length 6 */
-delta_status delta_acceleration_from_measured_f(const float q[6], const float qd_m[3], const float qdd_m[3], const delta_params_f *p, float qdd_found[6]);
+delta_status delta_acceleration_from_measured_f(const float q[6], const float qd_m[3], const float qdd_m[3], const delta_params_f *p, float qdd_result[6]);
 
 /** q(x): the configuration with these coordinates of the task, or nearest to them, on the branch of q; length 6 */
-delta_status delta_configuration_from_task_f(const float x_t[3], const float q[6], const delta_params_f *p, float q_found[6]);
+delta_status delta_configuration_from_task_f(const float x_t[3], const float q[6], const delta_params_f *p, float q_result[6]);
 
 /** q̇(ẋ): the admissible velocity with these rates of the task, or nearest to them; length 6 */
-delta_status delta_velocity_from_task_f(const float q[6], const float xd_t[3], const delta_params_f *p, float qd_found[6]);
+delta_status delta_velocity_from_task_f(const float q[6], const float xd_t[3], const delta_params_f *p, float qd_result[6]);
 
 /** q̈(ẍ): the admissible acceleration with these ones of the task, or nearest to them, at that velocity; length 6 */
-delta_status delta_acceleration_from_task_f(const float q[6], const float xd_t[3], const float xdd_t[3], const delta_params_f *p, float qdd_found[6]);
+delta_status delta_acceleration_from_task_f(const float q[6], const float xd_t[3], const float xdd_t[3], const delta_params_f *p, float qdd_result[6]);
 
 /** u: the smallest inputs that produce the motion, (27); length 3 */
 delta_status delta_inverse_dynamics_f(const float q[6], const float qd[6], const float qdd[6], const delta_params_f *p, float u[3]);

@@ -40,15 +40,15 @@
  * minimal_applied_force                 0      0      0      0      0      0
  * minimal_control_matrix                0      3      1      0      2      0
  * admissible_velocity                   4     13      2      0      2      0
- * admissible_acceleration              13     34      4      0      2      0
+ * admissible_acceleration              11     32      2      0      2      0
  * projected_configuration               0      0      0      0      0      0
  * inverse_dynamics                      7     14      1      0      2      0
  * inverse_dynamics_residual             0      0      0      0      0      0
  * actuator_velocity                     3      4      0      0      2      0
  * actuator_mass_matrix                  2      7      1      0      1      0
  * actuator_bias                         9     18      1      0      2      0
- * forward_dynamics                     34     83      1      0      2      0
- * multipliers                          31     72      1      0      2      0
+ * forward_dynamics                     25     65      1      0      2      0
+ * multipliers                          30     69      1      0      2      0
  * energy                                7     14      0      0      1      0
  * singularity                          12     23      5      1      2      0
  * (changes of sign are not counted)
@@ -58,10 +58,9 @@
  *   projected_mass_matrix 0.57 <= L, 50 <= m_1, Theta_1 <= 40000
  *   projected_coriolis_matrix 0.11 <= L <= 40
  *   minimal_coriolis_matrix 0.32 <= L <= 7.1e+07
- *   admissible_acceleration L <= 400000
+ *   admissible_acceleration L <= 710000
  *   actuator_bias m_2 <= 2000
  *   forward_dynamics 0.11 <= L
- *   multipliers 0.11 <= L
  *   singularity 0.11 <= L
  *
  * Every function returns a status. On a status other than 0 its outputs are untouched. Outputs may alias inputs.

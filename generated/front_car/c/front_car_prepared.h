@@ -16,7 +16,7 @@ extern "C" {
 
 /** What the parameters determine. */
 typedef struct {
-    double value[12]; /**< in no order that a caller can use */
+    double value[13]; /**< in no order that a caller can use */
 } front_car_prepared;
 
 /** What the parameters determine, worked out once. */
@@ -25,10 +25,10 @@ front_car_prepared front_car_prepare(const front_car_params *p);
 /** u: the smallest inputs that produce the motion, (27); 22 operations instead of 26 */
 front_car_status front_car_inverse_dynamics_prepared(const double q[4], const double qd[4], const double qdd[4], const front_car_prepared *p, double u[2]);
 
-/** q̈: accelerations under the inputs, (15); 114 operations instead of 128 */
+/** q̈: accelerations under the inputs, (15); 87 operations instead of 101 */
 front_car_status front_car_forward_dynamics_prepared(const double q[4], const double qd[4], const double u[2], const front_car_prepared *p, double qdd[4]);
 
-/** λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 100 operations instead of 114 */
+/** λ: Lagrange multipliers; the reaction on the system is −Bᵀλ, (14); 96 operations instead of 110 */
 front_car_status front_car_multipliers_prepared(const double q[4], const double qd[4], const double u[2], const front_car_prepared *p, double lambda_B[2]);
 
 #ifdef __cplusplus

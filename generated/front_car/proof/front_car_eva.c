@@ -725,10 +725,7 @@ void eva_admissible_velocity(void) {
 
 void eva_admissible_acceleration(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t43. */
 void eva_admissible_acceleration(void) {
-    static const double low_2[] = {-0x1.921fb54442d18p+1, -0x1.78fdb9effea46p+1, -0x1.5fdbbe9bba775p+1, -0x1.46b9c347764a4p+1, -0x1.2d97c7f3321d1p+1, -0x1.10dea8b7767bdp+1, -0x1.e84b12f775b53p+0, -0x1.aed8d47ffe72bp+0, -0x1.7566960887303p+0, -0x1.3bf457910fedcp+0, -0x1.0282191998ab4p+0, -0x1.921fb54442d18p-1, -0x1.1f3b3855544c8p-1, -0x1.58ad76cccb8f0p-2, -0x1.cb91f3bbba140p-4, 0x1.cb91f3bbba140p-4, 0x1.58ad76cccb8f0p-2, 0x1.1f3b3855544c8p-1, 0x1.921fb54442d19p-1, 0x1.0282191998ab4p+0, 0x1.3bf457910fedcp+0, 0x1.7566960887303p+0, 0x1.aed8d47ffe72bp+0, 0x1.e84b12f775b53p+0, 0x1.10dea8b7767bdp+1, 0x1.2d97c7f3321d2p+1, 0x1.46b9c347764a4p+1, 0x1.5fdbbe9bba775p+1, 0x1.78fdb9effea46p+1};
-    static const double high_2[] = {-0x1.78fdb9effea46p+1, -0x1.5fdbbe9bba775p+1, -0x1.46b9c347764a4p+1, -0x1.2d97c7f3321d2p+1, -0x1.10dea8b7767bdp+1, -0x1.e84b12f775b53p+0, -0x1.aed8d47ffe72bp+0, -0x1.7566960887303p+0, -0x1.3bf457910fedcp+0, -0x1.0282191998ab4p+0, -0x1.921fb54442d19p-1, -0x1.1f3b3855544c8p-1, -0x1.58ad76cccb8f0p-2, -0x1.cb91f3bbba140p-4, 0x1.cb91f3bbba140p-4, 0x1.58ad76cccb8f0p-2, 0x1.1f3b3855544c8p-1, 0x1.921fb54442d18p-1, 0x1.0282191998ab4p+0, 0x1.3bf457910fedcp+0, 0x1.7566960887303p+0, 0x1.aed8d47ffe72bp+0, 0x1.e84b12f775b53p+0, 0x1.10dea8b7767bdp+1, 0x1.2d97c7f3321d1p+1, 0x1.46b9c347764a4p+1, 0x1.5fdbbe9bba775p+1, 0x1.78fdb9effea46p+1, 0x1.921fb54442d18p+1};
     static const double low_3[] = {-0x1.3333333333333p+0, -0x1.fc430dd5549c0p-1, -0x1.921fb54442d18p-1, -0x1.1f3b3855544c8p-1, -0x1.58ad76cccb8f0p-2, -0x1.cb91f3bbba140p-4, 0x1.cb91f3bbba140p-4, 0x1.58ad76cccb8f0p-2, 0x1.1f3b3855544c8p-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
     static const double high_3[] = {-0x1.fc430dd5549c0p-1, -0x1.921fb54442d19p-1, -0x1.1f3b3855544c8p-1, -0x1.58ad76cccb8f0p-2, -0x1.cb91f3bbba140p-4, 0x1.cb91f3bbba140p-4, 0x1.58ad76cccb8f0p-2, 0x1.1f3b3855544c8p-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
     double q[4];
@@ -738,6 +735,7 @@ void eva_admissible_acceleration(void) {
     double y[4];
     q[0] = Frama_C_double_interval(-20.0, 20.0);
     q[1] = Frama_C_double_interval(-20.0, 20.0);
+    q[2] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
     qd[0] = Frama_C_double_interval(-10.0, 10.0);
     qd[1] = Frama_C_double_interval(-10.0, 10.0);
     qd[2] = Frama_C_double_interval(-3.0, 3.0);
@@ -751,16 +749,12 @@ void eva_admissible_acceleration(void) {
     p.m_2 = Frama_C_double_interval(20.0, 200.0);
     p.Theta_1 = Frama_C_double_interval(500.0, 4000.0);
     p.Theta_2 = Frama_C_double_interval(0.2, 10.0);
-    //@ loop unroll 29;
-    for (int i_2 = 0; i_2 < 29; i_2++) {
-    q[2] = Frama_C_double_interval(low_2[i_2], high_2[i_2]);
     //@ loop unroll 11;
     for (int i_3 = 0; i_3 < 11; i_3++) {
     q[3] = Frama_C_double_interval(low_3[i_3], high_3[i_3]);
     front_car_status status = front_car_admissible_acceleration(q, qd, qdd, &p, y);
     //@ assert regular: status == FRONT_CAR_OK || status == FRONT_CAR_NOT_FINITE;
     (void)status;
-    }
     }
 }
 
@@ -960,8 +954,6 @@ void eva_forward_dynamics(void) {
 void eva_multipliers(void);
 
 void eva_multipliers(void) {
-    static const double low_2[] = {-0x1.921fb54442d18p+1, -0x1.78fdb9effea46p+1, -0x1.5fdbbe9bba775p+1, -0x1.46b9c347764a4p+1, -0x1.2d97c7f3321d1p+1, -0x1.10dea8b7767bdp+1, -0x1.e84b12f775b53p+0, -0x1.aed8d47ffe72bp+0, -0x1.7566960887303p+0, -0x1.3bf457910fedcp+0, -0x1.0282191998ab4p+0, -0x1.921fb54442d18p-1, -0x1.1f3b3855544c8p-1, -0x1.58ad76cccb8f0p-2, -0x1.cb91f3bbba140p-4, 0x1.cb91f3bbba140p-4, 0x1.58ad76cccb8f0p-2, 0x1.1f3b3855544c8p-1, 0x1.921fb54442d19p-1, 0x1.0282191998ab4p+0, 0x1.3bf457910fedcp+0, 0x1.7566960887303p+0, 0x1.aed8d47ffe72bp+0, 0x1.e84b12f775b53p+0, 0x1.10dea8b7767bdp+1, 0x1.2d97c7f3321d2p+1, 0x1.46b9c347764a4p+1, 0x1.5fdbbe9bba775p+1, 0x1.78fdb9effea46p+1};
-    static const double high_2[] = {-0x1.78fdb9effea46p+1, -0x1.5fdbbe9bba775p+1, -0x1.46b9c347764a4p+1, -0x1.2d97c7f3321d2p+1, -0x1.10dea8b7767bdp+1, -0x1.e84b12f775b53p+0, -0x1.aed8d47ffe72bp+0, -0x1.7566960887303p+0, -0x1.3bf457910fedcp+0, -0x1.0282191998ab4p+0, -0x1.921fb54442d19p-1, -0x1.1f3b3855544c8p-1, -0x1.58ad76cccb8f0p-2, -0x1.cb91f3bbba140p-4, 0x1.cb91f3bbba140p-4, 0x1.58ad76cccb8f0p-2, 0x1.1f3b3855544c8p-1, 0x1.921fb54442d18p-1, 0x1.0282191998ab4p+0, 0x1.3bf457910fedcp+0, 0x1.7566960887303p+0, 0x1.aed8d47ffe72bp+0, 0x1.e84b12f775b53p+0, 0x1.10dea8b7767bdp+1, 0x1.2d97c7f3321d1p+1, 0x1.46b9c347764a4p+1, 0x1.5fdbbe9bba775p+1, 0x1.78fdb9effea46p+1, 0x1.921fb54442d18p+1};
     static const double low_3[] = {-0x1.3333333333333p+0, -0x1.fc430dd5549c0p-1, -0x1.921fb54442d18p-1, -0x1.1f3b3855544c8p-1, -0x1.58ad76cccb8f0p-2, -0x1.cb91f3bbba140p-4, 0x1.cb91f3bbba140p-4, 0x1.58ad76cccb8f0p-2, 0x1.1f3b3855544c8p-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
     static const double high_3[] = {-0x1.fc430dd5549c0p-1, -0x1.921fb54442d19p-1, -0x1.1f3b3855544c8p-1, -0x1.58ad76cccb8f0p-2, -0x1.cb91f3bbba140p-4, 0x1.cb91f3bbba140p-4, 0x1.58ad76cccb8f0p-2, 0x1.1f3b3855544c8p-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
     double q[4];
@@ -971,6 +963,7 @@ void eva_multipliers(void) {
     double y[2];
     q[0] = Frama_C_double_interval(-20.0, 20.0);
     q[1] = Frama_C_double_interval(-20.0, 20.0);
+    q[2] = Frama_C_double_interval(-3.141592653589793, 3.141592653589793);
     qd[0] = Frama_C_double_interval(-10.0, 10.0);
     qd[1] = Frama_C_double_interval(-10.0, 10.0);
     qd[2] = Frama_C_double_interval(-3.0, 3.0);
@@ -982,16 +975,12 @@ void eva_multipliers(void) {
     p.m_2 = Frama_C_double_interval(20.0, 200.0);
     p.Theta_1 = Frama_C_double_interval(500.0, 4000.0);
     p.Theta_2 = Frama_C_double_interval(0.2, 10.0);
-    //@ loop unroll 29;
-    for (int i_2 = 0; i_2 < 29; i_2++) {
-    q[2] = Frama_C_double_interval(low_2[i_2], high_2[i_2]);
     //@ loop unroll 11;
     for (int i_3 = 0; i_3 < 11; i_3++) {
     q[3] = Frama_C_double_interval(low_3[i_3], high_3[i_3]);
     front_car_status status = front_car_multipliers(q, qd, u, &p, y);
     //@ assert regular: status == FRONT_CAR_OK || status == FRONT_CAR_NOT_FINITE;
     (void)status;
-    }
     }
 }
 

@@ -39,15 +39,15 @@ minimal_potential_force               0      0      0      0      0      0
 minimal_applied_force                 0      0      0      0      0      0
 minimal_control_matrix                0      3      1      0      2      0
 admissible_velocity                   4     13      2      0      2      0
-admissible_acceleration              13     34      4      0      2      0
+admissible_acceleration              11     32      2      0      2      0
 projected_configuration               0      0      0      0      0      0
 inverse_dynamics                      7     14      1      0      2      0
 inverse_dynamics_residual             0      0      0      0      0      0
 actuator_velocity                     3      4      0      0      2      0
 actuator_mass_matrix                  2      7      1      0      1      0
 actuator_bias                         9     18      1      0      2      0
-forward_dynamics                     34     83      1      0      2      0
-multipliers                          31     72      1      0      2      0
+forward_dynamics                     25     65      1      0      2      0
+multipliers                          30     69      1      0      2      0
 energy                                7     14      0      0      1      0
 singularity                          12     23      5      1      2      0
 (changes of sign are not counted)
@@ -58,7 +58,6 @@ Beyond these bounds of parameters results would lose digits; they have the statu
   minimal_coriolis_matrix 0.57 <= L, Theta_1 <= 4e+08
   actuator_bias m_2 <= 2000
   forward_dynamics 0.11 <= L
-  multipliers 0.11 <= L
   singularity 0.11 <= L
 
 Every function takes arrays with any leading axes (one state each) and the parameters `p`. A single state that is
@@ -150,7 +149,11 @@ def _array(name, length, values):
 
 def _states(**given):
     """Arrays broadcast to common leading axes, and those axes."""
-    batch = np.broadcast_shapes(*(array.shape[:-1] for array in given.values()))
+    try:
+        batch = np.broadcast_shapes(*(array.shape[:-1] for array in given.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} has shape {array.shape}" for name, array in given.items())
+        raise ValueError(f"leading axes do not go together: {shapes}") from None
     return *(np.broadcast_to(array, batch + array.shape[-1:]) for array in given.values()), batch
 
 
@@ -1733,14 +1736,14 @@ def admissible_acceleration(q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, p: Para
         theta_ddot = qdd[..., 2]
         phi_ddot = qdd[..., 3]
         L = np.float64(p.L)
-        t1 = np.abs(theta)
-        t2 = np.abs(phi)
+        t1 = np.abs(phi)
+        t2 = np.abs(theta)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(theta)
-        t5, t6 = _sincos(phi)
-        t7 = t5 * t5
-        t8 = L * t6
+        t3, t4 = _sincos(phi)
+        t5, t6 = _sincos(theta)
+        t7 = t3 * t3
+        t8 = L * t4
         t9 = t8 * t8
         t10 = t7 + t9
         t11 = 1.0 + t9
@@ -1749,52 +1752,46 @@ def admissible_acceleration(q: ArrayLike, qd: ArrayLike, qdd: ArrayLike, p: Para
         t13 = t10 * t10
         t14 = t10 * t13
         t15 = L / t14
-        t16 = theta_ddot * t5
-        t17 = x_ddot * t4
-        t18 = y_ddot * t3
+        t16 = theta_ddot * t3
+        t17 = x_ddot * t6
+        t18 = y_ddot * t5
         t19 = t17 + t18
         t20 = t8 * t19
         t21 = t16 + t20
         t22 = t13 * t21
-        t23 = t6 * t22
-        t24 = theta_dot * t5
-        t25 = x_dot * t4
-        t26 = y_dot * t3
+        t23 = t4 * t22
+        t24 = theta_dot * t3
+        t25 = x_dot * t6
+        t26 = y_dot * t5
         t27 = t25 + t26
         t28 = t8 * t27
         t29 = t24 + t28
         t30 = phi_dot * t29
-        t31 = t5 * t10
+        t31 = t3 * t10
         t32 = t30 * t31
         t33 = t23 - t32
-        t34 = t15 * t33
-        t35 = t4 * t34
-        t36 = t8 * t5
-        t37 = t36 * t29
-        t38 = t29 * t37
-        t39 = t3 * t3
-        t40 = t4 * t4
-        t41 = t39 + t40
-        t42 = t9 * t41
-        t43 = t7 + t42
-        t44 = t38 / t43
-        t45 = t44 / t43
-        t46 = t3 * t45
-        t47 = t35 - t46
-        t48 = t3 * t34
-        t49 = t4 * t45
+        t34 = t6 * t33
+        t35 = t4 * t31
+        t36 = t29 * t35
+        t37 = t29 * t36
+        t38 = t5 * t37
+        t39 = t34 - t38
+        t40 = t15 * t39
+        t41 = t5 * t33
+        t42 = t6 * t37
+        t43 = t41 + t42
+        t44 = t15 * t43
+        t45 = L * t30
+        t46 = t19 * t31
+        t47 = t45 + t46
+        t48 = t8 * t47
+        t49 = t16 * t31
         t50 = t48 + t49
-        t51 = L * t30
-        t52 = t19 * t31
-        t53 = t51 + t52
-        t54 = t8 * t53
-        t55 = t16 * t31
-        t56 = t54 + t55
-        t57 = t56 / t13
+        t51 = t50 / t13
         entries = (
-            t47,
-            t50,
-            t57,
+            t40,
+            t44,
+            t51,
             phi_ddot,
         )
         return _result("admissible_acceleration", status, batch, (4,), entries)
@@ -2073,143 +2070,116 @@ def forward_dynamics(q: ArrayLike, qd: ArrayLike, u: ArrayLike, p: Parameters = 
         Theta_1 = np.float64(p.Theta_1)
         Theta_2 = np.float64(p.Theta_2)
         status = _first(status, ~np.asarray(L >= 0.11), 6)
-        t1 = np.abs(phi)
-        t2 = np.abs(theta)
+        t1 = np.abs(theta)
+        t2 = np.abs(phi)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
         status = _first(status, ~np.asarray(100000.0 >= t2), 4)
-        t3, t4 = _sincos(phi)
-        t5, t6 = _sincos(theta)
-        t8 = L * t4
-        t9 = t5 * t8
-        t11 = t6 * t8
-        t42 = L * t3
-        t45 = L * m_2
-        t46 = theta_dot * t45
-        t47 = theta_dot * t6
-        t55 = theta_dot * t5
-        t49 = t6 * t4
-        t50 = t5 * t3
-        t51 = t49 - t50
-        t57 = t5 * t4
-        t58 = t6 * t3
-        t59 = t57 + t58
-        t43 = K_f * t42
-        t44 = t3 * t43
-        t48 = t46 * t47
-        t52 = K_f * t51
-        t53 = t48 + t52
-        t54 = t11 * t53
-        t56 = t46 * t55
-        t60 = K_f * t59
-        t61 = t56 + t60
-        t62 = t9 * t61
-        t63 = t54 + t62
-        t64 = t44 + t63
-        t65 = Theta_2 * t64
-        t67 = y_dot * t55
-        t68 = x_dot * t47
-        t69 = t67 + t68
-        t82 = theta_dot * t42
-        t83 = phi_dot * t82
-        t84 = theta_dot + phi_dot
-        t85 = x_dot * t51
-        t86 = y_dot * t59
-        t87 = t85 + t86
-        t88 = t84 * t87
-        t89 = t83 + t88
-        t81 = t69 * t51
-        t90 = t6 * t89
-        t91 = t81 - t90
-        t97 = t5 * t89
-        t98 = t69 * t59
-        t99 = t97 - t98
-        t19 = m_1 * t4
-        t71 = L * Theta_2
-        t72 = m_2 * t59
-        t73 = t5 * t19
-        t74 = t72 + t73
-        t75 = t71 * t74
-        t101 = m_2 * t51
-        t102 = t6 * t19
-        t103 = t101 + t102
-        t104 = t71 * t103
-        t70 = t8 * t69
-        t77 = L * t45
-        t78 = Theta_1 + t77
-        t79 = t3 * t78
-        t80 = Theta_2 * t79
-        t66 = t11 * t65
-        t76 = t70 * t75
-        t92 = t80 * t91
-        t93 = t76 - t92
-        t94 = t66 - t93
-        t96 = t9 * t65
-        t100 = t80 * t99
-        t105 = t70 * t104
-        t106 = t100 - t105
-        t107 = t96 - t106
-        t109 = t3 * t65
-        t110 = t91 * t104
-        t111 = t75 * t99
-        t112 = t110 - t111
-        t113 = t109 - t112
-        t118 = T * t3
-        t119 = t45 * t118
-        t115 = m_1 + m_2
-        t116 = T * t115
-        t117 = t11 * t116
-        t120 = t5 * t119
-        t121 = t117 - t120
-        t122 = t11 * t121
-        t123 = t9 * t116
-        t124 = t6 * t119
-        t125 = t123 + t124
-        t126 = t9 * t125
-        t127 = t122 + t126
-        t128 = t118 * t79
-        t129 = t127 + t128
-        t10 = t9 * t9
-        t12 = t11 * t11
-        t13 = t10 + t12
-        t15 = t8 * t8
-        t16 = 1.0 + t15
-        t17 = t16 * 7.888609052210118e-31
-        t7 = t3 * t3
-        t14 = t7 + t13
-        status = _first(status, ~np.asarray(t14 > t17), 2)
-        t29 = np.abs(m_2)
-        t27 = np.abs(Theta_2)
-        t28 = np.abs(Theta_1)
-        t30 = np.abs(L)
-        t31 = t30 * t30
-        t32 = t29 * t31
-        t33 = t28 + t32
-        t34 = t7 * t33
-        t35 = np.abs(m_1)
-        t36 = t35 + t29
-        t37 = t36 * t13
-        t38 = t34 + t37
-        t39 = t27 * t38
-        t40 = t39 * 8.881784197001252e-16
-        t18 = Theta_1 * t7
-        t20 = t4 * t19
-        t21 = m_2 + t20
-        t22 = L * t21
-        t23 = L * t22
-        t24 = t18 + t23
-        t25 = Theta_2 * t24
-        t26 = np.abs(t25)
-        status = _first(status, ~np.asarray(t26 > t40), 5)
-        t41 = 1.0 / t25
-        t95 = t41 * t94
-        t108 = t41 * t107
-        t114 = t41 * t113
-        t130 = t41 * t129
+        t3, t4 = _sincos(theta)
+        t5, t6 = _sincos(phi)
+        t7 = t5 * t5
+        t8 = L * t6
+        t9 = t8 * t8
+        t10 = t7 + t9
+        t11 = 1.0 + t9
+        t12 = t11 * 7.888609052210118e-31
+        status = _first(status, ~np.asarray(t10 > t12), 2)
+        t13 = Theta_1 * t7
+        t14 = m_1 * t6
+        t15 = t6 * t14
+        t16 = m_2 + t15
+        t17 = L * t16
+        t18 = L * t17
+        t19 = t13 + t18
+        t20 = Theta_2 * t19
+        t21 = np.abs(t20)
+        t22 = np.abs(Theta_2)
+        t23 = np.abs(Theta_1)
+        t24 = np.abs(m_2)
+        t25 = np.abs(L)
+        t26 = t25 * t25
+        t27 = t24 * t26
+        t28 = t23 + t27
+        t29 = t7 * t28
+        t30 = np.abs(m_1)
+        t31 = t30 + t24
+        t32 = t9 * t31
+        t33 = t29 + t32
+        t34 = t22 * t33
+        t35 = t34 * 8.881784197001252e-16
+        status = _first(status, ~np.asarray(t21 > t35), 5)
+        t36 = t6 * t6
+        t37 = m_1 * t36
+        t38 = m_2 + t37
+        t39 = L * t38
+        t40 = L * t39
+        t41 = t40 + t13
+        t42 = Theta_2 * t41
+        t43 = 1.0 / t42
+        t44 = L * t5
+        t45 = K_f * t44
+        t46 = t5 * t45
+        t47 = K_f * t6
+        t48 = theta_dot * L
+        t49 = theta_dot * t48
+        t50 = m_2 * t49
+        t51 = t47 + t50
+        t52 = t8 * t51
+        t53 = t46 + t52
+        t54 = Theta_2 * t53
+        t55 = x_dot * t4
+        t56 = y_dot * t3
+        t57 = t55 + t56
+        t58 = theta_dot * t57
+        t59 = L * Theta_2
+        t60 = m_2 * t5
+        t61 = t59 * t60
+        t62 = t58 * t61
+        t63 = t54 - t62
+        t64 = t8 * t63
+        t65 = L * L
+        t66 = m_2 * t65
+        t67 = Theta_1 + t66
+        t68 = t5 * t67
+        t69 = Theta_2 * t68
+        t70 = theta_dot + phi_dot
+        t71 = t57 * t70
+        t72 = t58 - t71
+        t73 = t6 * t72
+        t74 = y_dot * t4
+        t75 = x_dot * t3
+        t76 = t74 - t75
+        t77 = t76 * t70
+        t78 = phi_dot * t48
+        t79 = t77 + t78
+        t80 = t5 * t79
+        t81 = t73 - t80
+        t82 = t69 * t81
+        t83 = t64 + t82
+        t84 = t43 * t83
+        t85 = t4 * t84
+        t86 = t3 * t58
+        t87 = t85 - t86
+        t88 = t4 * t58
+        t89 = t3 * t84
+        t90 = t88 + t89
+        t91 = t5 * t63
+        t92 = m_1 + m_2
+        t93 = t6 * t92
+        t94 = t59 * t93
+        t95 = t94 * t81
+        t96 = t91 - t95
+        t97 = t43 * t96
+        t98 = t5 * t68
+        t99 = t8 * t92
+        t100 = t8 * t99
+        t101 = t98 + t100
+        t102 = T * t101
+        t103 = t43 * t102
         entries = (
-            t95,
-            t108,
-            t114,
-            t130,
+            t87,
+            t90,
+            t97,
+            t103,
         )
         return _result("forward_dynamics", status, batch, (4,), entries)
 
@@ -2236,7 +2206,6 @@ def multipliers(q: ArrayLike, qd: ArrayLike, u: ArrayLike, p: Parameters = PARAM
         m_2 = np.float64(p.m_2)
         Theta_1 = np.float64(p.Theta_1)
         Theta_2 = np.float64(p.Theta_2)
-        status = _first(status, ~np.asarray(L >= 0.11), 6)
         t1 = np.abs(phi)
         t2 = np.abs(theta)
         status = _first(status, ~np.asarray(100000.0 >= t1), 4)
@@ -2250,9 +2219,18 @@ def multipliers(q: ArrayLike, qd: ArrayLike, u: ArrayLike, p: Parameters = PARAM
         t11 = 1.0 + t9
         t12 = t11 * 7.888609052210118e-31
         status = _first(status, ~np.asarray(t10 > t12), 2)
-        t24 = np.abs(m_2)
+        t13 = Theta_1 * t7
+        t14 = m_1 * t4
+        t15 = t4 * t14
+        t16 = m_2 + t15
+        t17 = L * t16
+        t18 = L * t17
+        t19 = t13 + t18
+        t20 = Theta_2 * t19
+        t21 = np.abs(t20)
         t22 = np.abs(Theta_2)
         t23 = np.abs(Theta_1)
+        t24 = np.abs(m_2)
         t25 = np.abs(L)
         t26 = t25 * t25
         t27 = t24 * t26
@@ -2264,15 +2242,6 @@ def multipliers(q: ArrayLike, qd: ArrayLike, u: ArrayLike, p: Parameters = PARAM
         t33 = t29 + t32
         t34 = t22 * t33
         t35 = t34 * 8.881784197001252e-16
-        t13 = Theta_1 * t7
-        t14 = m_1 * t4
-        t15 = t4 * t14
-        t16 = m_2 + t15
-        t17 = L * t16
-        t18 = L * t17
-        t19 = t13 + t18
-        t20 = Theta_2 * t19
-        t21 = np.abs(t20)
         status = _first(status, ~np.asarray(t21 > t35), 5)
         t36 = t4 * t4
         t37 = m_1 * t36
@@ -2283,81 +2252,77 @@ def multipliers(q: ArrayLike, qd: ArrayLike, u: ArrayLike, p: Parameters = PARAM
         t42 = Theta_2 * t41
         t43 = 1.0 / t42
         t44 = L * Theta_2
-        t52 = m_1 + m_2
         t45 = m_2 * t3
         t46 = t44 * t45
-        t86 = t4 * t52
-        t87 = t44 * t86
+        t47 = K_f * t4
+        t48 = L * m_2
+        t49 = theta_dot * t48
+        t50 = theta_dot * t49
+        t51 = t47 + t50
+        t52 = m_1 + m_2
         t53 = x_dot * t6
         t54 = y_dot * t5
         t55 = t53 + t54
         t56 = theta_dot * t55
         t57 = t56 * t46
-        t64 = L * t3
-        t63 = t4 * t56
-        t65 = theta_dot * t64
-        t66 = phi_dot * t65
-        t67 = theta_dot + phi_dot
-        t68 = t6 * t4
-        t69 = t5 * t3
-        t70 = t68 - t69
-        t71 = x_dot * t70
-        t72 = t5 * t4
-        t73 = t6 * t3
-        t74 = t72 + t73
-        t75 = y_dot * t74
-        t76 = t71 + t75
-        t77 = t67 * t76
-        t78 = t66 + t77
-        t79 = t63 - t78
-        t89 = t3 * t57
-        t90 = t87 * t79
-        t91 = t89 + t90
-        t92 = t43 * t91
-        t48 = L * m_2
-        t88 = K_f * t3
-        t94 = t52 * t56
-        t93 = t48 * t92
-        t95 = t93 - t94
-        t96 = t88 + t95
-        t101 = K_f * t64
-        t103 = t48 * t56
-        t59 = L * t48
-        t60 = Theta_1 + t59
-        t102 = t60 * t92
-        t104 = t102 - t103
-        t105 = t101 + t104
-        t61 = t3 * t60
-        t62 = Theta_2 * t61
         t58 = t8 * t57
-        t80 = t62 * t79
-        t81 = t58 - t80
-        t47 = K_f * t4
-        t49 = theta_dot * t48
-        t50 = theta_dot * t49
-        t51 = t47 + t50
-        t82 = t43 * t81
-        t83 = t52 * t82
-        t84 = t51 + t83
-        t100 = t62 * t84
-        t106 = t87 * t105
-        t107 = t100 - t106
-        t85 = t46 * t84
-        t97 = t87 * t96
-        t98 = t85 - t97
-        t99 = t8 * t98
-        t108 = t4 * t107
-        t109 = t99 - t108
-        t110 = t62 * t96
-        t111 = t46 * t105
-        t112 = t110 - t111
-        t113 = t3 * t112
-        t114 = t109 - t113
-        t115 = t43 * t114
-        t116 = t43 * t107
+        t59 = theta_dot + phi_dot
+        t60 = t55 * t59
+        t61 = t56 - t60
+        t62 = t4 * t61
+        t63 = phi_dot * L
+        t64 = theta_dot * t63
+        t65 = y_dot * t6
+        t66 = x_dot * t5
+        t67 = t65 - t66
+        t68 = t67 * t59
+        t69 = t64 + t68
+        t70 = t3 * t69
+        t71 = t62 - t70
+        t72 = L * t48
+        t73 = Theta_1 + t72
+        t74 = t3 * t73
+        t75 = Theta_2 * t74
+        t76 = t71 * t75
+        t77 = t58 - t76
+        t78 = t43 * t77
+        t79 = t52 * t78
+        t80 = t51 + t79
+        t81 = t46 * t80
+        t82 = t4 * t52
+        t83 = t44 * t82
+        t84 = K_f * t3
+        t85 = t3 * t57
+        t86 = t83 * t71
+        t87 = t85 + t86
+        t88 = t43 * t87
+        t89 = t48 * t88
+        t90 = t52 * t56
+        t91 = t89 - t90
+        t92 = t84 + t91
+        t93 = t83 * t92
+        t94 = t81 - t93
+        t95 = t8 * t94
+        t96 = t75 * t80
+        t97 = m_2 * t56
+        t98 = t84 - t97
+        t99 = L * t98
+        t100 = t73 * t88
+        t101 = t99 + t100
+        t102 = t83 * t101
+        t103 = t96 - t102
+        t104 = t4 * t103
+        t105 = t95 - t104
+        t106 = t75 * t92
+        t107 = t46 * t101
+        t108 = t106 - t107
+        t109 = t3 * t108
+        t110 = t105 - t109
+        t111 = t43 * t110
+        t112 = t43 * t103
         entries = (
-            t115,
-            t116,
+            t111,
+            t112,
         )
         return _result("multipliers", status, batch, (2,), entries)
 
@@ -2641,7 +2606,7 @@ def compile():
     os.close(handle)
     try:
         sources = [str(folder / name) for name in _FILES if name.endswith(".c")]
-        made = _told([*command, "-o", name, *sources, "-lm"])
+        made = _run([*command, "-o", name, *sources, "-lm"])
         if made.returncode != 0:
             raise RuntimeError(f"{' '.join(command)} failed:\n{made.stderr}")
         try:
@@ -2669,13 +2634,13 @@ def _sources():
 def _for_this_machine(command):
     """The command with flags for this machine, and what the compiler then says of itself and of the machine."""
     for flags in _MACHINE_FLAGS:
-        told = _told([*command, *flags, "-dM", "-E", "-x", "c", os.devnull])
-        if told.returncode == 0:
-            return [*command, *flags], (platform.machine(), told.stdout)
-    raise RuntimeError(f"{' '.join(command)} failed:\n{told.stderr}")
+        described = _run([*command, *flags, "-dM", "-E", "-x", "c", os.devnull])
+        if described.returncode == 0:
+            return [*command, *flags], (platform.machine(), described.stdout)
+    raise RuntimeError(f"{' '.join(command)} failed:\n{described.stderr}")
 
 
-def _told(command):
+def _run(command):
     try:
         return subprocess.run(
             command, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace", check=False,

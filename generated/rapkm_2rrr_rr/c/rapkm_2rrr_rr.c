@@ -11743,7 +11743,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration(const double q[6], co
     return RAPKM_2RRR_RR_OK;
 }
 
-rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_measured(const double q_m[3], const double q[6], const rapkm_2rrr_rr_params *p, double q_found[6]) {
+rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_measured(const double q_m[3], const double q[6], const rapkm_2rrr_rr_params *p, double q_result[6]) {
     const double l_1 = p->l_1;
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -15030,16 +15030,16 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_measured(const double q_m[
     if (RAPKM_2RRR_RR_RARELY(isnan(rest) != 0)) {
         return RAPKM_2RRR_RR_NOT_FINITE;
     }
-    q_found[0] = t2925;
-    q_found[1] = t2938;
-    q_found[2] = t2951;
-    q_found[3] = t2931;
-    q_found[4] = t2944;
-    q_found[5] = t2957;
+    q_result[0] = t2925;
+    q_result[1] = t2938;
+    q_result[2] = t2951;
+    q_result[3] = t2931;
+    q_result[4] = t2944;
+    q_result[5] = t2957;
     return RAPKM_2RRR_RR_OK;
 }
 
-rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_measured(const double q[6], const double qd_m[3], const rapkm_2rrr_rr_params *p, double qd_found[6]) {
+rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_measured(const double q[6], const double qd_m[3], const rapkm_2rrr_rr_params *p, double qd_result[6]) {
     const double l_1 = p->l_1;
     if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -15360,12 +15360,12 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_measured(const double q[6], con
     if (RAPKM_2RRR_RR_RARELY(isnan(rest) != 0)) {
         return RAPKM_2RRR_RR_NOT_FINITE;
     }
-    qd_found[0] = t238;
-    qd_found[1] = t244;
-    qd_found[2] = t247;
-    qd_found[3] = t252;
-    qd_found[4] = t257;
-    qd_found[5] = t262;
+    qd_result[0] = t238;
+    qd_result[1] = t244;
+    qd_result[2] = t247;
+    qd_result[3] = t252;
+    qd_result[4] = t257;
+    qd_result[5] = t262;
     return RAPKM_2RRR_RR_OK;
 }
 
@@ -15662,7 +15662,7 @@ static RAPKM_2RRR_RR_APART rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_
     return RAPKM_2RRR_RR_MEASURED_RANK;
 }
 
-rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_measured(const double q[6], const double qd_m[3], const double qdd_m[3], const rapkm_2rrr_rr_params *p, double qdd_found[6]) {
+rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_measured(const double q[6], const double qd_m[3], const double qdd_m[3], const rapkm_2rrr_rr_params *p, double qdd_result[6]) {
     const double l_1 = p->l_1;
     if (RAPKM_2RRR_RR_RARELY(!(l_1 >= 0.015))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -16295,12 +16295,12 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_measured(const double q[6],
     if (RAPKM_2RRR_RR_RARELY(isnan(rest) != 0)) {
         return RAPKM_2RRR_RR_NOT_FINITE;
     }
-    qdd_found[0] = t821;
-    qdd_found[1] = t824;
-    qdd_found[2] = t826;
-    qdd_found[3] = t830;
-    qdd_found[4] = t833;
-    qdd_found[5] = t837;
+    qdd_result[0] = t821;
+    qdd_result[1] = t824;
+    qdd_result[2] = t826;
+    qdd_result[3] = t830;
+    qdd_result[4] = t833;
+    qdd_result[5] = t837;
     return RAPKM_2RRR_RR_OK;
 }
 
@@ -16442,7 +16442,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_task_jacobian(const double q[6], const rapkm_
     return RAPKM_2RRR_RR_OK;
 }
 
-rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_task(const double x_t[2], const double q[6], const rapkm_2rrr_rr_params *p, double q_found[6]) {
+rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_task(const double x_t[2], const double q[6], const rapkm_2rrr_rr_params *p, double q_result[6]) {
     const double l_1 = p->l_1;
     if (RAPKM_2RRR_RR_RARELY(!(53.0 >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -17110,16 +17110,16 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_task(const double x_t[2], 
     if (RAPKM_2RRR_RR_RARELY(isnan(rest) != 0)) {
         return RAPKM_2RRR_RR_NOT_FINITE;
     }
-    q_found[0] = t479;
-    q_found[1] = t513;
-    q_found[2] = t547;
-    q_found[3] = t121;
-    q_found[4] = t388;
-    q_found[5] = t336;
+    q_result[0] = t479;
+    q_result[1] = t513;
+    q_result[2] = t547;
+    q_result[3] = t121;
+    q_result[4] = t388;
+    q_result[5] = t336;
     return RAPKM_2RRR_RR_OK;
 }
 
-rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_task(const double q[6], const double xd_t[2], const rapkm_2rrr_rr_params *p, double qd_found[6]) {
+rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_task(const double q[6], const double xd_t[2], const rapkm_2rrr_rr_params *p, double qd_result[6]) {
     const double a_1 = q[0];
     const double t1 = fabs(a_1);
     const double b_1 = q[3];
@@ -17838,16 +17838,16 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_task(const double q[6], const d
     if (RAPKM_2RRR_RR_RARELY(isnan(rest) != 0)) {
         return RAPKM_2RRR_RR_NOT_FINITE;
     }
-    qd_found[0] = t607;
-    qd_found[1] = t619;
-    qd_found[2] = t631;
-    qd_found[3] = t640;
-    qd_found[4] = t649;
-    qd_found[5] = t658;
+    qd_result[0] = t607;
+    qd_result[1] = t619;
+    qd_result[2] = t631;
+    qd_result[3] = t640;
+    qd_result[4] = t649;
+    qd_result[5] = t658;
     return RAPKM_2RRR_RR_OK;
 }
 
-rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_task(const double q[6], const double xd_t[2], const double xdd_t[2], const rapkm_2rrr_rr_params *p, double qdd_found[6]) {
+rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_task(const double q[6], const double xd_t[2], const double xdd_t[2], const rapkm_2rrr_rr_params *p, double qdd_result[6]) {
     const double l_2 = p->l_2;
     if (RAPKM_2RRR_RR_RARELY(!(3.0 >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -18625,12 +18625,12 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_task(const double q[6], con
     if (RAPKM_2RRR_RR_RARELY(isnan(rest) != 0)) {
         return RAPKM_2RRR_RR_NOT_FINITE;
     }
-    qdd_found[0] = t630;
-    qdd_found[1] = t664;
-    qdd_found[2] = t698;
-    qdd_found[3] = t702;
-    qdd_found[4] = t707;
-    qdd_found[5] = t712;
+    qdd_result[0] = t630;
+    qdd_result[1] = t664;
+    qdd_result[2] = t698;
+    qdd_result[3] = t702;
+    qdd_result[4] = t707;
+    qdd_result[5] = t712;
     return RAPKM_2RRR_RR_OK;
 }
 

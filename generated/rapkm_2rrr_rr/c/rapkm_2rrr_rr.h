@@ -334,14 +334,14 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_acceleration(const double q[6], co
 rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration(const double q[6], const rapkm_2rrr_rr_params *p, double q_projected[6]);
 
 /** q(q_m): the configuration with the measured coordinates, or nearest to them, on the branch of q; length 6 */
-rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_measured(const double q_m[3], const double q[6], const rapkm_2rrr_rr_params *p, double q_found[6]);
+rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_measured(const double q_m[3], const double q[6], const rapkm_2rrr_rr_params *p, double q_result[6]);
 
 /** q̇(q̇_m): the admissible velocity with the measured rates, or nearest to them; length 6 */
-rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_measured(const double q[6], const double qd_m[3], const rapkm_2rrr_rr_params *p, double qd_found[6]);
+rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_measured(const double q[6], const double qd_m[3], const rapkm_2rrr_rr_params *p, double qd_result[6]);
 
 /** q̈(q̈_m): the admissible acceleration with the measured ones, or nearest to them, at the measured velocity;
     length 6 */
-rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_measured(const double q[6], const double qd_m[3], const double qdd_m[3], const rapkm_2rrr_rr_params *p, double qdd_found[6]);
+rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_measured(const double q[6], const double qd_m[3], const double qdd_m[3], const rapkm_2rrr_rr_params *p, double qdd_result[6]);
 
 /** x: coordinates of the task; length 2 */
 rapkm_2rrr_rr_status rapkm_2rrr_rr_task_position(const double q[6], const rapkm_2rrr_rr_params *p, double x[2]);
@@ -353,13 +353,13 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_task_velocity(const double q[6], const double
 rapkm_2rrr_rr_status rapkm_2rrr_rr_task_jacobian(const double q[6], const rapkm_2rrr_rr_params *p, double x_q[12]);
 
 /** q(x): the configuration with these coordinates of the task, or nearest to them, on the branch of q; length 6 */
-rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_task(const double x_t[2], const double q[6], const rapkm_2rrr_rr_params *p, double q_found[6]);
+rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_task(const double x_t[2], const double q[6], const rapkm_2rrr_rr_params *p, double q_result[6]);
 
 /** q̇(ẋ): the admissible velocity with these rates of the task, or nearest to them; length 6 */
-rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_task(const double q[6], const double xd_t[2], const rapkm_2rrr_rr_params *p, double qd_found[6]);
+rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_task(const double q[6], const double xd_t[2], const rapkm_2rrr_rr_params *p, double qd_result[6]);
 
 /** q̈(ẍ): the admissible acceleration with these ones of the task, or nearest to them, at that velocity; length 6 */
-rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_task(const double q[6], const double xd_t[2], const double xdd_t[2], const rapkm_2rrr_rr_params *p, double qdd_found[6]);
+rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_task(const double q[6], const double xd_t[2], const double xdd_t[2], const rapkm_2rrr_rr_params *p, double qdd_result[6]);
 
 /** u: the smallest inputs that produce the motion, (27); length 3 */
 rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics(const double q[6], const double qd[6], const double qdd[6], const rapkm_2rrr_rr_params *p, double u[3]);

@@ -11764,7 +11764,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration_f(const float q[6], c
     return RAPKM_2RRR_RR_OK;
 }
 
-rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_measured_f(const float q_m[3], const float q[6], const rapkm_2rrr_rr_params_f *p, float q_found[6]) {
+rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_measured_f(const float q_m[3], const float q[6], const rapkm_2rrr_rr_params_f *p, float q_result[6]) {
     const float l_1 = p->l_1;
     if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -15051,16 +15051,16 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_measured_f(const float q_m
     if (RAPKM_2RRR_RR_RARELY_F(isnan(rest) != 0)) {
         return RAPKM_2RRR_RR_NOT_FINITE;
     }
-    q_found[0] = t2925;
-    q_found[1] = t2938;
-    q_found[2] = t2951;
-    q_found[3] = t2931;
-    q_found[4] = t2944;
-    q_found[5] = t2957;
+    q_result[0] = t2925;
+    q_result[1] = t2938;
+    q_result[2] = t2951;
+    q_result[3] = t2931;
+    q_result[4] = t2944;
+    q_result[5] = t2957;
     return RAPKM_2RRR_RR_OK;
 }
 
-rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_measured_f(const float q[6], const float qd_m[3], const rapkm_2rrr_rr_params_f *p, float qd_found[6]) {
+rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_measured_f(const float q[6], const float qd_m[3], const rapkm_2rrr_rr_params_f *p, float qd_result[6]) {
     const float l_1 = p->l_1;
     if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -15384,12 +15384,12 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_measured_f(const float q[6], co
     if (RAPKM_2RRR_RR_RARELY_F(isnan(rest) != 0)) {
         return RAPKM_2RRR_RR_NOT_FINITE;
     }
-    qd_found[0] = t238;
-    qd_found[1] = t244;
-    qd_found[2] = t247;
-    qd_found[3] = t252;
-    qd_found[4] = t257;
-    qd_found[5] = t262;
+    qd_result[0] = t238;
+    qd_result[1] = t244;
+    qd_result[2] = t247;
+    qd_result[3] = t252;
+    qd_result[4] = t257;
+    qd_result[5] = t262;
     return RAPKM_2RRR_RR_OK;
 }
 
@@ -15686,7 +15686,7 @@ static RAPKM_2RRR_RR_APART_F rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_fro
     return RAPKM_2RRR_RR_MEASURED_RANK;
 }
 
-rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_measured_f(const float q[6], const float qd_m[3], const float qdd_m[3], const rapkm_2rrr_rr_params_f *p, float qdd_found[6]) {
+rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_measured_f(const float q[6], const float qd_m[3], const float qdd_m[3], const rapkm_2rrr_rr_params_f *p, float qdd_result[6]) {
     const float l_1 = p->l_1;
     if (RAPKM_2RRR_RR_RARELY_F(!(l_1 >= 0.015f))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -16319,12 +16319,12 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_measured_f(const float q[6]
     if (RAPKM_2RRR_RR_RARELY_F(isnan(rest) != 0)) {
         return RAPKM_2RRR_RR_NOT_FINITE;
     }
-    qdd_found[0] = t821;
-    qdd_found[1] = t824;
-    qdd_found[2] = t826;
-    qdd_found[3] = t830;
-    qdd_found[4] = t833;
-    qdd_found[5] = t837;
+    qdd_result[0] = t821;
+    qdd_result[1] = t824;
+    qdd_result[2] = t826;
+    qdd_result[3] = t830;
+    qdd_result[4] = t833;
+    qdd_result[5] = t837;
     return RAPKM_2RRR_RR_OK;
 }
 
@@ -16466,7 +16466,7 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_task_jacobian_f(const float q[6], const rapkm
     return RAPKM_2RRR_RR_OK;
 }
 
-rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_task_f(const float x_t[2], const float q[6], const rapkm_2rrr_rr_params_f *p, float q_found[6]) {
+rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_task_f(const float x_t[2], const float q[6], const rapkm_2rrr_rr_params_f *p, float q_result[6]) {
     const float l_1 = p->l_1;
     if (RAPKM_2RRR_RR_RARELY_F(!(53.0f >= l_1))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -17134,16 +17134,16 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_task_f(const float x_t[2],
     if (RAPKM_2RRR_RR_RARELY_F(isnan(rest) != 0)) {
         return RAPKM_2RRR_RR_NOT_FINITE;
     }
-    q_found[0] = t479;
-    q_found[1] = t513;
-    q_found[2] = t547;
-    q_found[3] = t121;
-    q_found[4] = t388;
-    q_found[5] = t336;
+    q_result[0] = t479;
+    q_result[1] = t513;
+    q_result[2] = t547;
+    q_result[3] = t121;
+    q_result[4] = t388;
+    q_result[5] = t336;
     return RAPKM_2RRR_RR_OK;
 }
 
-rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_task_f(const float q[6], const float xd_t[2], const rapkm_2rrr_rr_params_f *p, float qd_found[6]) {
+rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_task_f(const float q[6], const float xd_t[2], const rapkm_2rrr_rr_params_f *p, float qd_result[6]) {
     const float a_1 = q[0];
     const float t1 = fabsf(a_1);
     const float b_1 = q[3];
@@ -17862,16 +17862,16 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_task_f(const float q[6], const 
     if (RAPKM_2RRR_RR_RARELY_F(isnan(rest) != 0)) {
         return RAPKM_2RRR_RR_NOT_FINITE;
     }
-    qd_found[0] = t607;
-    qd_found[1] = t619;
-    qd_found[2] = t631;
-    qd_found[3] = t640;
-    qd_found[4] = t649;
-    qd_found[5] = t658;
+    qd_result[0] = t607;
+    qd_result[1] = t619;
+    qd_result[2] = t631;
+    qd_result[3] = t640;
+    qd_result[4] = t649;
+    qd_result[5] = t658;
     return RAPKM_2RRR_RR_OK;
 }
 
-rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_task_f(const float q[6], const float xd_t[2], const float xdd_t[2], const rapkm_2rrr_rr_params_f *p, float qdd_found[6]) {
+rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_task_f(const float q[6], const float xd_t[2], const float xdd_t[2], const rapkm_2rrr_rr_params_f *p, float qdd_result[6]) {
     const float l_2 = p->l_2;
     if (RAPKM_2RRR_RR_RARELY_F(!(3.0f >= l_2))) {
         return RAPKM_2RRR_RR_PARAMETER_RANGE;
@@ -18649,12 +18649,12 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_task_f(const float q[6], co
     if (RAPKM_2RRR_RR_RARELY_F(isnan(rest) != 0)) {
         return RAPKM_2RRR_RR_NOT_FINITE;
     }
-    qdd_found[0] = t630;
-    qdd_found[1] = t664;
-    qdd_found[2] = t698;
-    qdd_found[3] = t702;
-    qdd_found[4] = t707;
-    qdd_found[5] = t712;
+    qdd_result[0] = t630;
+    qdd_result[1] = t664;
+    qdd_result[2] = t698;
+    qdd_result[3] = t702;
+    qdd_result[4] = t707;
+    qdd_result[5] = t712;
     return RAPKM_2RRR_RR_OK;
 }
 

@@ -335,14 +335,14 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_admissible_acceleration_f(const float q[6], c
 rapkm_2rrr_rr_status rapkm_2rrr_rr_projected_configuration_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float q_projected[6]);
 
 /** q(q_m): the configuration with the measured coordinates, or nearest to them, on the branch of q; length 6 */
-rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_measured_f(const float q_m[3], const float q[6], const rapkm_2rrr_rr_params_f *p, float q_found[6]);
+rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_measured_f(const float q_m[3], const float q[6], const rapkm_2rrr_rr_params_f *p, float q_result[6]);
 
 /** q̇(q̇_m): the admissible velocity with the measured rates, or nearest to them; length 6 */
-rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_measured_f(const float q[6], const float qd_m[3], const rapkm_2rrr_rr_params_f *p, float qd_found[6]);
+rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_measured_f(const float q[6], const float qd_m[3], const rapkm_2rrr_rr_params_f *p, float qd_result[6]);
 
 /** q̈(q̈_m): the admissible acceleration with the measured ones, or nearest to them, at the measured velocity;
     length 6 */
-rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_measured_f(const float q[6], const float qd_m[3], const float qdd_m[3], const rapkm_2rrr_rr_params_f *p, float qdd_found[6]);
+rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_measured_f(const float q[6], const float qd_m[3], const float qdd_m[3], const rapkm_2rrr_rr_params_f *p, float qdd_result[6]);
 
 /** x: coordinates of the task; length 2 */
 rapkm_2rrr_rr_status rapkm_2rrr_rr_task_position_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float x[2]);
@@ -354,13 +354,13 @@ rapkm_2rrr_rr_status rapkm_2rrr_rr_task_velocity_f(const float q[6], const float
 rapkm_2rrr_rr_status rapkm_2rrr_rr_task_jacobian_f(const float q[6], const rapkm_2rrr_rr_params_f *p, float x_q[12]);
 
 /** q(x): the configuration with these coordinates of the task, or nearest to them, on the branch of q; length 6 */
-rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_task_f(const float x_t[2], const float q[6], const rapkm_2rrr_rr_params_f *p, float q_found[6]);
+rapkm_2rrr_rr_status rapkm_2rrr_rr_configuration_from_task_f(const float x_t[2], const float q[6], const rapkm_2rrr_rr_params_f *p, float q_result[6]);
 
 /** q̇(ẋ): the admissible velocity with these rates of the task, or nearest to them; length 6 */
-rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_task_f(const float q[6], const float xd_t[2], const rapkm_2rrr_rr_params_f *p, float qd_found[6]);
+rapkm_2rrr_rr_status rapkm_2rrr_rr_velocity_from_task_f(const float q[6], const float xd_t[2], const rapkm_2rrr_rr_params_f *p, float qd_result[6]);
 
 /** q̈(ẍ): the admissible acceleration with these ones of the task, or nearest to them, at that velocity; length 6 */
-rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_task_f(const float q[6], const float xd_t[2], const float xdd_t[2], const rapkm_2rrr_rr_params_f *p, float qdd_found[6]);
+rapkm_2rrr_rr_status rapkm_2rrr_rr_acceleration_from_task_f(const float q[6], const float xd_t[2], const float xdd_t[2], const rapkm_2rrr_rr_params_f *p, float qdd_result[6]);
 
 /** u: the smallest inputs that produce the motion, (27); length 3 */
 rapkm_2rrr_rr_status rapkm_2rrr_rr_inverse_dynamics_f(const float q[6], const float qd[6], const float qdd[6], const rapkm_2rrr_rr_params_f *p, float u[3]);

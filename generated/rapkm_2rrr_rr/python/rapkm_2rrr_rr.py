@@ -199,7 +199,11 @@ def _array(name, length, values):
 
 def _states(**given):
     """Arrays broadcast to common leading axes, and those axes."""
-    batch = np.broadcast_shapes(*(array.shape[:-1] for array in given.values()))
+    try:
+        batch = np.broadcast_shapes(*(array.shape[:-1] for array in given.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} has shape {array.shape}" for name, array in given.items())
+        raise ValueError(f"leading axes do not go together: {shapes}") from None
     return *(np.broadcast_to(array, batch + array.shape[-1:]) for array in given.values()), batch
 
 
@@ -19728,7 +19732,7 @@ def compile():
     os.close(handle)
     try:
         sources = [str(folder / name) for name in _FILES if name.endswith(".c")]
-        made = _told([*command, "-o", name, *sources, "-lm"])
+        made = _run([*command, "-o", name, *sources, "-lm"])
         if made.returncode != 0:
             raise RuntimeError(f"{' '.join(command)} failed:\n{made.stderr}")
         try:
@@ -19756,13 +19760,13 @@ def _sources():
 def _for_this_machine(command):
     """The command with flags for this machine, and what the compiler then says of itself and of the machine."""
     for flags in _MACHINE_FLAGS:
-        told = _told([*command, *flags, "-dM", "-E", "-x", "c", os.devnull])
-        if told.returncode == 0:
-            return [*command, *flags], (platform.machine(), told.stdout)
-    raise RuntimeError(f"{' '.join(command)} failed:\n{told.stderr}")
+        described = _run([*command, *flags, "-dM", "-E", "-x", "c", os.devnull])
+        if described.returncode == 0:
+            return [*command, *flags], (platform.machine(), described.stdout)
+    raise RuntimeError(f"{' '.join(command)} failed:\n{described.stderr}")
 
 
-def _told(command):
+def _run(command):
     try:
         return subprocess.run(
             command, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace", check=False,
