@@ -121,6 +121,32 @@ def test_any_count_in_place_and_without_statuses(tool: Callable[[str], str], tmp
         assert result[:, :count].tobytes() == expected[:, :count].tobytes(), place
 
 
+@pytest.mark.parametrize("scalar", shipped.SCALARS)
+def test_several_threads_make_the_same_of_every_state(
+    tool: Callable[[str], str], tmp_path: Path, scalar: Scalar, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", "3")
+    name = "front_car"
+    model, program = shipped.model(name), batched(shipped.programs(name)[scalar])
+    folders = tmp_path / "one", tmp_path / "several"
+    for folder in folders:
+        folder.mkdir()
+    one, several = (
+        Library(folder, model, program, [tool("gcc"), *NATIVE, *flags])
+        for folder, flags in zip(folders, ([], ["-fopenmp"]), strict=True)
+    )
+    symbols = subprocess.run(["nm", str(folders[1] / "lib.so")], capture_output=True, text=True, check=True).stdout
+    assert "GOMP_parallel" in symbols
+    for kernel in program.kernels:
+        for count in (63 * BLOCK, 70 * BLOCK + 5):
+            rows = rows_of(kernel, one.dtype, count + 2)
+            refused, statuses, results = one.batch(kernel, rows, count)
+            again, statuses_again, results_again = several.batch(kernel, rows, count)
+            assert again == refused > 0
+            assert statuses_again.tobytes() == statuses.tobytes()
+            assert results_again.tobytes() == results.tobytes()
+
+
 def test_nested_checks_tell_their_statuses(tool: Callable[[str], str], tmp_path: Path) -> None:
     program = handmade.program()
     library = Library(tmp_path, handmade.model(), program, [tool("gcc"), "-O3"])

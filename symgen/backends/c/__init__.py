@@ -1,1 +1,1 @@
-"""C99: plain kernels, batches, prepared parameters, given sines, several results; a header and a source for each scalar type."""
+"""C99: plain kernels, batches, prepared parameters, given sines, several results; files for each scalar type."""

@@ -30,7 +30,7 @@ from symgen.records import dataclass
 # States a block: local arrays of rows of this length; a multiple of every vector length in use.
 BLOCK = 64
 _OWN_NAMES = frozenset({"count", "stride", "status", "start", "length", "k", "i", "from", "copy", "result", "LANES"})
-_OWN_NAMES |= {"flag", "flags", "bits", "code", "refused", "rest", "y"}
+_OWN_NAMES |= {"flag", "flags", "bits", "code", "refused", "rest", "y", "MANY"}
 
 
 _ABOUT = """Kernels of {plain}.h for many states: compile {plain_batch}.c and {plain}.c.
@@ -38,7 +38,7 @@ _ABOUT = """Kernels of {plain}.h for many states: compile {plain_batch}.c and {p
 Component i of state k is at [i*stride + k] of each array, stride >= count. A state that has no valid result gets
 NaN; the functions return the number of such states and write the status of each state unless `status` is NULL.
 A result may take the place of an input (same address, same stride); else results and inputs must not overlap.
-Valid results have the bits of the kernels for one state."""
+Valid results have the bits of the kernels for one state, with -fopenmp (many states on several threads) too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +71,7 @@ class BatchFileView:
     one: str
     ok: str
     block: int
+    threaded: bool
     functions: tuple[BatchView, ...]
     inline: str
     pair: str
@@ -109,6 +110,7 @@ def emit_c_batch(model: Model, program: Program) -> dict[str, str]:
         one=c_literal(program.scalar, Fraction(1)),
         ok=status_name(model, Status.OK),
         block=BLOCK,
+        threaded=bool(in_lanes),
         functions=functions,
         inline=inline,
         pair=pair,
