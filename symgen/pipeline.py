@@ -27,6 +27,7 @@ from symgen.generation.packages import without_report
 from symgen.generation.refusals import beyond_range
 from symgen.generation.requested import requested_outputs
 from symgen.generation.results import LargestError, Options, Result, Summary
+from symgen.model.asked_base import with_inertial_base
 from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.runtime.activity import Work, working
@@ -74,6 +75,7 @@ def _generated(path: Path, model: Model, options: Options, progress: Progress, w
     """The same; `whole` is told what the run takes as soon as that can be foreseen."""
     options, report_notices = without_report(model, options)
     outputs = requested_outputs(model, options)
+    model = with_inertial_base(model, outputs)
     draft: Draft | None = None
     trial: Trial | None = None
     limits: tuple[CoordinateBounds, ParameterBounds] | None = None

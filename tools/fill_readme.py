@@ -134,7 +134,8 @@ def quantities() -> str:
     ]
     for q in QUANTITIES:
         shape = " × ".join(q.shape).replace("delta", "δ").replace("3*points", "3p").replace("points", "p")
-        shape = shape.replace("inertial_parameters", "inertial parameters")
+        for size in ("inertial_parameters", "base_parameters"):
+            shape = shape.replace(size, size.replace("_", " "))
         row = (f"`{q.name}`", q.symbol, q.equation, q.description, ", ".join(q.arguments), shape)
         lines.append(f"| {' | '.join(row)} |")
     lines += [
@@ -143,7 +144,9 @@ def quantities() -> str:
         "the inertia tensor about the origin of the body's frame, in its axes), then Ir of each rotor in "
         "`rotor_inertias`. Columns of `regressor` have their names in C (`PRESS_PI_CRANK_MX`), in Python "
         "(`INERTIAL_PARAMETERS`) and in the help of each function; it is made where it is named, `all` leaves it out "
-        "([base parameters](base-parameters.md#the-regressor)).",
+        "([base parameters](base-parameters.md#the-regressor)). Those of `base_regressor` and the entries of "
+        "`base_parameters` are named in C (`PRESS_BETA_CRANK_MZ`) and in the help; these two are made where they are "
+        "named, too ([its base](base-parameters.md#its-base)).",
     ]
     return "\n".join(lines) + "\n"
 

@@ -10,7 +10,7 @@ from typing import Literal, TypeAlias
 from symgen.backends.render import render
 from symgen.cli.arguments import USUAL
 from symgen.generation.results import ALL_PARTS, AUTO, LINEARIZATION, NAMED_METHODS
-from symgen.model.quantities import BASE_PARAMETERS, ROWS
+from symgen.model.quantities import ROWS
 
 # What stands in the place of a word: nothing that is known, a model file, a log, a folder, one of several words, or
 # several of them with commas between.
@@ -116,6 +116,6 @@ _BY_METAVAR: Mapping[str, ValueView] = {
     "DIR": ValueView("folder"),
     "PARTS": ValueView("list", ALL_PARTS),
     "A,B": ValueView("list", ("all", *ROWS)),
-    "QUANTITY": ValueView("word", (*ROWS, LINEARIZATION, BASE_PARAMETERS)),
+    "QUANTITY": ValueView("word", (*ROWS, LINEARIZATION)),
     "[QUANTITY=]METHOD": ValueView("word", _methods()),
 }

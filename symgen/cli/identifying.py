@@ -15,9 +15,9 @@ from symgen.terminal import Progress
 
 def explain_base_parameters(path: Path) -> int:
     """Prints them; 0, or 1 where there are none.  Raises ModelError for mistakes in the file."""
-    from symgen.identification.base_parameters import NoBodiesError, base_parameters
-    from symgen.identification.motion_states import NoMotionError
     from symgen.identification.text import base_parameters_text
+    from symgen.model.combinations.base_parameters import NoBodiesError, base_parameters
+    from symgen.model.combinations.motion_states import NoMotionError
     from symgen.model.load import load_model
 
     model = load_model(path)

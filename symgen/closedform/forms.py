@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from sympy import Expr, ImmutableDenseMatrix, Symbol
 
 from symgen.closedform.algebra.limits import TooLargeError
+from symgen.closedform.algebra.matrices import column
 from symgen.closedform.algebra.quotient import Matrix
 from symgen.closedform.algebra.substitution import substitute
 from symgen.closedform.allocated import structured_allocation
@@ -30,9 +31,10 @@ from symgen.model.availability import lacking
 from symgen.model.expressions.expression import Expression, Name
 from symgen.model.kinematics.energy_form import energy_form, points_written
 from symgen.model.model import Allocation, Model, PublishedEquations, PublishedMatrix, PublishedSingularSet
-from symgen.model.quantities import REGRESSOR, ROWS
+from symgen.model.quantities import BASE_PARAMETERS, BASE_REGRESSOR, REGRESSOR, ROWS
 from symgen.records import dataclass
 
+_OF_COLUMNS = (REGRESSOR, BASE_REGRESSOR)
 LONG_MATRIX = 60
 """A derived matrix whose numerators have more terms than this is printed in named minors when such a form exists."""
 
@@ -82,12 +84,12 @@ def derive_closed_forms(model: Model, straight_line_operations: Mapping[str, int
     divides by something identically zero, TooLargeError when already B or M is too long to write out, or where no
     configuration was found at which ranks are seen.
     """
-    has_columns = REGRESSOR in model.outputs and lacking(ROWS[REGRESSOR], model) is None
+    of_columns = [name for name in _OF_COLUMNS if name in model.outputs and lacking(ROWS[name], model) is None]
     described = model
     asked = not {"all", "point_position", "point_jacobian"}.isdisjoint(model.outputs)
     model, places, velocities = points_written(model) if asked else (energy_form(model), (), ())
     of_points = map(Name, (*places, *velocities))
-    translator = make_translator(model, (*published_expressions(model), *of_points))
+    translator = make_translator(model, (*published_expressions(model), *of_points, *_base_values(model)))
     mechanics = ExactSystem(model, translator)
     points = generic_points(model, mechanics, 3)
     if not points:
@@ -97,8 +99,8 @@ def derive_closed_forms(model: Model, straight_line_operations: Mapping[str, int
     exact = Exact(model, mechanics, structure)
     speller = Speller(exact.ring, dynamic_names(model))
     kernel = _short_kernel(exact)
-    columns = ExactRegressor(described, structure) if has_columns else None
-    writer = _FormWriter(model, exact, speller, straight_line_operations or {}, places, velocities, columns)
+    columns = ExactRegressor(described, structure) if of_columns else None
+    writer = _FormWriter(model, exact, speller, straight_line_operations or {}, places, velocities, of_columns, columns)
     return ClosedForms(
         model=model.name,
         forms={form.quantity: form for form in writer.all_forms()},
@@ -110,6 +112,12 @@ def derive_closed_forms(model: Model, straight_line_operations: Mapping[str, int
         symbol_table=writer.symbol_table(),
         exact=exact,
     )
+
+
+def _base_values(model: Model) -> tuple[Expression, ...]:
+    """The base parameters as expressions, where they are asked for."""
+    base = model.inertial_base
+    return base.values if base is not None and BASE_PARAMETERS in model.outputs else ()
 
 
 def _short_kernel(exact: Exact) -> Matrix | None:
@@ -175,10 +183,12 @@ class _FormWriter:
         operations: Mapping[str, int],
         places: tuple[str, ...],
         velocities: tuple[str, ...],
+        of_columns: Sequence[str] = (),
         columns: ExactRegressor | None = None,
     ) -> None:
         self.model = model
-        self.places, self.velocities, self.columns = places, velocities, columns
+        self.places, self.velocities = places, velocities
+        self.of_columns, self.columns, self.base = of_columns, columns, _base_values(model)
         self.exact = exact
         self.speller = speller
         self.operations = operations
@@ -217,7 +227,10 @@ class _FormWriter:
         if model.inputs:
             yield from self._actuation_forms(projector)
         if self.columns is not None:
-            yield self._regressor(self.columns)
+            yield from (self._regressor(name, self.columns) for name in self.of_columns)
+        if self.base:
+            translator = mechanics.translator
+            yield self._direct(BASE_PARAMETERS, lambda: column([translator.value(one) for one in self.base]))
         if model.task:
             yield self._direct("task_jacobian", lambda: mechanics.task_jacobian)
         if self.places:
@@ -275,12 +288,14 @@ class _FormWriter:
                 reason = f"not written out: {large}"
         return ClosedForm(quantity, None, (), f"{reason}; the allocation of redundant inputs")
 
-    def _regressor(self, columns: ExactRegressor) -> ClosedForm:
-        """Y, in a ring of its own."""
-        exact = columns.exact
+    def _regressor(self, quantity: str, columns: ExactRegressor) -> ClosedForm:
+        """Y or columns of it, in a ring of its own."""
+        exact, base = columns.exact, self.model.inertial_base
+        numbers = base.columns if base is not None and quantity == BASE_REGRESSOR else None
         speller = Speller(exact.ring, dynamic_names(exact.model))
         own = _FormWriter(exact.model, exact, speller, self.operations, (), ())
-        form = own._direct(REGRESSOR, columns.matrix, "the pseudoinverse of N_B M times the columns of tau")
+        of_tau = "the pseudoinverse of N_B M times the columns of tau"
+        form = own._direct(quantity, lambda: columns.matrix(numbers), of_tau)
         self.names |= own.names
         return form
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from symgen.closedform.algebra.matrices import multiply
 from symgen.closedform.algebra.quotient import Matrix
 from symgen.closedform.exact import Exact
@@ -21,9 +23,10 @@ class ExactRegressor:
         self.exact = Exact(given, ExactSystem(given, make_translator(given)), structure)
         self._count = len(inertial_parameters(model.mechanism))
 
-    def matrix(self) -> Matrix:
-        """M~^+ dtau/dpi (m x p)."""
+    def matrix(self, numbers: Sequence[int] | None = None) -> Matrix:
+        """M~^+ dtau/dpi (m x p), or some of its columns."""
         exact, translator = self.exact, self.exact.mechanics.translator
-        names = [p.name for p in exact.model.parameters[-self._count :]]
+        every = [p.name for p in exact.model.parameters[-self._count :]]
+        names = every if numbers is None else [every[k] for k in numbers]
         columns = tuple(tuple(translator.derivative(tau, name) for name in names) for (tau,) in exact.load)
         return multiply(exact.ring, exact.control_pseudoinverse, columns)

@@ -15,8 +15,9 @@ from symgen.generation.notices import replaced
 from symgen.generation.requested import unknown_quantity
 from symgen.generation.results import LINEARIZATION, NAMED_METHODS, Options
 from symgen.methods.selection import MethodChoice
+from symgen.model.asked_base import with_inertial_base
 from symgen.model.load import load_model
-from symgen.model.quantities import BASE_PARAMETERS, NAMED, ROWS
+from symgen.model.quantities import NAMED, ROWS
 from symgen.quantities.catalogue import BY_NAME
 from symgen.report.gather import gather
 
@@ -34,11 +35,11 @@ def explain(
     verified some.
     """
     if quantity is not None and quantity not in BY_NAME:
-        raise unknown_quantity(quantity, LINEARIZATION, BASE_PARAMETERS)
+        raise unknown_quantity(quantity, LINEARIZATION)
     progress("reading the model")
     model = load_model(path)
     if quantity is not None:
-        model = replace(model, outputs=(*model.outputs, quantity))
+        model = with_inertial_base(replace(model, outputs=(*model.outputs, quantity)), (quantity,))
     progress("deriving")
     # what `all` leaves to those who name it has a kernel here where it is asked for
     outputs = ("all", quantity) if quantity is not None and ROWS[quantity].needs == NAMED else ("all",)

@@ -6,8 +6,8 @@ import textwrap
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
 
-from symgen.identification.base_parameters import BaseParameter, BaseParameters
-from symgen.identification.coefficient_forms import CoefficientForm, FormTerm
+from symgen.model.combinations.base_parameters import BaseParameter, BaseParameters
+from symgen.model.combinations.coefficient_forms import CoefficientForm, FormTerm
 from symgen.model.inertial_parameters import InertialParameter
 
 # Columns of a terminal that lines keep to.
@@ -77,8 +77,8 @@ def _added(parameter: InertialParameter, form: CoefficientForm) -> str:
 
 def _factor(term: FormTerm) -> tuple[str, str]:
     """The sign, and a product with a quotient in brackets; nothing for 1."""
-    given = term.factor
-    size = abs(given if isinstance(given, Fraction) else Fraction(f"{given:.{VALUE_DIGITS}g}"))
+    given = abs(term.factor)
+    size = given if term.is_recognized else Fraction(f"{float(given):.{VALUE_DIGITS}g}")
     above = [_number(Fraction(size.numerator))] if size.numerator != 1 else []
     below = [_number(Fraction(size.denominator))] if size.denominator != 1 else []
     if below and _is_decimal(size):

@@ -70,6 +70,7 @@ _JACOBIANS = (
 )  # fmt: skip
 _OF_MOTIONS = ("forward_dynamics_jacobian", "forward_dynamics_gradient", "multipliers_jacobian")
 _OF_U = tuple(name for name in (*_JACOBIANS, *_GRADIENTS) if name not in _OF_MOTIONS)
+_REGRESSORS = ("regressor", "base_regressor")
 _WEIGHTED = ("weighted_pseudoinverse", "weighted_nullspace_projector")
 
 # Of methods that count alike the first is taken.
@@ -96,6 +97,7 @@ METHODS: tuple[MethodRow, ...] = (
     _method("householder", _PROJECTOR, "projector", "HOUSEHOLDER", Use.ASKED),
     _method("closed", _GIVEN_PLACES, "given.closed", "CLOSED"),
     _method("legs", _GIVEN_MOTIONS, "given.legs", "BY_LEGS"),
+    _method("elimination", _REGRESSORS, "columns_eliminated", "COLUMNS_ELIMINATED"),
     _method("implicit", _OF_U, "derivatives.of_inputs", "IMPLICIT"),
     _method("implicit", _OF_MOTIONS, "derivatives.of_motions", "IMPLICIT"),
     _method("differentiated", _JACOBIANS, "derivatives.differentiated", "DIFFERENTIATED", Use.SPARE),

@@ -7,6 +7,7 @@ from symgen.model.model import Model
 from symgen.model.open_task import directions, left_open
 from symgen.model.quantities import (
     ACTUATORS,
+    BASE_PARAMETERS,
     FRICTION,
     LIMITED,
     MEASURED_PLACES,
@@ -21,7 +22,7 @@ from symgen.model.quantities import (
 )
 
 # What would hold friction of reactions, and is made without it only.
-WITHOUT_FRICTION = frozenset({"actuator_bias", "regressor"})
+WITHOUT_FRICTION = frozenset({"actuator_bias", "regressor", "base_regressor"})
 
 
 def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actuation: int | None = None) -> str | None:
@@ -30,6 +31,7 @@ def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actua
     `delta` and `actuation`, the rank of the projected control matrix, are left out where only the file is known.
     """
     geometric = sum(row.kind == "geometric" for row in model.constraints)
+    inertial = len(inertial_parameters(model.mechanism)), "bodies and no rotor inertias"
     counts = {
         "r": (model.r, "constraints"),
         "r_g": (geometric, "geometric constraints"),
@@ -37,12 +39,15 @@ def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actua
         "k": (len(model.task), "`task`"),
         "points": (len(model.mechanism.points), "points"),
         "parameters": (len(model.parameters), "parameters"),
-        "inertial_parameters": (len(inertial_parameters(model.mechanism)), "bodies and no rotor inertias"),
+        "inertial_parameters": inertial,
+        "base_parameters": inertial,
         "delta": (delta, "degrees of freedom"),
     }
     for size, (count, what) in counts.items():
         if size in quantity.sizes and count == 0:
             return f"the model has no {what}"
+    if quantity.is_of_base and (why := _without_base(quantity, model)):
+        return why
     if quantity.is_of_task and not model.task:
         return "the model has no `task`"
     if quantity.is_of_task and quantity.needs != TASK and (why := _beside_task(quantity, model)):
@@ -78,6 +83,18 @@ def lacking(quantity: QuantityRow, model: Model, delta: int | None = None, actua
         return "its constraints depend on each other: beside them it is not differentiable"
     if quantity.needs == OF_INPUTS and delta is not None and actuation not in (None, min(model.m, delta)):
         return "on the constraints its inputs reach less than beside them: u is not differentiable there"
+    return None
+
+
+def _without_base(quantity: QuantityRow, model: Model) -> str | None:
+    """Why a quantity is not made of base parameters, or None."""
+    base = model.inertial_base
+    if base is None:
+        return "it is made where `outputs` name it"
+    if not base.columns:
+        return base.why or "no motion shows any of its inertial parameters"
+    if quantity.name == BASE_PARAMETERS and not base.values:
+        return base.why
     return None
 
 

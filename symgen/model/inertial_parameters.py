@@ -5,9 +5,10 @@ Inverse dynamics is linear in them (Khalil and Dombre, Modeling, Identification 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Literal, TypeAlias
 
+from symgen.model.expressions.combine import negated, plus, times
 from symgen.model.expressions.expression import Expression
 from symgen.model.mechanism import Body, Mechanism
 from symgen.records import dataclass
@@ -54,16 +55,29 @@ def in_words(mechanism: Mechanism) -> str:
     return "; ".join(groups)
 
 
+def named(mechanism: Mechanism, numbers: Sequence[int]) -> str:
+    """Some of them, as `crank.mx, rod.Izz`."""
+    every = inertial_parameters(mechanism)
+    return ", ".join(every[k].name for k in numbers)
+
+
 def values(mechanism: Mechanism, evaluate: Callable[[Expression], float]) -> tuple[float, ...]:
     """What the file gives them, in the order of `inertial_parameters`."""
-    bodies = [number for body in mechanism.bodies for number in _of_body(body, evaluate)]
-    return (*bodies, *(evaluate(rotor.inertia) for rotor in mechanism.rotor_inertias))
+    return tuple(map(evaluate, expressions(mechanism)))
 
 
-def _of_body(body: Body, evaluate: Callable[[Expression], float]) -> list[float]:
+def expressions(mechanism: Mechanism) -> tuple[Expression, ...]:
+    """The same as they stand in the file, or follow from that."""
+    bodies = [expression for body in mechanism.bodies for expression in _of_body(body)]
+    return (*bodies, *(rotor.inertia for rotor in mechanism.rotor_inertias))
+
+
+def _of_body(body: Body) -> list[Expression]:
     """The tensor is moved from the centre of mass to the origin (Huygens and Steiner)."""
-    mass = evaluate(body.mass)
-    x, y, z = (evaluate(entry) for entry in body.com)
-    own = [evaluate(getattr(body.inertia, element)) for element in ("xx", "yy", "zz", "xy", "xz", "yz")]
-    moved = (y * y + z * z, x * x + z * z, x * x + y * y, -x * y, -x * z, -y * z)
-    return [mass, mass * x, mass * y, mass * z, *(a + mass * b for a, b in zip(own, moved, strict=True))]
+    mass, (x, y, z) = body.mass, body.com
+    own = [getattr(body.inertia, element) for element in ("xx", "yy", "zz", "xy", "xz", "yz")]
+    xx, yy, zz = (times(entry, entry) for entry in (x, y, z))
+    moved = [plus(yy, zz), plus(xx, zz), plus(xx, yy)]
+    moved += [negated(times(one, other)) for one, other in ((x, y), (x, z), (y, z))]
+    first = [times(mass, entry) for entry in (x, y, z)]
+    return [mass, *first, *(plus(a, times(mass, b)) for a, b in zip(own, moved, strict=True))]

@@ -14,6 +14,7 @@ from symgen.diagnostics import Notice, Span
 from symgen.model.configurations.assembly import Assembly
 from symgen.model.configurations.friction_steps import FrictionSteps
 from symgen.model.expressions.expression import Expression
+from symgen.model.inertial_base import InertialBase
 from symgen.model.mechanism import NO_MECHANISM, Mechanism
 from symgen.model.quantities import FurtherName
 from symgen.naming import c_name
@@ -279,6 +280,7 @@ class Model:
     What is `measured` leaves places open where rows hold rates alone (`measures_places`); so may a `task`.
     `taken` are parameters of the file that are numbers here (`as_numbers`).
     `together` are outputs that have a function in common as well.
+    `inertial_base` is looked for where outputs are made of it (`combinations/inertial_base.py`).
     `released` are the joints of `rough` places whose reactions are no multipliers, `friction_steps` how their
     friction is worked out for a motion, `motion_steps` the same for inputs.
     """
@@ -321,6 +323,7 @@ class Model:
     assembly: Assembly | None = None
     row_units: tuple[int, ...] = ()
     taken: tuple[tuple[str, Fraction], ...] = ()
+    inertial_base: InertialBase | None = None
 
     @property
     def c_name(self) -> str:

@@ -37,8 +37,8 @@ class QuantityRow:
 
     `result` is what its array is called in C.  `shape` has its extents, sums of products of numbers and of sizes of the
     system: n coordinates, m inputs, r rows, of these r_g geometric, delta degrees of freedom, k coordinates of the
-    task, points, parameters, inertial parameters.  A quantity exists where none of them is 0 and the model has what it
-    `needs`.  The `main` ones are what the equations of motion are solved for.
+    task, points, parameters, inertial and base parameters.  A quantity exists where none of them is 0 and the model has
+    what it `needs`.  The `main` ones are what the equations of motion are solved for.
     """
 
     name: str
@@ -70,6 +70,11 @@ class QuantityRow:
     def is_of_task(self) -> bool:
         """Whether it is one of a task."""
         return self.needs in (TASK, TASK_RATES, TASK_PLACES, TASK_OPEN)
+
+    @property
+    def is_of_base(self) -> bool:
+        """Whether it is made of the combinations of inertial parameters that count."""
+        return "base_parameters" in self.sizes
 
     def extents(self, sizes: Mapping[str, int]) -> tuple[int, ...]:
         """Its shape in numbers."""
@@ -164,6 +169,11 @@ QUANTITIES: tuple[QuantityRow, ...] = (
          "derivatives of u by the parameters, in their order", OF_INPUTS),
     _row("regressor", "Y", "", "Y", "q qd qdd", "m inertial_parameters",
          "least inputs for a unit of each inertial parameter, in which u of bodies and rotors is linear", NAMED),
+    _row("base_regressor", "Y_β", "", "Y_base", "q qd qdd", "m base_parameters",
+         "least inputs for a unit of each base parameter: columns of Y that do not depend on each other", NAMED),
+    _row("base_parameters", "β", "", "beta", "q", "base_parameters",
+         "combinations of inertial parameters that count, Y π = Y_β β on the constraints; q does not change them",
+         NAMED),
     _row("constraint_variations", "X", "", "X", "q qd qdd", "3*n 3*n",
          "projector onto the changes of q, qd and qdd that the constraints allow", VARIATIONS),
     _row("inverse_dynamics_residual", "F Fᵀ(τ − M u)", "", "residual", "q qd qdd", "n",
@@ -202,5 +212,5 @@ MOTIONS = MAIN[1:]
 """q̈ and λ, which follow from inputs: methods make them together."""
 # Whose columns have names: those of the inertial parameters.
 REGRESSOR = "regressor"
-# No quantity: what `explain` tells of a model in the place of one, which combinations of inertial parameters count.
-BASE_PARAMETERS = "base_parameters"
+# The columns of this one are some of these, and belong to combinations that `explain` tells of by their name.
+BASE_REGRESSOR, BASE_PARAMETERS = "base_regressor", "base_parameters"

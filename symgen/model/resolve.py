@@ -9,6 +9,7 @@ from fractions import Fraction
 from typing import Literal
 
 from symgen.diagnostics import Notice, Span
+from symgen.model.asked_base import with_inertial_base
 from symgen.model.blocks.allocation import declare_settings, read_allocation
 from symgen.model.blocks.bodies import read_mechanism
 from symgen.model.blocks.coordinates import read_coordinates
@@ -118,6 +119,8 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
     as_written = replace(model, potential_energy=potential, forces=elements)
     scope.mistakes.extend(check_units(tree, as_written, (*fits, *fits_of_friction, *rough.fits)))
     model = check_mechanics(scope, tree, model, kinetic_read, whole)
+    if not scope.mistakes:
+        model = with_inertial_base(model, model.outputs)
     notice_empty_outputs(scope, tree, model)
     notice_efforts(scope, model)
     _notice_unused(scope, tree)

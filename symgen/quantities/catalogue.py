@@ -15,7 +15,7 @@ from symgen.methods.given.functions import GivenBy, measured, task
 from symgen.methods.given.least_motion import LeastMotion
 from symgen.methods.quantity import Quantity, is_fixed
 from symgen.methods.redundancy.utilisation import utilisation
-from symgen.methods.regressor import regressor
+from symgen.methods.regressor import base_parameters, base_regressor, regressor
 from symgen.model.availability import lacking
 from symgen.model.inertial_parameters import inertial_parameters
 from symgen.model.model import Model
@@ -173,6 +173,8 @@ _DERIVED: dict[str, _Derived] = {
         _inputs,
     ),
     "regressor": (lambda d: flatten(regressor(d)), _actuation),
+    "base_regressor": (lambda d: flatten(base_regressor(d)), _actuation),
+    "base_parameters": (base_parameters, _none),
     "constraint_variations": (lambda d: flatten(constraint_variations(d)), _variations),
     "inverse_dynamics_residual": (lambda d: d.inverse_dynamics_residual(), _residual),
     "friction_residual": (lambda d: d.friction_residual(), _inputs),
@@ -199,7 +201,12 @@ def sizes(model: Model, generic: Genericity) -> dict[str, int]:
     geometric = sum(row.kind == "geometric" for row in model.constraints)
     of_system = {"n": generic.n, "r": generic.r, "r_g": geometric, "m": generic.m, "delta": generic.delta}
     of_system |= {"k": len(model.task), "points": len(model.mechanism.points), "parameters": len(model.parameters)}
-    return {**of_system, "inertial_parameters": len(inertial_parameters(model.mechanism))}
+    base = 0 if model.inertial_base is None else len(model.inertial_base.columns)
+    return {
+        **of_system,
+        "inertial_parameters": len(inertial_parameters(model.mechanism)),
+        "base_parameters": base,
+    }
 
 
 def missing(entry: CatalogueEntry, model: Model, generic: Genericity) -> str | None:

@@ -8,10 +8,10 @@ from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
 from symgen.methods.method import INPUTS
 from symgen.methods.quantity import Quantity, is_fixed, scalars
-from symgen.model.inertial_parameters import in_words
+from symgen.model.inertial_parameters import in_words, named
 from symgen.model.model import Model
 from symgen.model.open_task import left_open, norm_of_motions
-from symgen.model.quantities import MOTIONS, REGRESSOR
+from symgen.model.quantities import BASE_PARAMETERS, BASE_REGRESSOR, MOTIONS, REGRESSOR
 from symgen.quantities.excess import with_test_of_excess
 from symgen.quantities.locked_rates import vanishing_with_locked_rates
 from symgen.quantities.moving_axes import in_moving_axes
@@ -58,6 +58,9 @@ def _remarked(derived: Quantity, generic: Genericity, model: Model) -> Quantity:
     if derived.name == REGRESSOR:
         least = "" if model.allocation is None else "the least whatever `allocation` says; "
         return replace(derived, remark=f"{least}columns {in_words(model.mechanism)}")
+    if derived.name in (BASE_REGRESSOR, BASE_PARAMETERS) and model.inertial_base is not None:
+        least = "the least whatever `allocation` says; " if derived.name == BASE_REGRESSOR and model.allocation else ""
+        return replace(derived, remark=f"{least}in the order {named(model.mechanism, model.inertial_base.columns)}")
     if derived.name == INPUTS and not generic.full_actuation:
         return replace(derived, remark=short_of_inputs(generic))
     return derived

@@ -69,6 +69,8 @@ def derive(model: Model, s: Lagrange, ranks: ConfigurationRanks) -> dict[str, ca
         quantities["utilisation"] = utilisation(model, model.allocation, s, N, ranks.actuation)
     if lacking(ROWS["regressor"], model) is None:
         quantities["regressor"] = regressor(model, s, M_plus)
+    if model.inertial_base is not None and lacking(ROWS["base_regressor"], model) is None:
+        quantities["base_regressor"] = regressor(model, s, M_plus)[:, list(model.inertial_base.columns)]
     if model.rough:  # u and what follows from it hold friction of reactions, which is a fixed point
         for name in (*MAIN, *WITHOUT_FRICTION):
             quantities.pop(name, None)

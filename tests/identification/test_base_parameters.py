@@ -11,20 +11,21 @@ import pytest
 import shipped
 from flint import arb, fmpq
 from machines import planar_four_bar, rusr_linkage, six_joint_arm
+from regressor_machines import MACHINES
 
 from symgen.cli.main import main
-from symgen.identification.base_parameters import BaseParameters, NoBodiesError, base_parameters
-from symgen.identification.coefficient_forms import recognized
-from symgen.identification.constrained_regressor import ConstrainedRegressor
-from symgen.identification.geometry import geometry_values
-from symgen.identification.motion_states import BallSystem, motion_states
-from symgen.identification.taylor_balls import WideBallError, ball_precision, may_vanish
 from symgen.identification.text import base_parameters_text
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Status
 from symgen.lowering.schedule import schedule
 from symgen.mechanics.genericity import parameter_values
 from symgen.mechanics.system import System
+from symgen.model.combinations.base_parameters import BaseParameters, NoBodiesError, base_parameters
+from symgen.model.combinations.coefficient_forms import recognized
+from symgen.model.combinations.constrained_regressor import ConstrainedRegressor
+from symgen.model.combinations.geometry import geometry_values
+from symgen.model.combinations.motion_states import BallSystem, motion_states
+from symgen.model.combinations.taylor_balls import WideBallError, ball_precision, may_vanish
 from symgen.model.configurations.mechanics import default_values
 from symgen.model.expressions.walk import evaluate
 from symgen.model.inertial_parameters import inertial_parameters, values
@@ -96,6 +97,12 @@ def test_shipped_machines(name: str, counts: tuple[int, int]) -> None:
     wheelset; restricted energies would show one less."""
     shown = base_parameters(shipped.model(name))
     assert (shown.as_tree, len(shown.base)) == counts
+
+
+def test_attitudes_by_quaternions() -> None:
+    """A free body shows ten, one on a revolute joint seven more, and one on a ball all but its mass; turned by nothing
+    at first, so that most of each quaternion is 0."""
+    assert counted(MACHINES["floating"]) == (26, 26)
 
 
 def test_closed_forms_of_a_four_bar() -> None:

@@ -19,10 +19,10 @@ from sympy import lambdify
 
 from symgen.closedform.forms import derive_closed_forms
 from symgen.generation.results import Options, Result
-from symgen.identification.base_parameters import base_parameters
 from symgen.mechanics.genericity import parameter_values
 from symgen.mechanics.system import System
 from symgen.methods.quantity import scalars
+from symgen.model.combinations.base_parameters import base_parameters
 from symgen.model.expressions.expression import Binary, Expression, Name, Negation, Number
 from symgen.model.expressions.walk import evaluate
 from symgen.model.inertial_parameters import inertial_parameters, values
@@ -144,6 +144,8 @@ def exact_values(model: Model, state: State) -> list[Fraction]:
                 return known[name]
             case Binary("+", left, right):
                 return value(left) + value(right)
+            case Binary("*", left, right):
+                return value(left) * value(right)
             case Negation(operand):
                 return -value(operand)
         raise AssertionError(expression)

@@ -12,7 +12,7 @@ from symgen import __version__
 from symgen.backends.about import symbol_text
 from symgen.backends.comments import c_comment
 from symgen.ir.kernel import Program
-from symgen.model.inertial_parameters import inertial_parameters
+from symgen.model.inertial_parameters import InertialParameter, inertial_parameters
 from symgen.model.model import Model
 from symgen.model.quantities import REGRESSOR
 from symgen.naming import macro_name
@@ -45,8 +45,18 @@ def column_view(model: Model, program: Program) -> EntryPlaces | None:
     if all(kernel.name != REGRESSOR for kernel in program.kernels):
         return None
     prefix = macro_name(model.c_name)
-    named = [(f"{one.owner}_{one.element}", one.name) for one in inertial_parameters(model.mechanism)]
+    named = [*map(_named, inertial_parameters(model.mechanism))]
     return _entry_places(prefix, "PI", "inertial parameters (columns of Y)", named)
+
+
+def _named(parameter: InertialParameter) -> tuple[str, str]:
+    return f"{parameter.owner}_{parameter.element}", parameter.name
+
+
+def _base(model: Model) -> list[tuple[str, str]]:
+    """The parameters that stand for all, where quantities of the base are asked for."""
+    every = inertial_parameters(model.mechanism)
+    return [_named(every[k]) for k in (() if model.inertial_base is None else model.inertial_base.columns)]
 
 
 def identity_view(model: Model) -> IdentityView:
@@ -86,6 +96,7 @@ def _places(model: Model, prefix: str) -> Iterator[EntryPlaces]:
         ("LAMBDA", "multipliers", ((name, f"of the row {name}") for name in rows)),
         ("QM", "q_m, qd_m and qdd_m", ((name, by_name[name]) for name in model.measured)),
         ("XT", "x_t, xd_t and xdd_t", ((x.name, x.name) for x in model.task)),
+        ("BETA", "base parameters (columns of Y_base)", _base(model)),
     )
     for letter, what, entries in arguments:
         if named := list(entries):

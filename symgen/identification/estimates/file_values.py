@@ -14,10 +14,10 @@ import numpy as np
 from scipy import optimize
 
 from symgen.identification.arrays import Array
-from symgen.identification.base_parameters import BaseParameters
 from symgen.identification.estimates.inverse_root import inverse_root
 from symgen.identification.estimates.least_squares import LinearEstimate
 from symgen.identification.estimates.linear_terms import EstimatedNames, default_like, inertial_values
+from symgen.model.combinations.base_parameters import BaseParameters
 from symgen.model.expressions.walk import exact_value
 from symgen.model.model import Model
 from symgen.records import dataclass

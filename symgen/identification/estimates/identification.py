@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from symgen.identification.arrays import Array
-from symgen.identification.base_parameters import BaseParameters
 from symgen.identification.estimates.file_values import FileValues
 from symgen.identification.estimates.least_squares import LinearEstimate
 from symgen.identification.estimates.linear_terms import EstimatedNames
@@ -13,6 +12,7 @@ from symgen.identification.estimates.observations import Observations, rms
 from symgen.identification.logs.filtering import FilterSettings
 from symgen.identification.logs.read_log import MeasuredLog
 from symgen.identification.text import combination
+from symgen.model.combinations.base_parameters import BaseParameters
 from symgen.model.model import Model
 from symgen.records import dataclass
 

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from symgen.identification.base_parameters import BaseParameters, NoBodiesError, base_parameters
 from symgen.identification.estimates.file_values import file_values
 from symgen.identification.estimates.identification import Identification
 from symgen.identification.estimates.least_squares import estimated
@@ -17,8 +16,9 @@ from symgen.identification.logs.completed import completed_motion
 from symgen.identification.logs.filtering import FilterSettings, filter_settings
 from symgen.identification.logs.read_log import MeasuredLog, read_log
 from symgen.identification.machine_functions import MachineFunctions
-from symgen.identification.motion_states import NoMotionError
 from symgen.identification.not_identified import NotIdentifiedError
+from symgen.model.combinations.base_parameters import BaseParameters, NoBodiesError, base_parameters
+from symgen.model.combinations.motion_states import NoMotionError
 from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.records import dataclass

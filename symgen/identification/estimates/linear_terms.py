@@ -10,8 +10,8 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from symgen.identification.arrays import Array
-from symgen.identification.geometry import geometric_expressions, names_reached
 from symgen.identification.machine_functions import MachineFunctions
+from symgen.model.combinations.geometry import geometric_expressions, names_reached
 from symgen.model.expressions.expression import Expression, Number
 from symgen.model.expressions.walk import evaluate
 from symgen.model.inertial_parameters import values

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from symgen.identification.arrays import Array
-from symgen.identification.base_parameters import BaseParameters
 from symgen.identification.estimates.linear_terms import (
     EstimatedNames,
     State,
@@ -17,6 +16,7 @@ from symgen.identification.logs.completed import CompletedMotion
 from symgen.identification.logs.filtering import FilterSettings
 from symgen.identification.logs.read_log import MeasuredLog
 from symgen.identification.machine_functions import MachineFunctions, parts_of
+from symgen.model.combinations.base_parameters import BaseParameters
 from symgen.records import dataclass
 
 

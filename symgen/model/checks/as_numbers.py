@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 from symgen.diagnostics import Span
+from symgen.model.configurations.mechanics import default_values
 from symgen.model.expressions.expression import Expression, Name, Number
 from symgen.model.expressions.walk import exact_value, names_in
 from symgen.model.model import Model, Parameter
@@ -26,6 +27,15 @@ def with_numbers(model: Model, names: Collection[str], defaults: Mapping[str, fl
     given["parameters"] = tuple(p for p in given["parameters"] if p.name not in names)
     taken = tuple((p.name, numbers[p.name].value) for p in model.parameters if p.name in numbers)
     return replace(model, **given, taken=(*model.taken, *taken))
+
+
+def with_numbers_by_default(model: Model) -> Model:
+    """The model whose parameters follow from none of the others: kernels are given each of them by itself."""
+    parameters = model.parameters
+    values = _values(parameters, default_values(parameters))
+    # what is no fraction stays what it is: an angle of pi/2 is a right one
+    own = (Number(values[p.name]) if any(names_in(p.value)) else p.value for p in parameters)
+    return replace(model, parameters=tuple(replace(p, value=x) for p, x in zip(parameters, own, strict=True)))
 
 
 def _values(parameters: Sequence[Parameter], defaults: Mapping[str, float]) -> dict[str, Fraction]:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from symgen.model.expressions.expression import Expression
 from symgen.model.expressions.walk import exact_value
-from symgen.model.inertial_parameters import in_words
+from symgen.model.inertial_parameters import in_words, named
 from symgen.model.mechanism import INERTIA_ELEMENTS, Frame, Quaternion, Vector3
 from symgen.model.model import Model
-from symgen.model.quantities import REGRESSOR
+from symgen.model.quantities import BASE_PARAMETERS, BASE_REGRESSOR, REGRESSOR
 from symgen.report.context import Context, text_of
 from symgen.report.document import Block, InlineCode, InlineMath, Table, Text
 from symgen.report.mathematics.from_expression import expression_layout
@@ -47,7 +47,22 @@ def mechanism(context: Context) -> list[Block]:
         blocks.append(Table((say("Coordinate"), say("Inertia")), rows, (0, 1)))
     if REGRESSOR in context.input.operation_counts:
         blocks += [_regressor(context.model), *context.quantity(REGRESSOR)]
-    return blocks
+    return [*blocks, *_base(context)]
+
+
+def _base(context: Context) -> list[Block]:
+    """Which columns stand for all, and what these are multiplied with."""
+    made = [name for name in (BASE_REGRESSOR, BASE_PARAMETERS) if name in context.input.operation_counts]
+    base = context.model.inertial_base
+    if not made or base is None:
+        return []
+    text = (
+        "Motions that the constraints allow show no more than some combinations of inertial parameters, the base "
+        "parameters {}: each of {}, and what others add to it. Their columns are those of {}."
+    )
+    names = InlineCode(named(context.model.mechanism, base.columns))
+    first = paragraph(text, SYMBOLS[BASE_PARAMETERS], names, SYMBOLS[BASE_REGRESSOR])
+    return [first, *(block for name in made for block in context.quantity(name))]
 
 
 def _regressor(model: Model) -> Block:

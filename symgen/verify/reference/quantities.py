@@ -10,6 +10,7 @@ from typing import Any
 
 from symgen.model.quantities import DIRECTION, ROWS
 from symgen.verify.reference.arithmetic.linear import column, identity, right_pseudoinverse
+from symgen.verify.reference.base_regressor import base_parameters, base_regressor
 from symgen.verify.reference.configurations.given import QUANTITIES_OF_GIVEN
 from symgen.verify.reference.configurations.parts import placed
 from symgen.verify.reference.evaluation import Evaluation
@@ -211,6 +212,8 @@ QUANTITIES: dict[str, Definition] = {
     "forward_dynamics_gradient": _forward_dynamics_gradient,
     "multipliers_jacobian": _multipliers_jacobian,
     "regressor": regressor,
+    "base_regressor": base_regressor,
+    "base_parameters": base_parameters,
     "constraint_variations": _constraint_variations,
     "inverse_dynamics_residual": _inverse_dynamics_residual,
     "friction_residual": _friction_residual,
@@ -240,4 +243,6 @@ RATES = {
     "minimal_coriolis_matrix": ("mass", "constraints"),
     "actuator_bias": ("mass", "constraints", "control"),
     "regressor": ("mass",),
+    "base_regressor": ("mass",),
+    "base_parameters": ("mass",),
 }

@@ -29,6 +29,11 @@ PAIRS = ((0, 1), (0, 2), (1, 2))
 def regressor(e: Evaluation) -> Any:
     """Y (m x p): the least inputs for a unit of m, mx, my, mz, Ixx, Iyy, Izz, Ixy, Ixz, Iyz of each body, then of Ir of
     each rotor."""
+    return e.control_inverse * (e.projector * loads_of_units(e))
+
+
+def loads_of_units(e: Evaluation) -> Any:
+    """What a unit of each loads the coordinates with (n x p)."""
     mechanism, n = e.system.model.mechanism, e.system.n
     by_frame = dict(zip(frames_with_bodies(e.system.model), _columns(e), strict=True))
     columns = [one for body in mechanism.bodies for one in by_frame[body.frame]]
@@ -36,8 +41,7 @@ def regressor(e: Evaluation) -> Any:
     for rotor in mechanism.rotor_inertias:
         j = names.index(rotor.coordinate)
         columns.append(placed(n, 1, [((j,), (0,), column([e.qdd[j]]))]))
-    loads = arb_mat(n, len(columns), [one[i, 0] for i in range(n) for one in columns])
-    return e.control_inverse * (e.projector * loads)
+    return arb_mat(n, len(columns), [one[i, 0] for i in range(n) for one in columns])
 
 
 def _columns(e: Evaluation) -> Iterator[list[Any]]:
@@ -68,7 +72,11 @@ def _of_point_masses(e: Evaluation) -> Evaluation:
     """The same state with point masses in the place of bodies."""
     if e.system not in _KNOWN:
         _KNOWN[e.system] = ReferenceSystem(with_point_masses(e.system.model))
-    system = _KNOWN[e.system]
+    return of_other_bodies(e, _KNOWN[e.system])
+
+
+def of_other_bodies(e: Evaluation, system: ReferenceSystem) -> Evaluation:
+    """The same state of a system that is made of parts of this one."""
     own = {id(literal): value for literal, value in zip(e.system.literals, e.literals, strict=True)}
     literals = [own[id(x)] if id(x) in own else literal_values([x])[0] for x in system.literals]
     return Evaluation(system, e.ranks, e.q, e.qd, e.qdd, (), e.parameters, literals)

@@ -10,9 +10,19 @@ from math import comb, isfinite
 from typing import Any
 
 from symgen.ir.kernel import Scalar
-from symgen.model.quantities import MEASURED, MEASURED_PLACES, PARTITION, ROWS, TASK_OPEN, TASK_PLACES, TASK_RATES
+from symgen.model.quantities import (
+    BASE_PARAMETERS,
+    MEASURED,
+    MEASURED_PLACES,
+    PARTITION,
+    ROWS,
+    TASK_OPEN,
+    TASK_PLACES,
+    TASK_RATES,
+)
 from symgen.runtime.activity import working
 from symgen.verify.reference.arithmetic.tape import precision
+from symgen.verify.reference.base_regressor import motions_solved
 from symgen.verify.reference.configurations.given import (
     USUAL_STEPS,
     is_near_measured,
@@ -62,6 +72,7 @@ def affordable_states(reference: Reference, quantities: Sequence[str], wanted: i
     places = 1 + 2 * system.n if DIFFERENCED.intersection(quantities) else 1
     places *= 2 if CURVED.intersection(quantities) else 1
     places += USUAL_STEPS if ITERATED.intersection(quantities) else 0
+    places += motions_solved(reference.model, ranks) if BASE_PARAMETERS in quantities else 0
     seconds_per_state = 30 * 1.3e-7 * operations * places
     return max(FEWEST_STATES, min(wanted, int(LONGEST_SECONDS / seconds_per_state)))
 

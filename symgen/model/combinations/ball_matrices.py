@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from flint import arb, arb_mat
 
-from symgen.identification.taylor_balls import Ball, may_vanish
+from symgen.model.combinations.taylor_balls import Ball, may_vanish
 
 Matrix: TypeAlias = list[list[Ball]]
 

@@ -11,8 +11,8 @@ from typing import cast
 
 from flint import arb, arb_mat
 
-from symgen.identification.ball_matrices import Matrix, kernel
-from symgen.identification.taylor_balls import (
+from symgen.model.combinations.ball_matrices import Matrix, kernel
+from symgen.model.combinations.taylor_balls import (
     Ball,
     TimeSeries,
     WideBallError,

@@ -7,12 +7,13 @@ tolerance, a number counts where its ball leaves 0 out.  Restricted energies wou
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import TypeVar
 
-from symgen.identification.ball_matrices import Echelon, extended
-from symgen.identification.coefficient_forms import (
+from symgen.model.combinations.ball_matrices import Echelon, extended
+from symgen.model.combinations.coefficient_forms import (
     MOST_VARIABLES,
     CoefficientForm,
     CoefficientSample,
@@ -21,10 +22,10 @@ from symgen.identification.coefficient_forms import (
     quotient_form,
     samples_needed,
 )
-from symgen.identification.constrained_regressor import ConstrainedRegressor
-from symgen.identification.geometry import geometry_values
-from symgen.identification.motion_states import BallSystem, NoMotionError, motion_states
-from symgen.identification.taylor_balls import (
+from symgen.model.combinations.constrained_regressor import ConstrainedRegressor
+from symgen.model.combinations.geometry import geometry_values
+from symgen.model.combinations.motion_states import BallSystem, NoMotionError, motion_states
+from symgen.model.combinations.taylor_balls import (
     FIRST_BALL_BITS,
     MOST_BALL_BITS,
     Ball,
@@ -46,6 +47,7 @@ VANISHING_SUM = 1e-14
 CHANGE = Fraction(33, 32)
 # All of them are changed by one over this at most.
 CHANGED_BY = 64
+Searched = TypeVar("Searched")
 
 
 class NoBodiesError(Exception):
@@ -84,18 +86,25 @@ def base_parameters(model: Model) -> BaseParameters:
     """
     if not model.mechanism.has_mass:
         raise NoBodiesError
+    return with_enough_digits(lambda: CombinationSearch(model).result())
+
+
+def with_enough_digits(work: Callable[[], Searched]) -> Searched:
+    """What some work in balls comes to, with more digits where they are too wide to decide; else NoMotionError."""
     bits = FIRST_BALL_BITS
     while True:
         try:
             with ball_precision(bits):
-                return _CombinationSearch(model).result()
+                return work()
         except WideBallError:
             if bits == MOST_BALL_BITS:
                 raise NoMotionError from None
             bits *= 2
 
 
-class _CombinationSearch:
+class CombinationSearch:
+    """The search in one model, at the working precision."""
+
     def __init__(self, model: Model) -> None:
         self._model = model
         self._parameters = inertial_parameters(model.mechanism)
@@ -103,9 +112,10 @@ class _CombinationSearch:
         self._geometry = geometry_values(model)
 
     def result(self) -> BaseParameters:
+        """All of it."""
         with working("base parameters"):
-            here = self._echelon({})
-            tree = self._echelon({}, is_open=True).rank if self._model.constraints else here.rank
+            here = self.echelon({})
+            tree = self.echelon({}, is_open=True).rank if self._model.constraints else here.rank
             combined = [*self._combined(here)]
             others = self._changed(here, combined)
             forms = dict(self._forms(here, combined, others)) if others is not None else {}
@@ -130,15 +140,17 @@ class _CombinationSearch:
         idle = tuple(one for k, one in enumerate(self._parameters) if k not in shown)
         return BaseParameters(model, self._parameters, base, idle, tree, elsewhere)
 
-    def _echelon(self, given: Mapping[str, Fraction], is_open: bool = False, rank: int | None = None) -> Echelon:
+    def echelon(self, given: Mapping[str, Fraction], is_open: bool = False, rank: int | None = None) -> Echelon:
         """Reduced rows at as many motions as it takes, or as this rank does."""
         model = self._model
         system = BallSystem(model, given, is_open)
         regressor = ConstrainedRegressor(system)
-        if is_open or model.assembly is None:
-            start, rows = tuple(float(sum(c.range)) / 2 for c in model.coordinates), 0
+        rows = 0
+        if model.assembly is None:
+            start = tuple(float(sum(c.range)) / 2 for c in model.coordinates)
         else:
-            start, rows = model.assembly.places[0].q, model.assembly.ranks.constraints
+            # an attitude in the middle of its ranges is none
+            start, rows = model.assembly.places[0].q, 0 if is_open else model.assembly.ranks.constraints
         echelon, quiet = Echelon([], ()), 0
         for state in motion_states(system, start, rows):
             more = extended(echelon, regressor.rows(state), self._order)
@@ -164,7 +176,7 @@ class _CombinationSearch:
             return None
         for name, value in self._geometry.items():
             try:
-                other = self._echelon({name: value * CHANGE}, rank=here.rank)
+                other = self.echelon({name: value * CHANGE}, rank=here.rank)
             except NoMotionError:
                 return None
             if sorted(other.pivots) != sorted(here.pivots):
@@ -200,29 +212,34 @@ class _CombinationSearch:
     def _anywhere(self, here: Echelon, count: int) -> Iterator[tuple[dict[str, Fraction], Echelon]]:
         """So many times with all parameters of the geometry changed, each time in another way."""
         for k in range(count):
-            given = self._moved(k)
+            given = self.moved(k)
             try:
-                echelon = self._echelon(given, rank=here.rank)
+                echelon = self.echelon(given, rank=here.rank)
             except NoMotionError:
                 return
             if sorted(echelon.pivots) != sorted(here.pivots):
                 return
             yield given, echelon
 
-    def _moved(self, number: int) -> dict[str, Fraction]:
+    def moved(self, number: int) -> dict[str, Fraction]:
         """Values of the geometry in general position: their quotients are fractions of large primes."""
-        return {
-            name: value * (1 + Fraction((31 * (k + 1) + 17 * number * (k + 2)) % 101 - 50, 50 * CHANGED_BY))
-            for k, (name, value) in enumerate(self._geometry.items())
-        }
+        return in_general_position(self._geometry, number)
 
     def _elsewhere(self, here: Echelon) -> int | None:
         if not self._geometry:
             return here.rank
         try:
-            return self._echelon(self._moved(1)).rank
+            return self.echelon(self.moved(1)).rank
         except NoMotionError:
             return None
+
+
+def in_general_position(values: Mapping[str, Fraction], number: int) -> dict[str, Fraction]:
+    """These values, each changed by another share, which differ from one number to the next."""
+    return {
+        name: value * (1 + Fraction((31 * (k + 1) + 17 * number * (k + 2)) % 101 - 50, 50 * CHANGED_BY))
+        for k, (name, value) in enumerate(values.items())
+    }
 
 
 def _sum(terms: Sequence[float]) -> float:

@@ -11,9 +11,9 @@ from typing import Any, TypeAlias, cast
 
 from flint import arb
 
-from symgen.identification.ball_matrices import Matrix
-from symgen.identification.motion_states import BallSystem, MotionState
-from symgen.identification.taylor_balls import Ball, TimeSeries, series_of
+from symgen.model.combinations.ball_matrices import Matrix
+from symgen.model.combinations.motion_states import BallSystem, MotionState
+from symgen.model.combinations.taylor_balls import Ball, TimeSeries, series_of
 from symgen.model.configurations.gradient import Gradients
 from symgen.model.kinematics.float_kinematics import FloatArithmetic
 from symgen.model.kinematics.walk import Kinematics

@@ -145,25 +145,30 @@ def _composed(of: TimeSeries, value: _Slope, slope: _Slope, bend: _Slope) -> Tim
     if len(of.c) > 1:
         made.append(slope(x) * of.c[1])
     if len(of.c) > 2:
-        made.append(slope(x) * of.c[2] + bend(x) * of.c[1] ** 2 / 2)
+        made.append(slope(x) * of.c[2] + bend(x) * of.c[1] * of.c[1] / 2)
     if not all(one.is_finite() for one in made):
         raise ValueError
     return TimeSeries(made)
 
 
+def _square(x: Ball) -> Ball:
+    """Arb goes by logarithms for powers, which a ball around 0 has not."""
+    return x * x
+
+
 _RULES: Mapping[str, tuple[_Slope, _Slope, _Slope]] = {
     "sin": (arb.sin, arb.cos, lambda x: -x.sin()),
     "cos": (arb.cos, lambda x: -x.sin(), lambda x: -x.cos()),
-    "tan": (arb.tan, lambda x: 1 + x.tan() ** 2, lambda x: 2 * x.tan() * (1 + x.tan() ** 2)),
-    "asin": (arb.asin, lambda x: (1 - x**2).rsqrt(), lambda x: x * (1 - x**2).rsqrt() ** 3),
-    "acos": (arb.acos, lambda x: -((1 - x**2).rsqrt()), lambda x: -x * (1 - x**2).rsqrt() ** 3),
-    "atan": (arb.atan, lambda x: 1 / (1 + x**2), lambda x: -2 * x / (1 + x**2) ** 2),
+    "tan": (arb.tan, lambda x: 1 + _square(x.tan()), lambda x: 2 * x.tan() * (1 + _square(x.tan()))),
+    "asin": (arb.asin, lambda x: (1 - x * x).rsqrt(), lambda x: x * (1 - x * x).rsqrt() ** 3),
+    "acos": (arb.acos, lambda x: -((1 - x * x).rsqrt()), lambda x: -x * (1 - x * x).rsqrt() ** 3),
+    "atan": (arb.atan, lambda x: 1 / (1 + x * x), lambda x: -2 * x / (1 + x * x) ** 2),
     "sqrt": (arb.sqrt, lambda x: x.rsqrt() / 2, lambda x: -(x.rsqrt() ** 3) / 4),
     "exp": (arb.exp, arb.exp, arb.exp),
     "log": (arb.log, lambda x: 1 / x, lambda x: -1 / x**2),
     "sinh": (arb.sinh, arb.cosh, arb.sinh),
     "cosh": (arb.cosh, arb.sinh, arb.cosh),
-    "tanh": (arb.tanh, lambda x: 1 - x.tanh() ** 2, lambda x: -2 * x.tanh() * (1 - x.tanh() ** 2)),
+    "tanh": (arb.tanh, lambda x: 1 - _square(x.tanh()), lambda x: -2 * x.tanh() * (1 - _square(x.tanh()))),
 }
 
 
@@ -183,6 +188,15 @@ def _atan2(y: TimeSeries, x: TimeSeries) -> float:
     return cast(float, TimeSeries(made))
 
 
+def _whole_power(x: Ball, power: int) -> Ball:
+    if power < 0:
+        return 1 / _whole_power(x, -power)
+    if power < 2:
+        return x if power else arb(1)
+    half = _square(_whole_power(x, power // 2))
+    return half * x if power % 2 else half
+
+
 def _power(base: float, exponent: Fraction) -> float:
     series = cast(TimeSeries, base)
     value = ball(exponent)
@@ -190,7 +204,7 @@ def _power(base: float, exponent: Fraction) -> float:
     def raised(x: Ball, lower: int) -> Ball:
         power = exponent - lower
         if power.denominator == 1:
-            return x ** int(power)
+            return _whole_power(x, int(power))
         if not x > 0:
             raise ValueError
         return x ** ball(power)

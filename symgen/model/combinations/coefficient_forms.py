@@ -10,11 +10,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations_with_replacement
+from math import floor, log10
 from typing import TypeAlias
 
 from flint import arb, arb_mat
 
-from symgen.identification.taylor_balls import Ball, WideBallError, ball, may_vanish, wide
+from symgen.model.combinations.taylor_balls import Ball, WideBallError, ball, may_vanish, wide
 
 # Powers of one parameter that are looked at.
 COMPARED_POWERS = (0, 1, -1, 2, -2, 3, -3)
@@ -22,6 +23,8 @@ COMPARED_POWERS = (0, 1, -1, 2, -2, 3, -3)
 MOST_DENOMINATOR = 10**6
 # Parameters of a polynomial at most.
 MOST_VARIABLES = 4
+# Decimal digits of a factor that is no short fraction: more than the reference has.
+FACTOR_DIGITS = 70
 
 Powers: TypeAlias = tuple[tuple[str, int], ...]
 """Parameters with their powers."""
@@ -29,11 +32,12 @@ Powers: TypeAlias = tuple[tuple[str, int], ...]
 
 @dataclass(frozen=True, slots=True)
 class FormTerm:
-    """factor * sqrt(root) * parameters to their powers; the factor is a fraction where it was recognized as one."""
+    """factor * sqrt(root) * parameters to their powers; a factor that was not recognized as a fraction is rounded."""
 
-    factor: Fraction | float
+    factor: Fraction
     root: int
     powers: Powers
+    is_recognized: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +75,18 @@ def product_form(here: CoefficientSample, scaled: Mapping[str, CoefficientSample
 def changing(here: CoefficientSample, scaled: Mapping[str, CoefficientSample]) -> tuple[str, ...]:
     """The parameters that change the coefficient."""
     return tuple(name for name, other in scaled.items() if not may_vanish(other.value - here.value))
+
+
+def form_value(form: CoefficientForm, given: Mapping[str, Fraction]) -> Ball:
+    """A form that has terms, for values of the parameters."""
+    terms = (_factor(one) * arb(one.root).sqrt() * _evaluated(one.powers, given) for one in form.terms)
+    return sum(terms, arb(0))
+
+
+def _factor(term: FormTerm) -> Ball:
+    """A factor, with what was rounded of it."""
+    exact = ball(term.factor)
+    return exact if term.is_recognized else exact + exact * arb(0, 10.0**-FACTOR_DIGITS)
 
 
 def samples_needed(variables: int) -> int:
@@ -113,7 +129,14 @@ def _polynomial(
 
 def _term(factor: Ball, powers: Powers) -> FormTerm:
     known = recognized(factor)
-    return FormTerm(float(factor.mid()), 1, powers) if known is None else FormTerm(*known, powers)
+    return FormTerm(_rounded(factor), 1, powers, False) if known is None else FormTerm(*known, powers)
+
+
+def _rounded(value: Ball) -> Fraction:
+    """The middle of a ball to so many digits."""
+    exact = Fraction(*_numerator_and_denominator(value))
+    scale = Fraction(10) ** (FACTOR_DIGITS - floor(log10(abs(float(exact)))))
+    return round(exact * scale) / scale
 
 
 def recognized(value: Ball) -> tuple[Fraction, int] | None:

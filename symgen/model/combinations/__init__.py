@@ -1,0 +1,1 @@
+"""Which combinations of inertial parameters a mechanism shows: ranks in balls, closed forms in its geometry."""
