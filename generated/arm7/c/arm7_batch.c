@@ -42,6 +42,9 @@ typedef char symgen_needs_no_fsingle_precision_constant[sizeof(0.1) == sizeof(do
 /* States a block: the loop over a block has no branch and no call, so that compilers make vector code of it. */
 enum { LANES = 64 };
 
+/* States from which several threads share the blocks, where the compiler is told to (-fopenmp). */
+enum { MANY = 64 * LANES };
+
 #ifdef __GNUC__
 #define ARM7_BATCH_INLINE static inline __attribute__((always_inline))
 #else
@@ -197,13 +200,16 @@ size_t arm7_inverse_dynamics_batch(size_t count, size_t stride, const double *q,
     const double t673 = I_xx2 - I_zz2;
     const double t688 = I_yy3 - I_xx3;
     const double t705 = I_yy2 - I_xx2;
-    double copy[20][LANES]; /* the last states, the first of them repeated */
-    double result[7][LANES];
-    double flag[LANES]; /* 0 where a check passed and the result is finite */
-    int64_t bits[LANES];
     size_t refused = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(+ : refused) if (count >= MANY)
+#endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        double copy[20][LANES]; /* the last states, the first of them repeated */
+        double result[7][LANES];
+        double flag[LANES]; /* 0 where a check passed and the result is finite */
+        int64_t bits[LANES];
         const double *from[20];
         from[0] = q + 1 * stride + start;
         from[1] = q + 2 * stride + start;
@@ -1425,13 +1431,16 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
     const double t1497 = I_yy3 - I_xx3;
     const double t1526 = I_xx3 - I_zz3;
     const double t1590 = I_zz2 + t893;
-    double copy[20][LANES]; /* the last states, the first of them repeated */
-    double result[7][LANES];
-    double flag[LANES]; /* 0 where a check passed and the result is finite */
-    int64_t bits[LANES];
     size_t refused = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(+ : refused) if (count >= MANY)
+#endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        double copy[20][LANES]; /* the last states, the first of them repeated */
+        double result[7][LANES];
+        double flag[LANES]; /* 0 where a check passed and the result is finite */
+        int64_t bits[LANES];
         const double *from[20];
         from[0] = q + 1 * stride + start;
         from[1] = q + 2 * stride + start;

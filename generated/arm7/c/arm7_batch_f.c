@@ -37,6 +37,9 @@
 /* States a block: the loop over a block has no branch and no call, so that compilers make vector code of it. */
 enum { LANES = 64 };
 
+/* States from which several threads share the blocks, where the compiler is told to (-fopenmp). */
+enum { MANY = 64 * LANES };
+
 #ifdef __GNUC__
 #define ARM7_BATCH_F_INLINE static inline __attribute__((always_inline))
 #else
@@ -184,13 +187,16 @@ size_t arm7_inverse_dynamics_batch_f(size_t count, size_t stride, const float *q
     const float t673 = I_xx2 - I_zz2;
     const float t688 = I_yy3 - I_xx3;
     const float t705 = I_yy2 - I_xx2;
-    float copy[20][LANES]; /* the last states, the first of them repeated */
-    float result[7][LANES];
-    float flag[LANES]; /* 0 where a check passed and the result is finite */
-    int32_t bits[LANES];
     size_t refused = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(+ : refused) if (count >= MANY)
+#endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        float copy[20][LANES]; /* the last states, the first of them repeated */
+        float result[7][LANES];
+        float flag[LANES]; /* 0 where a check passed and the result is finite */
+        int32_t bits[LANES];
         const float *from[20];
         from[0] = q + 1 * stride + start;
         from[1] = q + 2 * stride + start;
@@ -1412,13 +1418,16 @@ size_t arm7_forward_dynamics_batch_f(size_t count, size_t stride, const float *q
     const float t1497 = I_yy3 - I_xx3;
     const float t1526 = I_xx3 - I_zz3;
     const float t1590 = I_zz2 + t893;
-    float copy[20][LANES]; /* the last states, the first of them repeated */
-    float result[7][LANES];
-    float flag[LANES]; /* 0 where a check passed and the result is finite */
-    int32_t bits[LANES];
     size_t refused = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(+ : refused) if (count >= MANY)
+#endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        float copy[20][LANES]; /* the last states, the first of them repeated */
+        float result[7][LANES];
+        float flag[LANES]; /* 0 where a check passed and the result is finite */
+        int32_t bits[LANES];
         const float *from[20];
         from[0] = q + 1 * stride + start;
         from[1] = q + 2 * stride + start;

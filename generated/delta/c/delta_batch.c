@@ -42,6 +42,9 @@ typedef char symgen_needs_no_fsingle_precision_constant[sizeof(0.1) == sizeof(do
 /* States a block: the loop over a block has no branch and no call, so that compilers make vector code of it. */
 enum { LANES = 64 };
 
+/* States from which several threads share the blocks, where the compiler is told to (-fopenmp). */
+enum { MANY = 64 * LANES };
+
 #ifdef __GNUC__
 #define DELTA_BATCH_INLINE static inline __attribute__((always_inline))
 #else
@@ -133,13 +136,16 @@ size_t delta_inverse_dynamics_batch(size_t count, size_t stride, const double *q
     const double t257 = t255 * t256;
     const double t258 = J_a + J_m;
     const double t259 = t257 + t258;
-    double copy[12][LANES]; /* the last states, the first of them repeated */
-    double result[3][LANES];
-    double flag[LANES]; /* 0 where a check passed and the result is finite */
-    int64_t bits[LANES];
     size_t refused = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(+ : refused) if (count >= MANY)
+#endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        double copy[12][LANES]; /* the last states, the first of them repeated */
+        double result[3][LANES];
+        double flag[LANES]; /* 0 where a check passed and the result is finite */
+        int64_t bits[LANES];
         const double *from[12];
         from[0] = q + 0 * stride + start;
         from[1] = q + 1 * stride + start;
@@ -385,13 +391,16 @@ size_t delta_forward_dynamics_batch(size_t count, size_t stride, const double *q
     const double t367 = l_1 * g;
     const double t368 = t366 * t367;
     const double t372 = g * t188;
-    double copy[15][LANES]; /* the last states, the first of them repeated */
-    double result[6][LANES];
-    double flag[LANES]; /* 0 where a check passed and the result is finite */
-    int64_t bits[LANES];
     size_t refused = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(+ : refused) if (count >= MANY)
+#endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        double copy[15][LANES]; /* the last states, the first of them repeated */
+        double result[6][LANES];
+        double flag[LANES]; /* 0 where a check passed and the result is finite */
+        int64_t bits[LANES];
         const double *from[15];
         from[0] = q + 0 * stride + start;
         from[1] = q + 1 * stride + start;
@@ -1001,13 +1010,16 @@ size_t delta_multipliers_batch(size_t count, size_t stride, const double *q, con
     const double t333 = t174 + t332;
     const double t334 = l_1 * g;
     const double t335 = t333 * t334;
-    double copy[15][LANES]; /* the last states, the first of them repeated */
-    double result[3][LANES];
-    double flag[LANES]; /* 0 where a check passed and the result is finite */
-    int64_t bits[LANES];
     size_t refused = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(+ : refused) if (count >= MANY)
+#endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        double copy[15][LANES]; /* the last states, the first of them repeated */
+        double result[3][LANES];
+        double flag[LANES]; /* 0 where a check passed and the result is finite */
+        int64_t bits[LANES];
         const double *from[15];
         from[0] = q + 0 * stride + start;
         from[1] = q + 1 * stride + start;

@@ -37,6 +37,9 @@
 /* States a block: the loop over a block has no branch and no call, so that compilers make vector code of it. */
 enum { LANES = 64 };
 
+/* States from which several threads share the blocks, where the compiler is told to (-fopenmp). */
+enum { MANY = 64 * LANES };
+
 #ifdef __GNUC__
 #define DELTA_BATCH_F_INLINE static inline __attribute__((always_inline))
 #else
@@ -120,13 +123,16 @@ size_t delta_inverse_dynamics_batch_f(size_t count, size_t stride, const float *
     const float t257 = t255 * t256;
     const float t258 = J_a + J_m;
     const float t259 = t257 + t258;
-    float copy[12][LANES]; /* the last states, the first of them repeated */
-    float result[3][LANES];
-    float flag[LANES]; /* 0 where a check passed and the result is finite */
-    int32_t bits[LANES];
     size_t refused = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(+ : refused) if (count >= MANY)
+#endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        float copy[12][LANES]; /* the last states, the first of them repeated */
+        float result[3][LANES];
+        float flag[LANES]; /* 0 where a check passed and the result is finite */
+        int32_t bits[LANES];
         const float *from[12];
         from[0] = q + 0 * stride + start;
         from[1] = q + 1 * stride + start;
@@ -374,13 +380,16 @@ size_t delta_forward_dynamics_batch_f(size_t count, size_t stride, const float *
     const float t367 = l_1 * g;
     const float t368 = t366 * t367;
     const float t372 = g * t188;
-    float copy[15][LANES]; /* the last states, the first of them repeated */
-    float result[6][LANES];
-    float flag[LANES]; /* 0 where a check passed and the result is finite */
-    int32_t bits[LANES];
     size_t refused = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(+ : refused) if (count >= MANY)
+#endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        float copy[15][LANES]; /* the last states, the first of them repeated */
+        float result[6][LANES];
+        float flag[LANES]; /* 0 where a check passed and the result is finite */
+        int32_t bits[LANES];
         const float *from[15];
         from[0] = q + 0 * stride + start;
         from[1] = q + 1 * stride + start;
@@ -988,13 +997,16 @@ size_t delta_multipliers_batch_f(size_t count, size_t stride, const float *q, co
     const float t333 = t174 + t332;
     const float t334 = l_1 * g;
     const float t335 = t333 * t334;
-    float copy[15][LANES]; /* the last states, the first of them repeated */
-    float result[3][LANES];
-    float flag[LANES]; /* 0 where a check passed and the result is finite */
-    int32_t bits[LANES];
     size_t refused = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(+ : refused) if (count >= MANY)
+#endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        float copy[15][LANES]; /* the last states, the first of them repeated */
+        float result[3][LANES];
+        float flag[LANES]; /* 0 where a check passed and the result is finite */
+        int32_t bits[LANES];
         const float *from[15];
         from[0] = q + 0 * stride + start;
         from[1] = q + 1 * stride + start;

@@ -42,6 +42,9 @@ typedef char symgen_needs_no_fsingle_precision_constant[sizeof(0.1) == sizeof(do
 /* States a block: the loop over a block has no branch and no call, so that compilers make vector code of it. */
 enum { LANES = 64 };
 
+/* States from which several threads share the blocks, where the compiler is told to (-fopenmp). */
+enum { MANY = 64 * LANES };
+
 #ifdef __GNUC__
 #define FRONT_CAR_BATCH_INLINE static inline __attribute__((always_inline))
 #else
@@ -114,13 +117,16 @@ size_t front_car_inverse_dynamics_batch(size_t count, size_t stride, const doubl
     const double t12 = L * m_2;
     const double t17 = L * t12;
     const double t18 = Theta_1 + t17;
-    double copy[7][LANES]; /* the last states, the first of them repeated */
-    double result[2][LANES];
-    double flag[LANES]; /* 0 where a check passed and the result is finite */
-    int64_t bits[LANES];
     size_t refused = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(+ : refused) if (count >= MANY)
+#endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        double copy[7][LANES]; /* the last states, the first of them repeated */
+        double result[2][LANES];
+        double flag[LANES]; /* 0 where a check passed and the result is finite */
+        int64_t bits[LANES];
         const double *from[7];
         from[0] = q + 2 * stride + start;
         from[1] = q + 3 * stride + start;
@@ -240,13 +246,16 @@ size_t front_car_forward_dynamics_batch(size_t count, size_t stride, const doubl
     const double t66 = m_2 * t65;
     const double t67 = Theta_1 + t66;
     const double t92 = m_1 + m_2;
-    double copy[8][LANES]; /* the last states, the first of them repeated */
-    double result[4][LANES];
-    double flag[LANES]; /* 0 where a check passed and the result is finite */
-    int64_t bits[LANES];
     size_t refused = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(+ : refused) if (count >= MANY)
+#endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        double copy[8][LANES]; /* the last states, the first of them repeated */
+        double result[4][LANES];
+        double flag[LANES]; /* 0 where a check passed and the result is finite */
+        int64_t bits[LANES];
         const double *from[8];
         from[0] = q + 2 * stride + start;
         from[1] = q + 3 * stride + start;
@@ -438,13 +447,16 @@ size_t front_car_multipliers_batch(size_t count, size_t stride, const double *q,
     const double t52 = m_1 + m_2;
     const double t72 = L * t48;
     const double t73 = Theta_1 + t72;
-    double copy[7][LANES]; /* the last states, the first of them repeated */
-    double result[2][LANES];
-    double flag[LANES]; /* 0 where a check passed and the result is finite */
-    int64_t bits[LANES];
     size_t refused = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(+ : refused) if (count >= MANY)
+#endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        double copy[7][LANES]; /* the last states, the first of them repeated */
+        double result[2][LANES];
+        double flag[LANES]; /* 0 where a check passed and the result is finite */
+        int64_t bits[LANES];
         const double *from[7];
         from[0] = q + 2 * stride + start;
         from[1] = q + 3 * stride + start;

@@ -37,6 +37,9 @@
 /* States a block: the loop over a block has no branch and no call, so that compilers make vector code of it. */
 enum { LANES = 64 };
 
+/* States from which several threads share the blocks, where the compiler is told to (-fopenmp). */
+enum { MANY = 64 * LANES };
+
 #ifdef __GNUC__
 #define FRONT_CAR_BATCH_F_INLINE static inline __attribute__((always_inline))
 #else
@@ -101,13 +104,16 @@ size_t front_car_inverse_dynamics_batch_f(size_t count, size_t stride, const flo
     const float t12 = L * m_2;
     const float t17 = L * t12;
     const float t18 = Theta_1 + t17;
-    float copy[7][LANES]; /* the last states, the first of them repeated */
-    float result[2][LANES];
-    float flag[LANES]; /* 0 where a check passed and the result is finite */
-    int32_t bits[LANES];
     size_t refused = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(+ : refused) if (count >= MANY)
+#endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        float copy[7][LANES]; /* the last states, the first of them repeated */
+        float result[2][LANES];
+        float flag[LANES]; /* 0 where a check passed and the result is finite */
+        int32_t bits[LANES];
         const float *from[7];
         from[0] = q + 2 * stride + start;
         from[1] = q + 3 * stride + start;
@@ -227,13 +233,16 @@ size_t front_car_forward_dynamics_batch_f(size_t count, size_t stride, const flo
     const float t66 = m_2 * t65;
     const float t67 = Theta_1 + t66;
     const float t92 = m_1 + m_2;
-    float copy[8][LANES]; /* the last states, the first of them repeated */
-    float result[4][LANES];
-    float flag[LANES]; /* 0 where a check passed and the result is finite */
-    int32_t bits[LANES];
     size_t refused = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(+ : refused) if (count >= MANY)
+#endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        float copy[8][LANES]; /* the last states, the first of them repeated */
+        float result[4][LANES];
+        float flag[LANES]; /* 0 where a check passed and the result is finite */
+        int32_t bits[LANES];
         const float *from[8];
         from[0] = q + 2 * stride + start;
         from[1] = q + 3 * stride + start;
@@ -425,13 +434,16 @@ size_t front_car_multipliers_batch_f(size_t count, size_t stride, const float *q
     const float t52 = m_1 + m_2;
     const float t72 = L * t48;
     const float t73 = Theta_1 + t72;
-    float copy[7][LANES]; /* the last states, the first of them repeated */
-    float result[2][LANES];
-    float flag[LANES]; /* 0 where a check passed and the result is finite */
-    int32_t bits[LANES];
     size_t refused = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(+ : refused) if (count >= MANY)
+#endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        float copy[7][LANES]; /* the last states, the first of them repeated */
+        float result[2][LANES];
+        float flag[LANES]; /* 0 where a check passed and the result is finite */
+        int32_t bits[LANES];
         const float *from[7];
         from[0] = q + 2 * stride + start;
         from[1] = q + 3 * stride + start;

@@ -42,6 +42,9 @@ typedef char symgen_needs_no_fsingle_precision_constant[sizeof(0.1) == sizeof(do
 /* States a block: the loop over a block has no branch and no call, so that compilers make vector code of it. */
 enum { LANES = 64 };
 
+/* States from which several threads share the blocks, where the compiler is told to (-fopenmp). */
+enum { MANY = 64 * LANES };
+
 #ifdef __GNUC__
 #define RAPKM_2RRR_RR_BATCH_INLINE static inline __attribute__((always_inline))
 #else
@@ -134,13 +137,16 @@ size_t rapkm_2rrr_rr_inverse_dynamics_batch(size_t count, size_t stride, const d
     const double J_elbow_1 = J_elbow + t82;
     const double t54 = m_payload * t53;
     const double t60 = t54 + t59;
-    double copy[18][LANES]; /* the last states, the first of them repeated */
-    double result[3][LANES];
-    double flag[LANES]; /* 0 where a check passed and the result is finite */
-    int64_t bits[LANES];
     size_t refused = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(+ : refused) if (count >= MANY)
+#endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        double copy[18][LANES]; /* the last states, the first of them repeated */
+        double result[3][LANES];
+        double flag[LANES]; /* 0 where a check passed and the result is finite */
+        int64_t bits[LANES];
         const double *from[18];
         from[0] = q + 0 * stride + start;
         from[1] = q + 1 * stride + start;
@@ -441,13 +447,16 @@ size_t rapkm_2rrr_rr_forward_dynamics_batch(size_t count, size_t stride, const d
     const double t289 = t288 * 5.329070518200751e-15;
     const double t299 = 1.0 / J_elbow_1;
     const double t306 = 1.0 / J_elbow;
-    double copy[15][LANES]; /* the last states, the first of them repeated */
-    double result[6][LANES];
-    double flag[LANES]; /* 0 where a check passed and the result is finite */
-    int64_t bits[LANES];
     size_t refused = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(+ : refused) if (count >= MANY)
+#endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        double copy[15][LANES]; /* the last states, the first of them repeated */
+        double result[6][LANES];
+        double flag[LANES]; /* 0 where a check passed and the result is finite */
+        int64_t bits[LANES];
         const double *from[15];
         from[0] = q + 0 * stride + start;
         from[1] = q + 1 * stride + start;
@@ -1351,13 +1360,16 @@ size_t rapkm_2rrr_rr_multipliers_batch(size_t count, size_t stride, const double
     const double t272 = t271 * 5.329070518200751e-15;
     const double t299 = 1.0 / J_elbow_1;
     const double t306 = 1.0 / J_elbow;
-    double copy[15][LANES]; /* the last states, the first of them repeated */
-    double result[4][LANES];
-    double flag[LANES]; /* 0 where a check passed and the result is finite */
-    int64_t bits[LANES];
     size_t refused = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(+ : refused) if (count >= MANY)
+#endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        double copy[15][LANES]; /* the last states, the first of them repeated */
+        double result[4][LANES];
+        double flag[LANES]; /* 0 where a check passed and the result is finite */
+        int64_t bits[LANES];
         const double *from[15];
         from[0] = q + 0 * stride + start;
         from[1] = q + 1 * stride + start;

@@ -37,6 +37,9 @@
 /* States a block: the loop over a block has no branch and no call, so that compilers make vector code of it. */
 enum { LANES = 64 };
 
+/* States from which several threads share the blocks, where the compiler is told to (-fopenmp). */
+enum { MANY = 64 * LANES };
+
 #ifdef __GNUC__
 #define RAPKM_2RRR_RR_BATCH_F_INLINE static inline __attribute__((always_inline))
 #else
@@ -121,13 +124,16 @@ size_t rapkm_2rrr_rr_inverse_dynamics_batch_f(size_t count, size_t stride, const
     const float J_elbow_1 = J_elbow + t82;
     const float t54 = m_payload * t53;
     const float t60 = t54 + t59;
-    float copy[18][LANES]; /* the last states, the first of them repeated */
-    float result[3][LANES];
-    float flag[LANES]; /* 0 where a check passed and the result is finite */
-    int32_t bits[LANES];
     size_t refused = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(+ : refused) if (count >= MANY)
+#endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        float copy[18][LANES]; /* the last states, the first of them repeated */
+        float result[3][LANES];
+        float flag[LANES]; /* 0 where a check passed and the result is finite */
+        int32_t bits[LANES];
         const float *from[18];
         from[0] = q + 0 * stride + start;
         from[1] = q + 1 * stride + start;
@@ -428,13 +434,16 @@ size_t rapkm_2rrr_rr_forward_dynamics_batch_f(size_t count, size_t stride, const
     const float t289 = t288 * 2.861023e-06f;
     const float t299 = 1.0f / J_elbow_1;
     const float t306 = 1.0f / J_elbow;
-    float copy[15][LANES]; /* the last states, the first of them repeated */
-    float result[6][LANES];
-    float flag[LANES]; /* 0 where a check passed and the result is finite */
-    int32_t bits[LANES];
     size_t refused = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(+ : refused) if (count >= MANY)
+#endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        float copy[15][LANES]; /* the last states, the first of them repeated */
+        float result[6][LANES];
+        float flag[LANES]; /* 0 where a check passed and the result is finite */
+        int32_t bits[LANES];
         const float *from[15];
         from[0] = q + 0 * stride + start;
         from[1] = q + 1 * stride + start;
@@ -1340,13 +1349,16 @@ size_t rapkm_2rrr_rr_multipliers_batch_f(size_t count, size_t stride, const floa
     const float t272 = t271 * 2.861023e-06f;
     const float t299 = 1.0f / J_elbow_1;
     const float t306 = 1.0f / J_elbow;
-    float copy[15][LANES]; /* the last states, the first of them repeated */
-    float result[4][LANES];
-    float flag[LANES]; /* 0 where a check passed and the result is finite */
-    int32_t bits[LANES];
     size_t refused = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(+ : refused) if (count >= MANY)
+#endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        float copy[15][LANES]; /* the last states, the first of them repeated */
+        float result[4][LANES];
+        float flag[LANES]; /* 0 where a check passed and the result is finite */
+        int32_t bits[LANES];
         const float *from[15];
         from[0] = q + 0 * stride + start;
         from[1] = q + 1 * stride + start;
