@@ -1,4 +1,4 @@
-"""The generated Python of a model at arrays of states, for what a log needs: u, its regressor, what is measured."""
+"""The generated Python of a model at arrays of states, for what a log needs: u, its columns, what is measured."""
 
 from __future__ import annotations
 
@@ -14,8 +14,11 @@ from symgen.generation.results import Options, Result
 from symgen.identification.arrays import Array
 from symgen.identification.not_identified import NotIdentifiedError
 from symgen.model.checks.feasibility import measures_places
+from symgen.model.combinations.base_parameters import BaseParameters
 from symgen.model.configurations.mechanics import NumericSystem, default_values
+from symgen.model.inertial_base import NOT_NAMED, InertialBase
 from symgen.model.model import Model
+from symgen.model.quantities import BASE_REGRESSOR
 from symgen.pipeline import generate_of
 from symgen.verify.running.python_module import PythonModule
 
@@ -30,23 +33,26 @@ _PROJECTION = ("projected_control_matrix", "projected_control_pseudoinverse")
 class MachineFunctions:
     """Functions of states (N, n), with the coordinates that a log has as `measured`; they are `verified`.
 
+    Columns are those of `base`, which holds the model too: no motion tells the others apart.
     Where a motion is given by the task, rows of given places, rates and accelerations (N, k) are those of the task.
     `further` quantities are made beside those that identification takes.
     Inputs are least ones, whatever the file's allocation says: drives that work against each other are no motion.
-    Raises NotIdentifiedError for a model that has no regressor, and where verification rejects a function; ModelError,
-    about the file at `path`, where there are no states to verify at.
+    Raises NotIdentifiedError for a model without columns of its `base`, and where verification rejects a function;
+    ModelError, about the file at `path`, where there are no states to verify at.
     """
 
     def __init__(
         self,
         path: Path,
-        model: Model,
+        base: BaseParameters,
         measured: Sequence[str],
         progress: Progress,
         given_by: GivenBy = "measured",
         further: Sequence[str] = (),
     ) -> None:
-        self.model = _prepared(model, measured)
+        model = base.model
+        self.base = base
+        self.model = replace(_prepared(model, measured), inertial_base=InertialBase(base.columns, (), NOT_NAMED))
         self.parameters = default_values(model.parameters)
         self.directions = model.m if model.assembly is None else model.assembly.ranks.actuation
         self.is_redundant = model.m > self.directions
@@ -54,7 +60,7 @@ class MachineFunctions:
         self._place, self._rate, self._acceleration = (
             f"{what}_from_{given_by}" for what in ("configuration", "velocity", "acceleration")
         )
-        outputs = ["inverse_dynamics", "regressor", *further]
+        outputs = ["inverse_dynamics", BASE_REGRESSOR, *further]
         outputs += [self._place] if geometric or given_by == "task" else []
         outputs += [self._rate, self._acceleration] if model.constraints or given_by == "task" else []
         outputs += _PROJECTION if self.is_redundant else []
@@ -94,9 +100,9 @@ class MachineFunctions:
         values = {**self.parameters, **(changed or {})}
         return self.least(state[0], self._called("inverse_dynamics", state, values))
 
-    def regressor(self, state: tuple[Array, Array, Array]) -> Array:
-        """Y (N, m, p) at (q, qd, qdd), with all parameters of the file as they are."""
-        return self.quantity("regressor", *state)
+    def columns(self, state: tuple[Array, Array, Array]) -> Array:
+        """Those of the base parameters (N, m, b) at (q, qd, qdd), with all parameters of the file as they are."""
+        return self.quantity(BASE_REGRESSOR, *state)
 
     def least(self, q: Array, u: Array) -> Array:
         """The least inputs (N, m) with the same effect: what drives do against each other is taken out."""

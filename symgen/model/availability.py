@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from symgen.model.inertial_base import NOT_NAMED
 from symgen.model.inertial_parameters import inertial_parameters
 from symgen.model.model import Model
 from symgen.model.open_task import directions, left_open
@@ -90,7 +91,7 @@ def _without_base(quantity: QuantityRow, model: Model) -> str | None:
     """Why a quantity is not made of base parameters, or None."""
     base = model.inertial_base
     if base is None:
-        return "it is made where `outputs` name it"
+        return NOT_NAMED
     if not base.columns:
         return base.why or "no motion shows any of its inertial parameters"
     if quantity.name == BASE_PARAMETERS and not base.values:

@@ -5,6 +5,9 @@ from __future__ import annotations
 from symgen.model.expressions.expression import Expression
 from symgen.records import dataclass
 
+# Why there is nothing that nobody asks for: forms take some times as long as columns.
+NOT_NAMED = "it is made where `outputs` name it"
+
 
 @dataclass(frozen=True, slots=True)
 class InertialBase:

@@ -211,6 +211,19 @@ def test_who_has_none() -> None:
     assert dict(derive_quantities(with_energy, BASE).absent)["base_parameters"].startswith("no motion shows any")
 
 
+def test_forms_are_looked_for_where_they_are_named() -> None:
+    """The columns take the shorter time; named later, values are there."""
+    model = load_text(RANGED.replace(NAMED, "outputs: [base_regressor]\n"), "ranged.yaml")
+    base = model.inertial_base
+    assert base is not None
+    assert not base.values
+    assert dict(derive_quantities(model, BASE).absent) == {"base_parameters": "it is made where `outputs` name it"}
+    whole = with_inertial_base(model, BASE).inertial_base
+    assert whole is not None
+    assert len(whole.values) == len(whole.columns)
+    assert whole.columns == base.columns
+
+
 def test_all_leaves_them_to_those_who_name_them() -> None:
     made = {one.name for one in derive_quantities(machine("arm"), ["all"]).quantities}
     assert not made & {*BASE}

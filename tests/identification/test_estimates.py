@@ -11,10 +11,9 @@ from identified_machines import MACHINES_WITH_LOGS, ROOT
 from scipy import integrate
 from simulated_logs import Array, Sensors, functions_of, machine_of, simulated_log
 
-from symgen.identification.estimates.file_values import base_map
 from symgen.identification.estimates.identification import Identification
 from symgen.identification.estimates.identify import identified, identified_by
-from symgen.identification.estimates.linear_terms import default_like, inertial_values
+from symgen.identification.estimates.linear_terms import base_map, default_like, inertial_values
 from symgen.identification.estimates.notes import notes
 from symgen.identification.logs.filtering import filter_settings
 from symgen.identification.logs.read_log import read_log

@@ -9,9 +9,8 @@ from excited_machines import ARM_WITH_LIMITS, SWINGING_FOUR_BAR, designed_once
 from identified_machines import MACHINES_WITH_LOGS, ROOT
 from simulated_logs import machine_of
 
-from symgen.identification.estimates.file_values import base_map
 from symgen.identification.estimates.identify import identified_by
-from symgen.identification.estimates.linear_terms import EstimatedNames, default_like, inertial_values
+from symgen.identification.estimates.linear_terms import EstimatedNames, base_map, default_like, inertial_values
 from symgen.identification.estimates.observations import equations
 from symgen.identification.excitation.excitation import Excitation, ExcitationRequest, goes_on
 from symgen.identification.excitation.leading import leading
@@ -73,7 +72,7 @@ def test_it_shows_more_than_drawn_motions_within_the_same_limits(name: str) -> N
     machine = machine_of(TEXTS[name], ("a", "b") if name == "arm" else ("a", "c"))
     names = made_linear(made)
     state = made.q[:-1], made.qd[:-1], made.qdd[:-1]
-    columns = equations(machine.functions, machine.base, names, state)[1]
+    columns = equations(machine.functions, names, state)[1]
     if name == "arm":  # weighted by the ranges of its drives
         columns = columns / np.array([32.0, 8.0])[:, None]
     flat = columns.reshape(-1, columns.shape[2])

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from identified_machines import ARM_WITH_FRICTION
 
-from symgen.identification.estimates.file_values import FileValues, base_map, body_margins, file_values
+from symgen.identification.estimates.file_values import FileValues, body_margins, file_values
 from symgen.identification.estimates.least_squares import LinearEstimate
-from symgen.identification.estimates.linear_terms import EstimatedNames, default_like, inertial_values
+from symgen.identification.estimates.linear_terms import EstimatedNames, base_map, default_like, inertial_values
 from symgen.identification.estimates.parameter_file import numbers_in_bodies, with_values
 from symgen.model.combinations.base_parameters import base_parameters
 from symgen.model.configurations.mechanics import default_values

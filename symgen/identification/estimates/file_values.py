@@ -16,7 +16,7 @@ from scipy import optimize
 from symgen.identification.arrays import Array
 from symgen.identification.estimates.inverse_root import inverse_root
 from symgen.identification.estimates.least_squares import LinearEstimate
-from symgen.identification.estimates.linear_terms import EstimatedNames, default_like, inertial_values
+from symgen.identification.estimates.linear_terms import EstimatedNames, base_map, default_like, inertial_values
 from symgen.model.combinations.base_parameters import BaseParameters
 from symgen.model.expressions.walk import exact_value
 from symgen.model.model import Model
@@ -61,16 +61,6 @@ def file_values(
 ) -> FileValues:
     """The parameters of the file that are nearest to what they were and say what the log says."""
     return _Nearest(model, base, names, known, estimate).result()
-
-
-def base_map(base: BaseParameters) -> Array:
-    """Base parameters (b) from inertial parameters (p): a matrix (b, p) of numbers at this geometry."""
-    made = np.zeros((len(base.base), len(base.parameters)))
-    for row, one in zip(made, base.base, strict=True):
-        row[base.parameters.index(one.stays)] = 1.0
-        for other, form in one.added:
-            row[base.parameters.index(other)] = form.value
-    return made
 
 
 class _Nearest:

@@ -67,7 +67,7 @@ def identifiable(path: Path, model: Model, measured: Sequence[str], progress: Pr
     progress("base parameters")
     base = base_of(model)
     progress("making functions")
-    return IdentifiableMachine(base, MachineFunctions(path, model, measured, progress))
+    return IdentifiableMachine(base, MachineFunctions(path, base, measured, progress))
 
 
 def identified_by(
@@ -79,7 +79,7 @@ def identified_by(
     motion = completed_motion(functions, log, settings, progress)
     progress("filtering")
     names = estimated_names(functions, motion.state)
-    seen = observations(functions, base, names, log, motion, settings)
+    seen = observations(functions, names, log, motion, settings)
     first = len(seen.t) - int(SET_ASIDE * len(seen.t))
     fitted_to, aside = seen.part(slice(0, first)), seen.part(slice(first, None))
     _check_enough(fitted_to, settings, log.file)

@@ -11,6 +11,7 @@ import numpy as np
 
 from symgen.identification.arrays import Array
 from symgen.identification.machine_functions import MachineFunctions
+from symgen.model.combinations.base_parameters import BaseParameters
 from symgen.model.combinations.geometry import geometric_expressions, names_reached
 from symgen.model.expressions.expression import Expression, Number
 from symgen.model.expressions.walk import evaluate
@@ -49,6 +50,16 @@ def inertial_values(model: Model, numbers: Mapping[str, float]) -> Array:
     return np.array(values(model.mechanism, lambda expression: evaluate(expression, known)))
 
 
+def base_map(base: BaseParameters) -> Array:
+    """Base parameters (b) from inertial parameters (p): a matrix (b, p) of numbers at this geometry."""
+    made = np.zeros((len(base.base), len(base.parameters)))
+    for row, one in zip(made, base.base, strict=True):
+        row[base.parameters.index(one.stays)] = 1.0
+        for other, form in one.added:
+            row[base.parameters.index(other)] = form.value
+    return made
+
+
 def estimated_names(functions: MachineFunctions, state: State) -> EstimatedNames:
     """Which parameters a log can say something of."""
     model = functions.model
@@ -84,7 +95,7 @@ class _Linearity:
         self._functions, self._state = functions, state
         self._values = functions.parameters
         self._inputs = functions.inputs(state)
-        self._regressor = functions.regressor(state)
+        self._columns, self._base = functions.columns(state), base_map(functions.base)
         self._size = float(np.max(np.abs(self._inputs))) or 1.0
 
     def acts_through_bodies(self, name: str) -> bool:
@@ -92,7 +103,7 @@ class _Linearity:
         model = self._functions.model
         changed = default_like(model, self._values, {name: _changed(self._values[name])})
         moved = inertial_values(model, changed) - inertial_values(model, self._values)
-        predicted = self._regressor @ moved
+        predicted = self._columns @ (self._base @ moved)
         return self._alike(self._functions.inputs(self._state, changed) - self._inputs, predicted)
 
     def why_not_linear(self, name: str, others: Sequence[str]) -> str | None:

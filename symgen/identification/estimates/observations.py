@@ -8,6 +8,7 @@ from symgen.identification.arrays import Array
 from symgen.identification.estimates.linear_terms import (
     EstimatedNames,
     State,
+    base_map,
     default_like,
     inertial_values,
     step_of,
@@ -16,7 +17,6 @@ from symgen.identification.logs.completed import CompletedMotion
 from symgen.identification.logs.filtering import FilterSettings
 from symgen.identification.logs.read_log import MeasuredLog
 from symgen.identification.machine_functions import MachineFunctions, parts_of
-from symgen.model.combinations.base_parameters import BaseParameters
 from symgen.records import dataclass
 
 
@@ -44,7 +44,6 @@ class Observations:
 
 def observations(
     functions: MachineFunctions,
-    base: BaseParameters,
     names: EstimatedNames,
     log: MeasuredLog,
     motion: CompletedMotion,
@@ -54,7 +53,7 @@ def observations(
     model = functions.model
     measured = np.stack([log.columns[one.name] for one in model.inputs], axis=-1)
     given = functions.least(motion.q, measured)
-    made = [equations(functions, base, names, _part(motion.state, part)) for part in parts_of(len(log.t))]
+    made = [equations(functions, names, _part(motion.state, part)) for part in parts_of(len(log.t))]
     known, columns = (np.concatenate([one[k] for one in made]) for k in (0, 1))
     kept = settings.places(len(log.t))
     inner = settings.kept(measured - given)
@@ -73,16 +72,13 @@ def _part(state: State, part: slice) -> State:
     return state[0][part], state[1][part], state[2][part]
 
 
-def equations(
-    functions: MachineFunctions, base: BaseParameters, names: EstimatedNames, state: State
-) -> tuple[Array, Array]:
+def equations(functions: MachineFunctions, names: EstimatedNames, state: State) -> tuple[Array, Array]:
     """What is known (N, m), and the columns (N, m, c)."""
     model, values = functions.model, functions.parameters
-    regressor = functions.regressor(state)
+    of_base = functions.columns(state)
     inputs = functions.inputs(state)
-    stays = [base.parameters.index(one.stays) for one in base.base]
-    columns = [regressor[..., stays]]
-    known = inputs - regressor @ inertial_values(model, values)
+    columns = [of_base]
+    known = inputs - of_base @ (base_map(functions.base) @ inertial_values(model, values))
     for name in names.linear:
         step = step_of(values[name])
         changed = default_like(model, values, {name: values[name] + step})

@@ -82,14 +82,14 @@ def excitation(path: Path, request: ExcitationRequest, progress: Progress) -> Ex
     progress("making functions")
     measured = lead.names if lead.given_by == "measured" else ()
     further = ("singularity", *(("task_position",) if lead.given_by == "task" else ()))
-    functions = MachineFunctions(path, model, measured, progress, lead.given_by, further)
+    functions = MachineFunctions(path, base, measured, progress, lead.given_by, further)
     led = LedMotions(functions, lead)
     distances = functions.quantity("singularity", led.start[None])[0]
     limits = motion_limits(model, functions.parameters, led.start, distances, request.distance)
     series = RestingSeries(request.period, led.middle, led.widths((limits.places[1] - limits.places[0]) / 2))
     drawn = drawn_motions(series, request.seed)
     progress("looking for motions within limits")
-    trials = TrialMotions(functions, base, led, series, limits, drawn)
+    trials = TrialMotions(functions, led, series, limits, drawn)
     best, plain = designed(trials, drawn, progress)
     progress("checking the motion")
     t = np.arange(SAMPLES_WRITTEN + 1) * request.period / SAMPLES_WRITTEN

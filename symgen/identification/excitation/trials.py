@@ -14,7 +14,6 @@ from symgen.identification.excitation.motions import LedMotions, State
 from symgen.identification.excitation.series import HARMONICS, RestingSeries
 from symgen.identification.machine_functions import MachineFunctions, parts_of
 from symgen.identification.not_identified import NotIdentifiedError
-from symgen.model.combinations.base_parameters import BaseParameters
 from symgen.model.model import Model
 from symgen.records import dataclass
 
@@ -44,14 +43,13 @@ class TrialMotions:
     def __init__(
         self,
         functions: MachineFunctions,
-        base: BaseParameters,
         led: LedMotions,
         series: RestingSeries,
         limits: MotionLimits,
         drawn: Array,
     ) -> None:
         """`drawn` motions (B, variables) say which further parameters are linear, and which columns there are."""
-        self._functions, self._base = functions, base
+        self._functions = functions
         self._led, self.series, self.limits = led, series, limits
         self.times = np.arange(SAMPLES_A_WAVE * HARMONICS) * series.period / (SAMPLES_A_WAVE * HARMONICS)
         state = self._regular(drawn)
@@ -98,7 +96,7 @@ class TrialMotions:
         ends = self.limits.inputs
         sizes = np.where(np.isfinite(ends).all(axis=0), ends[1] - ends[0], 1.0)
         parts = [tuple(one[part] for one in states) for part in parts_of(len(states[0]))]
-        made = [equations(self._functions, self._base, self.linear, (q, qd, qdd))[1] for q, qd, qdd in parts]
+        made = [equations(self._functions, self.linear, (q, qd, qdd))[1] for q, qd, qdd in parts]
         return np.concatenate(made) / sizes[:, None]
 
     def _regular(self, drawn: Array) -> State:

@@ -78,6 +78,11 @@ class BaseParameters:
     as_tree: int
     elsewhere: int | None
 
+    @property
+    def columns(self) -> tuple[int, ...]:
+        """The numbers of the parameters that stand for all."""
+        return tuple(self.parameters.index(one.stays) for one in self.base)
+
 
 def base_parameters(model: Model) -> BaseParameters:
     """The base parameters of a model with bodies.

@@ -6,7 +6,7 @@ the file is no matter of forms; that forms hold at others is seen at values in g
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from fractions import Fraction
 
@@ -28,7 +28,7 @@ from symgen.model.expressions.combine import divided, plus, times
 from symgen.model.expressions.expression import Call, Expression, Name, Number, Power
 from symgen.model.expressions.names import shown_names
 from symgen.model.expressions.walk import exact_value
-from symgen.model.inertial_base import InertialBase
+from symgen.model.inertial_base import NOT_NAMED, InertialBase
 from symgen.model.inertial_parameters import expressions
 from symgen.model.model import Model
 
@@ -37,14 +37,16 @@ FROM_ZERO = Fraction(1, 32)
 NUMBERS = "write numbers in their place in frames, points, constraints and gravity"
 
 
-def inertial_base(model: Model) -> InertialBase:
-    """The base of a model with bodies or rotors."""
+def inertial_base(model: Model, with_values: bool) -> InertialBase:
+    """The base of a model with bodies or rotors: its columns, and values where these are asked for."""
     model = with_numbers_by_default(model)
     try:
         there = with_enough_digits(lambda: CombinationSearch(model).echelon({}))
     except NoMotionError:
         return InertialBase((), (), "no regular motion was found at which inertial parameters could be told apart")
     columns = tuple(sorted(there.pivots))
+    if not with_values:
+        return InertialBase(columns, (), NOT_NAMED)
     varied = _varied(model)
     try:
         made = base_parameters(_with(model, varied))
@@ -66,10 +68,15 @@ def inertial_base(model: Model) -> InertialBase:
 def _varied(model: Model) -> dict[str, Fraction]:
     """Parameters of the geometry and of gravity that may have other values; what is 0 in the file is not here."""
     reached = names_reached(model, (*geometric_expressions(model), *model.mechanism.gravity))
-    tied = () if model.assembly is None else model.assembly.tied
+    tied = _tied(model)
     defaults, exact = default_values(model.parameters), _exact_values(model)
     names = [p.name for p in model.parameters if p.name in reached and p.name not in tied]
     return {name: exact.get(name, Fraction(defaults[name])) or FROM_ZERO for name in names}
+
+
+def _tied(model: Model) -> tuple[str, ...]:
+    """Parameters that keep their values, as the loops close for no others."""
+    return () if model.assembly is None else model.assembly.tied
 
 
 def _exact_values(model: Model) -> dict[str, Fraction]:
@@ -96,12 +103,10 @@ def _why_not_everywhere(made: BaseParameters, columns: tuple[int, ...], varied: 
         return f"with the values of {names} in the file {counts}: {NUMBERS}"
     forms = [form for one in made.base for _, form in one.added]
     if unknown := [form for form in forms if not form.terms]:
-        return _without_forms(dict.fromkeys(name for form in unknown for name in form.changed_by) or varied)
-    own = tuple(made.parameters.index(one.stays) for one in made.base)
-    if not own == columns == tuple(sorted(there.pivots)) or not _hold(made, given, there):
+        by = dict.fromkeys(name for form in unknown for name in form.changed_by)
+        return _without_forms(by or varied or _tied(made.model))
+    if not made.columns == columns == tuple(sorted(there.pivots)) or not _hold(made, given, there):
         return _without_forms(varied)
-    if below := _zeros_below(made.model, forms):
-        return _without_forms(below)
     return ""
 
 
@@ -110,7 +115,10 @@ def _without_forms(names: Collection[str]) -> str:
 
 
 def _hold(made: BaseParameters, given: Mapping[str, Fraction], there: Echelon) -> bool:
-    """Whether every coefficient is what its form says there, 0 where it has none."""
+    """Whether every coefficient is what its form says there, 0 where it has none.
+
+    Nothing is divided by what is 0 in the file: columns that do not depend on each other there have no pole.
+    """
     for one in made.base:
         forms = {made.parameters.index(other): form for other, form in one.added}
         row = there.rows[there.pivots.index(made.parameters.index(one.stays))]
@@ -118,14 +126,6 @@ def _hold(made: BaseParameters, given: Mapping[str, Fraction], there: Echelon) -
             if k not in there.pivots and not may_vanish(entry - form_value(forms[k], given) if k in forms else entry):
                 return False
     return True
-
-
-def _zeros_below(model: Model, forms: Iterable[CoefficientForm]) -> list[str]:
-    """Parameters that were 0 and that something is divided by."""
-    powers = (power for form in forms for term in form.terms for power in term.powers)
-    below = dict.fromkeys(name for name, power in powers if power < 0)
-    moved = {p.name for p in model.parameters if exact_value(p.value) == FROM_ZERO}
-    return [name for name in below if name in moved]
 
 
 def _expression(form: CoefficientForm) -> Expression:
