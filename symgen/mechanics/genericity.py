@@ -97,9 +97,13 @@ def at_configurations(mechanics: System, rows: Matrix) -> list[list[list[float]]
 
     A row is 0 where it vanishes and rounding alone is left of it: its length there would be no measure.
     """
-    assembly, width = assembly_of(mechanics.model), len(rows[0]) if rows else 0
-    done = mechanics.model.row_units or (0,) * len(rows)
-    least = [math.ldexp(NEGLIGIBLE, unit - own) for own, unit in zip(assembly.own_units, done, strict=True)]
+    width, none = len(rows[0]) if rows else 0, (0,) * len(rows)
+    own, done = assembly_of(mechanics.model).own_units, mechanics.model.row_units or none
+    # of rows that are others than the file's no units are known
+    least = [
+        math.ldexp(NEGLIGIBLE, unit - usual)
+        for usual, unit in zip(own if len(own) == len(rows) else none, done, strict=True)
+    ]
     evaluate = Evaluator(flatten(rows))
     made = []
     for point in configurations(mechanics):

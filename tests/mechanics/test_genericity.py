@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from symgen.mechanics.genericity import genericity, rank
+from symgen.mechanics.genericity import at_configurations, genericity, rank
 from symgen.mechanics.system import System
 from symgen.model.load import load_text
 from symgen.quantities.select import derive_quantities
@@ -61,6 +63,16 @@ def test_a_rank_is_given_only_where_it_is_clear() -> None:
     assert rank([[0.0, 0.0]]) == 0
     assert rank([[float("nan"), 0.0]]) is None
     assert rank([]) == 0
+
+
+def test_rows_may_be_others_than_those_of_the_file() -> None:
+    model = load_text(TINY.format(length="1"), "tiny.yaml")
+    first, second = model.constraints
+    for rows in ((first,), (first, second, replace(first, name="again"))):
+        mechanics = System(replace(model, constraints=rows))
+        places = at_configurations(mechanics, mechanics.constraint_jacobian)
+        assert {len(at) for at in places} == {len(rows)}
+        assert {rank(at) for at in places} == {min(2, len(rows))}
 
 
 def test_a_row_that_vanishes_on_v_locks_nothing() -> None:
