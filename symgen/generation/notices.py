@@ -52,7 +52,16 @@ def notices(draft: Draft, options: Options, certificate: Certificate | None) -> 
     others = (*said, *_near_bounds(draft), *_out_of_ranges(draft), *dense_motions(draft, options))
     recorded = draft.notes if options.as_recorded else ()
     of_kernels = (*absent, *others, *_size(draft, options), *idle, *map(Notice, (*unverified, *recorded)))
-    return (*_renamed(draft.model), *_friction(draft), *of_kernels, *_lacking(draft, options))
+    return (*_renamed(draft.model), *_friction(draft), *of_kernels, *_apart(draft, options), *_lacking(draft, options))
+
+
+def _apart(draft: Draft, options: Options) -> Iterator[Notice]:
+    """Which results have no function in common, because one of them is not made."""
+    for group in draft.model.together if "c" in asked_for(options) else ():
+        for scalar in options.scalars:
+            made = {kernel.name for kernel in draft.programs[scalar].kernels}
+            if missing := [name for name in group if name not in made]:
+                yield Notice(f"no function has {' and '.join(group)} in {scalar}: {missing[0]} is not generated")
 
 
 def _lacking(draft: Draft, options: Options) -> Iterator[Notice]:

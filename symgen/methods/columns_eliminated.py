@@ -10,14 +10,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from symgen.methods.admission import Validity
-from symgen.methods.inverse_dynamics.core_equations import core_equations
-from symgen.methods.inverse_dynamics.elimination import Elimination
-from symgen.methods.inverse_dynamics.forces_eliminated import (
-    ELIMINATION,
-    NOT_ELIMINATED,
-    SymbolsOfTheModel,
-    in_absolute_angles,
-)
+from symgen.methods.inverse_dynamics.forces_eliminated import ELIMINATION, SymbolsOfTheModel, core_of_stand_ins
 from symgen.methods.method import Candidate, Method, solved_for_u
 from symgen.methods.regressor import base_columns, inertial_columns
 from symgen.methods.system import MethodInput
@@ -62,13 +55,10 @@ def _built(
     workspace: Workspace, quantity: str, rows_of: Callable[[Vector, Vector, Matrix], Matrix]
 ) -> Candidate | str:
     system = MethodInput.fresh(workspace.model, workspace.generic)
-    if system.driven is not None:
-        return system.driven
-    mechanics = in_absolute_angles(system.mechanics)
-    forces = tuple(mechanics.graph.stand_in(f"force {k}") for k in range(mechanics.n))
-    core = core_equations(mechanics, system.generic, lambda of: Elimination(of, forces))
-    if core is None:
-        return NOT_ELIMINATED
+    left = core_of_stand_ins(system)
+    if isinstance(left, str):
+        return left
+    core, mechanics, forces = left
     solved, change, back = core.solved(), mechanics.change, SymbolsOfTheModel(mechanics)
     given = (base_columns if quantity == BASE_REGRESSOR else inertial_columns)(system.mechanics)
     columns = given if change is None else tuple(map(change.forces, given))

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 import shipped
+from single_outcomes import alone
 
 from symgen.backends.c.batch import emit_c_batch
 from symgen.backends.c.plain import emit_c
@@ -17,7 +18,7 @@ from symgen.backends.quantities import BATCHED
 from symgen.ir.kernel import Program
 from symgen.verify.reference.reference import State
 from symgen.verify.running.batch import run_batch
-from symgen.verify.running.compile import CFunction, Compilation, c_array, find_compiler
+from symgen.verify.running.compile import Compilation, find_compiler
 from symgen.verify.running.prepared import run_prepared
 from symgen.verify.running.sources import generated_sources
 from symgen.verify.sampling.states import Sample
@@ -47,23 +48,14 @@ def complaints(folder: Path, edit: Callable[[str], str]) -> list[str]:
         State((a,) * n, (a / 2,) * n, (0.3,) * n, (a - 1,) * m, tuple(scale * x for x in parameters))
         for a, scale in ((0.2, 1.0), (0.7, 1.25), (1.1, 1.0))
     ]
-    alone = {}
-    for kernel in program().kernels:
-        single = CFunction(library, model.name, kernel, "float64")
-        alone[kernel.name] = [
-            single(
-                {a.name: c_array("float64", getattr(s, a.name)) for a in kernel.arguments},
-                c_array("float64", s.parameters),
-            )
-            for s in states
-        ]
+    by_themselves = alone(library, model.name, program().kernels, states)
     samples = [Sample(state, True, (1.0, 1.0)) for state in states]
-    outcomes, faults = run_batch(library, model.name, program().kernels, "float64", samples, alone)
-    assert set(outcomes) == set(alone)
+    outcomes, faults = run_batch(library, model.name, program().kernels, "float64", samples, by_themselves)
+    assert set(outcomes) == set(by_themselves)
     header = dict(source.companions)[f"{NAME}_prepared.h"]
-    given = library, model.name, program().kernels, "float64", samples, alone
+    given = library, model.name, program().kernels, "float64", samples, by_themselves
     outcomes, differing = run_prepared(*given, header)
-    assert {"forward_dynamics"} <= set(outcomes) < set(alone)
+    assert {"forward_dynamics"} <= set(outcomes) < set(by_themselves)
     return [fault.text for fault in faults + differing]
 
 

@@ -8,13 +8,14 @@ from pathlib import Path
 
 import pytest
 import shipped
+from single_outcomes import alone
 
 from symgen.backends.c.plain import emit_c
 from symgen.backends.c.together import emit_c_together
 from symgen.backends.defaults import default_values
 from symgen.model.model import Model
 from symgen.verify.reference.reference import State
-from symgen.verify.running.compile import CFunction, Compilation, c_array, find_compiler
+from symgen.verify.running.compile import Compilation, find_compiler
 from symgen.verify.running.several_results import run_several
 from symgen.verify.running.sources import generated_sources
 from symgen.verify.sampling.states import Sample
@@ -39,20 +40,11 @@ def complaints(folder: Path, edit: Callable[[str], str]) -> list[str]:
     parameters = tuple(float(value) for value in default_values(model()).values())
     n, m = len(model().coordinates), len(model().inputs)
     states = [State((a,) * n, (a / 2,) * n, (0.3,) * n, (a - 1,) * m, parameters) for a in (0.2, 0.7)]
-    alone = {}
-    for kernel in program.kernels:
-        single = CFunction(library, model().name, kernel, "float64")
-        alone[kernel.name] = [
-            single(
-                {a.name: c_array("float64", getattr(s, a.name)) for a in kernel.arguments},
-                c_array("float64", s.parameters),
-            )
-            for s in states
-        ]
+    by_themselves = alone(library, model().name, program.kernels, states)
     samples = [Sample(state, True, (1.0, 1.0)) for state in states]
     header = dict(source.companions)["skate_together.h"]
     assert f"skate_{FUNCTION}_together(" in header
-    given = library, model(), program.kernels, "float64", samples, alone
+    given = library, model(), program.kernels, "float64", samples, by_themselves
     outcomes, faults = run_several(*given, header)
     assert tuple(outcomes) == GROUP
     return [fault.text for fault in faults]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -16,10 +17,11 @@ from symgen.generation.results import Options
 from symgen.laboratory.zoo.draws.families import draw
 from symgen.laboratory.zoo.run import run_command
 from symgen.laboratory.zoo.witness import states
+from symgen.laboratory.zoo.witness.allocation import is_directed
 from symgen.laboratory.zoo.witness.expressions import FUNCTIONS, NotReadError, read_expression
 from symgen.laboratory.zoo.witness.fields import Balls, Floats, precision
 from symgen.laboratory.zoo.witness.generated import Answer, Target
-from symgen.laboratory.zoo.witness.kkt import GenericRanks
+from symgen.laboratory.zoo.witness.kkt import EquationValues, GenericRanks
 from symgen.laboratory.zoo.witness.linear import basis
 from symgen.laboratory.zoo.witness.mechanics import equations
 from symgen.laboratory.zoo.witness.reader import SystemReader
@@ -480,6 +482,16 @@ outputs: [forward_dynamics]
     assert all(x == 0 or abs(x) > 1e-30 for state in visited for x in state.q)
     off = np.array([*{**start, "e_2": 1e-9, "e_3": -2e-9}.values()])
     assert witness.walker().refined(off, witness.defaults())[5:].tolist() == [0.0, 0.0]
+
+
+def test_an_internal_force_has_no_direction_where_files_have_rows_that_depend_on_each_other() -> None:
+    """A row that holds nothing, 1e-17 long, is left out by the file or one of those that depend on each other."""
+    rows, control = [[1.0, 0.0], [0.0, 1e-17]], [[0.0, 0.0], [1.0, 1.0]]
+    at = EquationValues([[1.0, 0.0], [0.0, 1.0]], rows, control, [0.0, 0.0], [], [])
+    ranks = GenericRanks(1, 1, (1.0, 1e-17))
+    assert is_directed(at, ranks)
+    assert is_directed(at, replace(ranks, kept=1))
+    assert not is_directed(at, replace(ranks, kept=2))
 
 
 # two rods that stay within 2e-3 of one line: regular, and float32 cannot tell

@@ -18,14 +18,12 @@ from symgen.mechanics.system import System
 from symgen.methods.admission import Validity
 from symgen.methods.derivatives.differentiated import along_direction
 from symgen.methods.derivatives.held_equations import all_slopes, weighted_slopes
-from symgen.methods.inverse_dynamics.core_equations import CoreEquations, core_equations
-from symgen.methods.inverse_dynamics.elimination import Elimination
+from symgen.methods.inverse_dynamics.core_equations import CoreEquations
 from symgen.methods.inverse_dynamics.forces_eliminated import (
     ELIMINATION,
-    NOT_ELIMINATED,
     SymbolsOfTheModel,
     about_to_be_eliminated,
-    in_absolute_angles,
+    core_of_stand_ins,
 )
 from symgen.methods.method import Candidate, Method, solved_for_u
 from symgen.methods.system import MethodInput
@@ -69,13 +67,10 @@ class _ImplicitInputs:
 
     def _build(self, workspace: Workspace, quantity: str, lumped: bool) -> Candidate | str:
         system = about_to_be_eliminated(workspace, lumped)
-        if system.driven is not None:
-            return system.driven
-        mechanics = in_absolute_angles(system.mechanics)
-        forces = tuple(mechanics.graph.stand_in(f"force {k}") for k in range(mechanics.n))
-        core = core_equations(mechanics, system.generic, lambda of: Elimination(of, forces))
-        if core is None:
-            return NOT_ELIMINATED
+        left = core_of_stand_ins(system)
+        if isinstance(left, str):
+            return left
+        core, mechanics, forces = left
         if core.internal > 1:
             return "several inputs are redundant"
         return _derivatives(quantity, system, mechanics, core, forces)

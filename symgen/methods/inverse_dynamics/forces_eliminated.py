@@ -20,7 +20,7 @@ from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.never_zero import Definite
 from symgen.mechanics.system import System
 from symgen.methods.admission import OfInputs, ranks
-from symgen.methods.inverse_dynamics.core_equations import core_equations
+from symgen.methods.inverse_dynamics.core_equations import CoreEquations, core_equations
 from symgen.methods.inverse_dynamics.elimination import Elimination
 from symgen.methods.method import Candidate, Method, solved_for_u
 from symgen.methods.system import MethodInput
@@ -46,6 +46,19 @@ def elimination_candidate(
     back = SymbolsOfTheModel(mechanics)
     outputs, own = back.scalars(solved.u), back.scalars(mechanics.balance)
     return solved_for_u(MethodInput(mechanics, generic), outputs, back.guards(solved.guards), own)
+
+
+def core_of_stand_ins(system: MethodInput) -> tuple[CoreEquations, System, Vector] | str:
+    """What is left of the elimination where stand-ins take the place of the load (n), and in which system these stand.
+
+    u is linear in them.  Else why there is none.
+    """
+    if system.driven is not None:
+        return system.driven
+    mechanics = in_absolute_angles(system.mechanics)
+    forces = tuple(mechanics.graph.stand_in(f"force {k}") for k in range(mechanics.n))
+    core = core_equations(mechanics, system.generic, lambda of: Elimination(of, forces))
+    return NOT_ELIMINATED if core is None else (core, mechanics, forces)
 
 
 class SymbolsOfTheModel:

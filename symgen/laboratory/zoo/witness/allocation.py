@@ -44,8 +44,13 @@ def limits_of(
 
 
 def is_directed(at: EquationValues, ranks: GenericRanks) -> bool:
-    """Whether an internal force has one direction with a sign of its own, which limits do not take away."""
-    return len(at.control[0]) - ranks.actuation == 1 and ranks.constraints == len(holding(at, ranks).rows)
+    """Whether an internal force has one direction with a sign of its own, which limits do not take away.
+
+    It has none where rows depend on each other.  A row of rounded numbers, 1e-17 long, holds nothing, and is one of
+    them nevertheless: what the files say of it counts.
+    """
+    kept = len(holding(at, ranks).rows) if ranks.kept is None else ranks.kept
+    return len(at.control[0]) - ranks.actuation == 1 and ranks.constraints == kept
 
 
 def holding(at: EquationValues, ranks: GenericRanks) -> EquationValues:

@@ -31,13 +31,14 @@ from symgen.laboratory.zoo.witness.tape import FileNumber, NodeProgram
 
 @dataclass(frozen=True)
 class GenericRanks:
-    """Generic ranks: of the constraints, and of the inputs on what they leave free; usual `lengths` of rows, and the
-    rank of the `geometric` ones where it is known."""
+    """Generic ranks: of the constraints, and of the inputs on what they leave free; usual `lengths` of rows, the rank
+    of the `geometric` ones where it is known, and how many rows `kept` there are in what was generated."""
 
     constraints: int
     actuation: int
     lengths: tuple[float, ...] = ()
     geometric: int | None = None
+    kept: int | None = None
 
 
 @dataclass(frozen=True)

@@ -90,6 +90,7 @@ class Witness:
         findings: list[Finding] = []
         largest = 0.0
         members = self.opened(folder)
+        ranks = replace(ranks, kept=int(self._derivation(folder)["sizes"]["r"]))
         called = targets(folder, self._system.blocks["model"])
         for target in called:
             if members and len(target.parameters) != len(members):
