@@ -13,6 +13,7 @@ from single_outcomes import alone
 from symgen.backends.c.plain import emit_c
 from symgen.backends.c.together import emit_c_together
 from symgen.backends.defaults import default_values
+from symgen.ir.pairs.wide import widened
 from symgen.model.model import Model
 from symgen.verify.reference.reference import State
 from symgen.verify.running.compile import Compilation, find_compiler
@@ -29,9 +30,11 @@ def model() -> Model:
     return replace(shipped.model("skate"), together=(GROUP, ("energy", "no_quantity")))
 
 
-def complaints(folder: Path, edit: Callable[[str], str]) -> list[str]:
-    """What a comparison at two states says after an edit of the file."""
+def complaints(folder: Path, edit: Callable[[str], str], wide: str = "") -> list[str]:
+    """What a comparison at two states says after an edit of the file; a `wide` kernel works with pairs of numbers."""
     compiler, program = find_compiler(), shipped.programs("skate")["float64"]
+    kernels = (widened(kernel, "float64") if kernel.name == wide else kernel for kernel in program.kernels)
+    program = replace(program, kernels=tuple(kernels))
     assert compiler is not None
     source = generated_sources(model(), emit_c(model(), program) | emit_c_together(model(), program))[0]["float64"]
     assert [name for name, _ in source.companions] == ["skate_together.h", "skate_together.c"]
@@ -53,6 +56,14 @@ def complaints(folder: Path, edit: Callable[[str], str]) -> list[str]:
 def test_what_is_generated_passes(tool: Callable[[str], str], tmp_path: Path) -> None:
     tool("cc")
     assert complaints(tmp_path, str) == []
+
+
+@pytest.mark.parametrize("wide", GROUP)
+def test_kernels_that_work_with_pairs_and_others_are_merged(
+    tool: Callable[[str], str], tmp_path: Path, wide: str
+) -> None:
+    tool("cc")
+    assert complaints(tmp_path, str, wide) == []
 
 
 @pytest.mark.parametrize(

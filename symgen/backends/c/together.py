@@ -34,7 +34,7 @@ def emit_c_together(model: Model, program: Program) -> dict[str, str]:
     given = {"p": f"const {global_name(model.c_name, program.scalar, 'params')} *p"}
     joined = replace(program, kernels=kernels)
     functions = (
-        kernel_function(model, program, one.kernel, names, _about_results(one, arrays), given, TOGETHER, arrays)
+        kernel_function(model, joined, one.kernel, names, _about_results(one, arrays), given, TOGETHER, arrays)
         for one, arrays in zip(made, results, strict=True)
     )
     about = [line.format(header=f"{file_stem(model.c_name, program.scalar)}.h") for line in _ABOUT]
