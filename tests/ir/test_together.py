@@ -12,7 +12,7 @@ from handmade import literal, op
 from symgen.backends.defaults import default_values
 from symgen.backends.locals import all_statements, used_locals
 from symgen.ir.interpret import Interpreter
-from symgen.ir.kernel import Argument, Block, Check, Kernel, Load, Local, Status
+from symgen.ir.kernel import Argument, Block, Check, Kernel, Load, Local, Statement, Status
 from symgen.ir.together import together
 
 QUANTITIES = ("inverse_dynamics", "forward_dynamics", "multipliers", "mass_matrix", "projected_mass_matrix")
@@ -38,9 +38,9 @@ def test_results_have_the_bits_that_they_have_alone(name: str) -> None:
         )  # fmt: skip
 
 
-def kernel(name: str, *statements: object, output: str, check: Check | None = None) -> Kernel:
+def kernel(name: str, *statements: Statement, output: str, check: Check | None = None) -> Kernel:
     """Of x = q[0] and y = q[1], called what this kernel likes."""
-    block = Block(tuple(statements), () if check is None else (check,))  # type: ignore[arg-type]
+    block = Block(statements, () if check is None else (check,))
     loads = Load("x", "q", 0), Load("y", "q", 1)
     return Kernel(name, (Argument("q", 2),), loads, (block,), (Local(output),), (1,))
 
