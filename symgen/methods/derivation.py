@@ -30,6 +30,7 @@ from symgen.methods.friction.reactions import ReactionFriction
 from symgen.methods.given.configuration import GivenConfiguration
 from symgen.methods.given.functions import GivenBy
 from symgen.methods.given.least_motion import MotionOfGiven, motion_of
+from symgen.methods.idle_coordinates import idle_coordinates
 from symgen.methods.least_inputs import least_inputs
 from symgen.methods.redundancy.allocation import InputAllocation
 from symgen.model.quantities import DIRECTION
@@ -165,12 +166,18 @@ class Derivation:
         product = matmul(self.graph, matmul(self.graph, projector, a, n), projector, n)
         return tuple(tuple(product[min(i, j)][max(i, j)] for j in range(n)) for i in range(n))
 
+    @cached_property
+    def _idle(self) -> frozenset[int]:
+        """Coordinates that N_B does not depend on."""
+        return idle_coordinates(self.mechanics, self.generic)
+
     def projector_dot(self, velocity: Vector) -> Matrix:
         """N_B_dot = -X - X^T with X = B^+ B_dot N_B (Remark 9)."""
         graph, n = self.graph, self.n
         if self.r == 0:
             return scale(identity(graph, n), graph.zero)
-        rates = matmul(graph, self.mechanics.constraint_jacobian_dot(velocity), self.space.projector, n)
+        turning = tuple(graph.zero if j in self._idle else rate for j, rate in enumerate(velocity))
+        rates = matmul(graph, self.mechanics.constraint_jacobian_dot(turning), self.space.projector, n)
         x = matmul(graph, self.space.pseudoinverse, rates, n)
         return tuple(tuple(-(x[min(i, j)][max(i, j)] + x[max(i, j)][min(i, j)]) for j in range(n)) for i in range(n))
 

@@ -139,8 +139,8 @@ class Fallback:
         # laws that a number with few digits violates beside are no reason of their own: its algebra is right; nor is a
         # status of float32, whose thresholds twice the digits bring down
         judged = [fault for fault in faults if fault.scalar == "float64"] or faults
-        if known == 0 and all(fault.what.startswith((INACCURATE, VIOLATES)) for fault in judged):
-            self._inaccurate[quantity].append(draft.taken(quantity))
+        if all(fault.what.startswith((INACCURATE, VIOLATES)) for fault in judged):
+            self._keep_for_more_digits(draft.taken(quantity))
         if all(fault.scalar == "float32" for fault in faults):
             passing.append(Passing(0.0, ("float64",), draft.taken(quantity), kernels))
         # one type may have been left out before
@@ -395,8 +395,14 @@ class Fallback:
         """What speaks against an alternative; one that is inaccurate may work with more digits."""
         name = one.choice.title + one.choice.digits
         self._tried[fault.quantity].append((name, f"{fault.what} ({fault.target})"))
-        if inaccurate and one not in self._inaccurate[fault.quantity]:
-            self._inaccurate[fault.quantity].append(one)
+        if inaccurate:
+            self._keep_for_more_digits(one)
+
+    def _keep_for_more_digits(self, one: Alternative) -> None:
+        """Notes what is inaccurate: it may work with twice the digits in all types where one did not do."""
+        one = replace(one, choice=replace(one.choice, wide=()))
+        if one not in self._inaccurate[one.choice.quantity]:
+            self._inaccurate[one.choice.quantity].append(one)
 
     def _check_algebra(self, kernel: Kernel, method: str, worst: int) -> None:
         """Raises SymgenBug where a rejected kernel computes something else: falling back would hide wrong algebra."""
