@@ -13,7 +13,7 @@ from symgen.model.load import load_text
 from symgen.quantities.select import derive_quantities
 from symgen.symbolic.evaluate import Evaluator
 
-# A rail is held level by two angles together, and a carriage on it at a height: where on the rail it is does not matter.
+# A rail is held level by two angles together, and a carriage on it at a height: its place on the rail does not matter.
 RAIL = """\
 model: rail
 coordinates:
