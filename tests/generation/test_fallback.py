@@ -16,7 +16,7 @@ from shipped import ROOT
 from symgen.backends.c import backend
 from symgen.cli import main as cli
 from symgen.diagnostics import SymgenBug
-from symgen.generation.acceptance import fallback
+from symgen.generation.acceptance import fallback, tried_methods
 from symgen.generation.acceptance.fallback import NARROW
 from symgen.generation.results import Options, Result
 from symgen.ir import kernel as kernels
@@ -307,7 +307,7 @@ def test_a_long_alternative_has_its_numbers_grouped_once_its_worst_states_speak_
     yoke: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(alternatives, "LONG_ALTERNATIVE", 0)
-    monkeypatch.setattr(fallback, "WIDENED", 0)
+    monkeypatch.setattr(tried_methods, "WIDENED", 0)
     regrouped: list[str] = []
 
     def noted(one: Alternative) -> Alternative:
@@ -477,7 +477,7 @@ def test_float64_stays_where_float32_alone_is_rejected(
 ) -> None:
     spoil_choice(monkeypatch, refusing_float32)
     spoil_named(monkeypatch, refusing_float32)
-    monkeypatch.setattr(fallback, "LONGEST_WIDENED", 20)
+    monkeypatch.setattr(tried_methods, "LONGEST_WIDENED", 20)
     common = [str(whole), "--out", str(tmp_path / "out"), "--states", "8", "--quiet"]
     assert cli.main(common) == 1
     errors = capsys.readouterr().err
@@ -543,7 +543,7 @@ def test_more_digits_in_float32_alone_take_nothing_from_more_in_both(
     """Methods that pass in float64 may be beyond what is allowed at states that others were looked for at."""
     spoil_choice(monkeypatch, refusing_float32)
     spoil_named(monkeypatch, losing_digits)
-    monkeypatch.setattr(fallback, "WIDENED", 1)
+    monkeypatch.setattr(tried_methods, "WIDENED", 1)
     widened = fallback.Fallback._with_pairs
     tried = []
 
@@ -562,7 +562,7 @@ def test_more_digits_in_float32_alone_take_nothing_from_more_in_both(
 def test_kernels_that_are_too_long_stay_as_they_are(yoke: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     spoil_choice(monkeypatch, losing_digits)
     spoil_named(monkeypatch, losing_digits)
-    monkeypatch.setattr(fallback, "LONGEST_WIDENED", 20)
+    monkeypatch.setattr(tried_methods, "LONGEST_WIDENED", 20)
     assert [one.quantity for one in made(yoke).left_out] == ["multipliers"]
 
 
@@ -579,7 +579,7 @@ def test_after_long_methods_twice_the_digits_are_tried_before_the_rest(
         counted = Alternative.cost.fget
         monkeypatch.setattr(Alternative, "cost", property(lambda one: counted(one) + 1000 * (one.known is not None)))
     if not digits_help:
-        monkeypatch.setattr(fallback, "WIDENED", 0)
+        monkeypatch.setattr(tried_methods, "WIDENED", 0)
     kernel = derived(made(yoke))["kernels"]["multipliers"]
     assert "twice_the_digits" not in usual
     assert ("twice_the_digits" in kernel) is (longer and digits_help)

@@ -15,7 +15,8 @@ from fractions import Fraction
 from math import inf
 
 from symgen.diagnostics import SymgenBug
-from symgen.generation.acceptance.passing import Passing, digest, remedy
+from symgen.generation.acceptance.passing import Passing, remedy
+from symgen.generation.acceptance.tried_methods import TriedMethods
 from symgen.generation.acceptance.worst_errors import Kernels, WorstErrors, faults_at_worst
 from symgen.generation.draft import REJECTED, Draft
 from symgen.generation.results import AUTO, Options
@@ -50,10 +51,6 @@ MARGIN_WORTH = Fraction(1, 2)
 # Counted cost of the longest kernels for which another method is looked for where theirs passes with half of what is
 # allowed: each takes seconds, and seldom has half of the error.
 LONGEST_WEIGHED = 6_000
-# Methods that are tried once more with twice the digits.
-WIDENED = 3
-# Counted cost of the longest of them.
-LONGEST_WIDENED = 60_000
 # Counted cost of all long methods together that are tried for a quantity, or for accelerations and multipliers, before
 # twice the digits are: the rest may do with fewer digits, but each takes seconds to be derived and measured.
 LONG_TRIED = 20_000
@@ -69,21 +66,13 @@ class Fallback:
         self._exactly: ExactStates | None = None
         self.errors = WorstErrors(progress)
         self._left: dict[tuple[str, int], deque[Alternative]] = {}
-        self._passing: defaultdict[str, list[Passing]] = defaultdict(list)
-        self._tried: defaultdict[str, list[tuple[str, str]]] = defaultdict(list)
-        # by their hashes: kernels that were rejected need not stay
-        self._seen: defaultdict[str, set[int]] = defaultdict(set)
+        # by quantities
+        self._tried: defaultdict[str, TriedMethods] = defaultdict(TriedMethods)
         self._weighed: set[str] = set()
-        self._inaccurate: defaultdict[str, list[Alternative]] = defaultdict(list)
-        # by quantities and methods: what float64 loses
-        self._lost: defaultdict[str, dict[str, float]] = defaultdict(dict)
-        # by quantities: methods that were tried with twice the digits, and the types that had these
-        self._widened: defaultdict[str, set[tuple[str, tuple[Scalar, ...]]]] = defaultdict(set)
         # by quantities that are made because all are: what they count at least by methods that lose digits
         self._too_wide: dict[str, int] = {}
-        # counted cost of methods that were tried for these, and for each quantity
+        # counted cost of methods that were tried for these
         self._tried_unasked = 0
-        self._operations: defaultdict[str, int] = defaultdict(int)
 
     def other(self, draft: Draft, certificate: Certificate, expected: Expected) -> Draft | None:
         """The draft with other methods for what is rejected or keeps no margin; None where nothing is better."""
@@ -129,20 +118,20 @@ class Fallback:
 
     def _replaced(self, draft: Draft, quantity: str, faults: Sequence[Fault], expected: Expected) -> Draft:
         """The draft with a rejected quantity by its next method that passes, or without it."""
-        tried, passing = self._tried[quantity], self._passing[quantity]
-        known, kernels = len(tried), draft.kernels(quantity)
+        tried = self._tried[quantity]
+        known, kernels = len(tried.against), draft.kernels(quantity)
         self._weighed.add(quantity)
         self._check_algebra(kernels["float64"], draft.method(quantity), faults[0].state)
-        tried.append((draft.method(quantity), f"{faults[0].what} ({faults[0].target})"))
-        self._operations[quantity] += cost(scalars(draft.taken(quantity).derived)).weight
-        self._seen[quantity].add(digest(kernels))
+        tried.against.append((draft.method(quantity), f"{faults[0].what} ({faults[0].target})"))
+        tried.operations += cost(scalars(draft.taken(quantity).derived)).weight
+        tried.saw(kernels)
         # laws that a number with few digits violates beside are no reason of their own: its algebra is right; nor is a
         # status of float32, whose thresholds twice the digits bring down
         judged = [fault for fault in faults if fault.scalar == "float64"] or faults
         if all(fault.what.startswith((INACCURATE, VIOLATES)) for fault in judged):
-            self._keep_for_more_digits(draft.taken(quantity))
+            tried.keep_for_more_digits(draft.taken(quantity))
         if all(fault.scalar == "float32" for fault in faults):
-            passing.append(Passing(0.0, ("float64",), draft.taken(quantity), kernels))
+            tried.passing.append(Passing(0.0, ("float64",), draft.taken(quantity), kernels))
         # one type may have been left out before
         others = tuple(one for one in draft.left_out if one.quantity != quantity)
         if self._is_given_up(draft, quantity):
@@ -151,7 +140,7 @@ class Fallback:
         if replacement is None and quantity in self._too_wide:
             why = too_wide(self._too_wide[quantity])
             return replace(draft.without(quantity, tuple(kernels), why), left_out=others)
-        draft = draft.rejecting(tuple(Rejection(quantity, method, why) for method, why in tried[known:]))
+        draft = draft.rejecting(tuple(Rejection(quantity, method, why) for method, why in tried.against[known:]))
         if replacement is not None:
             draft = draft.along(replacement.alternative, replacement.kernels)
         passed = () if replacement is None else replacement.scalars
@@ -159,7 +148,7 @@ class Fallback:
         if not without:
             return draft
         given_up = () if self._alternatives is None else self._alternatives.too_long.get(quantity, ())
-        every = (*tried, *((name, TOO_LONG) for name in given_up))
+        every = (*tried.against, *((name, TOO_LONG) for name in given_up))
         what_to_do = remedy(self._options.methods.get(quantity, AUTO), quantity, without)
         left_out = LeftOut(quantity, without, every, what_to_do)
         return replace(draft.without(quantity, without, REJECTED), left_out=(*others, left_out))
@@ -173,7 +162,7 @@ class Fallback:
 
     def _next(self, draft: Draft, quantity: str, expected: Expected) -> Passing | None:
         """The next method that passes with a margin, or else the best of those that pass; others are noted."""
-        passing, needed = self._passing[quantity], tuple(draft.kernels(quantity))
+        needed = tuple(draft.kernels(quantity))
         for operations in (LONG_TRIED, inf):
             if (first := self._first_of(draft, quantity, expected, operations)) is not None:
                 return first
@@ -188,7 +177,7 @@ class Fallback:
                     if one.scalars == needed and one.largest <= most:
                         return one
                     if "float64" in one.scalars:
-                        passing.append(one)
+                        self._tried[quantity].passing.append(one)
                 if (best := self._best_of(draft, quantity, expected, needed)) is not None:
                     return best
         return self._best_of(draft, quantity, expected, ())
@@ -197,15 +186,13 @@ class Fallback:
         self, draft: Draft, quantity: str, expected: Expected, needed: tuple[Scalar, ...]
     ) -> Passing | None:
         """The best of those that pass in the types that are needed, or in any, where it is worst, too."""
-        passing = self._passing[quantity]
-        while left := [one for one in passing if needed in ((), one.scalars)]:
-            best = min(left, key=lambda one: (-len(one.scalars), one.largest))
-            passing.remove(best)
+        tried = self._tried[quantity]
+        while (best := tried.take_best(needed)) is not None:
             one = self._grouped(draft, best, expected)
             if one.scalars == best.scalars:
                 return one
             if one.scalars:
-                passing.append(one)
+                tried.passing.append(one)
         return None
 
     def _first_of(self, draft: Draft, quantity: str, expected: Expected, operations: float) -> Passing | None:
@@ -215,7 +202,7 @@ class Fallback:
             if one.scalars == needed and one.largest <= MARGIN:
                 return one
             if "float64" in one.scalars:
-                self._passing[quantity].append(one)
+                self._tried[quantity].passing.append(one)
         return None
 
     def _with_margin(self, draft: Draft, quantity: str, largest: float, expected: Expected) -> Draft:
@@ -223,41 +210,42 @@ class Fallback:
         self._weighed.add(quantity)
         taken, kernels = draft.taken(quantity), draft.kernels(quantity)
         here = Passing(largest, tuple(kernels), taken, kernels)
-        self._seen[quantity].add(digest(kernels))
+        self._tried[quantity].saw(kernels)
         most = cost(scalars(taken.derived)).weight * (1 + MARGIN_WORTH)
         for one in self._candidates(draft, quantity, 0, expected, largest / 2, most):
             if one.scalars == here.scalars and 2 * one.largest <= here.largest:
                 return self._in_place_of(draft, here, one)
             if "float64" in one.scalars:
-                self._passing[quantity].append(one)
+                self._tried[quantity].passing.append(one)
         return draft
 
     def _with_digits(self, draft: Draft, quantity: str, largest: float, narrow: float, expected: Expected) -> Draft:
         """The draft with twice the digits for a quantity that needs nearly all that is allowed, where these help."""
-        taken, kernels = draft.taken(quantity), draft.kernels(quantity)
+        taken, kernels, tried = draft.taken(quantity), draft.kernels(quantity), self._tried[quantity]
         if taken.choice.wide:
             return draft
         here = Passing(largest, tuple(kernels), taken, kernels)
         # one type may keep what the other lacks
         alone = tuple(one for one, error in self.errors.of_types(draft, quantity, expected).items() if error > narrow)
-        if 0 < len(alone) < len(kernels) and taken.cost <= LONGEST_WIDENED:
+        if 0 < len(alone) < len(kernels) and tried.may_widen(taken, alone):
             one = self._with_pairs(draft, taken, here.scalars, alone, expected)
             if one.scalars == here.scalars and one.largest <= narrow:
                 return self._in_place_of(draft, here, one)
-        self._inaccurate[quantity].append(taken)
+        tried.keep_for_more_digits(taken)
         for one in self._with_more_digits(draft, quantity, expected):
             if one.scalars == here.scalars and one.largest <= MARGIN:
                 return self._in_place_of(draft, here, one)
             if "float64" in one.scalars:
-                self._passing[quantity].append(one)
+                self._tried[quantity].passing.append(one)
         return draft
 
     def _in_place_of(self, draft: Draft, here: Passing, one: Passing) -> Draft:
         """The draft with a method that keeps a margin in place of one that does not, which stays at hand."""
         quantity = here.alternative.choice.quantity
-        self._passing[quantity].append(here)
+        tried = self._tried[quantity]
+        tried.passing.append(here)
         why = f"error {here.largest:.3g} times d + eps |y*| of {FACTOR:g} leaves no margin"
-        self._tried[quantity].append((draft.method(quantity), why))
+        tried.against.append((draft.method(quantity), why))
         return draft.along(one.alternative, one.kernels).rejecting((Rejection(quantity, draft.method(quantity), why),))
 
     def _of_all_tiers(self, draft: Draft, quantity: str, expected: Expected, operations: float) -> Iterator[Passing]:
@@ -270,7 +258,7 @@ class Fallback:
 
     def _tried_long(self, quantity: str) -> int:
         """Counted cost of the long methods tried for a quantity; accelerations and multipliers count together."""
-        return sum(self._operations[name] for name in (MOTIONS if quantity in MOTIONS else (quantity,)))
+        return sum(self._tried[name].operations for name in (MOTIONS if quantity in MOTIONS else (quantity,)))
 
     def _candidates(
         self, draft: Draft, quantity: str, tier: int, expected: Expected, most: float, longest: float | Fraction = inf
@@ -289,8 +277,7 @@ class Fallback:
             other = left.popleft()
             self._progress(f"another method of {quantity}, {other.choice.title}")
             kernels = draft.kernels_along(other, tuple(draft.kernels(quantity)))
-            if (known := digest(kernels)) not in self._seen[quantity]:
-                self._seen[quantity].add(known)
+            if not self._tried[quantity].saw(kernels):
                 one = self._measured(draft, other, kernels, expected)
                 # long ones are grouped where that may be what is taken: it takes longer than measuring
                 yield self._grouped(draft, one, expected) if one.largest <= most else one
@@ -311,61 +298,44 @@ class Fallback:
         """What loses digits in float32 alone with twice as many there, then the shortest with more in both."""
         if self._options.methods.get(quantity, AUTO) != AUTO:
             return
-        scalars = tuple(draft.kernels(quantity))
-        passing = [one for one in self._passing[quantity] if "float32" in scalars and one.scalars == ("float64",)]
-        passing = [one for one in passing if self._may_widen(one.alternative, ("float32",))]
-        passing.sort(key=lambda one: (one.largest > MARGIN, one.alternative.cost))
-        for one in passing[:WIDENED]:
-            yield self._with_pairs(draft, one.alternative, scalars, ("float32",), expected)
+        scalars, tried = tuple(draft.kernels(quantity)), self._tried[quantity]
+        for one in tried.short_of_digits_in_float32(MARGIN) if "float32" in scalars else ():
+            yield self._with_pairs(draft, one, scalars, ("float32",), expected)
         # those among them that are beyond what is allowed in float64 where they are worst
-        inaccurate = sorted(self._inaccurate.pop(quantity, ()), key=lambda one: one.cost)
+        inaccurate = tried.take_inaccurate()
         asked = self._options.outputs or draft.model.outputs
         if inaccurate and inaccurate[0].cost > most_with_twice_the_digits(quantity, asked, self._options.methods):
             self._too_wide[quantity] = inaccurate[0].cost
             return
-        shortest: dict[str, Alternative] = {}
-        for other in inaccurate:
-            if self._may_widen(other, scalars):
-                shortest.setdefault(other.choice.title, other)
-        # the shortest of all, then those that lose least: what they divide by keeps more digits in float32, too
-        candidates, lost = list(shortest.values()), self._lost[quantity]
-        candidates[1:] = sorted(candidates[1:], key=lambda one: lost.get(one.choice.title, 0.0))
-        for other in candidates[:WIDENED]:
-            yield self._with_pairs(draft, other, scalars, scalars, expected)
-
-    def _may_widen(self, one: Alternative, wide: tuple[Scalar, ...]) -> bool:
-        """Whether a method may be tried with twice the digits in these types: it is not long, and was not yet."""
-        known = self._widened[one.choice.quantity]
-        return one.cost <= LONGEST_WIDENED and not one.choice.wide and (one.choice.title, wide) not in known
+        for one in tried.short_of_digits(inaccurate, scalars):
+            yield self._with_pairs(draft, one, scalars, scalars, expected)
 
     def _with_pairs(
         self, draft: Draft, one: Alternative, scalars: tuple[Scalar, ...], wide: tuple[Scalar, ...], expected: Expected
     ) -> Passing:
         """An alternative with twice the digits in some types, measured."""
         self._progress(f"twice the digits for {one.choice.quantity}, {one.choice.title}")
-        self._widened[one.choice.quantity].add((one.choice.title, wide))
-        one = grouped(one)
-        one = replace(one, choice=replace(one.choice, wide=wide))
+        one = self._tried[one.choice.quantity].widens(grouped(one), wide)
         return self._measured(draft, one, draft.kernels_along(one, scalars), expected)
 
     def _measured(self, draft: Draft, one: Alternative, kernels: Kernels, expected: Expected) -> Passing:
         """The scalar types in which kernels pass by interpretation, and the largest error there; the rest is noted."""
         passed: dict[Scalar, Kernel] = {}
         worst = 0.0
-        lost = {} if one.choice.wide else self._lost[one.choice.quantity]
+        tried = self._tried[one.choice.quantity]
         if not one.choice.wide and not one.grouped:
-            self._operations[one.choice.quantity] += one.cost
+            tried.operations += one.cost
         if not self._is_asked_for(draft, one.choice.quantity):
             self._tried_unasked += one.cost
         for scalar, kernel in kernels.items():
             if scalar in expected.scalars:
                 record, fault = self.errors.measurements.of(kernel, draft.programs[scalar].sincos, scalar, expected)
                 if scalar == "float64":
-                    lost[one.choice.title] = record.largest
+                    tried.loses(one, record.largest)
                 if fault is not None:
                     name = one.choice.title + one.choice.digits
                     self._check_algebra(kernels["float64"], name, record.worst_state)
-                    self._note(one, fault, inaccurate=not record.refused)
+                    tried.note(one, fault, inaccurate=not record.refused)
                     if scalar == "float64":
                         break  # float32 alone is of no use: the other type is what Python and the report are made of
                     continue
@@ -375,34 +345,19 @@ class Fallback:
 
     def _at_its_worst(self, draft: Draft, one: Passing, expected: Expected, own: bool = True) -> Passing:
         """What passes at the states that were searched for, too, its `own` worst ones among them."""
-        passed, quantity, title = list(one.scalars), one.alternative.choice.quantity, one.alternative.choice.title
+        passed, quantity = list(one.scalars), one.alternative.choice.quantity
         judged = {scalar: one.kernels[scalar] for scalar in passed if scalar in expected.scalars}
         looked_at = one.alternative if own and "float64" in passed else None
         errors = self.errors.at_worst(draft, judged, looked_at) if judged else {}
-        if not one.alternative.choice.wide:
-            lost = self._lost[quantity]
-            lost[title] = max(lost.get(title, 0.0), errors.get("float64", 0.0))
+        self._tried[quantity].loses(one.alternative, errors.get("float64", 0.0))
         for fault in faults_at_worst(quantity, errors):
-            self._note(one.alternative, fault, inaccurate=True)
+            self._tried[quantity].note(one.alternative, fault, inaccurate=True)
             passed.remove(fault.scalar)
         scalars = tuple(passed) if "float64" in passed else ()
         worst = max((one.largest, *(error for scalar, error in errors.items() if scalar in scalars)))
         if scalars and one.alternative.grouped:
             self.errors.keep(quantity, one.kernels, worst)
         return Passing(worst, scalars, one.alternative, one.kernels)
-
-    def _note(self, one: Alternative, fault: Fault, inaccurate: bool) -> None:
-        """What speaks against an alternative; one that is inaccurate may work with more digits."""
-        name = one.choice.title + one.choice.digits
-        self._tried[fault.quantity].append((name, f"{fault.what} ({fault.target})"))
-        if inaccurate:
-            self._keep_for_more_digits(one)
-
-    def _keep_for_more_digits(self, one: Alternative) -> None:
-        """Notes what is inaccurate: it may work with twice the digits in all types where one did not do."""
-        one = replace(one, choice=replace(one.choice, wide=()))
-        if one not in self._inaccurate[one.choice.quantity]:
-            self._inaccurate[one.choice.quantity].append(one)
 
     def _check_algebra(self, kernel: Kernel, method: str, worst: int) -> None:
         """Raises SymgenBug where a rejected kernel computes something else: falling back would hide wrong algebra."""
