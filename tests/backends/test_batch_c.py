@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 import shipped
 
-from symgen.backends.c.batch import BLOCK, emit_c_batch
+from symgen.backends.c.batch import BLOCK, VECTOR, emit_c_batch
 from symgen.backends.c.plain import emit_c
 from symgen.backends.defaults import default_values
 from symgen.backends.locals import array_arguments
@@ -107,7 +107,7 @@ def test_same_bits_and_statuses(tool: Callable[[str], str], tmp_path: Path, name
         assert (statuses[count:] == 99).all()
 
 
-@pytest.mark.parametrize("count", [0, 1, BLOCK - 1, BLOCK, BLOCK + 1])
+@pytest.mark.parametrize("count", [0, 1, VECTOR - 1, VECTOR, VECTOR + 1, BLOCK - 1, BLOCK, BLOCK + 1])
 def test_any_count_in_place_and_without_statuses(tool: Callable[[str], str], tmp_path: Path, count: int) -> None:
     program = handmade.program()
     library = Library(tmp_path, handmade.model(), program, [tool("gcc"), "-O1"])
@@ -179,7 +179,7 @@ def test_loop_over_states_is_vector_code(
     command = [tool(compiler), *flags, *reporting, *common, str(source)]
     report = subprocess.run(command, capture_output=True, text=True, check=True).stderr
     lines = source.read_text().splitlines()
-    loops = [k for k, line in enumerate(lines, 1) if "k < LANES" in line and "= from[0][k]" in lines[k]]
+    loops = [k for k, line in enumerate(lines, 1) if "k < lanes" in line and "= from[0][k]" in lines[k]]
     assert len(loops) == 1
     assert f":{loops[0]}:" in report, f"line {loops[0]} of {source.name} is not vectorised"
 

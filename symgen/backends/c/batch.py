@@ -29,8 +29,10 @@ from symgen.records import dataclass
 
 # States a block: local arrays of rows of this length; a multiple of every vector length in use.
 BLOCK = 64
+# The longest vectors hold as many states in float32, and half as many in float64: 512 bits.
+VECTOR = 16
 _OWN_NAMES = frozenset({"count", "stride", "status", "start", "length", "k", "i", "from", "copy", "result", "LANES"})
-_OWN_NAMES |= {"flag", "flags", "bits", "code", "refused", "rest", "y", "MANY"}
+_OWN_NAMES |= {"flag", "flags", "bits", "code", "refused", "rest", "y", "MANY", "lanes", "VECTOR"}
 
 
 _ABOUT = """Kernels of {plain}.h for many states: compile {plain_batch}.c and {plain}.c.
@@ -71,6 +73,7 @@ class BatchFileView:
     one: str
     ok: str
     block: int
+    vector: int
     threaded: bool
     functions: tuple[BatchView, ...]
     inline: str
@@ -110,6 +113,7 @@ def emit_c_batch(model: Model, program: Program) -> dict[str, str]:
         one=c_literal(program.scalar, Fraction(1)),
         ok=status_name(model, Status.OK),
         block=BLOCK,
+        vector=VECTOR,
         threaded=bool(in_lanes),
         functions=functions,
         inline=inline,
