@@ -188,7 +188,7 @@ def _verified(
     if not c_sources and python_source is None:
         return None
     kernels = {scalar: program.kernels for scalar, program in draft.written.items()}
-    certificate = verify_expecting(expected, kernels, c_sources, python_source, progress)
+    certificate = verify_expecting(expected, kernels, c_sources, python_source, progress, options.contract)
     return replace(certificate, left_out=draft.left_out)
 
 

@@ -57,7 +57,7 @@ def add_quiet(parser: argparse.ArgumentParser) -> None:
 
 
 def add_generation(parser: argparse.ArgumentParser) -> None:
-    """What generation and verification share: --out, --states, --method, --trig, --quiet."""
+    """What generation and verification share: --out, --states, --method, --trig, --contract, --quiet."""
     add_out(parser)
     parser.add_argument(
         "--states",
@@ -72,6 +72,11 @@ def add_generation(parser: argparse.ArgumentParser) -> None:
         choices=TRIG,
         default="portable",
         help="sine and cosine: portable has the same bits everywhere, libm calls the library's (default: portable)",
+    )
+    parser.add_argument(
+        "--contract",
+        action="store_true",
+        help="verify the batches with -ffp-contract=fast -DSYMGEN_CONTRACT, too: faster, with other bits",
     )
     add_quiet(parser)
 

@@ -184,6 +184,7 @@ def _generate(given: argparse.Namespace) -> int:
         states=given.states,
         methods=chosen_methods(given.methods),
         trig=given.trig,
+        contract=given.contract,
         measured=given.recorded or given.out,
         as_recorded=given.check or given.recorded is not None,
     )
@@ -210,7 +211,9 @@ def _verify(given: argparse.Namespace) -> int:
         raise WrongUseError("no C compiler was found: install gcc or clang, or name one in CC")
     recover_folders(given.out)
     methods = chosen_methods(given.methods)
-    options = Options(parts=("c", "python"), states=given.states, methods=methods, trig=given.trig)
+    options = Options(
+        parts=("c", "python"), states=given.states, methods=methods, trig=given.trig, contract=given.contract
+    )
     return _each_model(
         given.models, options, given.quiet, lambda result: _write_certificate(result, given.out, given.quiet)
     )

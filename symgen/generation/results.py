@@ -46,6 +46,7 @@ class Options:
     `measured` is where an earlier run may have left measurements (`<model>/target.json`), for the PDF.
     `trig` says whose sine and cosine the code calls: its own, with the same bits everywhere, or the library's.
     `as_recorded` takes over what the earlier run's verification led to, see `symgen.generation.acceptance.recorded`.
+    With `contract` batches are verified with products and sums contracted, too.
     Without packages that the report needs it is left out where `parts` are those made as a rule (`usual`).
     """
 
@@ -58,6 +59,7 @@ class Options:
     measured: Path | None = None
     as_recorded: bool = False
     usual: bool = False
+    contract: bool = False
     # by quantity, of NAMED_METHODS; without one the cheapest valid
     methods: Mapping[str, str] = field(default_factory=dict)
 

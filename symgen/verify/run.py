@@ -35,6 +35,7 @@ from symgen.verify.running.compile import (
     c_array,
     find_compiler,
 )
+from symgen.verify.running.contracted import CONTRACTED, is_fused, run_contracted
 from symgen.verify.running.given_trig import run_given_trig
 from symgen.verify.running.prepared import run_prepared
 from symgen.verify.running.python_module import PythonModule
@@ -44,6 +45,7 @@ from symgen.verify.sampling.states import USUAL_STATES, Sample, VerificationErro
 # Characters of what a compiler said that are kept in a fault.
 LONGEST_EXCERPT = 2000
 NO_COMPILER = "no C compiler was found, the C is not verified: install gcc or clang, or name one in CC"
+NOT_FUSED = "nothing is contracted: this machine, or its compiler, has no instruction that multiplies and adds in one"
 
 
 def verify(
@@ -74,16 +76,21 @@ def verify_expecting(
     c_sources: Mapping[Scalar, CSource],
     python_source: str | None,
     progress: Progress,
+    contract: bool = False,
 ) -> Certificate:
     """Run what was generated and compare it with what is expected; what goes wrong is a fault of the certificate.
 
-    `kernels` name the emitted quantities of each type with their arguments and shapes.  No C compiler is a note.
+    `kernels` name the emitted quantities of each type with their arguments and shapes.  No C compiler is a note, and so
+    is a machine that contracts nothing where batches are to be contracted, too.
     Raises VerificationError where fewer than 8 states are left in a scalar type.
     """
     compiler = find_compiler() if c_sources else None
     blank = blank_certificate(expected.reference.model, compiler, c_sources, python_source)
     with _compilations(compiler, c_sources) as compilations:
-        return _verified(blank, expected, kernels, c_sources, compilations, python_source, progress)
+        contracting = compiler if contract and compiler is not None and is_fused(compiler) else None
+        if contract and compiler is not None and contracting is None:
+            blank = replace(blank, notes=(*blank.notes, NOT_FUSED))
+        return _verified(blank, expected, kernels, c_sources, compilations, python_source, progress, contracting)
 
 
 def blank_certificate(
@@ -112,6 +119,7 @@ def _verified(
     compilations: Mapping[Scalar, Compilation],
     python_source: str | None,
     progress: Progress,
+    contracting: Compiler | None,
 ) -> Certificate:
     """The certificate with everything that was found; compilers work while the reference does."""
     reference = expected.reference
@@ -120,7 +128,7 @@ def _verified(
     values = {scalar: expected.values(scalar) for scalar in scalars}
     samples = {scalar: expected.samples(scalar) for scalar in scalars}
     progress("verifying: running C and Python")
-    results, faults = _run_c(model, kernels, c_sources, compilations, samples)
+    results, faults = _run_c(model, kernels, c_sources, compilations, samples, contracting)
     if python_source is not None:
         outcomes, wrong = _run_python(python_source, kernels["float64"], samples["float64"])
         results["Python float64"] = ("float64", outcomes)
@@ -192,6 +200,7 @@ def _run_c(
     sources: Mapping[Scalar, CSource],
     compilations: Mapping[Scalar, Compilation],
     samples: Mapping[Scalar, Sequence[Sample]],
+    contracting: Compiler | None,
 ) -> tuple[dict[str, tuple[Scalar, Results]], list[Fault]]:
     """Outcomes of every kernel at every state by target, and what did not compile."""
     results: dict[str, tuple[Scalar, Results]] = {}
@@ -217,6 +226,14 @@ def _run_c(
         others = {}
         if companions.get(_header(model, scalar, BATCH)) is not None:
             others["batch"] = run_batch(*given)
+            if contracting is not None:
+                batches = compilation.target.with_name(_source(model, scalar, BATCH))
+                beside = contracting, batches, compilation.target
+                try:
+                    made = run_contracted(*beside, model.c_name, kernels, scalar, samples[scalar])
+                    others[CONTRACTED] = made, []
+                except CompilationError as refusal:
+                    faults.append(Fault(f"{target} {CONTRACTED} does not compile: {str(refusal)[:LONGEST_EXCERPT]}"))
         if (header := companions.get(_header(model, scalar, PREPARED))) is not None:
             others["prepared"] = run_prepared(*given, header)
         if (header := companions.get(_header(model, scalar, SINES_GIVEN))) is not None:
@@ -234,6 +251,11 @@ def _run_c(
 def _header(model: Model, scalar: Scalar, ending: str) -> str:
     """What the header of a variant is called."""
     return PurePosixPath(backend("c").paths(model, scalar, ending)[0]).name
+
+
+def _source(model: Model, scalar: Scalar, ending: str) -> str:
+    """What the source of a variant is called."""
+    return PurePosixPath(backend("c").paths(model, scalar, ending)[1]).name
 
 
 def _run_python(

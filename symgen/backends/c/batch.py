@@ -40,7 +40,9 @@ _ABOUT = """Kernels of {plain}.h for many states: compile {plain_batch}.c and {p
 Component i of state k is at [i*stride + k] of each array, stride >= count. A state that has no valid result gets
 NaN; the functions return the number of such states and write the status of each state unless `status` is NULL.
 A result may take the place of an input (same address, same stride); else results and inputs must not overlap.
-Valid results have the bits of the kernels for one state, with -fopenmp (many states on several threads) too."""
+Valid results have the bits of the kernels for one state, with -fopenmp (many states on several threads) too.
+With -O2 -ffp-contract=fast -DSYMGEN_CONTRACT they have others, in less time where the processor multiplies and adds
+in one; `symgen --contract` verifies these."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,6 +26,8 @@ from symgen.verify.running.python_module import PythonModule
 
 # The flags of `compile()` in the generated module, for all: vectors of this machine, at their full width.
 FLAGS = ("-std=c99", "-O3", "-march=native", "-mprefer-vector-width=512", "-ffp-contract=off", "-fno-math-errno")
+CONTRACTING = ("-ffp-contract=fast", "-DSYMGEN_CONTRACT")
+CONTRACTED = "batch contracted"
 STREAMED, CACHED = 2**17, 2**10  # states: components of the first come from memory
 NUMPY_BLOCK = 4096
 PASSES = 9
@@ -117,13 +119,13 @@ def _arguments(kernel: Kernel, parts: Sequence[Any]) -> list[Any]:
     return [given[argument.name] for argument in kernel.arguments if argument.length]
 
 
-def _library(folder: Path, model: Model, program: Program) -> ctypes.CDLL:
+def _library(folder: Path, model: Model, program: Program, further: Sequence[str] = ()) -> ctypes.CDLL:
     files = emit_c(model, program) | emit_c_batch(model, program)
     for path, text in files.items():
         (folder / Path(path).name).write_text(text, encoding="utf-8")
     sources = [str(folder / Path(path).name) for path in files if path.endswith(".c")]
-    target = folder / f"{global_name(model.c_name, program.scalar, 'many')}.so"
-    gcc([*FLAGS, "-shared", "-fPIC", "-o", str(target), *sources, "-lm"], "symgen's batch kernels")
+    target = folder / f"{global_name(model.c_name, program.scalar, 'contracted' if further else 'many')}.so"
+    gcc([*FLAGS, *further, "-shared", "-fPIC", "-o", str(target), *sources, "-lm"], "symgen's batch kernels")
     return ctypes.CDLL(str(target))
 
 
@@ -135,12 +137,12 @@ def _batches(
     ways = []
     for scalar, program in programs.items():
         (kernel,) = program.kernels
-        function = _library(folder, model, program)[global_name(model.c_name, scalar, kernel.name, BATCH)]
         rows = [np.ascontiguousarray(part.T, dtype=scalar) for part in _arguments(kernel, parts)]
         result = np.empty((len(kernel.outputs), STREAMED), dtype=scalar)
-        run = _call(function, [*rows, np.array([*parameters, 0.0], dtype=scalar), result], (STREAMED,), (None,))
-
-        ways.append(_BatchCandidate("symgen", "batch", "C", scalar, run))
+        given = [*rows, np.array([*parameters, 0.0], dtype=scalar), result]
+        for form, further in (("batch", ()), (CONTRACTED, CONTRACTING)):
+            function = _library(folder, model, program, further)[global_name(model.c_name, scalar, kernel.name, BATCH)]
+            ways.append(_BatchCandidate("symgen", form, "C", scalar, _call(function, given, (STREAMED,), (None,))))
     return ways
 
 

@@ -62,7 +62,29 @@ def run_batch(
     samples: Sequence[Sample],
     alone: Mapping[str, Sequence[Outcome]],
 ) -> tuple[dict[str, list[Outcome]], list[Fault]]:
-    """Outcomes of every batch kernel at every state, and faults where they are not those of one state `alone`.
+    """Outcomes of every batch kernel at every state, and faults where they are not those of one state `alone`."""
+    of_batches = outcomes_of_batches(library, model, kernels, scalar, samples)
+    faults = []
+    first = c_array(scalar, samples[0].state.parameters)
+    for kernel in (kernel for kernel in kernels if kernel.name in of_batches):
+        outcomes, hard = of_batches[kernel.name]
+        place = kernel.name, f"C {scalar} batch"
+        for k, (one, many) in enumerate(zip(alone[kernel.name], outcomes, strict=True)):
+            if one.valid and one != many:
+                faults.append(Fault(f"state {k} alone and in a batch differ", *place))
+                break
+        single = CFunction(library, model, kernel, scalar)
+        for value, many in zip(HARD, hard, strict=True):
+            arrays: dict[str, Any] = {a.name: c_array(scalar, [value] * a.length) for a in array_arguments(kernel)}
+            if single(arrays, first).status != many.status:
+                faults.append(Fault(f"other status than alone where every input is {value}", *place))
+    return {name: outcomes for name, (outcomes, _) in of_batches.items()}, faults
+
+
+def outcomes_of_batches(
+    library: ctypes.CDLL, model: str, kernels: Sequence[Kernel], scalar: Scalar, samples: Sequence[Sample]
+) -> dict[str, tuple[list[Outcome], list[Outcome]]]:
+    """Outcomes of every batch kernel at every state, and at hard ones.
 
     A batch has one set of parameters.  One holds all states, with the parameters of the first; states that have others
     are run in a batch with those that share theirs.
@@ -71,28 +93,15 @@ def run_batch(
     together: dict[tuple[Any, ...], list[int]] = {}
     for k, state in enumerate(states):
         together.setdefault(state.parameters, []).append(k)
-    outcomes: dict[str, list[Outcome]] = {}
-    faults = []
-    for kernel in kernels:
-        if kernel.name not in BATCHED:
-            continue
+    outcomes = {}
+    for kernel in (kernel for kernel in kernels if kernel.name in BATCHED):
         batch = BatchFunction(library, model, kernel, scalar, states)
-        single = CFunction(library, model, kernel, scalar)
         whole = batch(c_array(scalar, states[0].parameters))
-        outcomes[kernel.name] = whole[: len(states)]
+        of_states, hard = whole[: len(states)], whole[len(states) :]
         for parameters, places in list(together.items())[1:]:
             others = BatchFunction(library, model, kernel, scalar, [states[k] for k in places])
             made = others(c_array(scalar, parameters))
             for k, one in zip(places, made[: len(places)], strict=True):
-                outcomes[kernel.name][k] = one
-        place = kernel.name, f"C {scalar} batch"
-        for k, (one, many) in enumerate(zip(alone[kernel.name], outcomes[kernel.name], strict=True)):
-            if one.valid and one != many:
-                faults.append(Fault(f"state {k} alone and in a batch differ", *place))
-                break
-        first = c_array(scalar, states[0].parameters)
-        for value, many in zip(HARD, whole[len(states) :], strict=True):
-            arrays: dict[str, Any] = {a.name: c_array(scalar, [value] * a.length) for a in array_arguments(kernel)}
-            if single(arrays, first).status != many.status:
-                faults.append(Fault(f"other status than alone where every input is {value}", *place))
-    return outcomes, faults
+                of_states[k] = one
+        outcomes[kernel.name] = of_states, hard
+    return outcomes

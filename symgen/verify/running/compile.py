@@ -111,7 +111,7 @@ def find_compiler() -> Compiler | None:
 class Compilation:
     """A compiler at work in the background; `library` waits for it.
 
-    With `later` it is set to work when the library is asked for.
+    With `later` it is set to work when the library is asked for.  `target` is where that is, beside the sources.
     """
 
     def __init__(self, compiler: Compiler, source: CSource, folder: Path, later: bool = False) -> None:
@@ -121,9 +121,9 @@ class Compilation:
         paths = [str(folder / name) for name in texts if name.endswith(".c")]
         self._limit = LONGEST_COMPILATION + LONGEST_FOR_A_MEGABYTE * sum(map(len, texts.values())) / 1e6
         self._tool = compiler.command[0]
-        self._target = folder / f"{source.stem}.so"
+        self.target = folder / f"{source.stem}.so"
         self._log = folder / f"{source.stem}.log"
-        self._command = [*compiler.command, *compiler.flags(source), "-o", str(self._target), *paths, "-lm"]
+        self._command = [*compiler.command, *compiler.flags(source), "-o", str(self.target), *paths, "-lm"]
         self._folder = folder
         self._megabytes = source.characters / 1e6
         self._usual = self._megabytes * (USUAL_PLAIN if source.large else USUAL)
@@ -148,10 +148,10 @@ class Compilation:
         said = self._log.read_text(encoding="utf-8", errors="replace").strip()
         if code != 0:
             raise CompilationError(said or f"{self._tool} ended with {code} and no word; {REMEDY}")
-        if not self._target.is_file():
+        if not self.target.is_file():
             raise CompilationError(f"{self._tool} ended with 0 and made no file; {REMEDY}")
         try:
-            return ctypes.CDLL(str(self._target))
+            return ctypes.CDLL(str(self.target))
         except OSError as error:
             raise CompilationError(f"{self._tool} made no library that loads here ({error}); {REMEDY}") from error
 

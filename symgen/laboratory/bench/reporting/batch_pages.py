@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, TypeAlias
 
-from symgen.laboratory.bench.batch import CACHED, FLAGS, LANES, LOOP, STREAMED, Many
+from symgen.laboratory.bench.batch import CACHED, CONTRACTED, CONTRACTING, FLAGS, LANES, LOOP, STREAMED, Many
 from symgen.laboratory.bench.peers.engines.straight import LOOP_FLAGS
 from symgen.terminal import columns
 
@@ -21,7 +21,8 @@ million states a second. **batch** is the C over arrays of components, **compile
 of states; NumPy runs the same closed form on the same arrays of states. **In a loop** a peer's C is called state by
 state; **in lanes** its operations, as straight lines, stand in a loop over the same arrays of components that the
 compiler makes vectors of (`{" ".join(LOOP_FLAGS)}`, sine and cosine of libmvec). All C, the peers' too, is compiled
-with `{" ".join(FLAGS)}`.
+with `{" ".join(FLAGS)}`, **contracted** ones of symgen with
+`{" ".join(CONTRACTING)}` behind it, and no peer so.
 The first number is for {STREAMED} states, which come from memory, the one in brackets for {CACHED}, which stay in the
 cache. The last columns are the ratios of times at {STREAMED} states; in brackets the goal, bold if missed.
 
@@ -47,15 +48,17 @@ def many_section(results: Sequence[Row]) -> str:
             lines.append(f"| {' | '.join([result['model'], *_cells(result['model'], rows)])} |\n")
     if not lines:
         return ""
-    head = ["", "batch", "batch, float32", "compile()", "symgen in a loop", "fastest peer in a loop"]
-    head += ["fastest peer in lanes", "NumPy", "batch against the loop", "against the lanes", "against NumPy"]
+    head = ["", "batch", "contracted", "batch, float32", "compile()", "symgen in a loop", "fastest peer in a loop"]
+    head += ["fastest peer in lanes", "NumPy", "batch against the loop", "against the lanes", "contracted"]
+    head += ["against NumPy"]
     return TEXT + f"| {' | '.join(head)} |\n|{'---|' * len(head)}\n" + "".join(lines)
 
 
 def _cells(model: str, rows: Sequence[Row]) -> list[str]:
     double = [row for row in rows if row["scalar"] == "float64"]
     batch = next(row for row in double if row["form"] == "batch")
-    single = next(row for row in rows if row["scalar"] == "float32")
+    contracted = next(row for row in double if row["form"] == CONTRACTED)
+    single = next(row for row in rows if row["scalar"] == "float32" and row["form"] == "batch")
     compiled = next(row for row in double if row["form"] == "compile()")
     own = next((row for row in double if row["generator"] == "symgen" and row["form"].endswith(LOOP)), None)
     peers = [row for row in double if row["generator"] != "symgen"]
@@ -65,11 +68,12 @@ def _cells(model: str, rows: Sequence[Row]) -> list[str]:
     numpy = min((row for row in double if row["form"].startswith("NumPy")), key=_time)
     wanted = GOALS.get(model, (None, None))
     return [
-        *map(_speed, (batch, single, compiled, own)),
+        *map(_speed, (batch, contracted, single, compiled, own)),
         *(f"{_speed(row)} {_named(row)}".strip() for row in (loop, lanes)),
         _speed(numpy),
         _ratio(loop, batch, wanted[0]),
         _ratio(lanes, batch, GOAL_IN_LANES),
+        _ratio(lanes, contracted, None),
         _ratio(numpy, batch, wanted[1]),
     ]
 
