@@ -35,12 +35,15 @@ typedef char symgen_needs_no_fsingle_precision_constant[sizeof(0.1) == sizeof(do
 #endif
 
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
-#ifdef __clang__
+#if defined(__clang__) && !defined(SYMGEN_CONTRACT)
 #pragma STDC FP_CONTRACT OFF
 #endif
 
 /* States a block: the loop over a block has no branch and no call, so that compilers make vector code of it. */
 enum { LANES = 64 };
+
+/* States of a vector: those of the last block are rounded up to a multiple of it, which leaves no rest of a loop. */
+enum { VECTOR = 16 };
 
 /* States from which several threads share the blocks, where the compiler is told to (-fopenmp). */
 enum { MANY = 64 * LANES };
@@ -206,6 +209,7 @@ size_t arm7_inverse_dynamics_batch(size_t count, size_t stride, const double *q,
 #endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        const size_t lanes = (length + VECTOR - 1) / VECTOR * VECTOR;
         double copy[20][LANES]; /* the last states, the first of them repeated */
         double result[7][LANES];
         double flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -231,15 +235,15 @@ size_t arm7_inverse_dynamics_batch(size_t count, size_t stride, const double *q,
         from[17] = qdd + 4 * stride + start;
         from[18] = qdd + 5 * stride + start;
         from[19] = qdd + 6 * stride + start;
-        if (length < LANES) {
+        if (length < lanes) {
             for (size_t i = 0; i < 20; ++i) {
-                for (size_t k = 0; k < LANES; ++k) {
+                for (size_t k = 0; k < lanes; ++k) {
                     copy[i][k] = from[i][k < length ? k : 0];
                 }
                 from[i] = copy[i];
             }
         }
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             const double q_2 = from[0][k];
             const double q_3 = from[1][k];
             const double q_4 = from[2][k];
@@ -988,9 +992,9 @@ size_t arm7_inverse_dynamics_batch(size_t count, size_t stride, const double *q,
             result[5][k] = t521;
             result[6][k] = t469;
         }
-        memcpy(bits, flag, sizeof bits);
+        memcpy(bits, flag, lanes * sizeof flag[0]);
         int64_t flags = 0;
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             flags |= bits[k];
         }
         for (size_t k = 0; k < length && status; ++k) {
@@ -1437,6 +1441,7 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
 #endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        const size_t lanes = (length + VECTOR - 1) / VECTOR * VECTOR;
         double copy[20][LANES]; /* the last states, the first of them repeated */
         double result[7][LANES];
         double flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -1462,15 +1467,15 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
         from[17] = u + 4 * stride + start;
         from[18] = u + 5 * stride + start;
         from[19] = u + 6 * stride + start;
-        if (length < LANES) {
+        if (length < lanes) {
             for (size_t i = 0; i < 20; ++i) {
-                for (size_t k = 0; k < LANES; ++k) {
+                for (size_t k = 0; k < lanes; ++k) {
                     copy[i][k] = from[i][k < length ? k : 0];
                 }
                 from[i] = copy[i];
             }
         }
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             const double q_2 = from[0][k];
             const double q_3 = from[1][k];
             const double q_4 = from[2][k];
@@ -2975,9 +2980,9 @@ size_t arm7_forward_dynamics_batch(size_t count, size_t stride, const double *q,
             result[5][k] = t1723;
             result[6][k] = t1750;
         }
-        memcpy(bits, flag, sizeof bits);
+        memcpy(bits, flag, lanes * sizeof flag[0]);
         int64_t flags = 0;
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             flags |= bits[k];
         }
         for (size_t k = 0; k < length && status; ++k) {

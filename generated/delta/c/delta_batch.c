@@ -35,12 +35,15 @@ typedef char symgen_needs_no_fsingle_precision_constant[sizeof(0.1) == sizeof(do
 #endif
 
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
-#ifdef __clang__
+#if defined(__clang__) && !defined(SYMGEN_CONTRACT)
 #pragma STDC FP_CONTRACT OFF
 #endif
 
 /* States a block: the loop over a block has no branch and no call, so that compilers make vector code of it. */
 enum { LANES = 64 };
+
+/* States of a vector: those of the last block are rounded up to a multiple of it, which leaves no rest of a loop. */
+enum { VECTOR = 16 };
 
 /* States from which several threads share the blocks, where the compiler is told to (-fopenmp). */
 enum { MANY = 64 * LANES };
@@ -142,6 +145,7 @@ size_t delta_inverse_dynamics_batch(size_t count, size_t stride, const double *q
 #endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        const size_t lanes = (length + VECTOR - 1) / VECTOR * VECTOR;
         double copy[12][LANES]; /* the last states, the first of them repeated */
         double result[3][LANES];
         double flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -159,15 +163,15 @@ size_t delta_inverse_dynamics_batch(size_t count, size_t stride, const double *q
         from[9] = qdd + 3 * stride + start;
         from[10] = qdd + 4 * stride + start;
         from[11] = qdd + 5 * stride + start;
-        if (length < LANES) {
+        if (length < lanes) {
             for (size_t i = 0; i < 12; ++i) {
-                for (size_t k = 0; k < LANES; ++k) {
+                for (size_t k = 0; k < lanes; ++k) {
                     copy[i][k] = from[i][k < length ? k : 0];
                 }
                 from[i] = copy[i];
             }
         }
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             const double a_1 = from[0][k];
             const double a_2 = from[1][k];
             const double a_3 = from[2][k];
@@ -315,9 +319,9 @@ size_t delta_inverse_dynamics_batch(size_t count, size_t stride, const double *q
             result[1][k] = t311;
             result[2][k] = t326;
         }
-        memcpy(bits, flag, sizeof bits);
+        memcpy(bits, flag, lanes * sizeof flag[0]);
         int64_t flags = 0;
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             flags |= bits[k];
         }
         for (size_t k = 0; k < length && status; ++k) {
@@ -397,6 +401,7 @@ size_t delta_forward_dynamics_batch(size_t count, size_t stride, const double *q
 #endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        const size_t lanes = (length + VECTOR - 1) / VECTOR * VECTOR;
         double copy[15][LANES]; /* the last states, the first of them repeated */
         double result[6][LANES];
         double flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -417,15 +422,15 @@ size_t delta_forward_dynamics_batch(size_t count, size_t stride, const double *q
         from[12] = u + 0 * stride + start;
         from[13] = u + 1 * stride + start;
         from[14] = u + 2 * stride + start;
-        if (length < LANES) {
+        if (length < lanes) {
             for (size_t i = 0; i < 15; ++i) {
-                for (size_t k = 0; k < LANES; ++k) {
+                for (size_t k = 0; k < lanes; ++k) {
                     copy[i][k] = from[i][k < length ? k : 0];
                 }
                 from[i] = copy[i];
             }
         }
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             const double a_1 = from[0][k];
             const double a_2 = from[1][k];
             const double a_3 = from[2][k];
@@ -933,9 +938,9 @@ size_t delta_forward_dynamics_batch(size_t count, size_t stride, const double *q
             result[4][k] = t484;
             result[5][k] = t492;
         }
-        memcpy(bits, flag, sizeof bits);
+        memcpy(bits, flag, lanes * sizeof flag[0]);
         int64_t flags = 0;
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             flags |= bits[k];
         }
         for (size_t k = 0; k < length && status; ++k) {
@@ -1016,6 +1021,7 @@ size_t delta_multipliers_batch(size_t count, size_t stride, const double *q, con
 #endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        const size_t lanes = (length + VECTOR - 1) / VECTOR * VECTOR;
         double copy[15][LANES]; /* the last states, the first of them repeated */
         double result[3][LANES];
         double flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -1036,15 +1042,15 @@ size_t delta_multipliers_batch(size_t count, size_t stride, const double *q, con
         from[12] = u + 0 * stride + start;
         from[13] = u + 1 * stride + start;
         from[14] = u + 2 * stride + start;
-        if (length < LANES) {
+        if (length < lanes) {
             for (size_t i = 0; i < 15; ++i) {
-                for (size_t k = 0; k < LANES; ++k) {
+                for (size_t k = 0; k < lanes; ++k) {
                     copy[i][k] = from[i][k < length ? k : 0];
                 }
                 from[i] = copy[i];
             }
         }
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             const double a_1 = from[0][k];
             const double a_2 = from[1][k];
             const double a_3 = from[2][k];
@@ -1516,9 +1522,9 @@ size_t delta_multipliers_batch(size_t count, size_t stride, const double *q, con
             result[1][k] = t458;
             result[2][k] = t452;
         }
-        memcpy(bits, flag, sizeof bits);
+        memcpy(bits, flag, lanes * sizeof flag[0]);
         int64_t flags = 0;
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             flags |= bits[k];
         }
         for (size_t k = 0; k < length && status; ++k) {

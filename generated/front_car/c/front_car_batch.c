@@ -35,12 +35,15 @@ typedef char symgen_needs_no_fsingle_precision_constant[sizeof(0.1) == sizeof(do
 #endif
 
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
-#ifdef __clang__
+#if defined(__clang__) && !defined(SYMGEN_CONTRACT)
 #pragma STDC FP_CONTRACT OFF
 #endif
 
 /* States a block: the loop over a block has no branch and no call, so that compilers make vector code of it. */
 enum { LANES = 64 };
+
+/* States of a vector: those of the last block are rounded up to a multiple of it, which leaves no rest of a loop. */
+enum { VECTOR = 16 };
 
 /* States from which several threads share the blocks, where the compiler is told to (-fopenmp). */
 enum { MANY = 64 * LANES };
@@ -123,6 +126,7 @@ size_t front_car_inverse_dynamics_batch(size_t count, size_t stride, const doubl
 #endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        const size_t lanes = (length + VECTOR - 1) / VECTOR * VECTOR;
         double copy[7][LANES]; /* the last states, the first of them repeated */
         double result[2][LANES];
         double flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -135,15 +139,15 @@ size_t front_car_inverse_dynamics_batch(size_t count, size_t stride, const doubl
         from[4] = qdd + 1 * stride + start;
         from[5] = qdd + 2 * stride + start;
         from[6] = qdd + 3 * stride + start;
-        if (length < LANES) {
+        if (length < lanes) {
             for (size_t i = 0; i < 7; ++i) {
-                for (size_t k = 0; k < LANES; ++k) {
+                for (size_t k = 0; k < lanes; ++k) {
                     copy[i][k] = from[i][k < length ? k : 0];
                 }
                 from[i] = copy[i];
             }
         }
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             const double theta = from[0][k];
             const double phi = from[1][k];
             const double theta_dot = from[2][k];
@@ -184,9 +188,9 @@ size_t front_car_inverse_dynamics_batch(size_t count, size_t stride, const doubl
             result[0][k] = t27;
             result[1][k] = t28;
         }
-        memcpy(bits, flag, sizeof bits);
+        memcpy(bits, flag, lanes * sizeof flag[0]);
         int64_t flags = 0;
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             flags |= bits[k];
         }
         for (size_t k = 0; k < length && status; ++k) {
@@ -252,6 +256,7 @@ size_t front_car_forward_dynamics_batch(size_t count, size_t stride, const doubl
 #endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        const size_t lanes = (length + VECTOR - 1) / VECTOR * VECTOR;
         double copy[8][LANES]; /* the last states, the first of them repeated */
         double result[4][LANES];
         double flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -265,15 +270,15 @@ size_t front_car_forward_dynamics_batch(size_t count, size_t stride, const doubl
         from[5] = qd + 3 * stride + start;
         from[6] = u + 0 * stride + start;
         from[7] = u + 1 * stride + start;
-        if (length < LANES) {
+        if (length < lanes) {
             for (size_t i = 0; i < 8; ++i) {
-                for (size_t k = 0; k < LANES; ++k) {
+                for (size_t k = 0; k < lanes; ++k) {
                     copy[i][k] = from[i][k < length ? k : 0];
                 }
                 from[i] = copy[i];
             }
         }
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             const double theta = from[0][k];
             const double phi = from[1][k];
             const double x_dot = from[2][k];
@@ -385,9 +390,9 @@ size_t front_car_forward_dynamics_batch(size_t count, size_t stride, const doubl
             result[2][k] = t97;
             result[3][k] = t103;
         }
-        memcpy(bits, flag, sizeof bits);
+        memcpy(bits, flag, lanes * sizeof flag[0]);
         int64_t flags = 0;
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             flags |= bits[k];
         }
         for (size_t k = 0; k < length && status; ++k) {
@@ -453,6 +458,7 @@ size_t front_car_multipliers_batch(size_t count, size_t stride, const double *q,
 #endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        const size_t lanes = (length + VECTOR - 1) / VECTOR * VECTOR;
         double copy[7][LANES]; /* the last states, the first of them repeated */
         double result[2][LANES];
         double flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -465,15 +471,15 @@ size_t front_car_multipliers_batch(size_t count, size_t stride, const double *q,
         from[4] = qd + 2 * stride + start;
         from[5] = qd + 3 * stride + start;
         from[6] = u + 0 * stride + start;
-        if (length < LANES) {
+        if (length < lanes) {
             for (size_t i = 0; i < 7; ++i) {
-                for (size_t k = 0; k < LANES; ++k) {
+                for (size_t k = 0; k < lanes; ++k) {
                     copy[i][k] = from[i][k < length ? k : 0];
                 }
                 from[i] = copy[i];
             }
         }
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             const double theta = from[0][k];
             const double phi = from[1][k];
             const double x_dot = from[2][k];
@@ -590,9 +596,9 @@ size_t front_car_multipliers_batch(size_t count, size_t stride, const double *q,
             result[0][k] = t111;
             result[1][k] = t112;
         }
-        memcpy(bits, flag, sizeof bits);
+        memcpy(bits, flag, lanes * sizeof flag[0]);
         int64_t flags = 0;
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             flags |= bits[k];
         }
         for (size_t k = 0; k < length && status; ++k) {

@@ -30,12 +30,15 @@
 #endif
 
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
-#ifdef __clang__
+#if defined(__clang__) && !defined(SYMGEN_CONTRACT)
 #pragma STDC FP_CONTRACT OFF
 #endif
 
 /* States a block: the loop over a block has no branch and no call, so that compilers make vector code of it. */
 enum { LANES = 64 };
+
+/* States of a vector: those of the last block are rounded up to a multiple of it, which leaves no rest of a loop. */
+enum { VECTOR = 16 };
 
 /* States from which several threads share the blocks, where the compiler is told to (-fopenmp). */
 enum { MANY = 64 * LANES };
@@ -110,6 +113,7 @@ size_t front_car_inverse_dynamics_batch_f(size_t count, size_t stride, const flo
 #endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        const size_t lanes = (length + VECTOR - 1) / VECTOR * VECTOR;
         float copy[7][LANES]; /* the last states, the first of them repeated */
         float result[2][LANES];
         float flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -122,15 +126,15 @@ size_t front_car_inverse_dynamics_batch_f(size_t count, size_t stride, const flo
         from[4] = qdd + 1 * stride + start;
         from[5] = qdd + 2 * stride + start;
         from[6] = qdd + 3 * stride + start;
-        if (length < LANES) {
+        if (length < lanes) {
             for (size_t i = 0; i < 7; ++i) {
-                for (size_t k = 0; k < LANES; ++k) {
+                for (size_t k = 0; k < lanes; ++k) {
                     copy[i][k] = from[i][k < length ? k : 0];
                 }
                 from[i] = copy[i];
             }
         }
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             const float theta = from[0][k];
             const float phi = from[1][k];
             const float theta_dot = from[2][k];
@@ -171,9 +175,9 @@ size_t front_car_inverse_dynamics_batch_f(size_t count, size_t stride, const flo
             result[0][k] = t27;
             result[1][k] = t28;
         }
-        memcpy(bits, flag, sizeof bits);
+        memcpy(bits, flag, lanes * sizeof flag[0]);
         int32_t flags = 0;
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             flags |= bits[k];
         }
         for (size_t k = 0; k < length && status; ++k) {
@@ -239,6 +243,7 @@ size_t front_car_forward_dynamics_batch_f(size_t count, size_t stride, const flo
 #endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        const size_t lanes = (length + VECTOR - 1) / VECTOR * VECTOR;
         float copy[8][LANES]; /* the last states, the first of them repeated */
         float result[4][LANES];
         float flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -252,15 +257,15 @@ size_t front_car_forward_dynamics_batch_f(size_t count, size_t stride, const flo
         from[5] = qd + 3 * stride + start;
         from[6] = u + 0 * stride + start;
         from[7] = u + 1 * stride + start;
-        if (length < LANES) {
+        if (length < lanes) {
             for (size_t i = 0; i < 8; ++i) {
-                for (size_t k = 0; k < LANES; ++k) {
+                for (size_t k = 0; k < lanes; ++k) {
                     copy[i][k] = from[i][k < length ? k : 0];
                 }
                 from[i] = copy[i];
             }
         }
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             const float theta = from[0][k];
             const float phi = from[1][k];
             const float x_dot = from[2][k];
@@ -372,9 +377,9 @@ size_t front_car_forward_dynamics_batch_f(size_t count, size_t stride, const flo
             result[2][k] = t97;
             result[3][k] = t103;
         }
-        memcpy(bits, flag, sizeof bits);
+        memcpy(bits, flag, lanes * sizeof flag[0]);
         int32_t flags = 0;
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             flags |= bits[k];
         }
         for (size_t k = 0; k < length && status; ++k) {
@@ -440,6 +445,7 @@ size_t front_car_multipliers_batch_f(size_t count, size_t stride, const float *q
 #endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        const size_t lanes = (length + VECTOR - 1) / VECTOR * VECTOR;
         float copy[7][LANES]; /* the last states, the first of them repeated */
         float result[2][LANES];
         float flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -452,15 +458,15 @@ size_t front_car_multipliers_batch_f(size_t count, size_t stride, const float *q
         from[4] = qd + 2 * stride + start;
         from[5] = qd + 3 * stride + start;
         from[6] = u + 0 * stride + start;
-        if (length < LANES) {
+        if (length < lanes) {
             for (size_t i = 0; i < 7; ++i) {
-                for (size_t k = 0; k < LANES; ++k) {
+                for (size_t k = 0; k < lanes; ++k) {
                     copy[i][k] = from[i][k < length ? k : 0];
                 }
                 from[i] = copy[i];
             }
         }
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             const float theta = from[0][k];
             const float phi = from[1][k];
             const float x_dot = from[2][k];
@@ -577,9 +583,9 @@ size_t front_car_multipliers_batch_f(size_t count, size_t stride, const float *q
             result[0][k] = t111;
             result[1][k] = t112;
         }
-        memcpy(bits, flag, sizeof bits);
+        memcpy(bits, flag, lanes * sizeof flag[0]);
         int32_t flags = 0;
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             flags |= bits[k];
         }
         for (size_t k = 0; k < length && status; ++k) {

@@ -35,12 +35,15 @@ typedef char symgen_needs_no_fsingle_precision_constant[sizeof(0.1) == sizeof(do
 #endif
 
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
-#ifdef __clang__
+#if defined(__clang__) && !defined(SYMGEN_CONTRACT)
 #pragma STDC FP_CONTRACT OFF
 #endif
 
 /* States a block: the loop over a block has no branch and no call, so that compilers make vector code of it. */
 enum { LANES = 64 };
+
+/* States of a vector: those of the last block are rounded up to a multiple of it, which leaves no rest of a loop. */
+enum { VECTOR = 16 };
 
 /* States from which several threads share the blocks, where the compiler is told to (-fopenmp). */
 enum { MANY = 64 * LANES };
@@ -143,6 +146,7 @@ size_t rapkm_2rrr_rr_inverse_dynamics_batch(size_t count, size_t stride, const d
 #endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        const size_t lanes = (length + VECTOR - 1) / VECTOR * VECTOR;
         double copy[18][LANES]; /* the last states, the first of them repeated */
         double result[3][LANES];
         double flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -166,15 +170,15 @@ size_t rapkm_2rrr_rr_inverse_dynamics_batch(size_t count, size_t stride, const d
         from[15] = qdd + 3 * stride + start;
         from[16] = qdd + 4 * stride + start;
         from[17] = qdd + 5 * stride + start;
-        if (length < LANES) {
+        if (length < lanes) {
             for (size_t i = 0; i < 18; ++i) {
-                for (size_t k = 0; k < LANES; ++k) {
+                for (size_t k = 0; k < lanes; ++k) {
                     copy[i][k] = from[i][k < length ? k : 0];
                 }
                 from[i] = copy[i];
             }
         }
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             const double a_1 = from[0][k];
             const double a_2 = from[1][k];
             const double a_3 = from[2][k];
@@ -340,9 +344,9 @@ size_t rapkm_2rrr_rr_inverse_dynamics_batch(size_t count, size_t stride, const d
             result[1][k] = t160;
             result[2][k] = t162;
         }
-        memcpy(bits, flag, sizeof bits);
+        memcpy(bits, flag, lanes * sizeof flag[0]);
         int64_t flags = 0;
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             flags |= bits[k];
         }
         for (size_t k = 0; k < length && status; ++k) {
@@ -453,6 +457,7 @@ size_t rapkm_2rrr_rr_forward_dynamics_batch(size_t count, size_t stride, const d
 #endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        const size_t lanes = (length + VECTOR - 1) / VECTOR * VECTOR;
         double copy[15][LANES]; /* the last states, the first of them repeated */
         double result[6][LANES];
         double flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -473,15 +478,15 @@ size_t rapkm_2rrr_rr_forward_dynamics_batch(size_t count, size_t stride, const d
         from[12] = u + 0 * stride + start;
         from[13] = u + 1 * stride + start;
         from[14] = u + 2 * stride + start;
-        if (length < LANES) {
+        if (length < lanes) {
             for (size_t i = 0; i < 15; ++i) {
-                for (size_t k = 0; k < LANES; ++k) {
+                for (size_t k = 0; k < lanes; ++k) {
                     copy[i][k] = from[i][k < length ? k : 0];
                 }
                 from[i] = copy[i];
             }
         }
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             const double a_1 = from[0][k];
             const double a_2 = from[1][k];
             const double a_3 = from[2][k];
@@ -1253,9 +1258,9 @@ size_t rapkm_2rrr_rr_forward_dynamics_batch(size_t count, size_t stride, const d
             result[4][k] = t766;
             result[5][k] = t772;
         }
-        memcpy(bits, flag, sizeof bits);
+        memcpy(bits, flag, lanes * sizeof flag[0]);
         int64_t flags = 0;
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             flags |= bits[k];
         }
         for (size_t k = 0; k < length && status; ++k) {
@@ -1366,6 +1371,7 @@ size_t rapkm_2rrr_rr_multipliers_batch(size_t count, size_t stride, const double
 #endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        const size_t lanes = (length + VECTOR - 1) / VECTOR * VECTOR;
         double copy[15][LANES]; /* the last states, the first of them repeated */
         double result[4][LANES];
         double flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -1386,15 +1392,15 @@ size_t rapkm_2rrr_rr_multipliers_batch(size_t count, size_t stride, const double
         from[12] = u + 0 * stride + start;
         from[13] = u + 1 * stride + start;
         from[14] = u + 2 * stride + start;
-        if (length < LANES) {
+        if (length < lanes) {
             for (size_t i = 0; i < 15; ++i) {
-                for (size_t k = 0; k < LANES; ++k) {
+                for (size_t k = 0; k < lanes; ++k) {
                     copy[i][k] = from[i][k < length ? k : 0];
                 }
                 from[i] = copy[i];
             }
         }
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             const double a_1 = from[0][k];
             const double a_2 = from[1][k];
             const double a_3 = from[2][k];
@@ -2068,9 +2074,9 @@ size_t rapkm_2rrr_rr_multipliers_batch(size_t count, size_t stride, const double
             result[2][k] = t669;
             result[3][k] = t663;
         }
-        memcpy(bits, flag, sizeof bits);
+        memcpy(bits, flag, lanes * sizeof flag[0]);
         int64_t flags = 0;
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             flags |= bits[k];
         }
         for (size_t k = 0; k < length && status; ++k) {

@@ -30,12 +30,15 @@
 #endif
 
 /* GCC: compile with -std=c99 or -ffp-contract=off, so that results have the same bits everywhere. */
-#ifdef __clang__
+#if defined(__clang__) && !defined(SYMGEN_CONTRACT)
 #pragma STDC FP_CONTRACT OFF
 #endif
 
 /* States a block: the loop over a block has no branch and no call, so that compilers make vector code of it. */
 enum { LANES = 64 };
+
+/* States of a vector: those of the last block are rounded up to a multiple of it, which leaves no rest of a loop. */
+enum { VECTOR = 16 };
 
 /* States from which several threads share the blocks, where the compiler is told to (-fopenmp). */
 enum { MANY = 64 * LANES };
@@ -130,6 +133,7 @@ size_t rapkm_2rrr_rr_inverse_dynamics_batch_f(size_t count, size_t stride, const
 #endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        const size_t lanes = (length + VECTOR - 1) / VECTOR * VECTOR;
         float copy[18][LANES]; /* the last states, the first of them repeated */
         float result[3][LANES];
         float flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -153,15 +157,15 @@ size_t rapkm_2rrr_rr_inverse_dynamics_batch_f(size_t count, size_t stride, const
         from[15] = qdd + 3 * stride + start;
         from[16] = qdd + 4 * stride + start;
         from[17] = qdd + 5 * stride + start;
-        if (length < LANES) {
+        if (length < lanes) {
             for (size_t i = 0; i < 18; ++i) {
-                for (size_t k = 0; k < LANES; ++k) {
+                for (size_t k = 0; k < lanes; ++k) {
                     copy[i][k] = from[i][k < length ? k : 0];
                 }
                 from[i] = copy[i];
             }
         }
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             const float a_1 = from[0][k];
             const float a_2 = from[1][k];
             const float a_3 = from[2][k];
@@ -327,9 +331,9 @@ size_t rapkm_2rrr_rr_inverse_dynamics_batch_f(size_t count, size_t stride, const
             result[1][k] = t160;
             result[2][k] = t162;
         }
-        memcpy(bits, flag, sizeof bits);
+        memcpy(bits, flag, lanes * sizeof flag[0]);
         int32_t flags = 0;
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             flags |= bits[k];
         }
         for (size_t k = 0; k < length && status; ++k) {
@@ -440,6 +444,7 @@ size_t rapkm_2rrr_rr_forward_dynamics_batch_f(size_t count, size_t stride, const
 #endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        const size_t lanes = (length + VECTOR - 1) / VECTOR * VECTOR;
         float copy[15][LANES]; /* the last states, the first of them repeated */
         float result[6][LANES];
         float flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -460,15 +465,15 @@ size_t rapkm_2rrr_rr_forward_dynamics_batch_f(size_t count, size_t stride, const
         from[12] = u + 0 * stride + start;
         from[13] = u + 1 * stride + start;
         from[14] = u + 2 * stride + start;
-        if (length < LANES) {
+        if (length < lanes) {
             for (size_t i = 0; i < 15; ++i) {
-                for (size_t k = 0; k < LANES; ++k) {
+                for (size_t k = 0; k < lanes; ++k) {
                     copy[i][k] = from[i][k < length ? k : 0];
                 }
                 from[i] = copy[i];
             }
         }
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             const float a_1 = from[0][k];
             const float a_2 = from[1][k];
             const float a_3 = from[2][k];
@@ -1242,9 +1247,9 @@ size_t rapkm_2rrr_rr_forward_dynamics_batch_f(size_t count, size_t stride, const
             result[4][k] = t766;
             result[5][k] = t772;
         }
-        memcpy(bits, flag, sizeof bits);
+        memcpy(bits, flag, lanes * sizeof flag[0]);
         int32_t flags = 0;
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             flags |= bits[k];
         }
         for (size_t k = 0; k < length && status; ++k) {
@@ -1355,6 +1360,7 @@ size_t rapkm_2rrr_rr_multipliers_batch_f(size_t count, size_t stride, const floa
 #endif
     for (size_t start = 0; start < count; start += LANES) {
         const size_t length = count - start < LANES ? count - start : (size_t)LANES;
+        const size_t lanes = (length + VECTOR - 1) / VECTOR * VECTOR;
         float copy[15][LANES]; /* the last states, the first of them repeated */
         float result[4][LANES];
         float flag[LANES]; /* 0 where a check passed and the result is finite */
@@ -1375,15 +1381,15 @@ size_t rapkm_2rrr_rr_multipliers_batch_f(size_t count, size_t stride, const floa
         from[12] = u + 0 * stride + start;
         from[13] = u + 1 * stride + start;
         from[14] = u + 2 * stride + start;
-        if (length < LANES) {
+        if (length < lanes) {
             for (size_t i = 0; i < 15; ++i) {
-                for (size_t k = 0; k < LANES; ++k) {
+                for (size_t k = 0; k < lanes; ++k) {
                     copy[i][k] = from[i][k < length ? k : 0];
                 }
                 from[i] = copy[i];
             }
         }
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             const float a_1 = from[0][k];
             const float a_2 = from[1][k];
             const float a_3 = from[2][k];
@@ -2061,9 +2067,9 @@ size_t rapkm_2rrr_rr_multipliers_batch_f(size_t count, size_t stride, const floa
             result[2][k] = t669;
             result[3][k] = t663;
         }
-        memcpy(bits, flag, sizeof bits);
+        memcpy(bits, flag, lanes * sizeof flag[0]);
         int32_t flags = 0;
-        for (size_t k = 0; k < LANES; ++k) {
+        for (size_t k = 0; k < lanes; ++k) {
             flags |= bits[k];
         }
         for (size_t k = 0; k < length && status; ++k) {
