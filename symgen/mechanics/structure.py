@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from math import comb
 
 from symgen.linear_algebra.blocks import ConnectedComponent, ConstraintBlock, components, named
+from symgen.mechanics.free_fall import falls_freely
 from symgen.mechanics.genericity import Genericity, at_configurations, rank
 from symgen.mechanics.system import System
 from symgen.mechanics.workless_forces import workless_forces
@@ -149,6 +150,8 @@ def _borne_forces(model: Model, generic: Genericity) -> Iterator[Decision]:
         others = bool(workless.terms) + len(workless.forces) + len(workless.loads)
         parts = [*(["weights"] if workless.weights else []), *([counted(others, "force")] if others else [])]
         yield Decision(f"{' and '.join(parts)} in u and q̈", "constraints bear them whatever the configuration")
+    if falls_freely(model):
+        yield Decision("weights in λ", "the system falls freely, all of it alike")
 
 
 def _inertia_decisions(mechanics: System) -> Iterator[Decision]:

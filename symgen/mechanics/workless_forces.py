@@ -73,7 +73,7 @@ def workless_forces(model: Model, generic: Genericity) -> WorklessForces:
     names = [c.name for c in model.coordinates]
     axes = [tuple(mechanics.graph.const(int(c.coordinate == name)) for name in names) for c in model.applied_forces]
     return WorklessForces(
-        weights=weighs and mechanics.bodies.weights_work and borne.is_one(_weights(mechanics)),
+        weights=weighs and mechanics.bodies.weights_work and borne.is_one(weights(mechanics)),
         terms=frozenset(_terms(mechanics, borne)) if stores else frozenset(),
         forces=frozenset(k for k, one in enumerate(model.forces) if borne.is_one(mechanics.worked_on(one.velocity))),
         loads=frozenset(k for k, axis in enumerate(axes) if borne.is_one(axis)),
@@ -132,7 +132,8 @@ def _whole(point: ExactValues, vector: Vector) -> list[int] | None:
     return whole if len(whole) == len(values) else None
 
 
-def _weights(mechanics: System) -> Vector:
+def weights(mechanics: System) -> Vector:
+    """The slopes of the potential of all bodies' weights."""
     return tuple(gradient(mechanics.graph, mechanics.bodies.potential_energy, mechanics.q))
 
 

@@ -14,7 +14,6 @@ from typing import TypeAlias
 
 from symgen.mechanics.genericity import Genericity, genericity
 from symgen.mechanics.system import System
-from symgen.mechanics.workless_forces import WITHOUT_WORKLESS
 from symgen.methods.admission import FAILS, Validity
 from symgen.methods.driven_blocks import where_inputs_act
 from symgen.methods.forward_dynamics.minor_motion import CANCELLATION_WORTH
@@ -89,9 +88,9 @@ class Methods:
     def _workspace(self, quantity: str, name: str) -> Workspace:
         """Of u without the rows and forces that it does not depend on; what is compared with it has all of them."""
         compared = any(row.name == name and row.use is Use.COMPARISON for row in methods(quantity))
-        if compared or quantity not in WITHOUT_WORKLESS:
+        if compared:
             return self.workspace
-        return self._of_inputs if quantity == INPUTS else self.workspace.relieved
+        return self._of_inputs if quantity == INPUTS else self.workspace.of(quantity)
 
     def choose(self, quantity: str, name: str = AUTO) -> tuple[Candidate, MethodChoice] | str:
         """The method asked for, or the cheapest valid one; why there is none by that name."""
@@ -134,6 +133,7 @@ class Methods:
         """Lets go of what several quantities share; it is derived again where it is asked for."""
         self.workspace.motions.clear()
         self.workspace.relieved.motions.clear()
+        self.workspace.weightless.motions.clear()
         self._candidates = {key: one for key, one in self._candidates.items() if key[0] == INPUTS}
 
     def _cheapest(self, quantity: str) -> tuple[Candidate, MethodChoice] | str:

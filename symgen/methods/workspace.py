@@ -6,13 +6,20 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from symgen.mechanics.free_fall import falls_freely
 from symgen.mechanics.genericity import Genericity, configurations
 from symgen.mechanics.system import System
-from symgen.mechanics.workless_forces import without_workless_forces, workless_forces
+from symgen.mechanics.workless_forces import (
+    WITHOUT_WORKLESS,
+    WorklessForces,
+    without_workless_forces,
+    workless_forces,
+)
 from symgen.methods.derivation import Derivation
 from symgen.methods.spaces import along_minors
 from symgen.methods.system import MethodInput
 from symgen.model.model import Model
+from symgen.model.quantities import MULTIPLIERS
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost
 
@@ -55,6 +62,19 @@ class Workspace:
         """Of what does not depend on forces that the rows bear: without these, or the same where there are none."""
         workless = workless_forces(self.model, self.generic)
         return Workspace(without_workless_forces(self.model, workless), self.generic) if workless else self
+
+    @cached_property
+    def weightless(self) -> Workspace:
+        """Of what does not depend on weights where the system falls freely, or the same where it does not."""
+        if not falls_freely(self.model):
+            return self
+        return Workspace(without_workless_forces(self.model, WorklessForces(weights=True)), self.generic)
+
+    def of(self, quantity: str) -> Workspace:
+        """The one without the forces that a quantity does not depend on."""
+        if quantity == MULTIPLIERS:
+            return self.weightless
+        return self.relieved if quantity in WITHOUT_WORKLESS else self
 
     @cached_property
     def points(self) -> list[dict[str, float]]:

@@ -210,6 +210,7 @@ MAIN = tuple(quantity.name for quantity in QUANTITIES if quantity.main)
 """u, q̈ and λ, which take methods of their own and have kernels for many states."""
 MOTIONS = MAIN[1:]
 """q̈ and λ, which follow from inputs: methods make them together."""
+MULTIPLIERS = MOTIONS[1]
 # Whose columns have names: those of the inertial parameters.
 REGRESSOR = "regressor"
 # The columns of this one are some of these, and belong to combinations that `explain` tells of by their name.

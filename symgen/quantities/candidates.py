@@ -11,7 +11,6 @@ from functools import partial
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.mechanics.system import System
-from symgen.mechanics.workless_forces import WITHOUT_WORKLESS
 from symgen.methods.admission import Validity
 from symgen.methods.derivation import Derivation
 from symgen.methods.derivatives.differentiated import FUNCTIONS, derivatives
@@ -50,9 +49,7 @@ class Candidates:
         self._mechanics, self._generic = mechanics, generic
         self._system = MethodInput(mechanics, generic)
         self._methods, self._everything = methods, everything
-        relieved = methods.workspace.relieved.model
-        self._own = _NullSpaces(mechanics, generic)
-        self._relieved = self._own if relieved is methods.workspace.model else _NullSpaces(System(relieved), generic)
+        self._spaces = {methods.workspace: _NullSpaces(mechanics, generic)}
         wanted = {*asked, *(FUNCTIONS[name] for name in asked if name in FUNCTIONS)}
         moving = [name for name in MOTIONS if name in wanted]
         with working("articulated inertias"):
@@ -104,7 +101,10 @@ class Candidates:
 
     def _along_spaces(self, quantity: str) -> _NullSpaces:
         """What a quantity is derived along: without the forces that it does not depend on."""
-        return self._relieved if quantity in WITHOUT_WORKLESS else self._own
+        workspace = self._methods.workspace.of(quantity)
+        if workspace not in self._spaces:
+            self._spaces[workspace] = _NullSpaces(System(workspace.model), self._generic)
+        return self._spaces[workspace]
 
     def _along(self, entry: CatalogueEntry, space: str, derivation: Derivation) -> Candidate:
         """A quantity along a null space, q_ddot and lambda by the method that counts least there."""
@@ -189,7 +189,7 @@ class Candidates:
         cancels = self._generic.rank < self._generic.r or (of_task and self._mechanics.model.task_leaves.rates > 0)
         if cancels or not 0 < _counted(minors) <= FACTORING_LIMIT:
             return None
-        kept = self._own.derivations["minors"].whole
+        kept = self._spaces[self._methods.workspace].derivations["minors"].whole
         outputs = self._mechanics.factoring.shorten(minors.derived.outputs, kept)
         return replace(minors, derived=replace(minors.derived, outputs=outputs), along="factored")
 

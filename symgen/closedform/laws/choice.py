@@ -9,7 +9,7 @@ from symgen.closedform.algebra.limits import TooLargeError
 from symgen.closedform.forms import ClosedForm, ClosedForms
 from symgen.closedform.laws.bases import short_basis
 from symgen.closedform.laws.chain_rule import JACOBIAN, law_by_chain_rule
-from symgen.closedform.laws.driven import INPUTS, MULTIPLIERS, laws_of_driven_coordinates
+from symgen.closedform.laws.driven import INPUTS, laws_of_driven_coordinates
 from symgen.closedform.laws.known import KnownNames
 from symgen.closedform.laws.projections import (
     INVERSE,
@@ -22,6 +22,7 @@ from symgen.closedform.laws.projections import (
 )
 from symgen.closedform.laws.terms import MatrixLaw
 from symgen.model.model import Model
+from symgen.model.quantities import MULTIPLIERS
 
 Laws: TypeAlias = Mapping[str, tuple[MatrixLaw, ...]]
 Group: TypeAlias = tuple[MatrixLaw, ...]

@@ -22,11 +22,12 @@ from symgen.closedform.laws.terms import (
     flipped,
     product,
 )
+from symgen.model.quantities import MULTIPLIERS
 
 LONGEST_LISTED_LOAD = 100
 """A load tau with more terms than this stays G qdd + C qd + Q - Q_a, whose parts are printed."""
 
-INPUTS, MULTIPLIERS = "inverse_dynamics", "multipliers"
+INPUTS = "inverse_dynamics"
 
 
 def driven_coordinates(exact: Exact) -> tuple[int, ...] | None:

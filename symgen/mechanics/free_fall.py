@@ -1,0 +1,79 @@
+"""Systems that fall freely: their weights accelerate all of them alike, and load no row and no joint.
+
+Then weights are -G e, where e is an acceleration of the coordinates that is constant, and that no row touches: B e = 0.
+With q_ddot = a + e weights are gone from the motion equations of a, and the rows bear the same, on the constraints and
+off them.  In floating point they would leave a rounding of themselves in lambda, which is all there is near rest.
+
+It is an identity in coordinates and parameters, and decided where these are residues at random (Schwartz and Zippel).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import TypeAlias
+
+from symgen.linear_algebra.residue_rows import ReducedRows, with_row
+from symgen.mechanics.system import System
+from symgen.mechanics.workless_forces import weights
+from symgen.model.mechanism import NO_VECTOR
+from symgen.model.model import Model
+from symgen.symbolic.angles.circle import FIELD
+from symgen.symbolic.exact import Element, ExactValues
+from symgen.symbolic.scalar import Scalar
+from symgen.symbolic.translate import translate
+
+# Of each coordinate that falls: along which axis of the ground, and whether it counts upwards.
+_Fall: TypeAlias = tuple[tuple[int, int] | None, ...]
+# Points that are compared.
+_SEEDS = (1, 2)
+
+
+@lru_cache(maxsize=1)
+def falls_freely(model: Model) -> bool:
+    """Whether lambda does not depend on the weights of bodies; no where friction grows with what the rows bear."""
+    if not model.constraints or model.rough or model.mechanism.gravity == NO_VECTOR:
+        return False
+    mechanics = System(model)
+    free = [j for j in range(mechanics.n) if all(row[j].is_zero for row in mechanics.constraint_jacobian)]
+    if not free or not mechanics.bodies.weights_work:
+        return False
+    falls = {_fall(mechanics, free, ExactValues(seed, signs=False)) for seed in _SEEDS}
+    return len(falls) == 1 and None not in falls
+
+
+def _fall(mechanics: System, free: Sequence[int], point: ExactValues) -> _Fall | None:
+    """How free coordinates fall at a point; None where weights are no such -G e."""
+    gravity = [translate(mechanics.graph, entry, mechanics.names) for entry in mechanics.model.mechanism.gravity]
+    ground = _pairs(point, gravity)
+    loads = _pairs(point, weights(mechanics))
+    columns = [_pairs(point, [row[j] for row in mechanics.mass_matrix]) for j in free]
+    if ground is None or loads is None or None in columns:
+        return None
+    reduced: ReducedRows = {}
+    for i, load in enumerate(loads):
+        for part in range(2):
+            entries = [column[i][part] for column in columns if column is not None]
+            reduced = with_row(reduced, [*entries, load[part]], FIELD.prime)
+    if len(free) in reduced:
+        return None
+    rates = [-reduced[k][-1] % FIELD.prime if k in reduced else 0 for k in range(len(free))]
+    made = [_axis(rate, [value for value, _ in ground]) for rate in rates]
+    known = [one for one in made if one is not None]
+    return tuple(None if axis < 0 else (axis, sign) for axis, sign in known) if len(known) == len(made) else None
+
+
+def _axis(rate: int, gravity: Sequence[int]) -> tuple[int, int] | None:
+    """Which entry of gravity an acceleration is, and its sign; the entry -1 for none, None for another number."""
+    if rate == 0:
+        return -1, 0
+    alike = ((axis, sign) for axis, g in enumerate(gravity) for sign in (1, -1) if (rate - sign * g) % FIELD.prime == 0)
+    return next(alike, None)
+
+
+def _pairs(point: ExactValues, entries: Sequence[Scalar]) -> list[tuple[int, int]] | None:
+    """The values a + b i at a point; None where one is not known."""
+    values: list[Element] = [value for value in point(entries) if value is not None]
+    if len(values) < len(entries):
+        return None
+    return [(value, 0) if isinstance(value, int) else value for value in values]
