@@ -19,14 +19,11 @@ from symgen.mechanics.workless_forces import weights
 from symgen.model.mechanism import NO_VECTOR
 from symgen.model.model import Model
 from symgen.symbolic.angles.circle import FIELD
-from symgen.symbolic.exact import Element, ExactValues
-from symgen.symbolic.scalar import Scalar
+from symgen.symbolic.exact import ExactValues
 from symgen.symbolic.translate import translate
 
 # Of each coordinate that falls: along which axis of the ground, and whether it counts upwards.
 _Fall: TypeAlias = tuple[tuple[int, int] | None, ...]
-# Points that are compared.
-_SEEDS = (1, 2)
 
 
 @lru_cache(maxsize=1)
@@ -38,16 +35,15 @@ def falls_freely(model: Model) -> bool:
     free = [j for j in range(mechanics.n) if all(row[j].is_zero for row in mechanics.constraint_jacobian)]
     if not free or not mechanics.bodies.weights_work:
         return False
-    falls = {_fall(mechanics, free, ExactValues(seed, signs=False)) for seed in _SEEDS}
+    falls = {_fall(mechanics, free, ExactValues(seed, signs=False)) for seed in (1, 2)}
     return len(falls) == 1 and None not in falls
 
 
 def _fall(mechanics: System, free: Sequence[int], point: ExactValues) -> _Fall | None:
     """How free coordinates fall at a point; None where weights are no such -G e."""
     gravity = [translate(mechanics.graph, entry, mechanics.names) for entry in mechanics.model.mechanism.gravity]
-    ground = _pairs(point, gravity)
-    loads = _pairs(point, weights(mechanics))
-    columns = [_pairs(point, [row[j] for row in mechanics.mass_matrix]) for j in free]
+    ground, loads = point.pairs(gravity), point.pairs(weights(mechanics))
+    columns = [point.pairs([row[j] for row in mechanics.mass_matrix]) for j in free]
     if ground is None or loads is None or None in columns:
         return None
     reduced: ReducedRows = {}
@@ -69,11 +65,3 @@ def _axis(rate: int, gravity: Sequence[int]) -> tuple[int, int] | None:
         return -1, 0
     alike = ((axis, sign) for axis, g in enumerate(gravity) for sign in (1, -1) if (rate - sign * g) % FIELD.prime == 0)
     return next(alike, None)
-
-
-def _pairs(point: ExactValues, entries: Sequence[Scalar]) -> list[tuple[int, int]] | None:
-    """The values a + b i at a point; None where one is not known."""
-    values: list[Element] = [value for value in point(entries) if value is not None]
-    if len(values) < len(entries):
-        return None
-    return [(value, 0) if isinstance(value, int) else value for value in values]

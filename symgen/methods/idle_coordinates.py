@@ -14,16 +14,13 @@ from symgen.symbolic.angles.circle import FIELD
 from symgen.symbolic.exact import ExactValues
 from symgen.symbolic.matrix import Matrix, identity
 
-# Points at which rows are compared: one that is no such sum is so nearly everywhere.
-_SEEDS = (1, 2)
-
 
 def idle_coordinates(mechanics: System, generic: Genericity) -> frozenset[int]:
     """The numbers of coordinates that B depends on and N_B does not, on V and off it; none where that is not known."""
     graph, rows = mechanics.graph, mechanics.constraint_jacobian
     turned = {j: mechanics.constraint_jacobian_dot(axis) for j, axis in enumerate(identity(graph, mechanics.n))}
     idle = {j for j, turning in turned.items() if any(not x.is_zero for row in turning for x in row)}
-    for seed in _SEEDS:
+    for seed in (1, 2):
         point = ExactValues(seed)
         reduced: ReducedRows = {}
         for row in _residues(point, rows) or ():
@@ -46,9 +43,8 @@ def _residues(point: ExactValues, rows: Matrix) -> list[list[int]] | None:
     """
     residues = []
     for row in rows:
-        values = [value for value in point(row) if value is not None]
-        if len(values) < len(row):
+        pairs = point.pairs(row)
+        if pairs is None:
             return None
-        pairs = [(value, 0) if isinstance(value, int) else value for value in values]
         residues += [[a for a, _ in pairs] + [b for _, b in pairs], [-b for _, b in pairs] + [a for a, _ in pairs]]
     return residues

@@ -132,6 +132,11 @@ class ExactValues:
                 known[node] = self._value(node)
         return [self._known[output] for output in outputs]
 
+    def pairs(self, outputs: Sequence[Scalar]) -> list[tuple[int, int]] | None:
+        """The outputs' values a + b i as a and b; None where one of them is not known."""
+        values = [value for value in self(outputs) if value is not None]
+        return [_parts(value) for value in values] if len(values) == len(outputs) else None
+
     def any_root_in(self, outputs: Sequence[Scalar]) -> bool:
         """Whether a root was taken of a + b i: any number stands for it, whose square is another."""
         roots = self._any_root if self._inside is None else self._any_root | self._inside._any_root
