@@ -99,10 +99,10 @@ def _kernels(plan: StudyPlan, partial: Path, progress: Progress) -> Result:
     """As an interrupted study of the same kernels has verified them, else verified now."""
     known = kept_settings(partial)
     if known == settings_of(plan, str(known.get("kernels_hash"))) and (partial / _record(plan)).is_file():
-        result = verified_result(plan.request.model, plan.kernels, partial / RECORD_FOLDER, progress)
+        result = verified_result(plan.request.model, plan.kernels, partial / RECORD_FOLDER, progress, plan.scalars)
         if kernels_hash(result) == known["kernels_hash"]:
             return result
-    return verified_result(plan.request.model, plan.kernels, None, progress)
+    return verified_result(plan.request.model, plan.kernels, None, progress, plan.scalars)
 
 
 def _announce(work: StudyWork, run: StudyRun) -> None:

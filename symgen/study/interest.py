@@ -15,6 +15,7 @@ from symgen.model.model import Model
 from symgen.study.asked.request import (
     CONTROL,
     DRIVE_SPEED,
+    FLOAT32,
     INPUTS,
     MOTOR_TORQUE,
     POWER,
@@ -78,6 +79,9 @@ def _interests(model: Model, name: str) -> tuple[Interest, ...]:
     drives, units = tuple(one.name for one in model.inputs), tuple(one.unit or "" for one in model.inputs)
     if name == INPUTS:
         return (Interest(INPUTS, "inputs that produce the motion", "input", drives, units),)
+    if name == FLOAT32:
+        about = "how far each input in float32 is from that in float64: states, parameters and operations are rounded"
+        return (Interest(FLOAT32, about, "input", drives, units),)
     if name == POWER:
         watts = tuple("W" if unit in ("N", "N*m") else "" for unit in units)
         return (Interest(POWER, "power of each input, force times velocity along it", "input", drives, watts),)
@@ -175,6 +179,14 @@ class BlockValues:
         return np.asarray(np.moveaxis(self._of_points("qd"), 1, 2))
 
     @property
+    def float32_errors(self) -> Array:
+        """Of each input, points x m x states."""
+        states = self._states
+        assert self._kernels.float32_inputs is not None
+        single = self._kernels.float32_inputs.over(states.parts, states.group, states.parameters)
+        return np.abs(single - self.entries("inverse_dynamics"))
+
+    @property
     def drive_speeds(self) -> Array:
         """Of the drives that a motor can sit at, points x drives x states."""
         rates = self._of_points("qd")
@@ -255,6 +267,7 @@ _EVALUATED: dict[str, Callable[[BlockValues], Array]] = {
     SINGULARITY: lambda block: block.entries("singularity"),
     CHOICE: _determinants,
     SENSITIVITY: _sensitivity,
+    FLOAT32: lambda block: block.float32_errors,
     CONTROL: _smallest_singular_value,
     UTILISATION: lambda block: block.entries("utilisation"),
     REACH: lambda block: block.reached,

@@ -18,9 +18,11 @@ from numpy.typing import NDArray
 from symgen.backends.locals import array_arguments
 from symgen.diagnostics import SymgenBug
 from symgen.generation.results import Options, Result, WrongUseError
-from symgen.ir.kernel import Kernel
+from symgen.ir.kernel import Kernel, Scalar
 from symgen.model.model import Model
 from symgen.pipeline import generate
+from symgen.study.float32_inputs import QUANTITY as SINGLE_INPUTS
+from symgen.study.float32_inputs import Float32Inputs
 from symgen.study.loops import loops_source, over_name, reduced_name, walk_name
 from symgen.verify.running.compile import Compilation, CompilationError, Compiler, CSource, find_compiler
 from symgen.verify.running.sources import generated_sources
@@ -49,21 +51,29 @@ class NoKernelsError(Exception):
     """Verification rejects a kernel of the study, or a worker makes other ones; the text says why."""
 
 
-def verified_result(path: Path, quantities: Sequence[str], record: Path | None, progress: Progress) -> Result:
+def verified_result(
+    path: Path,
+    quantities: Sequence[str],
+    record: Path | None,
+    progress: Progress,
+    scalars: tuple[Scalar, ...] = ("float64",),
+) -> Result:
     """The C of the quantities, verified; what verification led to is taken from `record`/<model> where that is given.
 
+    In float32 only the inputs are needed, whatever becomes of others there.
     Raises ModelError, NoKernelsError where a kernel is rejected, WrongUseError where the model does not have one.
     """
     options = Options(
         outputs=tuple(quantities),
-        scalars=("float64",),
+        scalars=scalars,
         parts=("c",),
         verify=record is None,
         measured=record,
         as_recorded=record is not None,
     )
     result = generate(path, options, progress)
-    reasons = [*result.failures, *(f"{one.quantity}: {one.remedy}" for one in result.left_out)]
+    lacking = (one for one in result.left_out if "float64" in one.scalars or one.quantity == SINGLE_INPUTS)
+    reasons = [*result.failures, *(f"{one.quantity}: {one.remedy}" for one in lacking)]
     if reasons:
         raise NoKernelsError("\n  ".join(("verification rejects what the study needs", *reasons)))
     made = {kernel.name for kernel in result.programs["float64"].kernels}
@@ -91,6 +101,8 @@ class StudyKernels:
         loops = (f"{source.stem}_study.c", loops_source(self.model, program.kernels))
         used = [(name, text) for name, text in source.companions if "_batch" in name]
         self._rooms = local()
+        self.float32_inputs = Float32Inputs(result, _compiled) if "float32" in result.programs else None
+        """Where the study is made in both types."""
         self._library = _compiled(CSource(source.stem, source.header, source.source, (*used, loops)))
 
     def over(self, name: str, parts: Mapping[str, Array], group: NDArray[np.uintp], p: Array) -> tuple[Array, Codes]:

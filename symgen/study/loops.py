@@ -10,7 +10,7 @@ import math
 from collections.abc import Sequence
 from textwrap import dedent
 
-from symgen.backends.c.batch import BLOCK
+from symgen.backends.c.batch import VECTOR
 from symgen.backends.c.endings import BATCH
 from symgen.backends.c.names import global_name
 from symgen.backends.locals import array_arguments
@@ -19,8 +19,8 @@ from symgen.ir.kernel import Kernel
 from symgen.model.model import Model
 from symgen.study.reducing_loops import BINS, REDUCTIONS
 
-# States beyond full blocks from which on the kernel for many states takes them, too: it fills their block up.
-FEWEST_BATCHED = 16
+# States beyond full vectors from which on the kernel for many states takes them, too: it fills their vector up.
+FEWEST_BATCHED = 6
 # Of the way from the model's configuration: the first step of a walk.
 FIRST_STEP = 0.125
 # Of the way, the step below which a walk gives up.
@@ -79,7 +79,7 @@ def _over(model: Model, kernel: Kernel) -> str:
         starts = ", ".join(f"{a.name}_all + group[point] * {a.length} * count" for a in arguments)
         function = global_name(model.c_name, "float64", kernel.name, BATCH)
         begin, many = "begin", (
-            f"        const size_t begin = count % {BLOCK} < {FEWEST_BATCHED} ? count - count % {BLOCK} : count;\n"
+            f"        const size_t begin = count % {VECTOR} < {FEWEST_BATCHED} ? count - count % {VECTOR} : count;\n"
             f"        if (begin) {{\n            {function}(begin, count, {starts}, p_all + point,\n"
             f"                result_all + point * {size} * count, status_all + point * count);\n        }}\n"
         )

@@ -7,11 +7,13 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from symgen.diagnostics import Span
+from symgen.ir.kernel import Scalar
 from symgen.model.expressions.names import did_you_mean
 from symgen.model.model import Model
 from symgen.study.asked.request import (
     CONTROL,
     DRIVE_SPEED,
+    FLOAT32,
     GRID,
     INPUTS,
     MOTOR_TORQUE,
@@ -40,6 +42,7 @@ KERNELS = {
     POWER: ("inverse_dynamics", "control_matrix"),
     SINGULARITY: ("singularity", "constraint_jacobian", "control_matrix"),
     SENSITIVITY: ("inverse_dynamics_parameter_jacobian",),
+    FLOAT32: ("inverse_dynamics",),
     CONTROL: ("projected_control_matrix",),
     UTILISATION: ("utilisation",),
     REACH: (),
@@ -86,6 +89,11 @@ class StudyPlan:
         lacking = {name for name, count in counts.items() if not count}
         named = dict.fromkeys((*placing, *(name for one in self.shown for name in KERNELS[one])))
         return tuple(name for name in named if name not in lacking) or NO_KERNEL_NEEDED
+
+    @property
+    def scalars(self) -> tuple[Scalar, ...]:
+        """The types that kernels are made in."""
+        return ("float64", "float32") if FLOAT32 in self.shown else ("float64",)
 
     @property
     def one_machine(self) -> bool:
@@ -200,7 +208,7 @@ def _check_shown(model: Model, name: str, span: Span | None, mistakes: StudyMist
     """A quantity that the model cannot have."""
     if name not in SHOWN:
         _check_name(mistakes, "show", name, SHOWN, "quantity of interest", span)
-    elif name in (INPUTS, POWER, SENSITIVITY, CONTROL, UTILISATION) and not model.m:
+    elif name in (INPUTS, POWER, SENSITIVITY, FLOAT32, CONTROL, UTILISATION) and not model.m:
         mistakes.wrong("show", f"`{name}` needs inputs, of which the model has none", "give it `inputs`", span)
     elif name == SENSITIVITY and not model.parameters:
         mistakes.wrong("show", f"`{name}` is by parameters, of which the model has none", "give it `parameters`", span)

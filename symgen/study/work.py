@@ -168,7 +168,7 @@ def work_in_process(assignment: Assignment, number: int) -> ChunkOutcome:
 @lru_cache(maxsize=1)
 def _study_work(assignment: Assignment) -> StudyWork:
     plan = planned_study(load_model(assignment.request.model), assignment.request, StudyMistakes())
-    result = verified_result(assignment.request.model, plan.kernels, assignment.record, lambda _: None)
+    result = verified_result(assignment.request.model, plan.kernels, assignment.record, lambda _: None, plan.scalars)
     if kernels_hash(result) != assignment.kernels:
         message = "a worker makes other kernels of the model file: it has another symgen, or the file has changed"
         raise NoKernelsError(message)

@@ -11,6 +11,7 @@ from study_packages import dask, xarray
 
 from symgen.backends.python.module import emit_python
 from symgen.generation.results import Options, Result
+from symgen.ir.kernel import Scalar
 from symgen.model.load import load_model
 from symgen.pipeline import generate
 from symgen.study.asked.options import request_of
@@ -67,19 +68,19 @@ def arm_file() -> Path:
 
 
 @cache
-def _result(model: Path, kernels: tuple[str, ...]) -> Result:
-    options = Options(outputs=kernels, scalars=("float64",), parts=("c",), verify=False)
+def _result(model: Path, kernels: tuple[str, ...], scalars: tuple[Scalar, ...] = ("float64",)) -> Result:
+    options = Options(outputs=kernels, scalars=scalars, parts=("c",), verify=False)
     return generate(model, options, lambda _: None)
 
 
 def result_of(plan: StudyPlan) -> Result:
     """The C of a plan's kernels."""
-    return _result(plan.request.model, plan.kernels)
+    return _result(plan.request.model, plan.kernels, plan.scalars)
 
 
 @cache
-def _compiled(model: Path, kernels: tuple[str, ...]) -> StudyKernels:
-    return StudyKernels(_result(model, kernels))
+def _compiled(model: Path, kernels: tuple[str, ...], scalars: tuple[Scalar, ...] = ("float64",)) -> StudyKernels:
+    return StudyKernels(_result(model, kernels, scalars))
 
 
 def plan_of(
@@ -94,7 +95,7 @@ def plan_of(
 
 def study_of(folder: Path, plan: StudyPlan) -> StudyWork:
     """Work on a plan, begun in a folder."""
-    result, kernels = (make(plan.request.model, plan.kernels) for make in (_result, _compiled))
+    result, kernels = (make(plan.request.model, plan.kernels, plan.scalars) for make in (_result, _compiled))
     chunks = chunk_grid(plan)
     store = StudyStore(folder, plan, chunks)
     store.begin(settings_of(plan, kernels_hash(result)), {})

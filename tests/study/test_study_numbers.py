@@ -11,6 +11,9 @@ from studied_arm import SHIPPED, plan_of, python_kernels, result_of, results_of
 from symgen.study.chunks import chunk_grid, chunk_values
 from symgen.study.kernels import StudyKernels
 from symgen.study.states import StudyStates
+from symgen.verify.interpreted import outcomes
+from symgen.verify.reference.reference import State
+from symgen.verify.sampling.states import in_scalar
 
 pytestmark = pytest.mark.toolchain
 
@@ -40,6 +43,31 @@ def test_inputs_along_a_path_are_those_of_the_python_kernels(tmp_path: Path) -> 
             power = u * np.einsum("...ij,...i", module.control_matrix(q, p), qd)
             assert np.allclose(here.power_max.values, power.max(axis=0), rtol=1e-13)
             assert here.valid.values == 41
+
+
+@pytest.mark.parametrize("along", [("swing",), ()])
+def test_errors_in_float32_are_those_of_its_kernel_by_interpretation(tmp_path: Path, along: tuple[str, ...]) -> None:
+    over = ["m=1:8:3", "l=0.3:0.8:2"] if along else ["a=-1:1:5", "b=0.4:2.4:7", "m=1:8:3"]
+    plan = plan_of(over, "float32,inputs", along=along)
+    results = results_of(tmp_path / "partial", plan)
+    made = result_of(plan)
+    module, single = python_kernels(plan.kernels), made.programs["float32"]
+    kernel = next(one for one in single.kernels if one.name == "inverse_dynamics")
+    axes = [np.linspace(one.axis.first, one.axis.last, one.axis.count or 1) for one in plan.over]
+    values = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
+    states = StudyStates(plan, StudyKernels(made)).of(values)
+    largest = []
+    for k in range(len(values)):
+        p = states.parameters[k]
+        parts = [part[states.group[k]].T for part in states.parts.values()]
+        given = [State(*(tuple(map(float, row)) for row in rows), (), tuple(p)) for rows in zip(*parts, strict=True)]
+        short = outcomes(kernel, single.sincos, "float32", [in_scalar(state, "float32") for state in given])
+        long = module.inverse_dynamics(*parts, module.Parameters(*p))
+        largest.append(np.abs(np.array([one.entries for one in short]) - long).max(axis=0))
+    shown = (results.float32_largest if along else results.float32).values.reshape(len(values), -1)
+    assert (shown == np.array(largest)).all()
+    assert (shown > 0).any()
+    assert (shown < 1e-5 * 8 * 9.81).all()
 
 
 def test_coordinates_of_a_machine_without_loops(tmp_path: Path) -> None:
