@@ -17,6 +17,7 @@ from symgen.study.asked.request import (
     DRIVE_SPEED,
     FLOAT32,
     INPUTS,
+    MODES,
     MOTOR_TORQUE,
     POWER,
     REACH,
@@ -24,6 +25,7 @@ from symgen.study.asked.request import (
     SINGULARITY,
     UTILISATION,
 )
+from symgen.study.assembly_modes import assembly_modes
 from symgen.study.chunks import Array
 from symgen.study.kernels import Codes, StudyKernels
 from symgen.study.plan import KERNELS, StudyPlan
@@ -32,14 +34,15 @@ from symgen.study.states import BlockStates
 
 # Choices of as many inputs as there are degrees of freedom whose determinants are shown.
 MOST_CHOICES_SHOWN = 20
-CHOICE = "choice"
+CHOICE, MODE_COUNT = "choice", "mode_count"
 
 
 @dataclass(frozen=True, slots=True)
 class Interest:
     """A variable of the results: `channels` along a dimension of that name, if there are several, with their units.
 
-    `smallest` says that small magnitudes are the bad ones; `signed` that it changes its sign where it vanishes.
+    `smallest` says that small magnitudes are the bad ones; `signed` that it changes its sign where it vanishes;
+    `counted` that it is a whole number, of which none is bad.
     """
 
     name: str
@@ -49,6 +52,7 @@ class Interest:
     units: tuple[str, ...]
     smallest: bool = False
     signed: bool = False
+    counted: bool = False
 
     @property
     def unit(self) -> str:
@@ -62,7 +66,13 @@ def interests(plan: StudyPlan) -> tuple[Interest, ...]:
 
 
 def _sized(plan: StudyPlan, name: str) -> tuple[Interest, ...]:
-    """What motors are sized by."""
+    """What depends on more than the model: its assembly modes at the start, and what motors are sized by."""
+    if name == MODES:
+        count = len(assembly_modes(plan.model, plan.placing == "task"))
+        about = "1 where an assembly mode is reached within the ranges of coordinates, else 0; that of the model first"
+        numbers = tuple(f"mode {k}" for k in range(1, count + 1))
+        each = Interest(MODES, about, "mode", numbers, ("1",) * count, smallest=True, counted=True)
+        return Interest(MODE_COUNT, "number of assembly modes", "", ("",), ("1",), smallest=True, counted=True), each
     if name not in (DRIVE_SPEED, MOTOR_TORQUE):
         return ()
     drives = tuple(one.name for one in plan.drives)
@@ -105,7 +115,8 @@ def _interests(model: Model, name: str) -> tuple[Interest, ...]:
         return (Interest(CONTROL, about, "", ("",), (" or ".join(dict.fromkeys(units)),), smallest=True),)
     if name == UTILISATION:
         return (Interest(UTILISATION, "share of their limits that inputs need at least", "", ("",), ("1",)),)
-    return (Interest(REACH, "1 where there is a configuration, else 0", "", ("",), ("1",), smallest=True),)
+    about = "1 where there is a configuration, else 0"
+    return (Interest(REACH, about, "", ("",), ("1",), smallest=True, counted=True),)
 
 
 def choices(model: Model) -> tuple[tuple[int, ...], ...]:
@@ -215,6 +226,12 @@ class BlockValues:
         return np.asarray(self._states.placed[self._states.group] == 0, dtype=np.float64)[:, None]
 
     @property
+    def assembled(self) -> Array:
+        """1 where an assembly mode is reached, points x modes x states."""
+        assert self._states.assembled is not None
+        return self._states.assembled
+
+    @property
     def model(self) -> Model:
         """The model of the study."""
         return self._plan.model
@@ -271,6 +288,8 @@ _EVALUATED: dict[str, Callable[[BlockValues], Array]] = {
     CONTROL: _smallest_singular_value,
     UTILISATION: lambda block: block.entries("utilisation"),
     REACH: lambda block: block.reached,
+    MODES: lambda block: block.assembled,
+    MODE_COUNT: lambda block: block.assembled.sum(axis=1, keepdims=True),
     DRIVE_SPEED: lambda block: block.drive_speeds,
     MOTOR_TORQUE: lambda block: block.motor_torques,
 }

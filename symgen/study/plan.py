@@ -16,6 +16,7 @@ from symgen.study.asked.request import (
     FLOAT32,
     GRID,
     INPUTS,
+    MODES,
     MOTOR_TORQUE,
     POWER,
     REACH,
@@ -46,6 +47,7 @@ KERNELS = {
     CONTROL: ("projected_control_matrix",),
     UTILISATION: ("utilisation",),
     REACH: (),
+    MODES: (),
     MOTOR_TORQUE: ("inverse_dynamics",),
     DRIVE_SPEED: (),
 }
@@ -135,6 +137,9 @@ def planned_study(model: Model, request: StudyRequest, mistakes: StudyMistakes) 
     placing = _placing(model, request, known, mistakes)
     for one in request.show:
         _check_shown(model, one.name, one.span, mistakes)
+        if one.name == MODES and placing not in ("task", "measured"):
+            message = "`modes` are those of a place, which nothing gives"
+            mistakes.wrong("show", message, "vary the `task` or `measured` coordinates of a mechanism", one.span)
     drives = drives_of(model) if request.motors else ()
     if request.motors and not drives:
         remedy = "give an input the `joint` that it drives"

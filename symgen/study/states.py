@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import OrderedDict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -13,9 +14,11 @@ from numpy.typing import NDArray
 from symgen.generation.requested import configuration_near
 from symgen.mechanics.genericity import assembly_of, parameter_values
 from symgen.mechanics.system import System
-from symgen.model.model import Model
+from symgen.model.model import Coordinate, Model
 from symgen.paths.path_equations import path_equations
 from symgen.paths.path_family import PathFamily
+from symgen.study.asked.request import MODES
+from symgen.study.assembly_modes import assembly_modes
 from symgen.study.chunks import Array, along_values
 from symgen.study.kernels import Codes, StudyKernels
 from symgen.study.plan import FROM_MEASURED, FROM_TASK, TASK_PLACE, StudyPlan, VariedName
@@ -29,12 +32,15 @@ KEPT_BYTES = 2**27
 @dataclass(frozen=True, slots=True)
 class BlockStates:
     """States of some points: parameters (points x parameters), q, qd and qdd by name (groups x n x states), whose
-    states a point has, and why there is no configuration (groups x states, 0 where there is one)."""
+    states a point has, and why there is no configuration (groups x states, 0 where there is one).
+
+    `assembled` says of each assembly mode whether it is reached (points x modes x states), where that is shown."""
 
     parameters: Array
     parts: Mapping[str, Array]
     group: NDArray[np.uintp]
     placed: Codes
+    assembled: Array | None = None
 
 
 class StudyStates:
@@ -57,7 +63,17 @@ class StudyStates:
             return self._path.states(p)
         q, placed = self._configurations(p, values)
         still = np.zeros_like(q)
-        return BlockStates(p, {"q": q, "qd": still, "qdd": still}, np.arange(len(p), dtype=np.uintp), placed)
+        assembled = self._assembled(p, values) if MODES in self._plan.shown else None
+        return BlockStates(p, {"q": q, "qd": still, "qdd": still}, np.arange(len(p), dtype=np.uintp), placed, assembled)
+
+    def _assembled(self, p: Array, values: Array) -> Array:
+        """Whether the walk from each assembly mode of the start ends, and within the ranges that coordinates have."""
+        low, high = (np.array(ends)[:, None] for ends in zip(*map(_limits, self._plan.model.coordinates), strict=True))
+        made = []
+        for mode in assembly_modes(self._plan.model, self._plan.placing == "task"):
+            q, placed = self._walked(p, values, np.array(mode))
+            made.append((placed == 0) & ((q >= low) & (q <= high)).all(axis=1))
+        return np.stack(made, axis=1).astype(np.float64)
 
     def _configurations(self, p: Array, values: Array) -> tuple[Array, Codes]:
         """q (points x n x states) at rest, and statuses."""
@@ -65,9 +81,12 @@ class StudyStates:
         if self._plan.placing == "given":
             q = self._filled(np.array(configuration_near(model, {})), values, "coordinate")
             return np.ascontiguousarray(np.swapaxes(q, 1, 2)), np.zeros((len(q), q.shape[1]), dtype=np.uint8)
-        q_start = np.array(assembly_of(model).places[0].q)
+        return self._walked(p, values, np.array(assembly_of(model).places[0].q))
+
+    def _walked(self, p: Array, values: Array, q_start: Array) -> tuple[Array, Codes]:
+        """q (points x n x states) at places of the task, or of measured coordinates, from a configuration."""
         if self._plan.placing == "measured":
-            x_start, name, kind = q_start[list(model.measured_places)], FROM_MEASURED, "measured"
+            x_start, name, kind = q_start[list(self._plan.model.measured_places)], FROM_MEASURED, "measured"
         else:
             x_start, name, kind = self._task_place(q_start), FROM_TASK, "task"
         return self._kernels.walked(
@@ -135,6 +154,12 @@ class _SolvedPaths:
             while len(self._kept) > self._most_kept:
                 self._kept.popitem(last=False)
             return solved
+
+
+def _limits(coordinate: Coordinate) -> tuple[float, float]:
+    """The range of a coordinate, if it is stated."""
+    low, high = coordinate.range
+    return (float(low), float(high)) if coordinate.has_range else (-math.inf, math.inf)
 
 
 def _of_kind(names: Iterable[VariedName], kind: str) -> list[tuple[int, VariedName]]:

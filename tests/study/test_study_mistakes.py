@@ -37,6 +37,7 @@ OPTIONS = {
         "--count: a latin_hypercube sample has at most 10000000 points",
     ),
     "seed": (["--over", "m=1:3:4", "--seed", "-1", "--show", "inputs"], "--seed: -1 is no seed"),
+    "modes": (["--over", "m=1:3:4", "--show", "modes"], "--show: `modes` are those of a place, which nothing gives"),
     "level": (["--over", "m=1:3:4", "--quantiles", "2,x", "--show", "inputs"], "--quantiles: 'x' is no number"),
     "many": (["--over", "m=1:3:4", "--along", "x=0:1:9999999", "--show", "reach"], "states at each point"),
     "workers": (["--over", "m=1:3:4", "--workers", "0"], "argument --workers: '0' is no whole number from 1 up"),

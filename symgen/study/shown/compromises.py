@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from symgen.paths.drawing import COLOURS, svg, with_numbered_regions
 from symgen.records import dataclass
-from symgen.study.asked.request import DRIVE_SPEED, MOTOR_TORQUE, REACH
+from symgen.study.asked.request import DRIVE_SPEED, MOTOR_TORQUE
 from symgen.study.chunks import Array
 from symgen.study.interest import Interest, interests
 from symgen.study.plan import StudyPlan
@@ -53,7 +53,7 @@ def compromises(plan: StudyPlan, results: Any) -> tuple[Compromise, ...]:
 
 def _is_criterion(one: Interest) -> bool:
     """Whether more of it, or less, is better."""
-    return not one.signed and one.name not in (REACH, MOTOR_TORQUE, DRIVE_SPEED)
+    return not (one.signed or one.counted) and one.name not in (MOTOR_TORQUE, DRIVE_SPEED)
 
 
 def _worst(plan: StudyPlan, one: Interest, results: Any) -> Array:

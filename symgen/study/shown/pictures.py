@@ -113,7 +113,8 @@ def _drawing(
         rows = -(-len(channels) // 2) if len(channels) > 1 else 1
         kept = "smallest magnitude" if one.smallest else "largest magnitude"
         caption = f"The {kept} along the states of each point. " if plan.states > 1 else ""
-        caption += "Lines join equal values" + ("; the thick one is where it vanishes." if one.signed else ".")
+        caption += "" if one.counted else "Lines join equal values"
+        caption += "; the thick one is where it vanishes." if one.signed else "" if one.counted else "."
         caption += "" if machine is None else " The machine is drawn where it starts."
         return lambda figure: _maps(figure, plan, one, channels, machine), MAP_HEIGHT * rows, caption
     worst = worst_channel(one, [channel.values for channel in channels])
@@ -145,15 +146,15 @@ def _maps(
     for panel in panels[len(channels) :]:
         panel.set_axis_off()
     for panel, channel in zip(panels, channels, strict=False):
-        _map(figure, panel, plan, channel.values, one.signed)
+        _map(figure, panel, plan, channel.values, one)
         if machine is not None:
             draw_machine(panel, machine)
         if channel.label:
             panel.set_title(value_label(one, channel.label), loc="left", fontsize=9)
 
 
-def _map(figure: Any, panel: Any, plan: StudyPlan, values: Array, signed: bool) -> None:
-    """Filled levels with lines between some, and the zeros of what changes its sign."""
+def _map(figure: Any, panel: Any, plan: StudyPlan, values: Array, one: Interest) -> None:
+    """Filled levels with lines between some, and the zeros of what changes its sign; of what is counted, its steps."""
     x, y = (np.linspace(one.axis.first, one.axis.last, one.axis.count or 1) for one in plan.over)
     known = np.ma.masked_invalid(values.T)
     _frame(panel, plan)
@@ -165,7 +166,12 @@ def _map(figure: Any, panel: Any, plan: StudyPlan, values: Array, signed: bool) 
         dots = panel.scatter(*np.meshgrid(x, y), c=known, s=8)
         figure.colorbar(dots, ax=panel)
         return
-    changes_sign = signed and low < 0 < high
+    if one.counted:
+        steps = panel.imshow(known, origin="lower", extent=_extent(x, y), aspect=panel.get_aspect())
+        bar = figure.colorbar(steps, ax=panel, shrink=0.8, ticks=_numbers(low, high))
+        bar.ax.tick_params(labelsize=7)
+        return
+    changes_sign = one.signed and low < 0 < high
     reach = max(abs(low), abs(high))
     ends = {"vmin": -reach, "vmax": reach, "cmap": "RdBu_r"} if changes_sign else {"cmap": "viridis"}
     filled = panel.contourf(x, y, known, levels=MAP_LEVELS, **ends)
@@ -174,6 +180,18 @@ def _map(figure: Any, panel: Any, plan: StudyPlan, values: Array, signed: bool) 
         panel.contour(x, y, known, levels=[0.0], colors=COLOURS[6], linewidths=1.8)
     bar = figure.colorbar(filled, ax=panel, shrink=0.8 if panel.get_aspect() != "auto" else 1.0)
     bar.ax.tick_params(labelsize=7)
+
+
+def _extent(x: Array, y: Array) -> tuple[float, float, float, float]:
+    """The ends of a picture whose cells have these centres."""
+    across, up = ((z[1] - z[0]) / 2 for z in (x, y))
+    return x[0] - across, x[-1] + across, y[0] - up, y[-1] + up
+
+
+def _numbers(low: float, high: float) -> list[int]:
+    """Whole numbers between two of them, as many as fit beside a map."""
+    step = max(1, round((high - low) / MAP_LINES))
+    return list(range(int(low), int(high) + 1, step))
 
 
 def _frame(panel: Any, plan: StudyPlan) -> None:

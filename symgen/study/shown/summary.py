@@ -10,7 +10,7 @@ import numpy as np
 from symgen import __version__
 from symgen.ir.kernel import Status
 from symgen.simulate.plant import MEANING
-from symgen.study.asked.request import GRID, MOTOR_TORQUE, REACH
+from symgen.study.asked.request import GRID, MOTOR_TORQUE
 from symgen.study.chunks import Array, along_values, chunk_values
 from symgen.study.interest import Interest, interests
 from symgen.study.plan import StudyPlan, VariedName
@@ -160,7 +160,7 @@ def _worst_rows(
     work: StudyWork, one: Interest, kept: Sequence[tuple[int, tuple[float, int, int]] | None]
 ) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = []
-    if one.name in (REACH, MOTOR_TORQUE):
+    if one.counted or one.name == MOTOR_TORQUE:
         return []
     for label, unit, entry in zip(one.channels, one.units, kept, strict=True):
         if entry is not None:
