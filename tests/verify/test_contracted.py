@@ -78,6 +78,18 @@ def test_what_does_not_compile_is_a_fault(
     assert "missing.h" in said
 
 
+def test_a_compiler_that_hangs_is_a_fault(
+    tool: Callable[[str], str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    need_fused(tool)
+    monkeypatch.setattr(contracted, "LONGEST_COMPILATION", 0.001)
+    monkeypatch.setattr(contracted, "LONGEST_FOR_A_MEGABYTE", 0.0)
+    assert cli.main([str(CAR), *QUICKLY, "--out", str(tmp_path), "--contract"]) == 1
+    said = capsys.readouterr().err
+    assert "C float64 batch contracted does not compile" in said
+    assert "name a working C compiler of this machine in CC" in said
+
+
 def test_machines_that_contract_nothing_say_so(
     tool: Callable[[str], str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

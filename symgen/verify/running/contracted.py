@@ -12,9 +12,18 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from symgen.ir.kernel import Kernel, Scalar
-from symgen.runtime.processes import run
+from symgen.runtime.activity import working
+from symgen.runtime.processes import ToolError, run
 from symgen.verify.running.batch import outcomes_of_batches
-from symgen.verify.running.compile import LONGEST_ANSWER, LONGEST_COMPILATION, CompilationError, Compiler, Outcome
+from symgen.verify.running.compile import (
+    LONGEST_ANSWER,
+    LONGEST_COMPILATION,
+    LONGEST_FOR_A_MEGABYTE,
+    REMEDY,
+    CompilationError,
+    Compiler,
+    Outcome,
+)
 from symgen.verify.sampling.states import Sample
 
 CONTRACTED = "batch contracted"
@@ -45,7 +54,13 @@ def run_contracted(
     Raises CompilationError with the compiler's message.
     """
     target = source.with_suffix(".contracted.so")
-    made = run([*compiler.command, *FLAGS, "-o", str(target), str(source), str(beside), "-lm"], LONGEST_COMPILATION)
+    command = [*compiler.command, *FLAGS, "-o", str(target), str(source), str(beside), "-lm"]
+    limit = LONGEST_COMPILATION + LONGEST_FOR_A_MEGABYTE * source.stat().st_size / 1e6
+    try:
+        with working("contracting batches"):
+            made = run(command, limit)
+    except ToolError as error:
+        raise CompilationError(f"{error}; {REMEDY}") from error
     if made.returncode != 0 or not target.is_file():
         raise CompilationError(made.stderr.strip() or f"{compiler.command[0]} made no library of {source.name}")
     library = ctypes.CDLL(str(target))
