@@ -28,7 +28,9 @@ from symgen.model.model import Model
 
 MANY = (
     Many("symgen", "batch", "C", "float64", 20.0, 10.0),
+    Many("symgen", "batch contracted", "C", "float64", 16.0, 8.0),
     Many("symgen", "batch", "C", "float32", 10.0, 5.0),
+    Many("symgen", "batch contracted", "C", "float32", 11.0, 6.0),
     Many("symgen", "compile()", "Python", "float64", 40.0, 50.0),
     Many("symgen", "NumPy, whole arrays", "Python", "float64", 300.0, 200.0),
     Many("symgen", "NumPy, blocks of 4096", "Python", "float64", 160.0, 200.0),
@@ -45,12 +47,12 @@ def result(model: str, many: tuple[Many, ...] = MANY) -> dict[str, object]:
 
 
 def test_page_tells_ratios_and_missed_goals() -> None:
-    text = many_section([result("rapkm_2rrr_rr"), result("skate", MANY[:5])])
+    text = many_section([result("rapkm_2rrr_rr"), result("skate", MANY[:7])])
     robot, skate = text.splitlines()[-2:]
-    assert "| 50 (100) | 100 (200) | 25 (20) | 12.5 (14.3) | 10.2 (11.1) SymPy part |" in robot
+    assert "| 50 (100) | 62.5 (125) | 100 (200) | 25 (20) | 12.5 (14.3) | 10.2 (11.1) SymPy part |" in robot
     assert "| 41.7 (83.3) CasADi SSA lean | 6.25 (5) |" in robot
-    assert "| 6.25 (5) | **4.9** (5) | **1.20** (1.25) | 8.0 (6) |" in robot
-    assert skate.endswith("|  |  | 6.25 (5) |  |  | 8.0 |")
+    assert "| 6.25 (5) | **4.9** (5) | **1.20** (1.25) | 1.5 | 8.0 (6) |" in robot
+    assert skate.endswith("|  |  | 6.25 (5) |  |  |  | 8.0 |")
     assert many_section([{"model": "old", "comparisons": [{"quantity": "inverse_dynamics"}]}]) == ""
 
 
@@ -75,7 +77,9 @@ def test_every_way_is_run(tool: Callable[[str], str], tmp_path: Path, monkeypatc
     ways = many_states(tmp_path, model, task, programs, [replace(own, generator="other"), lines], load)
     assert [(way.label, way.language, way.scalar) for way in ways] == [
         ("symgen batch", "C", "float64"),
+        ("symgen batch contracted", "C", "float64"),
         ("symgen batch", "C", "float32"),
+        ("symgen batch contracted", "C", "float32"),
         ("symgen compile()", "Python", "float64"),
         ("symgen NumPy, whole arrays", "Python", "float64"),
         ("symgen NumPy, blocks of 4096", "Python", "float64"),

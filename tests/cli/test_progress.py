@@ -151,6 +151,7 @@ def test_what_work_usually_takes_is_told_until_it_has_taken_that(at: list[float]
     assert described() == ""
 
 
+@pytest.mark.campaign
 def test_the_time_of_a_run_is_foreseen_from_its_derivation(monkeypatch: pytest.MonkeyPatch) -> None:
     """Before that nothing is known, and without verification the derivation is most of it."""
     model = Path(__file__).parents[2] / "models" / "differential_drive.yaml"

@@ -286,6 +286,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Result]:
     return folder, result
 
 
+@pytest.mark.campaign
 @pytest.mark.slow
 def test_both_types_and_python_are_verified(run: tuple[Path, Result]) -> None:
     _, result = run

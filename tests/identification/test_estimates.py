@@ -143,6 +143,7 @@ def test_values_of_the_file_say_what_the_estimates_say(folder: Path) -> None:
     assert made.values.impossible == ()
 
 
+@pytest.mark.campaign
 def test_other_lengths_show_in_the_loops(tmp_path: Path) -> None:
     """A rocker of 0.72 in place of 0.7: both encoders together say so, and the fit is worse."""
     chosen = MACHINES_WITH_LOGS["four_bar"]

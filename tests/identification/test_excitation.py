@@ -62,6 +62,7 @@ def test_it_begins_and_ends_at_rest(name: str) -> None:
     assert np.allclose(np.gradient(made.qd, step, axis=0)[1:-1], made.qdd[1:-1], atol=2e-3 * np.max(np.abs(made.qdd)))
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("name", [*TEXTS])
 def test_it_shows_more_than_drawn_motions_within_the_same_limits(name: str) -> None:
     made = designed_once(TEXTS[name])

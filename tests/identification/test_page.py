@@ -17,6 +17,7 @@ def test_the_press(tmp_path: Path) -> None:
     assert page.run("sh", "-ec", command).stdout == printed
 
 
+@pytest.mark.campaign
 @pytest.mark.slow
 def test_the_regressor_of_the_press(tmp_path: Path, tool: Callable[[str], str]) -> None:
     page = Page("base-parameters.md", tmp_path)
