@@ -22,8 +22,8 @@ from symgen.symbolic.angles.circle import FIELD
 from symgen.symbolic.exact import ExactValues
 from symgen.symbolic.translate import translate
 
-# Of each coordinate that falls: along which axis of the ground, and whether it counts upwards.
-_Fall: TypeAlias = tuple[tuple[int, int] | None, ...]
+# Of each free coordinate the number, from 1, of the axis of the ground along which it falls, with its sign; or 0.
+_Fall: TypeAlias = tuple[int, ...]
 
 
 @lru_cache(maxsize=1)
@@ -54,14 +54,7 @@ def _fall(mechanics: System, free: Sequence[int], point: ExactValues) -> _Fall |
     if len(free) in reduced:
         return None
     rates = [-reduced[k][-1] % FIELD.prime if k in reduced else 0 for k in range(len(free))]
-    made = [_axis(rate, [value for value, _ in ground]) for rate in rates]
-    known = [one for one in made if one is not None]
-    return tuple(None if axis < 0 else (axis, sign) for axis, sign in known) if len(known) == len(made) else None
-
-
-def _axis(rate: int, gravity: Sequence[int]) -> tuple[int, int] | None:
-    """Which entry of gravity an acceleration is, and its sign; the entry -1 for none, None for another number."""
-    if rate == 0:
-        return -1, 0
-    alike = ((axis, sign) for axis, g in enumerate(gravity) for sign in (1, -1) if (rate - sign * g) % FIELD.prime == 0)
-    return next(alike, None)
+    falls = {0: 0}
+    for axis, (g, _) in enumerate(ground, 1):
+        falls = {g: axis, -g % FIELD.prime: -axis} | falls
+    return tuple(falls[rate] for rate in rates) if falls.keys() >= set(rates) else None

@@ -35,7 +35,7 @@ from symgen.verify.running.compile import (
     c_array,
     find_compiler,
 )
-from symgen.verify.running.contracted import CONTRACTED, is_fused, run_contracted
+from symgen.verify.running.contracted import BATCH_FUSED, is_fused, run_contracted
 from symgen.verify.running.given_trig import run_given_trig
 from symgen.verify.running.prepared import run_prepared
 from symgen.verify.running.python_module import PythonModule
@@ -231,9 +231,9 @@ def _run_c(
                 beside = contracting, batches, compilation.target
                 try:
                     made = run_contracted(*beside, model.c_name, kernels, scalar, samples[scalar])
-                    others[CONTRACTED] = made, []
+                    others[BATCH_FUSED] = made, []
                 except CompilationError as refusal:
-                    faults.append(Fault(f"{target} {CONTRACTED} does not compile: {str(refusal)[:LONGEST_EXCERPT]}"))
+                    faults.append(Fault(f"{target} {BATCH_FUSED} does not compile: {str(refusal)[:LONGEST_EXCERPT]}"))
         if (header := companions.get(_header(model, scalar, PREPARED))) is not None:
             others["prepared"] = run_prepared(*given, header)
         if (header := companions.get(_header(model, scalar, SINES_GIVEN))) is not None:

@@ -22,7 +22,8 @@ QUICKLY = ["--outputs", "inverse_dynamics", "--only", "c", "--states", "8"]
 
 def certificate(folder: Path, *further: str) -> dict[str, Any]:
     assert cli.main([str(CAR), *QUICKLY, "--out", str(folder), *further]) == 0
-    return json.loads((folder / "rear_car/certificate.json").read_bytes())  # type: ignore[no-any-return]
+    made: dict[str, Any] = json.loads((folder / "rear_car/certificate.json").read_bytes())
+    return made
 
 
 def need_fused(tool: Callable[[str], str]) -> None:
@@ -38,14 +39,14 @@ def test_contracted_batches_are_verified(tool: Callable[[str], str], tmp_path: P
     errors = {(one["target"], one["quantity"]): one for one in certificate(tmp_path, "--contract")["errors"]}
     for scalar in ("float64", "float32"):
         plain = errors[f"C {scalar} batch", "inverse_dynamics"]
-        fast = errors[f"C {scalar} batch contracted", "inverse_dynamics"]
+        fast = errors[f"C {scalar} batch fused", "inverse_dynamics"]
         assert fast["largest"] <= 16
         assert fast["median"] != plain["median"], "nothing was contracted"
 
 
 def test_without_the_option_they_are_not_made(tool: Callable[[str], str], tmp_path: Path) -> None:
     tool("cc")
-    assert not [one for one in certificate(tmp_path)["errors"] if "contracted" in one["target"]]
+    assert not [one for one in certificate(tmp_path)["errors"] if "fused" in one["target"]]
 
 
 def test_what_they_lose_counts(
@@ -63,31 +64,33 @@ def test_what_they_lose_counts(
     monkeypatch.setattr(run, "run_contracted", losing)
     assert cli.main([str(CAR), *QUICKLY, "--out", str(tmp_path), "--contract"]) == 1
     said = capsys.readouterr().err
-    assert "C float64 batch contracted, inverse_dynamics: error" in said
+    assert "C float64 batch fused, inverse_dynamics: error" in said
     assert "C float64 batch, inverse_dynamics" not in said
 
 
-def test_what_does_not_compile_is_a_fault(
-    tool: Callable[[str], str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize(
+    ("changed", "complaint"),
+    [
+        ({"FLAGS": (*contracted.FLAGS, "-include", "missing.h")}, "missing.h"),
+        ({"LONGEST_COMPILATION": 0.001, "LONGEST_FOR_A_MEGABYTE": 0.0}, "name a working C compiler of this machine"),
+    ],
+    ids=["refuses", "hangs"],
+)
+def test_a_compiler_that_makes_none_is_a_fault(
+    tool: Callable[[str], str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    changed: dict[str, Any],
+    complaint: str,
 ) -> None:
     need_fused(tool)
-    monkeypatch.setattr(contracted, "FLAGS", (*contracted.FLAGS, "-include", str(tmp_path / "missing.h")))
+    for name, value in changed.items():
+        monkeypatch.setattr(contracted, name, value)
     assert cli.main([str(CAR), *QUICKLY, "--out", str(tmp_path), "--contract"]) == 1
     said = capsys.readouterr().err
-    assert "C float64 batch contracted does not compile" in said
-    assert "missing.h" in said
-
-
-def test_a_compiler_that_hangs_is_a_fault(
-    tool: Callable[[str], str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    need_fused(tool)
-    monkeypatch.setattr(contracted, "LONGEST_COMPILATION", 0.001)
-    monkeypatch.setattr(contracted, "LONGEST_FOR_A_MEGABYTE", 0.0)
-    assert cli.main([str(CAR), *QUICKLY, "--out", str(tmp_path), "--contract"]) == 1
-    said = capsys.readouterr().err
-    assert "C float64 batch contracted does not compile" in said
-    assert "name a working C compiler of this machine in CC" in said
+    assert "C float64 batch fused does not compile" in said
+    assert complaint in said
 
 
 def test_machines_that_contract_nothing_say_so(
@@ -96,6 +99,6 @@ def test_machines_that_contract_nothing_say_so(
     tool("cc")
     monkeypatch.setattr(contracted, "FUSED", ())
     made = certificate(tmp_path, "--contract")
-    assert not [one for one in made["errors"] if "contracted" in one["target"]]
+    assert not [one for one in made["errors"] if "fused" in one["target"]]
     assert run.NOT_FUSED in made["notes"]
     assert "nothing is contracted: " in capsys.readouterr().err
