@@ -81,16 +81,28 @@ _READ = LastKernels[Meant[int]](8)
 
 def _values(meant: Meant[Node]) -> Meant[int]:
     """Fingerprints as statements have them, where nothing keeps a value that is rounded apart from what it was."""
-    order = topological([*meant.outputs, *meant.compared])
-    residues = {node: node.value for node in order}
+    members = [*meant.outputs, *meant.compared]
+    order = topological(members)
     if any(node.op == "rounded" for node in order):
-        for node in order:
-            if node.op == "rounded":
-                residues[node] = residues[node.args[0]]
-            # an angle of rounded values would be read by what it is made of: exact values decide
-            elif node.op not in ("sin", "cos") and any(residues[a] != a.value for a in node.args):
-                residues[node] = combine(node.op, [residues[a] for a in node.args], node.payload)
-    return Meant(tuple(residues[x] for x in meant.outputs), meant.kinds, tuple(residues[x] for x in meant.compared))
+        members = _as_they_stand(members, order)
+    values, count = [node.value for node in members], len(meant.outputs)
+    return Meant(tuple(values[:count]), meant.kinds, tuple(values[count:]))
+
+
+def _as_they_stand(outputs: Sequence[Node], order: Sequence[Node]) -> list[Node]:
+    """The outputs on a graph of their own, without roundings: angles are read by what stood under these, too."""
+    graph = Graph()
+    image: dict[Node, Node] = {}
+    for node in order:
+        if node.op == "rounded":
+            image[node] = image[node.args[0]]
+        elif node.constant is not None:
+            image[node] = graph.const(node.constant)
+        elif node.op == "symbol":
+            image[node] = graph.symbol(str(node.payload))
+        else:
+            image[node] = graph.raw(node.op, tuple(image[a] for a in node.args), node.payload)
+    return [image[output] for output in outputs]
 
 
 def _plain(meant: Meant[Value]) -> Meant[Value]:

@@ -103,6 +103,11 @@ class ExactValues:
         self._turns: dict[Scalar, Fraction | None] = {} if beside is None else beside._turns
         self._pairs: dict[Scalar, tuple[int, int] | None] = {}
 
+    @property
+    def known_count(self) -> int:
+        """Of how many scalars the values are known."""
+        return len(self._known)
+
     def waiting(self, outputs: Sequence[Scalar]) -> Sequence[Scalar]:
         """What the outputs reach and is not worked out yet, operands first."""
         return topological(outputs, self._known)

@@ -16,6 +16,8 @@ from symgen.symbolic.scalar import Graph, Scalar
 
 # Points at which signs are right, half of them by chance.
 POINTS_OF_SIGNS = 12
+# Of scalars whose values stay known at each of these points: more are worked out again, as all of them fill the memory.
+MOST_KNOWN = 20_000
 
 
 class _Thoroughly:
@@ -67,6 +69,7 @@ def same_values(
             changed = [(one, other) for one, other in changed if not _point(other, seed).any_root_in([other])]
         if wrong := len(changed):
             raise SymgenBug(f"{rule}: changes the value of {wrong} of {len(before)} scalars")
+        values.forget_many(seed)
 
 
 class _Values:
@@ -82,6 +85,12 @@ class _Values:
         """At the point of a seed, 1 or more."""
         for (graph, members), order in zip(self._by_graph, self._orders, strict=True):
             _point_of(graph, seed)(members, order)
+
+    def forget_many(self, seed: int) -> None:
+        """The values at the point of a seed, where they are many."""
+        for graph, _ in self._by_graph:
+            if graph.points[seed].known_count > MOST_KNOWN:
+                del graph.points[seed]
 
 
 def _equal(one: Scalar, other: Scalar, rooted: Container[Scalar]) -> bool:

@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from symgen.diagnostics import SymgenBug
+from symgen.symbolic import identity
 from symgen.symbolic.angles.circle import FIELD, INNER, INNERMOST, LAST, STEPS, Field
 from symgen.symbolic.angles.sharing import share_angles
 from symgen.symbolic.exact import MOST_DEGREE, ExactValues, half_turns
@@ -251,3 +252,18 @@ def test_dividing_by_zero_is_no_identity() -> None:
     nothing = graph.raw("sub", (x, x))
     with pytest.raises(SymgenBug, match="dividing: changes the value"):
         same_values("dividing", [graph.function("cos", (x,))], [graph.raw("cos", (graph.raw("div", (x, nothing)),))])
+
+
+def test_values_that_are_many_are_not_kept_at_the_points_of_signs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(identity, "MOST_KNOWN", 6)
+    graph = Graph()
+    x, y = graph.symbol("x"), graph.symbol("y")
+    few = graph.function("abs", (x,)), graph.raw("sqrt", (x * x,))
+    total = few[0] * y - y * y + x / y
+    many = graph.raw("abs", (total,)), graph.raw("sqrt", (graph.raw("mul", (total, total)),))
+    same_values("few", few[:1], few[1:])
+    assert len(graph.points) == identity.POINTS_OF_SIGNS
+    same_values("many", many[:1], many[1:])
+    assert not graph.points
+    with pytest.raises(SymgenBug, match="many: changes the value"):
+        same_values("many", many[:1], [graph.raw("neg", many[1:])])
