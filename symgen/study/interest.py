@@ -127,6 +127,22 @@ def choices(model: Model) -> tuple[tuple[int, ...], ...]:
     return tuple(combinations(range(model.m), freedom))
 
 
+def keeps_figures_alone(plan: StudyPlan) -> bool:
+    """Whether of the states of a point nothing is looked at a second time."""
+    return plan.states > 1 and not plan.request.quantiles
+
+
+def is_reduced_at_once(plan: StudyPlan) -> bool:
+    """Whether that holds, and all that is shown are entries of kernels that nothing else needs."""
+    quantities = [_ENTRIES_OF.get(one.name) for one in interests(plan)]
+    return keeps_figures_alone(plan) and all(name is not None and not is_shared(plan, name) for name in quantities)
+
+
+def is_shared(plan: StudyPlan, quantity: str) -> bool:
+    """Whether several variables of the results are made from a quantity."""
+    return sum(quantity in KERNELS[one] for one in plan.shown) > 1
+
+
 class BlockValues:
     """The quantities of interest of a block of points; kernels run once, whatever needs them."""
 
@@ -139,23 +155,21 @@ class BlockValues:
         """A variable of the results, points x channels x states; NaN where a kernel has no result."""
         return np.ascontiguousarray(_EVALUATED[name](self))
 
-    def reduced(self, name: str) -> tuple[Array, NDArray[np.int64]]:
+    def reduced(self, one: Interest) -> tuple[Array, NDArray[np.int64]]:
         """What the entries of a variable are reduced to along the states, see `StudyKernels.reduced`.
 
         Where they are those of a kernel and nothing else needs them they are not kept.
         """
-        quantity = _ENTRIES_OF.get(name)
-        if quantity is None or self._is_shared(quantity):
-            values = self.of(name)
-            return self._kernels.reduced(values.reshape(-1, values.shape[2]))
+        quantity = _ENTRIES_OF.get(one.name)
+        if quantity is None or quantity in self._made or is_shared(self._plan, quantity):
+            values = self.of(one.name)
+            return self._kernels.reduced(values.reshape(-1, values.shape[2]), one.smallest)
         states = self._states
-        figures, places, status = self._kernels.reduced_over(quantity, states.parts, states.group, states.parameters)
+        figures, places, status = self._kernels.reduced_over(
+            quantity, states.parts, states.group, states.parameters, one.smallest
+        )
         self._count(status)
         return figures, places
-
-    def _is_shared(self, quantity: str) -> bool:
-        """Whether several variables are made from a quantity, or it has been evaluated."""
-        return quantity in self._made or sum(quantity in KERNELS[one] for one in self._plan.shown) > 1
 
     def _count(self, status: Codes) -> None:
         if status.any():

@@ -121,16 +121,17 @@ class StudyKernels:
         return result, status
 
     def reduced_over(
-        self, name: str, parts: Mapping[str, Array], group: NDArray[np.uintp], p: Array
+        self, name: str, parts: Mapping[str, Array], group: NDArray[np.uintp], p: Array, smallest: bool = False
     ) -> tuple[Array, NDArray[np.int64], Codes]:
         """What `reduced` makes of the entries that `over` returns, and the statuses."""
         kernel = self._kernels[name]
         arguments = [_contiguous(parts[argument.name]) for argument in array_arguments(kernel)]
         points, count, size = len(group), arguments[0].shape[-1], math.prod(kernel.shape)
         room = self._room(name, np.dtype(np.float64), (size, count))
-        figures, places = np.empty((points * size, 6)), np.empty((points * size, 2), dtype=np.int64)
+        figures, places = np.empty((points * size, 6)), np.empty(points * size, dtype=np.int64)
         status = self._room(name, np.dtype(np.uint8), (points, count))
-        self._call(reduced_name(name), (points, count), (group, *arguments, p, room, figures, places, status))
+        arrays = (group, *arguments, p, room, figures, places, status)
+        self._call(reduced_name(name), (points, count, int(smallest)), arrays)
         return figures, places, status
 
     def _room(self, name: str, dtype: np.dtype[Any], shape: tuple[int, ...]) -> NDArray[Any]:
@@ -154,12 +155,12 @@ class StudyKernels:
         self._call(walk_name(name), (points, count), arrays)
         return q, status
 
-    def reduced(self, values: Array) -> tuple[Array, NDArray[np.int64]]:
-        """Of rows of values: largest, smallest, sum, sum of squares, number, smallest magnitude (rows x 6); and where
-        the largest and the smallest magnitude are (rows x 2)."""
+    def reduced(self, values: Array, smallest: bool = False) -> tuple[Array, NDArray[np.int64]]:
+        """Of rows of values: largest, smallest, sum, sum of squares, number, and the largest magnitude, or the smallest
+        (rows x 6); and where that is (rows)."""
         rows, count = values.shape
-        figures, places = np.empty((rows, 6)), np.empty((rows, 2), dtype=np.int64)
-        self._call("study_reduced", (rows, count), (values, figures, places))
+        figures, places = np.empty((rows, 6)), np.empty(rows, dtype=np.int64)
+        self._call("study_reduced", (rows, count, int(smallest)), (values, figures, places))
         return figures, places
 
     def quantiles(self, values: Array, figures: Array, levels: Sequence[float]) -> Array:

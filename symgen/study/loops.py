@@ -17,7 +17,7 @@ from symgen.backends.locals import array_arguments
 from symgen.backends.quantities import BATCHED
 from symgen.ir.kernel import Kernel
 from symgen.model.model import Model
-from symgen.study.reducing_loops import BINS, REDUCTIONS
+from symgen.study.reducing_loops import BINS, REDUCTIONS, ROW_LANES
 
 # States beyond full vectors from which on the kernel for many states takes them, too: it fills their vector up.
 FEWEST_BATCHED = 6
@@ -34,9 +34,9 @@ def loops_source(model: Model, kernels: Sequence[Kernel]) -> str:
     stem = model.c_name
     batch = [f'#include "{stem}{BATCH}.h"'] if any(kernel.name in BATCHED for kernel in kernels) else []
     headers = [f'#include "{stem}.h"', *batch, *(f"#include <{name}.h>" for name in ("math", "stddef", "stdint"))]
-    macro = f"#define BINS {BINS}"
+    macros = f"#define BINS {BINS}", f"#define ROW_LANES {ROW_LANES}"
     return "\n".join(
-        ["\n".join((*headers, macro)), REDUCTIONS, *(_over(model, one) for one in kernels)]
+        ["\n".join((*headers, *macros)), REDUCTIONS, *(_over(model, one) for one in kernels)]
         + [_reduced_over(model, one) for one in kernels]
         + [_walk(model, one) for one in kernels if is_walked(one)]
     )  # fmt: skip
@@ -103,13 +103,13 @@ def _reduced_over(model: Model, kernel: Kernel) -> str:
     given = "".join(f"const double *{a.name}_all, " for a in arguments)
     passed = "".join(f"{a.name}_all, " for a in arguments)
     return dedent(f"""\
-        void {reduced_name(kernel.name)}(size_t points, size_t count, const size_t *group, {given}
+        void {reduced_name(kernel.name)}(size_t points, size_t count, size_t smallest, const size_t *group, {given}
                 const {params} *p_all, double *room, double *figures, int64_t *places, unsigned char *status_all)
         {{
             for (size_t point = 0; point < points; ++point) {{
                 unsigned char *status = status_all + point * count;
                 {over_name(kernel.name)}(1, count, group + point, {passed}p_all + point, room, status);
-                study_reduced({size}, count, room, figures + point * {6 * size}, places + point * {2 * size});
+                study_reduced({size}, count, smallest, room, figures + point * {6 * size}, places + point * {size});
             }}
         }}
         """)

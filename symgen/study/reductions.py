@@ -11,13 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symgen.study.chunks import Array
-from symgen.study.interest import BlockValues, Interest, interests
+from symgen.study.interest import BlockValues, Interest, interests, is_reduced_at_once, keeps_figures_alone
 from symgen.study.kernels import StudyKernels
 from symgen.study.plan import StudyPlan
 from symgen.study.states import StudyStates
 
 # States that are worked on at once: fewer are handed to C more often, more do not stay in the caches.
 BLOCK_STATES = 131_072
+# States that are worked on at once where nothing of them is kept but what they are reduced to.
+REDUCED_BLOCK_STATES = 2**20
 LARGEST_OF, QUANTILES_OF, PLACE_OF = "largest", "quantiles", "at"
 MAXIMUM_OF, MINIMUM_OF, MEAN_OF, RMS_OF = "max", "min", "mean", "rms"
 QUANTILE = "quantile"
@@ -100,7 +102,7 @@ def chunk_results(plan: StudyPlan, kernels: StudyKernels, states: StudyStates, v
         {},
         {one.name: [None] * len(one.channels) for one in interests(plan)},
     )
-    step = max(1, BLOCK_STATES // plan.states)
+    step = max(1, (REDUCED_BLOCK_STATES if is_reduced_at_once(plan) else BLOCK_STATES) // plan.states)
     for start in range(0, points, step):
         block = BlockValues(plan, kernels, states.of(values[start : start + step]))
         for one in interests(plan):
@@ -130,12 +132,12 @@ def _reduce(
 ) -> None:
     """One quantity of interest at a block of points."""
     channels = len(one.channels)
-    if plan.states > 1 and not plan.request.quantiles:
-        figures, places = block.reduced(one.name)
+    if keeps_figures_alone(plan):
+        figures, places = block.reduced(one)
     else:
         values = block.of(one.name)
         rows = values.reshape(-1, plan.states)
-        figures, places = kernels.reduced(rows)
+        figures, places = kernels.reduced(rows, one.smallest)
     here = slice(start, start + len(figures) // channels)
     if plan.states == 1:
         _keep(made, one.name, here, values)
@@ -145,11 +147,9 @@ def _reduce(
         levels = kernels.quantiles(rows, figures, plan.request.quantiles)
         _keep(made, f"{one.name}_{QUANTILES_OF}", here, levels)
     # 0 is added to what may be -0
-    far, near = np.maximum(figures[:, 0], -figures[:, 1]) + 0.0, 1 if one.smallest else 0
-    bad = (figures[:, 5] if one.smallest else far).reshape(-1, channels)
-    at = places[:, near].reshape(-1, channels)
+    worst, at = (figures[:, 5] + 0.0).reshape(-1, channels), places.reshape(-1, channels)
     for k in range(channels):
-        _keep_worst(made.worst[one.name], k, one, bad[:, k], at[:, k] >= 0, at[:, k], start)
+        _keep_worst(made.worst[one.name], k, one, worst[:, k], at[:, k] >= 0, at[:, k], start)
 
 
 def _keep(made: ChunkResults, name: str, here: slice, values: NDArray[Any]) -> None:
@@ -161,7 +161,7 @@ def _keep(made: ChunkResults, name: str, here: slice, values: NDArray[Any]) -> N
 def _keep_reduced(
     one: Interest, figures: Array, places: NDArray[np.int64], made: ChunkResults, here: slice
 ) -> None:
-    high, low, total, squares, number, _ = figures.T
+    high, low, total, squares, number, worst = figures.T
     none = number == 0
     with np.errstate(invalid="ignore"):
         by_figure = {
@@ -169,8 +169,8 @@ def _keep_reduced(
             MINIMUM_OF: np.where(none, np.nan, low),
             MEAN_OF: total / number,
             RMS_OF: np.sqrt(squares / number),
-            LARGEST_OF: np.where(none, np.nan, np.maximum(high, -low) + 0.0),
-            PLACE_OF: places[:, 1 if one.smallest else 0],
+            LARGEST_OF: np.where(none, np.nan, (np.maximum(high, -low) if one.smallest else worst) + 0.0),
+            PLACE_OF: places,
         }
     for figure, array in by_figure.items():
         _keep(made, f"{one.name}_{figure}", here, array)

@@ -120,14 +120,16 @@ class _SolvedPaths:
         equations = path_equations(plan.model, self._path)
         self._family = PathFamily(plan.model, self._path, equations)
         self._used = list(equations.parameters_used)
+        varied = {one.place for one in plan.over if one.kind == "parameter"}
+        self._is_one = varied.isdisjoint(self._used)
         self._most_kept = max(1, KEPT_BYTES // (3 * plan.model.n * self._path.samples * 8))
         self._kept: OrderedDict[bytes, tuple[Array, ...] | None] = OrderedDict()
         self._lock = Lock()
 
     def states(self, p: Array) -> BlockStates:
         """The states of points with these parameters."""
-        changing = np.ascontiguousarray(p[:, self._used])
-        if (changing == changing[0]).all():
+        changing = np.ascontiguousarray(p[: 1 if self._is_one else None, self._used])
+        if self._is_one:
             first, group = np.zeros(1, dtype=np.intp), np.zeros(len(p), dtype=np.intp)
         else:
             _, first, group = np.unique(changing, axis=0, return_index=True, return_inverse=True)
