@@ -125,6 +125,7 @@ proof: $(VENV)/installed
 # The marked blocks of README.md and the generated pages of docs/, with times measured on this machine.
 docs: $(VENV)/installed
 	$(BIN)/python tools/fill_readme.py
+	$(BIN)/python tools/notebook_page.py
 
 # Every public name of the package with its docstring, as HTML: open build/api/symgen.html.
 api: $(VENV)/installed

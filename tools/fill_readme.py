@@ -22,7 +22,7 @@ from symgen.model.quantities import QUANTITIES
 
 ROOT = Path(__file__).resolve().parent.parent
 PAPER_MODELS = ("skate", "front_car", "front_car_wheelset", "rear_car", "rapkm_2rrr_rr")
-FILLED = ("README.md", "docs/paper.md")
+FILLED = ("README.md", "docs/commands.md", "docs/paper.md", "docs/verified.md")
 BLOCK = re.compile(r"(<!-- begin (\w+) -->\n).*?(<!-- end \2 -->)", re.DOTALL)
 
 WITH_MISTAKES = """\

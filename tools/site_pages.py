@@ -4,7 +4,8 @@
     python tools/site_pages.py FOLDER    the same under another folder
 
 Pages keep their places, so that links between them stay as they are; what they link to beside pages goes along.  The
-page of the Python interface is made here, of the names that `symgen` has for its users.
+page of the Python interface is made here, of the names that `symgen` has for its users, and the gallery gets the
+equations and a motion of each machine.
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ import sys
 from collections.abc import Iterator, Sequence
 from importlib.util import find_spec
 from pathlib import Path
+
+from gallery_extras import add_extras
 
 from symgen import _PLACES
 
@@ -42,6 +45,7 @@ def gather(root: Path, pages: Path) -> None:
         made.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(target, made)
     (pages / "api.md").write_text(interface(), encoding="utf-8")
+    add_extras(pages, root / "models")
 
 
 def linked(root: Path, pages: Path) -> Iterator[Path]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, TypeAlias
@@ -12,9 +13,9 @@ from symgen.mechanics.genericity import assembly_of, parameter_values
 from symgen.mechanics.system import System
 from symgen.model.configurations.gradient import Gradients
 from symgen.model.kinematics.float_kinematics import FloatArithmetic, Form
-from symgen.model.kinematics.triples import Rates, Triple, applied, cross
+from symgen.model.kinematics.triples import Rates, Triple, applied, cross, transposed
 from symgen.model.kinematics.walk import Kinematics
-from symgen.model.mechanism import Frame
+from symgen.model.mechanism import WORLD, Component, Frame
 from symgen.model.model import Model
 
 Place: TypeAlias = Triple[float]
@@ -49,15 +50,21 @@ def kinematics_at(model: Model, values: Mapping[str, float]) -> Kinematics[float
 
 
 class MachinePose:
-    """One configuration of a model; ArithmeticError or ValueError where expressions have no value there."""
+    """One configuration of a model; ArithmeticError or ValueError where expressions have no value there.
 
-    def __init__(self, model: Model) -> None:
+    It is where the start of the model leads, with default values of parameters, unless others are given.  `values` are
+    those of parameters and coordinates.
+    """
+
+    def __init__(
+        self, model: Model, parameters: Mapping[str, float] | None = None, q: Sequence[float] | None = None
+    ) -> None:
         self.model, self.mechanism = model, model.mechanism
-        self.parameters = parameter_values(System(model))
-        q = assembly_of(model).places[0].q
+        self.parameters = parameter_values(System(model)) if parameters is None else dict(parameters)
+        q = assembly_of(model).places[0].q if q is None else q
         self._names = [coordinate.name for coordinate in model.coordinates]
-        self._values = self.parameters | dict(zip(self._names, map(float, q), strict=True))
-        self._kinematics = kinematics_at(model, self._values)
+        self.values = self.parameters | dict(zip(self._names, map(float, q), strict=True))
+        self._kinematics = kinematics_at(model, self.values)
         self.places = {name: self._kinematics.position(name) for name in self._owners()}
         extents = (max(axis) - min(axis) for axis in zip(*self.places.values(), strict=True))
         self.size = max(extents, default=0.0) or 1.0
@@ -69,6 +76,25 @@ class MachinePose:
         """An axis of a frame, in those of the world."""
         x, y, z = (row[number] for row in self._kinematics.axes(frame))
         return x, y, z
+
+    def is_still(self, owner: str) -> bool:
+        """Whether a point, or the origin of a frame, stays where it is, whatever moves."""
+        return not any(value for form in self._kinematics.position_rate(owner) for value in form.values())
+
+    def component(self, one: Component) -> float:
+        """A component of a point or frame that is no rate."""
+        return self._kinematics.component(one)
+
+    def all_axes(self, frame: str) -> tuple[Place, Place, Place]:
+        """The rows of the matrix that turns components in a frame's axes into those in the world's."""
+        return self._kinematics.axes(frame)
+
+    def in_frame(self, frame: str, place: Place) -> Place:
+        """A place of the world from the origin of a frame, in its axes."""
+        if frame == WORLD:
+            return place
+        x, y, z = (a - b for a, b in zip(place, self.places[frame], strict=True))
+        return applied(transposed(self.all_axes(frame)), (x, y, z))
 
     def in_world(self, frame: str, at: Place) -> Place:
         """The place in the world of one in a frame."""
@@ -103,9 +129,9 @@ class MachinePose:
         driven = tuple(name for name, coordinates in acting.items() if coordinates and coordinates <= {*names})
         place = foot = self.places[frame.name]
         if kind == "sliding":
-            foot = kinematics_at(
-                self.model, self._values | {self._names[i]: 0.0 for i in moving[0]}
-            ).position(frame.name)
+            start = self.values | {self._names[i]: 0.0 for i in moving[0]}
+            with suppress(ArithmeticError, ValueError):  # a slide at 0 may have no place
+                foot = kinematics_at(self.model, start).position(frame.name)
         return DrawnJoint(frame.name, kind, place, foot, slides, turns, names, driven)
 
     def _directions(self, parent: str, rates: Rates[Form]) -> tuple[Place, ...]:

@@ -1,15 +1,23 @@
-"""Where frames, points, bodies and wheels are at each moment of a motion: what the animation draws."""
+"""The machine along a motion: its links, joints, wheels and points, and where they are at each moment."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 
-from symgen.drawing.pose import Place, kinematics_at
+from symgen.drawing.lengths import drawn_lengths
+from symgen.drawing.links import LinkPlaces
+from symgen.drawing.pose import Kind, MachinePose, Place, kinematics_at
+from symgen.drawing.view import ABOVE, View, view_of
 from symgen.model.expressions.walk import evaluate
+from symgen.model.kinematics.triples import applied, transposed
 from symgen.model.mechanism import WORLD, Mechanism
 from symgen.model.model import Model
+
+# The number of the world among frames.
+IN_WORLD = -1
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,21 +39,63 @@ class Hoop:
 
 
 @dataclass(frozen=True, slots=True)
+class MovingLink:
+    """A link by its places in the axes of a turned frame, from its origin; those of the world are where it stands."""
+
+    frame: int
+    places: tuple[Place, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class MovingJoint:
+    """The joint at the origin of a frame; a slide goes from `foot` along a direction, in the axes of its `carrier`."""
+
+    frame: int
+    kind: Kind
+    driven: bool
+    carrier: int
+    foot: Place
+    along: Place
+
+
+@dataclass(frozen=True, slots=True)
+class MovingTie:
+    """A rod, spring or part of a cable between two names."""
+
+    kind: str
+    ends: tuple[int, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Stand:
+    """From where a motion is looked at first: directions of the picture, and how far (rad) the eye is above them."""
+
+    right: Place
+    up: Place
+    near: Place
+    above: float
+    planar: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Scene:
     """What is drawn, and where it is at each moment.
 
-    `names` are those of the frames, then of the points; `lines` join a frame to its parent, `arms` a point to its
-    frame, `ties` are rods, springs and cables.  `turned` are the frames whose axes are drawn.  `places` (m) and the
-    rows of the rotation matrices `axes` follow the motion.
+    `names` are those of the frames, then of as many `points`; `chains` join a frame to its parent and a point to its
+    frame.  `turned` are the frames whose axes are known.  `places` (m) and the rows of the rotation matrices `axes`
+    follow the motion.
     """
 
     names: tuple[str, ...]
-    lines: tuple[tuple[int, int], ...]
-    arms: tuple[tuple[int, int], ...]
-    ties: tuple[tuple[int, int], ...]
+    points: int
+    chains: tuple[tuple[int, int], ...]
+    links: tuple[MovingLink, ...]
+    joints: tuple[MovingJoint, ...]
+    ties: tuple[MovingTie, ...]
     turned: tuple[int, ...]
     balls: tuple[Ball, ...]
     hoops: tuple[Hoop, ...]
+    stand: Stand
     places: tuple[tuple[Place, ...], ...]
     axes: tuple[tuple[tuple[float, ...], ...], ...]
 
@@ -56,26 +106,72 @@ def scene(model: Model, parameters: Mapping[str, float], motion: Sequence[Sequen
     if not mechanism.frames:
         return None
     names = (*(frame.name for frame in mechanism.frames), *(point.name for point in mechanism.points))
-    number = {name: k for k, name in enumerate(names)}
-    carriers = {body.frame for body in mechanism.bodies} | {wheel.frame for wheel in mechanism.wheels}
-    turned = tuple(k for k, frame in enumerate(mechanism.frames) if frame.name in carriers)
+    number = {name: k for k, name in enumerate(names)} | {WORLD: IN_WORLD}
+    pose = MachinePose(model, parameters, motion[0])
+    links = LinkPlaces(pose)
+    used = {*links.places, *links.root.values(), *(body.frame for body in mechanism.bodies)}
+    used |= {wheel.frame for wheel in mechanism.wheels} | {frame.parent for frame in mechanism.frames}
+    turned = tuple(k for k, frame in enumerate(mechanism.frames) if frame.name in used)
     places, axes = [], []
     for q in motion:
         at = dict(zip((coordinate.name for coordinate in model.coordinates), q, strict=True))
         kinematics = kinematics_at(model, {**parameters, **at})
-        places.append(tuple(map(kinematics.position, names)))
+        places.append(tuple(kinematics.position(name) for name in names))
         axes.append(tuple(tuple(chain(*kinematics.axes(names[k]))) for k in turned))
     return Scene(
         names,
-        tuple((number[f.parent], number[f.name]) for f in mechanism.frames if f.parent != WORLD),
-        tuple((number[p.frame], number[p.name]) for p in mechanism.points if p.frame != WORLD),
-        tuple((number[tie.ends[0]], number[tie.ends[1]]) for tie in mechanism.ties),
+        len(mechanism.points),
+        tuple(
+            (number[carrier], number[name])
+            for carrier, name in (
+                *((frame.parent, frame.name) for frame in mechanism.frames),
+                *((point.frame, point.name) for point in mechanism.points),
+            )
+            if carrier != WORLD
+        ),
+        tuple(MovingLink(number[name], _in_axes(pose, name, there)) for name, there in links.places.items()),
+        tuple(_joints(pose, number)),
+        (
+            *(MovingTie(tie.kind, (number[tie.ends[0]], number[tie.ends[1]])) for tie in mechanism.ties),
+            *(MovingTie("rod", (number[leg.ends[0]], number[leg.ends[1]])) for leg in drawn_lengths(pose)),
+        ),
         turned,
         _balls(mechanism, parameters, number),
         tuple(Hoop(number[w.frame], evaluate(w.radius, parameters), w.axle) for w in mechanism.wheels),
+        _stand(view_of(pose)),
         tuple(places),
         tuple(axes),
     )
+
+
+def _in_axes(pose: MachinePose, frame: str, places: Sequence[Place]) -> tuple[Place, ...]:
+    """Places of the world in the axes of a frame, from its origin."""
+    return tuple(pose.in_frame(frame, place) for place in places)
+
+
+def _joints(pose: MachinePose, number: Mapping[str, int]) -> Sequence[MovingJoint]:
+    """Those of frames that move, but for what moves freely."""
+    parents = {frame.name: frame.parent for frame in pose.mechanism.frames}
+    moving = [joint for joint in pose.joints if joint.kind not in ("fixed", "free")]
+    drawn = []
+    for joint in moving:
+        parent = parents[joint.frame]
+        along = joint.slides[0] if joint.kind == "sliding" else (0.0, 0.0, 0.0)
+        if parent != WORLD:
+            along = applied(transposed(pose.all_axes(parent)), along)
+        foot = pose.in_frame(parent, joint.foot)
+        drawn.append(MovingJoint(number[joint.frame], joint.kind, bool(joint.inputs), number[parent], foot, along))
+    return drawn
+
+
+def _stand(view: View) -> Stand:
+    """The directions of a view, level where the eye is above the machine."""
+    if view.planar:
+        return Stand(view.right, view.up, view.near, 0.0, True)
+    low, high = math.sin(ABOVE), math.cos(ABOVE)
+    pairs = [(high * u + low * n, high * n - low * u) for u, n in zip(view.up, view.near, strict=True)]
+    (a, d), (b, e), (c, f) = pairs
+    return Stand(view.right, (a, b, c), (d, e, f), ABOVE, False)
 
 
 def _balls(mechanism: Mechanism, parameters: Mapping[str, float], number: Mapping[str, int]) -> tuple[Ball, ...]:

@@ -6,23 +6,28 @@ A link is a bar between its two places, or the hull of more; driven joints are f
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+from symgen.drawing.forces import drawn_forces
+from symgen.drawing.lengths import drawn_lengths
+from symgen.drawing.links import LinkPlaces
 from symgen.drawing.pose import DrawnJoint, MachinePose, Place
 from symgen.drawing.view import Flat, View, view_of
 from symgen.model.expressions.walk import evaluate
 from symgen.model.mechanism import WORLD
 
-Role: TypeAlias = Literal["link", "base", "tie", "spring", "cable", "rail", "wheel", "axis"]
+Role: TypeAlias = Literal["link", "base", "tie", "spring", "cable", "rail", "wheel", "axis", "force"]
 Mark: TypeAlias = Literal["ground", "joint", "driven", "slider", "driven slider", "ball", "pin", "point"]
 # Sides of the polygon that stands for a circle.
 ROUND = 48
 # Directions of links that add up to less are balanced.
 BALANCED = 0.3
-# Of the machine's size: axes of the world, and how far a spring's zigzags reach; how many these are.
-AXIS_LENGTH, ZIGZAG, ZIGZAGS = 0.16, 0.025, 9
+# Of the machine's size: axes of the world, arrows of forces, and how far a spring's zigzags reach; how many these are.
+AXIS_LENGTH, ARROW_LENGTH, ZIGZAG, ZIGZAGS = 0.16, 0.14, 0.025, 9
+# The length, of 1, below which a direction points at the eye.
+NO_DIRECTION = 0.1
 # Joints and points that have their names beside them, at most.
 NAMED_JOINTS, NAMED_POINTS = 12, 10
 
@@ -75,10 +80,15 @@ def sketch(pose: MachinePose) -> MachineSketch:
 def sketch_in(pose: MachinePose, view: View) -> MachineSketch:
     """The picture of a machine in a certain view."""
     links = _Links(pose, view)
+    arrows, inputs = _forces(pose, view)
+    legs, lengths = _lengths(pose, view)
     return MachineSketch(
-        (*_world(pose, view), *links.base(), *_wheels(pose, view), *links.strokes(), *_ties(pose, view)),
+        (
+            *(*_world(pose, view), *links.base(), *_wheels(pose, view), *links.strokes()),
+            *(*_ties(pose, view), *legs, *arrows),
+        ),
         (*links.grounds(), *links.symbols(), *links.pins()),
-        tuple(links.labels()),
+        (*links.labels(), *lengths, *inputs),
         view.planar,
     )
 
@@ -89,39 +99,8 @@ class _Links:
     def __init__(self, pose: MachinePose, view: View) -> None:
         self._pose, self._view = pose, view
         self._joints = {joint.frame: joint for joint in pose.joints}
-        # of frames that are fixed to others the places count as those of the first one
-        self._root: dict[str, str] = {WORLD: WORLD}
-        for frame in pose.mechanism.frames:
-            fixed = self._joints[frame.name].kind == "fixed"
-            self._root[frame.name] = self._root[frame.parent] if fixed else frame.name
-        self._places: dict[str, list[Place]] = {}
-        for frame in pose.mechanism.frames:
-            joint = self._joints[frame.name]
-            if joint.kind not in ("fixed", "free"):
-                self._add(self._root[frame.parent], joint.foot)
-                self._add(self._root[frame.name], joint.place)
-            elif joint.kind == "fixed" and self._root[frame.name] != WORLD:
-                self._add(self._root[frame.name], joint.place)
-        ends = {end for tie in pose.mechanism.ties for end in tie.ends}
-        for point in pose.mechanism.points:
-            if point.frame == point.carrier or point.name in ends:
-                self._add(self._root[point.frame], pose.places[point.name])
-        for frame in pose.mechanism.frames:
-            if frame.name in ends:
-                self._add(self._root[frame.name], pose.places[frame.name])
-        for body in pose.mechanism.bodies:
-            root = self._root[body.frame]
-            if root != WORLD and len(self._places.get(root, [])) < 2:
-                x, y, z = (evaluate(entry, pose.parameters) for entry in body.com)
-                self._add(root, pose.in_world(body.frame, (x, y, z)))
-
-    def _add(self, frame: str, place: Place) -> None:
-        known = self._places.setdefault(frame, [])
-        if not self._is_among(place, known):
-            known.append(place)
-
-    def _is_among(self, place: Place, others: Iterable[Place]) -> bool:
-        return any(self._pose.is_same(place, other) for other in others)
+        links = LinkPlaces(pose)
+        self._places, self._is_among = links.places, links.is_among
 
     def strokes(self) -> Iterator[Stroke]:
         """Bars and hulls, the far ones first; rails of sliders."""
@@ -257,6 +236,36 @@ def _ties(pose: MachinePose, view: View) -> Iterator[Stroke]:
             yield Stroke("cable", (start, end))
         else:
             yield Stroke("spring", tuple(_zigzag(start, end, ZIGZAG * pose.size)))
+
+
+def _lengths(pose: MachinePose, view: View) -> tuple[list[Stroke], list[MachineLabel]]:
+    """Legs that equations speak of, with their lengths beside the middle."""
+    legs: list[Stroke] = []
+    names: list[MachineLabel] = []
+    for length in drawn_lengths(pose):
+        start, end = (view.flat(pose.places[name]) for name in length.ends)
+        legs.append(Stroke("tie", (start, end)))
+        if length.coordinates or length.inputs:
+            middle = (start[0] + end[0]) / 2, (start[1] + end[1]) / 2
+            names.append(MachineLabel(middle, (1.0, 0.0), length.coordinates, length.inputs))
+    return legs, names
+
+
+def _forces(pose: MachinePose, view: View) -> tuple[list[Stroke], list[MachineLabel]]:
+    """Arrows of inputs that act on the machine itself, and the names of these inputs; torques have names alone."""
+    arrows: list[Stroke] = []
+    names: list[MachineLabel] = []
+    length = ARROW_LENGTH * pose.size
+    for force in drawn_forces(pose):
+        place = view.flat(force.place)
+        right, up = view.flat(force.direction) if force.direction else (0.0, 0.0)
+        if (seen := math.hypot(right, up)) > NO_DIRECTION:
+            tip = place[0] + length * right, place[1] + length * up
+            arrows.append(Stroke("force", (place, tip)))
+            names.append(MachineLabel(tip, (right / seen, up / seen), inputs=(force.input,)))
+        else:
+            names.append(MachineLabel(place, (0.0, 1.0), inputs=(force.input,)))
+    return arrows, names
 
 
 def _zigzag(start: Flat, end: Flat, width: float) -> Iterator[Flat]:

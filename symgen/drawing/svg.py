@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from html import escape
 
+from symgen.drawing.names import Bar, Box, Standing, Wanted, placed
 from symgen.drawing.pose import MachinePose
-from symgen.drawing.sketch import MachineLabel, MachineSketch, Role, Symbol, sketch
+from symgen.drawing.sketch import MachineLabel, MachineSketch, Mark, Role, Symbol, sketch
 from symgen.drawing.view import Flat
 from symgen.mechanics.genericity import assembly_of
 from symgen.model.model import Model
@@ -19,10 +19,23 @@ PICTURE_WIDTH, PICTURE_HEIGHT, BORDER = 460, 400, 54
 # Pixels: half of a bar, the radius of a joint, the half sides of a slider, from a joint to its names
 # above or below and beside it.
 BAR, JOINT, SLIDER, APART, NEAR = 5.0, 6.0, (11.0, 7.0), 19.0, 12.0
-# Beyond this share of a direction names stand beside their joint, not above or below.
-ASLANT = 0.4
-# A letter's width, of its height; pixels around names at the edge.
-LETTER, EDGE = 0.5, 6.0
+# Pixels: the heights of letters of coordinates and inputs, and of points and axes; from the tip of an axis to its name.
+NAME_HEIGHT, NOTE_HEIGHT, TIP_GAP = 14, 11, 8.0
+# A letter's width, of its height; how large lowered letters are; pixels around names at the edge.
+LETTER, INDEX_SHARE, EDGE = 0.5, 0.7, 6.0
+# Pixels that a mark takes to the left and right of its place, above and below it.
+MARKED: dict[Mark, tuple[float, float, float]] = {
+    "ground": (13, 0, 20),
+    "slider": (11, 9, 9),
+    "driven slider": (11, 9, 9),
+    "ball": (JOINT + 1, JOINT + 1, JOINT + 1),
+    "joint": (JOINT, JOINT, JOINT),
+    "driven": (JOINT, JOINT, JOINT),
+    "pin": (JOINT - 1.5, JOINT - 1.5, JOINT - 1.5),
+    "point": (2.6, 2.6, 2.6),
+}
+# Of the ellipse that stands for the ground in space.
+FOOT = (12, 5)
 INK, LIGHT, DRIVEN, PALE = "#2b2f36", "#dfe5ee", "#d1432f", "#8a93a3"
 # How strokes look: colour, width, filling, dashes.
 LOOKS: dict[Role, tuple[str, float, str, str]] = {
@@ -34,23 +47,24 @@ LOOKS: dict[Role, tuple[str, float, str, str]] = {
     "rail": (PALE, 2.0, "none", "5 3"),
     "wheel": (INK, 2.0, "#eef1f6", ""),
     "axis": (PALE, 1.2, "none", ""),
+    "force": (DRIVEN, 1.8, DRIVEN, ""),
 }
 
 
 def drawing(model: Model) -> str | None:
-    """The picture of a model's machine where its start leads; None for a model without frames, or without places."""
-    if not model.mechanism.frames or not assembly_of(model).places:
+    """The picture of a model's machine where its start leads; None without frames and points, or without places."""
+    mechanism = model.mechanism
+    if not (mechanism.frames or mechanism.points) or not assembly_of(model).places:
         return None
     try:
         pose = MachinePose(model)
-        joints = pose.joints
-    except (ArithmeticError, ValueError):  # a slide at 0 may have no place
+    except (ArithmeticError, ValueError):
         return None
-    places = [*pose.places.values(), *(joint.foot for joint in joints)]
-    return _Paper(sketch(pose)).svg() if all(math.isfinite(x) for place in places for x in place) else None
+    places = [*pose.places.values(), *(joint.foot for joint in pose.joints)]
+    return Paper(sketch(pose)).svg() if all(math.isfinite(x) for place in places for x in place) else None
 
 
-class _Paper:
+class Paper:
     """A sketch at the scale at which it fits."""
 
     def __init__(self, shown: MachineSketch) -> None:
@@ -66,13 +80,20 @@ class _Paper:
 
     def svg(self) -> str:
         """The text of the file, as wide as names beside the machine ask for."""
-        labels = [*self._labels()]
+        standing = self.standing()
         parts = [*self._strokes(), *map(self._symbol, self._sketch.symbols)]
-        left = min([0.0, *(label.left - EDGE for label in labels)])
-        width = max([float(PICTURE_WIDTH), *(label.left + label.wide + EDGE for label in labels)]) - left
+        texts = (look for _, look in self._words())
+        parts += [_text(there, text, size) for there, (text, size) in zip(standing, texts, strict=True)]
+        left = min([0.0, *(one.box.left - EDGE for one in standing)])
+        width = max([float(PICTURE_WIDTH), *(one.box.right + EDGE for one in standing)]) - left
         size = f'width="{width:.0f}" height="{self._height}" viewBox="{left:.0f} 0 {width:.0f} {self._height}"'
         head = f'<svg xmlns="http://www.w3.org/2000/svg" {size} font-family="Libertinus Serif, Georgia, serif">'
-        return "\n".join([head, *parts, *(label.text for label in labels), "</svg>"])
+        return "\n".join([head, *parts, "</svg>"])
+
+    def standing(self) -> list[Standing]:
+        """Where the names stand."""
+        wanted = [name for name, _ in self._words()]
+        return placed(wanted, [*self._bars()], [*self._marks()], self._height)
 
     def _at(self, place: Flat) -> Flat:
         x = BORDER + self._shift + self._scale * (place[0] - self._left)
@@ -93,19 +114,21 @@ class _Paper:
                 yield f'<path d="{path}" fill="{filled}" stroke="{INK}" stroke-width="{width + 2.4:g}" {look}/>'
             dashed = f' stroke-dasharray="{dashes}"' if dashes else ""
             yield f'<path d="{path}" fill="{filled}" stroke="{colour}" stroke-width="{width:g}"{dashed} {look}/>'
-        yield from self._axes()
+            if stroke.role == "force":
+                yield self._head(*stroke.places)
 
-    def _axes(self) -> Iterator[str]:
-        """The names of the axes of the world at their tips."""
-        for stroke in self._sketch.strokes:
-            if stroke.name:
-                (x, y), (u, v) = map(self._at, stroke.places)
-                far = math.hypot(u - x, v - y)
-                yield _text(u + 8 * (u - x) / far, v + 8 * (v - y) / far + 3, _name(stroke.name, PALE), 11)
+    def _head(self, start: Flat, tip: Flat) -> str:
+        """The head of an arrow."""
+        (x, y), (u, v) = self._at(start), self._at(tip)
+        angle = math.degrees(math.atan2(v - y, u - x))
+        place = f"translate({u:.1f} {v:.1f}) rotate({angle:.1f})"
+        return f'<path d="M2 0 L-8 -4 V4 Z" transform="{place}" fill="{DRIVEN}"/>'
 
     def _ground(self, x: float, y: float) -> str:
         if not self._sketch.planar:
-            return f'<ellipse cx="{x:.1f}" cy="{y:.1f}" rx="12" ry="5" fill="{PALE}" fill-opacity="0.35"/>'
+            wide, high = FOOT
+            size = f'rx="{wide}" ry="{high}"'
+            return f'<ellipse cx="{x:.1f}" cy="{y:.1f}" {size} fill="{PALE}" fill-opacity="0.35"/>'
         base = y + 15
         ticks = " ".join(f"M{x + step:.1f} {base:.1f} l-5 5" for step in range(-8, 13, 5))
         return (
@@ -138,27 +161,36 @@ class _Paper:
             case "joint":
                 return f'{circle} r="{JOINT:g}" fill="white" {outlined}/>'
 
-    def _labels(self) -> Iterator[_PlacedLabel]:
+    def _bars(self) -> Iterator[Bar]:
+        """All drawn lines, outlines of plates and wheels among them."""
+        for stroke in self._sketch.strokes:
+            places = [*map(self._at, stroke.places)]
+            ends = [*places[1:], places[0]] if stroke.closed else places[1:]
+            for start, end in zip(places, ends, strict=False):
+                yield Bar(start, end, LOOKS[stroke.role][1] / 2)
+
+    def _marks(self) -> Iterator[Box]:
+        for symbol in self._sketch.symbols:
+            x, y = self._at(symbol.place)
+            aside, above, below = MARKED[symbol.mark]
+            if symbol.mark == "ground" and not self._sketch.planar:
+                aside, above, below = FOOT[0], FOOT[1], FOOT[1]
+            yield Box(x - aside, y - above, x + aside, y + below)
+
+    def _words(self) -> Iterator[tuple[Wanted, tuple[str, int]]]:
+        """Names with what they look like and how high they are: coordinates and inputs, points, axes of the world."""
         for label in self._sketch.labels:
-            x, y = self._at(label.place)
-            right, up = label.away
-            beside, size = abs(right) > ASLANT, 11 if label.point else 14
-            anchor = "middle" if not beside else "start" if right > 0 else "end"
-            # the picture's y goes down
-            x, y = x + (NEAR if beside else APART) * right, y - APART * up + 4
-            words = (label.point,) if label.point else (*label.coordinates, *label.inputs)
-            wide = LETTER * size * len(", ".join(words))
-            left = x - {"start": 0.0, "middle": wide / 2, "end": wide}[anchor]
-            yield _PlacedLabel(left, wide, _text(x, y, _spelled(label), size, anchor))
-
-
-@dataclass(frozen=True, slots=True)
-class _PlacedLabel:
-    """A label where it stands: its left end and about how wide it is, in pixels."""
-
-    left: float
-    wide: float
-    text: str
+            size = NOTE_HEIGHT if label.point else NAME_HEIGHT
+            names = (*label.coordinates, *label.inputs)
+            wide = LETTER * size * (len(label.point) if label.point else sum(map(_letters, names)) + 2 * len(names) - 2)
+            yield Wanted(self._at(label.place), label.away, wide, size, NEAR, APART), (_spelled(label), size)
+        for stroke in self._sketch.strokes:
+            if stroke.name:
+                (x, y), (u, v) = map(self._at, stroke.places)
+                far = math.hypot(u - x, v - y)
+                away = (u - x) / far, -(v - y) / far
+                wanted = Wanted((u, v), away, LETTER * NOTE_HEIGHT, NOTE_HEIGHT, TIP_GAP, TIP_GAP + 2)
+                yield wanted, (_name(stroke.name, PALE), NOTE_HEIGHT)
 
 
 def _spelled(label: MachineLabel) -> str:
@@ -169,15 +201,23 @@ def _spelled(label: MachineLabel) -> str:
     return ", ".join(words)
 
 
+def _letters(name: str) -> float:
+    """How many letters of full size a symbol is as wide as."""
+    letter, _, index = name.partition("_")
+    return len(GREEK.get(letter, letter)) + INDEX_SHARE * len(index)
+
+
 def _name(name: str, colour: str) -> str:
     """A symbol in italics, what follows its first underscore lowered."""
     letter, _, index = name.partition("_")
     letter = GREEK.get(letter, letter)
-    lowered = f'<tspan font-size="70%" dy="3">{escape(index)}</tspan><tspan dy="-3">&#8203;</tspan>' if index else ""
+    lower, back = f'<tspan font-size="{INDEX_SHARE:.0%}" dy="3">', '<tspan dy="-3">&#8203;</tspan>'
+    lowered = f"{lower}{escape(index)}</tspan>{back}" if index else ""
     return f'<tspan fill="{colour}" font-style="italic">{escape(letter)}{lowered}</tspan>'
 
 
-def _text(x: float, y: float, content: str, size: int, anchor: str = "middle") -> str:
+def _text(there: Standing, content: str, size: int) -> str:
     # a white rim keeps names readable across links
     rim = 'paint-order="stroke" stroke="white" stroke-width="3" stroke-linejoin="round"'
-    return f'<text x="{x:.1f}" y="{y:.1f}" font-size="{size}" text-anchor="{anchor}" {rim}>{content}</text>'
+    place = f'x="{there.x:.1f}" y="{there.y:.1f}" font-size="{size}" text-anchor="{there.anchor}"'
+    return f"<text {place} {rim}>{content}</text>"

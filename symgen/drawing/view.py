@@ -11,6 +11,9 @@ from symgen.model.expressions.walk import evaluate
 from symgen.model.kinematics.triples import cross, inner
 
 Flat: TypeAlias = tuple[float, float]
+# Of the size of a machine: links that move in one plane may lie this far above each other, as they have to in a machine
+# that is built, and are looked at straight on.
+STACKED = 0.25
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 # Planes of the world as they are usually drawn: the direction towards the eye, and up.
 USUAL_PLANES = ((Z, Y), ((0.0, -1.0, 0.0), Z), (X, Z))
@@ -52,9 +55,11 @@ def views_along_axes(pose: MachinePose) -> tuple[View, ...]:
 
 
 def _is_planar(pose: MachinePose, normal: Place) -> bool:
-    """Whether the machine stays in a plane with this normal."""
-    heights = [inner(place, normal) for place in pose.places.values()]
-    return max(heights) - min(heights) <= NEXT_TO_NOTHING * pose.size and _moves_along(pose, normal)
+    """Whether what moves stays in a plane with this normal, but for the thickness of links."""
+    moving = [joint for joint in pose.joints if joint.kind != "fixed"]
+    places = [place for joint in moving for place in (joint.place, joint.foot)]
+    heights = [inner(place, normal) for place in (*places, *(pose.places[one.name] for one in pose.mechanism.points))]
+    return max(heights, default=0.0) - min(heights, default=0.0) <= STACKED * pose.size and _moves_along(pose, normal)
 
 
 def _moves_along(pose: MachinePose, normal: Place) -> bool:

@@ -100,7 +100,7 @@ class ModelFile:
             return load_model(path)
 
     def drawing(self) -> str | None:
-        """SVG: the machine where its start leads; None for a model without frames."""
+        """SVG: the machine where its start leads; None without frames and points."""
         from symgen.drawing.svg import drawing
 
         return drawing(self.resolved)

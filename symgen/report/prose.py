@@ -60,8 +60,8 @@ def say(pattern: str, *slots: Slot) -> Text:
 
 # Em of a formula in a sentence that stays whole.
 INLINE_ROOM = 18.0
-# What messages quote, and projected matrices and their pseudoinverses, which they write in ASCII.
-_MARKED = re.compile(r"`([^`]+)`|\b([A-Z])~(\+?)")
+# What messages quote, and projected matrices, their pseudoinverses and the projector, which they write in ASCII.
+_MARKED = re.compile(r"`([^`]+)`|\b([A-Z])~(\+?)|\bN_B\b")
 
 
 def worded(text: str) -> Text:
@@ -70,7 +70,11 @@ def worded(text: str) -> Text:
     end = 0
     for match in _MARKED.finditer(text):
         quoted, letter, plus = match.groups()
-        parts += [text[end : match.start()], *([_projected(letter, plus)] if quoted is None else _quoted(quoted))]
+        parts.append(text[end : match.start()])
+        if quoted is not None:
+            parts += _quoted(quoted)
+        else:
+            parts.append(_projected(letter, plus) if letter else InlineMath(SYMBOLS["nullspace_projector"]))
         end = match.end()
     return tuple(part for part in (*parts, text[end:]) if part != "")
 

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import math
 import re
+from itertools import combinations
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 
+from symgen.drawing.forces import drawn_forces
+from symgen.drawing.lengths import drawn_lengths
+from symgen.drawing.names import Bar, Box, Wanted, placed
 from symgen.drawing.pose import MachinePose
+from symgen.drawing.scene import IN_WORLD, scene
 from symgen.drawing.sketch import NAMED_JOINTS, sketch
-from symgen.drawing.svg import DRIVEN, drawing
-from symgen.drawing.view import view_of
+from symgen.drawing.svg import DRIVEN, Paper, drawing
+from symgen.drawing.view import ABOVE, view_of
 from symgen.model.kinematics.triples import cross
 from symgen.model.load import load_model, load_text
 from symgen.model.model import Model
@@ -117,6 +123,7 @@ def test_all_that_moves_or_drives_stands_in_the_picture(name: str) -> None:
     named = [coordinate for label in shown.labels for coordinate in label.coordinates]
     moving = [joint for joint in pose.joints if joint.coordinates]
     turned = {coordinate for joint in moving for coordinate in joint.coordinates}
+    turned |= {coordinate for leg in drawn_lengths(pose) for coordinate in leg.coordinates}
     # of a long chain there is room for some names
     assert sorted(named) == sorted(turned) if len(moving) <= NAMED_JOINTS else set(named) < turned
     driven = [symbol for symbol in shown.symbols if "driven" in symbol.mark]
@@ -154,6 +161,151 @@ def test_names_are_letters_with_indices_and_point_names_stay() -> None:
     assert ">tip<" in text
 
 
+ON_BODIES = """model: pushed
+parameters: {l: {value: 1, unit: m}, m: {value: 1, unit: kg}}
+gravity: [0, 0, -9.81]
+joints:
+  cart: {type: prismatic, axis: x, coordinate: x}
+  arm: {type: revolute, parent: cart, axis: y, coordinate: a}
+bodies: {cart: {mass: m}, arm: {mass: m, com: [0, 0, -l/2], inertia: {yy: m*l**2/12}}}
+definitions: {c: cos(a)}
+points:
+  tip: {frame: arm, at: [0, 0, -l]}
+  wall: {at: [-1.5, 0, 0]}
+inputs:
+  push: {unit: N, point: tip, direction: [c, 0, sin(a)]}
+  along: {unit: N, point: tip, direction: [1, 0, 0], axes: arm}
+  across: {unit: N, point: tip, direction: [0, 1, 0]}
+  pull: {unit: N, cable: [wall, cart]}
+  turn: {unit: N*m, torque_on: arm, direction: [0, 1, 0]}
+  pair: {unit: N, point: tip, direction: [0, 0, 2], reaction: cart}
+configuration: {x: 0.2, a: 0.5}
+"""
+
+
+def test_inputs_that_act_on_bodies_are_arrows() -> None:
+    """In the direction of the force on what moves; the wall that a cable ends at takes none."""
+    model = load_text(ON_BODIES, "pushed.yaml")
+    pose = MachinePose(model)
+    c, s = math.cos(0.5), math.sin(0.5)
+    tip = pose.places["tip"]
+    expected = [
+        ("push", tip, (c, 0, s)),
+        ("along", tip, (c, 0, -s)),
+        ("across", tip, (0, 1, 0)),
+        ("pull", pose.places["cart"], (-1, 0, 0)),
+        ("turn", pose.places["arm"], None),
+        ("pair", tip, (0, 0, 1)),
+        ("pair", pose.places["cart"], (0, 0, -1)),
+    ]
+    shown = list(drawn_forces(pose))
+    assert [(force.input, force.place) for force in shown] == [(name, place) for name, place, _ in expected]
+    for force, (_, _, direction) in zip(shown, expected, strict=True):
+        assert force.direction == (direction and pytest.approx(direction))
+    drawn = sketch(pose)
+    # one of them points away from the eye
+    assert [stroke.role for stroke in drawn.strokes].count("force") == 5
+    assert {name for label in drawn.labels for name in label.inputs} == {one.name for one in model.inputs}
+    text = drawing(model)
+    assert text is not None
+    assert text.count('<path d="M2 0 L-8 -4 V4 Z"') == 5
+
+
+def test_legs_that_equations_speak_of_are_lines() -> None:
+    """Of the Gough-Stewart platform whose legs are coordinates, with their names and forces."""
+    pose = MachinePose(load_model(MODELS / "gough_stewart.yaml"))
+    legs = list(drawn_lengths(pose))
+    assert [leg.ends for leg in legs] == [(f"head_{k}", f"foot_{k}") for k in range(1, 7)]
+    assert [(leg.coordinates, leg.inputs) for leg in legs] == [((f"s_{k}",), (f"f_{k}",)) for k in range(1, 7)]
+    shown = sketch(pose)
+    assert [stroke.role for stroke in shown.strokes].count("tie") == 6
+    assert {name for label in shown.labels for name in label.inputs} == {f"f_{k}" for k in range(1, 7)}
+    # rods of a word of the language are drawn once, points of loops meet, and other rows are about something else
+    for name in ("delta", "rapkm_bodies", "gough_loops"):
+        assert not list(drawn_lengths(MachinePose(load_model(MODELS / f"{name}.yaml"))))
+    level = "constraints: {geometric: {level: tip.z - 2*wall.z - tip.x + wall.x}}"
+    beside = ON_BODIES.replace("inputs:", f"{level}\ninputs:")
+    assert not list(drawn_lengths(MachinePose(load_text(beside, "pushed.yaml"))))
+
+
+POINTS = """model: car_by_energies
+coordinates: {x: {unit: m}, y: {unit: m}, theta: {unit: rad}}
+parameters: {L: {value: 2.6, unit: m}, m: {value: 100, unit: kg}, J: {value: 100, unit: kg*m**2}}
+kinetic_energy: m/2*(x_dot**2 + y_dot**2) + J/2*theta_dot**2
+definitions: {ahead: x + L*cos(theta)}
+points:
+  rear: {at: [x, y, 0]}
+  front: {at: [ahead, y + L*sin(theta), 0]}
+  post: {at: [1, 0, 0]}
+constraints: {nonholonomic: {axle: sin(theta)*x_dot - cos(theta)*y_dot}}
+inputs: {F: {unit: N, acts_on: {x: cos(theta), y: sin(theta)}}}
+configuration: {x: 0, y: 0, theta: 0.3}
+"""
+
+
+def test_points_of_a_model_by_energies_are_drawn() -> None:
+    """They move in the world, which carries the one that stays where it is."""
+    pose = MachinePose(load_text(POINTS, "car_by_energies.yaml"))
+    shown = sketch(pose)
+    assert shown.planar
+    assert [symbol.mark for symbol in shown.symbols].count("point") == 3
+    assert [symbol.place for symbol in shown.symbols if symbol.mark == "ground"] == [(1, 0)]
+    assert [label.point for label in shown.labels] == ["rear", "front", "post"]
+    assert not [stroke for stroke in shown.strokes if stroke.role != "axis"]
+    assert drawing(pose.model) is not None
+
+
+def test_links_that_lie_above_each_other_are_looked_at_straight_on() -> None:
+    """The rods of the five-bar turn 2 cm above its cranks, and its base stands elsewhere."""
+    view = view_of(MachinePose(load_model(MODELS / "five_bar.yaml")))
+    assert view.planar
+    assert view.near == (0, 0, 1)
+    # far apart they are seen from aside, and so is what moves along the axes
+    tall = crane(**{"axis: y": "axis: z", "at: [0, 0, -l]": "at: [0, 0, -2*h]"})
+    assert not view_of(MachinePose(tall)).planar
+    assert not view_of(MachinePose(load_model(MODELS / "scara.yaml"))).planar
+
+
+@pytest.mark.parametrize("name", DRAWN)
+def test_names_of_shipped_machines_do_not_cover_each_other(name: str) -> None:
+    """Nor joints, where there is room beside them."""
+    paper = Paper(sketch(MachinePose(load_model(MODELS / f"{name}.yaml"))))
+    boxes = [one.box for one in paper.standing()]
+    assert not [(a, b) for a, b in combinations(boxes, 2) if a.common(b)]
+
+
+def test_a_name_gives_way_to_lines_marks_and_edges() -> None:
+    place = (100.0, 100.0)
+    name = Wanted(place, (0.0, 1.0), 40.0, 14.0, 12.0, 19.0)
+    (alone,) = placed([name], [], [], 400)
+    assert (alone.x, alone.anchor) == (100, "middle")
+    assert alone.box.bottom < 100
+    # a line through that place, upwards
+    (beside,) = placed([name], [Bar(place, (100.0, 0.0), 6.0)], [], 400)
+    assert beside.anchor != "middle"
+    assert beside.box.grown(6.0).covers(place, (100.0, 0.0)) == 0
+    # another name comes second
+    first, second = placed([name, name], [], [], 400)
+    assert first == alone
+    assert first.box.common(second.box) == 0
+    (moved,) = placed([name], [], [alone.box], 400)
+    assert moved.box.common(alone.box) == 0
+    # no room above
+    high = Wanted((100.0, 8.0), (0.0, 1.0), 40.0, 14.0, 12.0, 19.0)
+    (below,) = placed([high], [], [], 400)
+    assert below.box.top >= 0
+
+
+def test_the_length_of_a_line_inside_a_rectangle() -> None:
+    box = Box(0.0, 0.0, 4.0, 3.0)
+    assert box.covers((-1.0, 1.0), (10.0, 1.0)) == pytest.approx(4)
+    assert box.covers((0.0, 0.0), (4.0, 3.0)) == pytest.approx(5)
+    assert box.covers((1.0, 1.0), (1.0, 2.0)) == pytest.approx(1)
+    assert box.covers((-1.0, 2.0), (2.0, 5.0)) == 0
+    assert box.covers((5.0, 0.0), (5.0, 3.0)) == 0
+    assert box.covers((2.0, 1.0), (2.0, 9.0)) == pytest.approx(2)
+
+
 def test_energies_alone_have_no_picture() -> None:
     assert drawing(load_model(MODELS / "front_car.yaml")) is None
 
@@ -175,8 +327,8 @@ bodies: {{arm: {{mass: 1, com: [1, 0, 0]}}}}
     assert (arm.kind, arm.coordinates) == ("turning", ("theta",))
 
 
-def test_a_picture_that_has_no_places_is_none() -> None:
-    """A slide whose place has the reciprocal of its coordinate in it has none at 0."""
+def test_a_slide_without_a_place_at_zero_has_no_rail() -> None:
+    """Its place has the reciprocal of its coordinate in it."""
     model = load_text(
         """model: hyperbola
 coordinates: {y: {unit: m, range: [1, 2]}}
@@ -186,4 +338,44 @@ configuration: {y: 1.5}
 """,
         "hyperbola.yaml",
     )
-    assert drawing(model) is None
+    (slide,) = MachinePose(model).joints
+    assert slide.foot == slide.place == pytest.approx((0, 0, 1 / 1.5))
+    assert not [stroke for stroke in sketch(MachinePose(model)).strokes if stroke.role == "rail"]
+    assert drawing(model) is not None
+
+
+def test_links_move_with_their_frames() -> None:
+    """In the animation: the hook of a crane turns about its carriage, which slides from the end of its rail."""
+    model = crane()
+    values = {"h": 3.0, "l": 2.0, "m": 5.0}
+    shown = scene(model, values, [(0.8, 0.0), (1.8, math.pi / 2)])
+    assert shown is not None
+    assert shown.names == ("rail", "carriage", "hook", "tip")
+    assert (shown.points, shown.stand.planar) == (1, True)
+    hook = next(link for link in shown.links if link.frame == 2)
+    # the length is that of the run, not that of the file
+    assert list(hook.places) == [(0, 0, 0), pytest.approx((0, 0, -2))]
+    rows = shown.axes[1][shown.turned.index(2)]
+    end = [sum(a * b for a, b in zip(rows[k : k + 3], hook.places[1], strict=True)) for k in (0, 3, 6)]
+    assert [a + b for a, b in zip(shown.places[1][2], end, strict=True)] == pytest.approx(shown.places[1][3])
+    slide, turn = shown.joints
+    assert (slide.kind, slide.driven, slide.carrier) == ("sliding", True, 0)
+    assert (slide.foot, slide.along) == (pytest.approx((0, 0, 0)), pytest.approx((1, 0, 0)))
+    assert (turn.kind, turn.driven) == ("turning", False)
+    assert [tuple(link.places) for link in shown.links if link.frame == IN_WORLD] == [(pytest.approx((0, 0, 3)),)]
+    assert scene(load_text(POINTS, "car_by_energies.yaml"), {"L": 2.6, "m": 1.0, "J": 1.0}, [(0, 0, 0)]) is None
+
+
+def test_an_animation_starts_as_the_machine_is_drawn() -> None:
+    """The directions of the stand, with the eye above them, are those of the picture."""
+    model = crane(**{"axis: y": "axis: z"})
+    shown, view = scene(model, {"h": 3.0, "l": 1.5, "m": 5.0}, [(0.8, 0.5)]), view_of(MachinePose(model))
+    assert shown is not None
+    stand = shown.stand
+    assert (stand.planar, stand.above) == (False, ABOVE)
+    assert stand.up == pytest.approx((0, 0, 1))
+    seen = [
+        math.cos(ABOVE) * u - math.sin(ABOVE) * n for u, n in zip(stand.up, stand.near, strict=True)
+    ]
+    assert seen == pytest.approx(view.up)
+    assert stand.right == view.right

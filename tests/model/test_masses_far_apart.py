@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import random
 from fractions import Fraction
+from typing import cast
 
+import mpmath
 import pytest
 
 from symgen.diagnostics import Mistake, ModelError, Span
+from symgen.model.configurations.many_digits import PRECISE_BITS, ManyDigits
 from symgen.model.configurations.numbers import FLOATS, precise
 from symgen.model.expressions.parser import parse_expression
+from symgen.model.expressions.walk import FUNCTIONS
 from symgen.model.file.source import ScalarNode
 from symgen.model.load import load_text
 from symgen.model.model import Model
@@ -133,6 +138,53 @@ def test_many_digits_begin_with_those_of_floats(text: str) -> None:
     few, many = FLOATS.evaluate(expression, {}), precise().evaluate(expression, {})
     assert float(many) == pytest.approx(few, rel=1e-14)
     assert precise().rational(Fraction(1, 3)) != 1 / 3
+
+
+def test_many_digits_are_those_of_another_library() -> None:
+    """mpmath's, with which numbers of other places have been evaluated: 118 of 120 digits."""
+    context = mpmath.MPContext()
+    context.prec = PRECISE_BITS
+    numbers, generator = precise(), random.Random(7)
+    for name in FUNCTIONS:
+        arguments = [generator.uniform(0.1, 0.9) for _ in range(2 if name == "atan2" else 1)]
+        ours = numbers.functions[name](*arguments)
+        theirs = getattr(context, name)(*map(context.mpf, arguments))
+        assert abs(_as_fraction(ours) - _exact(theirs)) < Fraction(1, 10**118)
+    for exponent in (Fraction(3), Fraction(-2), Fraction(2, 7)):
+        ours = numbers.power(0.3, exponent)
+        theirs = context.mpf(0.3) ** (context.mpf(exponent.numerator) / exponent.denominator)
+        assert abs(_as_fraction(ours) / _exact(theirs) - 1) < Fraction(1, 10**118)
+
+
+def _exact(value: mpmath.mpf) -> Fraction:
+    return Fraction(int(value.man)) * Fraction(2) ** int(value.exp) * (1 if value >= 0 else -1)
+
+
+def _as_fraction(value: float) -> Fraction:
+    mantissa, exponent = cast(ManyDigits, value).parts
+    return Fraction(mantissa) * Fraction(2) ** exponent
+
+
+def test_many_digits_calculate_as_numbers_do() -> None:
+    third, numbers = precise().rational(Fraction(1, 3)), precise()
+    assert abs(3 * third - 1) < 1e-119
+    assert 2 - third > 1.6 > third
+    assert third - 2 < -1.6 <= third
+    assert float(1 / third) == pytest.approx(3)
+    assert abs(-third) == third
+    assert float(third**0.5 * third**0.5) == pytest.approx(1 / 3)
+    assert not third - third
+    assert float(sum([third, third, third])) == pytest.approx(1)
+    # no format's exponents
+    assert numbers.rational(10) ** 4000 > 1e308
+    with pytest.raises(ZeroDivisionError):
+        third / (third - third)
+    for exponent in (Fraction(-1), Fraction(-1, 2)):
+        with pytest.raises(ZeroDivisionError):
+            numbers.power(0.0, exponent)
+    assert numbers.power(0.0, Fraction(1, 2)) == 0
+    with pytest.raises(ValueError, match="negative"):
+        numbers.power(-1.0, Fraction(1, 2))
 
 
 def test_many_digits_have_no_value_outside_a_domain() -> None:

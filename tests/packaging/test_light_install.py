@@ -47,6 +47,17 @@ def run(light: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run([str(light), *arguments], env=environment, capture_output=True, text=True, check=False)
 
 
+def test_what_it_brings_stays_below_120_megabytes() -> None:
+    """With what Python compiles of it, which of symgen itself is twice as much as its sources."""
+    size = 0
+    for name in (*names(PROJECT["dependencies"]), "markupsafe"):
+        files = [Path(str(distribution(name).locate_file(file))) for file in distribution(name).files or ()]
+        size += sum(file.stat().st_size for file in files if file.is_file())
+    own = [path for folder in ("symgen", "templates") for path in (ROOT / folder).rglob("*") if path.is_file()]
+    size += sum(path.stat().st_size * (3 if path.suffix == ".py" else 1) for path in own if path.suffix != ".pyc")
+    assert size < 120e6
+
+
 def test_the_main_way_needs_no_more(light: Path, tmp_path: Path) -> None:
     made = run(light, "-m", "symgen", str(ROOT / "models/skate.yaml"), "--out", str(tmp_path))
     assert made.returncode == 0, made.stderr

@@ -12,6 +12,7 @@ from symgen.closedform.laws.singular_sets import derive_determinant_sets
 from symgen.closedform.published import Verdict
 from symgen.drawing.svg import drawing
 from symgen.model.load import load_model
+from symgen.model.model import Model
 from symgen.report.compose import compose
 from symgen.report.content import Chart, ErrorRow, ReportInput, Verification
 from symgen.report.document import Document
@@ -24,8 +25,11 @@ CHART = '<?xml version="1.0"?>\n<svg xmlns="http://www.w3.org/2000/svg" width="9
 @cache
 def report_input(name: str) -> ReportInput:
     """The deterministic part of the input of a model's report."""
-    path = HERE / "hostile.yaml" if name == "hostile" else MODELS / f"{name}.yaml"
-    model = load_model(path)
+    return input_of(load_model(HERE / "hostile.yaml" if name == "hostile" else MODELS / f"{name}.yaml"))
+
+
+def input_of(model: Model) -> ReportInput:
+    """The same of any model."""
     forms = derive_closed_forms(model)
     return ReportInput(
         model=model,

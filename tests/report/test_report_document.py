@@ -26,6 +26,7 @@ from symgen.report.latex import drawing_file, latex_text, render_latex
 from symgen.report.mathematics.measure import page_width
 from symgen.report.pdf import render_drawing, render_pdf, render_typst
 from symgen.report.prose import INLINE_ROOM, say
+from symgen.report.sections.singular import without_parameters
 from symgen.report.terminal import render_text_math
 from symgen.verify.invariants import _laws
 
@@ -260,6 +261,34 @@ def test_long_matrices_are_laws_and_long_singular_sets_determinants() -> None:
         assert text in source, text
     for text in ("not worked out", "is not printed", r"\Phi"):
         assert text not in source, text
+
+
+def test_operations_add_up_to_their_total() -> None:
+    """Whatever is counted has a column."""
+    counts = {"mass_matrix": {"add": 2, "mul": 5, "div": 0, "sqrt": 0, "sincos": 1, "sign": 4, "other": 0}}
+    (table,) = (
+        block
+        for section in compose(replace(report_input("skate"), operation_counts=counts)).sections
+        for block in section.blocks
+        if isinstance(block, Table) and block.headings[-1] == say("Total")
+    )
+    headings = [str(heading[0]) for heading in table.headings[2:]]
+    numbers = [int(str(cell[0])) for cell in table.rows[0][2:]]
+    assert headings == ["+ −", "×", "sincos", "±", "Total"]
+    assert numbers == [2, 5, 1, 4, 12]
+
+
+def test_printed_singular_sets_have_no_factors_that_vanish_nowhere() -> None:
+    """Of the RA-PKM's inputs: three products vanish at once, each without the square of a length before it."""
+    source = " ".join(render_latex(document("rapkm_bodies")).split())
+    begins, ends = "not continuous; this happens where all of these expressions vanish at once:", "What is measured"
+    listed = source.partition(begins)[2].partition(ends)[0]
+    assert listed.count("= 0") == 3
+    assert "l_{" not in listed
+    a, b, l_1 = sympy.symbols("a b l_1")
+    kept = sympy.sin(a) * (l_1 + sympy.cos(b))
+    assert without_parameters(-(l_1**2) * kept, [a, b]) == kept
+    assert without_parameters(l_1 + sympy.cos(b), [a, b]) == l_1 + sympy.cos(b)
 
 
 def test_minors_of_two_directions_are_one_matrix() -> None:

@@ -11,12 +11,14 @@ import typst
 
 from symgen.diagnostics import SymgenBug
 from symgen.model.expressions.expression import FUNCTION_ARITY, Binary, Call, Name, Number
+from symgen.report.document import Formula
 from symgen.report.mathematics.breaking import break_lines
 from symgen.report.mathematics.from_expression import expression_layout
 from symgen.report.mathematics.from_sympy import COORDINATE, PARAMETER, SympyLayout
 from symgen.report.mathematics.latex import latex_math
 from symgen.report.mathematics.layout import Layout, Letter, minus, rounded, total
 from symgen.report.mathematics.mathml import mathml
+from symgen.report.mathematics.matrices import Denominators, matrix_blocks
 from symgen.report.mathematics.measure import page_width
 from symgen.report.mathematics.names import name_layout
 from symgen.report.mathematics.numerals import rational_layout, rational_text
@@ -111,6 +113,44 @@ def test_names_in_denominators_are_cancelled_where_that_is_shorter() -> None:
     y = sympy.Symbol("y")
     assert text_math(layout((L * X + L**2 * y + PHI) / L)) == "L y + φ/L + x"
     assert text_math(layout((X + y + L) / M2)) == "(L + x + y)/m₂"
+
+
+def test_words_stand_apart_from_numbers_with_their_dots_too() -> None:
+    assert latex_math(layout(sympy.Symbol("left_motor") / 50)) == r"0.02\,\mathrm{left}_{\mathrm{motor}}"
+    assert latex_math(layout(sympy.Symbol("left_motor_dot") / 50)) == r"0.02\,{\dot{\mathrm{left}}}_{\mathrm{motor}}"
+
+
+def test_equal_letters_that_follow_each_other_are_a_power() -> None:
+    l_1, sine = Name("l_1"), Call("sin", (Name("b_2"),))
+    three = Binary("*", Binary("*", l_1, l_1), Binary("*", l_1, sine))
+    assert text_math(expression_layout(three)) == "l₁³ sin b₂"
+    assert text_math(expression_layout(Binary("*", Number(Fraction(2)), Number(Fraction(2))))) == "2·2"
+
+
+def test_a_number_stays_with_what_it_multiplies() -> None:
+    """In a formula that is broken: 11 · sin reads as if the line ended there."""
+    angle = sympy.Symbol("left_motor") - sympy.Symbol("right_motor") + sympy.Symbol("left_elbow")
+    lines = break_lines(layout(11 * sympy.sin(angle) - 8 * sympy.sin(X + angle)), page_width, 30.0)
+    assert len(lines) == 2
+    assert not [line for line in lines if "·" in text_math(line)]
+
+
+def test_fractions_too_wide_for_a_line_have_their_denominator_named() -> None:
+    """A sine of long names that divides most entries; short fractions stay as they are."""
+
+    def printed(names: str) -> list[str]:
+        a, b, c, d = sympy.symbols(names)
+        sine, other = sympy.sin(a - b + c - d), sympy.sin(b - a + d)
+        matrix = sympy.Matrix([[1, (8 * other - 11 * sine) / (11 * sine)], [-8 * sympy.sin(c) / (11 * sine), 0]])
+        fresh = Denominators(frozenset(), frozenset())
+        blocks = matrix_blocks(Letter("M", "bold"), matrix, SympyLayout({}), fresh, "M")
+        formulas = [block for block in blocks if isinstance(block, Formula)]
+        return ["".join(map(text_math, lines)) for one in formulas for lines in one.equations]
+
+    whole, named = printed("left_motor right_motor left_elbow right_elbow")
+    assert named == "a = sin(left_elbow + left_motor − right_elbow − right_motor)"
+    assert whole == "M = 1/a [a, 8/11 sin(right_elbow − left_motor + right_motor) − a; −8/11 sin left_elbow, 0]"
+    assert not [line for line in printed("p q r s") if line.startswith("a =")]
 
 
 def test_a_factor_one_is_not_written() -> None:

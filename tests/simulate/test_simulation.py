@@ -19,7 +19,7 @@ from symgen.backends.backend import Variant
 from symgen.backends.c import backend
 from symgen.backends.c.plain import emit_c
 from symgen.cli.main import main
-from symgen.drawing.scene import Scene
+from symgen.drawing.scene import Scene, Stand
 from symgen.generation.results import Options
 from symgen.ir.kernel import Program
 from symgen.model.model import Model
@@ -169,7 +169,7 @@ def test_a_new_model_works_and_is_animated(out: Path, monkeypatch: pytest.Monkey
     assert match is not None
     data = json.loads(match.group(1))
     assert data["names"] == ["cart", "rod", "tip"]
-    assert data["planar"]
+    assert data["stand"]["planar"]
     # the tip hangs on the rod at its length, and the cart has moved
     cart, _, tip = data["places"][-1]
     assert math.isclose(math.dist(cart, tip), 0.6, abs_tol=1e-4)
@@ -201,7 +201,13 @@ springs: {pull: {between: [post, body], stiffness: 10, length: 3}}
     data = json.loads(page.split('id="motion">')[1].split("</script>")[0])
     assert data["names"] == ["body", "wheel", "post"]
     assert data["hoops"] == [{"frame": 1, "radius": 0.2, "axle": 1}]
-    assert data["ties"] == [[2, 0]]
+    assert data["ties"] == [{"kind": "spring", "ends": [2, 0]}]
+    # the post stands in the world; the body is a bar from its origin to the wheel
+    assert data["links"] == [
+        {"frame": 0, "places": [[0, 0.2, 0], [0, 0, 0]]},
+        {"frame": 1, "places": [[0, 0, 0], [0.01, 0, 0]]},
+        {"frame": -1, "places": [[3, 0, 0]]},
+    ]
     assert [ball["share"] for ball in data["balls"]] == [1.0, 0.125]
     assert data["turned"] == [0, 1]
     # the wheel has turned about its own y axis by the way of its centre over its radius
@@ -212,9 +218,12 @@ springs: {pull: {between: [post, body], stiffness: 10, length: 3}}
     assert way > 0.01
 
 
+STAND = Stand((1, 0, 0), (0, 0, 1), (0, -1, 0), 0.4, planar=False)
+
+
 def drawn(places: tuple[tuple[tuple[float, float, float], ...], ...]) -> tuple[list[list[float]], float]:
     """The centres and the size of the picture of a rod that goes through those places."""
-    shown = Scene(("a", "b"), ((0, 1),), (), (), (), (), (), places, tuple(() for _ in places))
+    shown = Scene(("a", "b"), 0, ((0, 1),), (), (), (), (), (), (), STAND, places, tuple(() for _ in places))
     page = animation("rod", tuple(map(float, range(len(places)))), shown)
     data = json.loads(page.split('id="motion">')[1].split("</script>")[0])
     return data["centres"], data["radius"]
@@ -262,7 +271,7 @@ outputs: [forward_dynamics]
 def test_planned_ways_of_the_ends_of_chains_are_drawn() -> None:
     """Of a tool on an arm that moves; not of the arm that it hangs on, nor of a post that stands."""
     places = (((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (5.0, 0.0, 0.0)), ((0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (5.0, 0.0, 0.0)))
-    arm = Scene(("arm", "tool", "post"), (), ((0, 1),), (), (), (), (), places, ((), ()))
+    arm = Scene(("arm", "tool", "post"), 2, ((0, 1),), (), (), (), (), (), (), STAND, places, ((), ()))
     data = re.search('id="motion">(.*?)</script>', animation("arm", (0.0, 1.0), arm, arm))
     assert data is not None
     assert json.loads(data[1])["trails"] == [[[1, 0, 0], [0, 1, 0]]]

@@ -6,14 +6,11 @@ import math
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 from functools import cache
-from typing import Any, cast
+from typing import cast
 
 from symgen.model.expressions.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
 from symgen.model.expressions.walk import FUNCTIONS, power
 from symgen.records import dataclass
-
-# Binary digits where floats do not decide.
-PRECISE_BITS = 400
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,30 +52,13 @@ FLOATS = Numbers(math.pi, FUNCTIONS, _rational, power)
 @cache
 def precise() -> Numbers:
     """Numbers of 120 digits, with the exponents of no format; they are made when they are first needed."""
-    import mpmath
-
-    context = mpmath.MPContext()
-    context.prec = PRECISE_BITS
-
-    def function(name: str) -> Callable[..., float]:
-        known = getattr(context, name)
-
-        def real(*arguments: float) -> float:
-            value: Any = known(*map(context.mpf, arguments))
-            if not isinstance(value, context.mpf) or not context.isfinite(value):
-                raise ValueError(name)
-            return cast(float, value)
-
-        return real
-
-    def rational(value: Fraction | int) -> float:
-        return cast(float, context.mpf(value.numerator) / value.denominator)
+    from symgen.model.configurations.many_digits import ManyDigits, function
 
     def raised(base: float, exponent: Fraction) -> float:
-        if exponent.denominator == 1:
-            return cast(float, context.mpf(base) ** int(exponent))
-        if base < 0:
-            raise ValueError("a root of a negative number")
-        return cast(float, context.mpf(base) ** rational(exponent))
+        return cast(float, ManyDigits.of(base) ** exponent)
 
-    return Numbers(cast(float, +context.pi), {name: function(name) for name in FUNCTIONS}, rational, raised)
+    def rational(value: Fraction | int) -> float:
+        return cast(float, ManyDigits.rational(value))
+
+    functions = {name: cast(Callable[..., float], function(name)) for name in FUNCTIONS}
+    return Numbers(cast(float, ManyDigits.pi()), functions, rational, raised)

@@ -136,7 +136,9 @@ def _product(factors: tuple[Layout, ...], first: int, level: int, measure: Measu
     pieces: list[Piece] = []
     run: list[Layout] = []
     for factor in factors:
-        if run and measure(Product((*run, factor))) > KEPT_WHOLE * room:
+        # a number alone does not end a line
+        most = room if all(isinstance(one, Numeral) for one in run) else KEPT_WHOLE * room
+        if run and measure(Product((*run, factor))) > most:
             pieces += _run(run, first if not pieces else None, level, measure, room)
             run = []
         run.append(factor)

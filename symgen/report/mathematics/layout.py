@@ -225,7 +225,7 @@ def _wants_air(node: Layout) -> bool:
             return True
         case Letter(text=text):
             return len(text) > 1
-        case Scripts(base=base):
+        case Scripts(base=base) | Accent(base=base):
             return _wants_air(base)
         case _:
             return False

@@ -33,6 +33,8 @@ from symgen.report.prose import paragraph
 
 MOST_NODES = 3000
 """Nodes above which a matrix is described, not printed."""
+ITS_SYMBOL = 6.0
+"""Em that the symbol of an entry takes of its line."""
 DENOMINATOR_NAMES = ("a", "d", "h", "w")
 ZERO = Numeral("0")
 
@@ -84,12 +86,15 @@ class Denominators:
         self._intermediates = intermediates
         self._named: dict[Any, str] = {}
 
-    def common(self, matrix: Any) -> tuple[Any, int] | None:
-        """A sum or intermediate that divides most entries that are not zero, at least two, and its usual power."""
+    def common(self, matrix: Any, functions: bool = False) -> tuple[Any, int] | None:
+        """A sum or intermediate that divides most entries that are not zero, at least two, and its usual power.
+
+        With `functions` one of these will do, too.
+        """
         entries = [entry for entry in matrix if entry != 0]
         powers: Counter[tuple[Any, int]] = Counter()
         for entry in entries:
-            powers.update(self._denominators(entry))
+            powers.update(self._denominators(entry, functions))
         by_base: Counter[Any] = Counter()
         for (base, _), count in powers.items():
             by_base[base] += count
@@ -99,10 +104,15 @@ class Denominators:
         factor = max(shared, key=lambda candidate: (by_base[candidate], str(candidate)))
         return factor, max((count, exponent) for (base, exponent), count in powers.items() if base == factor)[1]
 
-    def _denominators(self, entry: Any) -> list[tuple[Any, int]]:
+    def _denominators(self, entry: Any, functions: bool) -> list[tuple[Any, int]]:
         """Sums and intermediates in the denominator of an entry, with their powers."""
         powers = (f for f in (entry.args if entry.is_Mul else (entry,)) if f.is_Pow and f.exp.is_Integer and f.exp < 0)
-        return [(f.base, -int(f.exp)) for f in powers if f.base.is_Add or str(f.base) in self._intermediates]
+        bases = ((f.base, -int(f.exp)) for f in powers)
+        return [
+            (base, power)
+            for base, power in bases
+            if base.is_Add or str(base) in self._intermediates or (functions and base.is_Function)
+        ]
 
     def name(self, factor: Any) -> tuple[str, bool]:
         """The name of a denominator, and whether it is new."""
@@ -128,6 +138,10 @@ def matrix_blocks(
     shared = denominators.common(matrix)
     if shared is None:
         array = layout.matrix(matrix)
+        if any(page_width(entry) > ROOM - ITS_SYMBOL for row in array.rows for entry in row):
+            # a fraction would be broken into a product with a reciprocal
+            shared = denominators.common(matrix, functions=True)
+    if shared is None:
         if size(array) > MOST_NODES:
             return (_too_long(symbol, size(array)),)
         return array_blocks(symbol, array, label, names)
@@ -183,4 +197,4 @@ def _times(entry: Any, factor: Any, symbol: Any, exponent: int) -> Any:
             remaining += int(part.exp)
         else:
             kept.append(part)
-    return sympy.Mul(*kept, symbol**remaining)
+    return sympy.Mul(*kept, symbol**remaining).xreplace({factor: symbol})

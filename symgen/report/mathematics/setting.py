@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import groupby
+
 from symgen.report.mathematics.layout import (
     Accent,
     Application,
@@ -83,8 +85,23 @@ def product(factors: list[Layout]) -> Layout:
     flat: list[Layout] = []
     for factor in factors:
         flat.extend(factor.factors if isinstance(factor, Product) else (factor,))
+    flat = _powers(flat)
     flat.sort(key=lambda factor: isinstance(factor, Application))
     return flat[0] if len(flat) == 1 else Product(tuple(as_factor(factor) for factor in flat))
+
+
+def _powers(factors: list[Layout]) -> list[Layout]:
+    """The factors, with powers of letters in place of equal ones that follow each other."""
+    runs = [list(run) for _, run in groupby(factors)]
+    return [
+        factor
+        for first, *others in runs
+        for factor in (
+            [power(first, Numeral(str(1 + len(others))))]
+            if others and is_atom(first) and not isinstance(first, Numeral)
+            else [first, *others]
+        )
+    ]
 
 
 def quotient(numerator: Layout, denominator: Layout) -> Layout:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from symgen.model.expressions.expression import Expression
 from symgen.model.expressions.walk import exact_value
 from symgen.model.inertial_parameters import in_words, named
-from symgen.model.mechanism import INERTIA_ELEMENTS, Frame, Quaternion, Vector3
+from symgen.model.mechanism import INERTIA_ELEMENTS, Frame, Mechanism, Quaternion, Vector3
 from symgen.model.model import Model
 from symgen.model.quantities import BASE_PARAMETERS, BASE_REGRESSOR, REGRESSOR
 from symgen.report.context import Context, text_of
@@ -19,10 +19,15 @@ NOTHING = say("{}", "–")
 GRAVITY = Letter("g", "bold")
 
 
+def weighs(parts: Mechanism) -> bool:
+    """Whether there is gravity."""
+    return any(exact_value(entry) != 0 for entry in parts.gravity)
+
+
 def mechanism(context: Context) -> list[Block]:
-    """Tables of what the mechanism is made of; nothing for a model with energies only."""
+    """Tables of what the mechanism is made of; nothing for a model with energies only and without points."""
     parts = context.model.mechanism
-    if not parts.frames and not parts.rotor_inertias:
+    if not parts.frames and not parts.points and not parts.rotor_inertias:
         return []
     blocks: list[Block] = []
     if parts.frames:
@@ -34,7 +39,7 @@ def mechanism(context: Context) -> list[Block]:
     if parts.bodies:
         intro = "Bodies are given in the axes of their frames, inertias about the centres of mass."
         blocks += [paragraph(intro), _bodies(context)]
-        if any(exact_value(entry) != 0 for entry in parts.gravity):
+        if weighs(parts):
             blocks.append(paragraph("Weight acts with the acceleration {}.", equals(GRAVITY, _fenced(parts.gravity))))
         else:
             blocks.append(paragraph("There is no gravity."))

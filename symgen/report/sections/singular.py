@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+from sympy import Expr, Symbol
+
 from symgen.closedform.laws.singular_sets import DeterminantSet
 from symgen.closedform.singular import Kind, SingularSet
 from symgen.report.context import Context
@@ -83,7 +87,9 @@ def _one(context: Context, locus: SingularSet) -> list[Block]:
     if minors and not locus.decided:
         where = "; this happens where {} vanishes, that is where {}."
         return [paragraph(OPENING[locus.kind] + where, *_slots(locus.kind), *minors)]
-    equations = tuple(Row((context.layout.expression(value), Relation("="), ZERO)) for value in locus.vanishing)
+    names = [Symbol(coordinate.name) for coordinate in context.model.coordinates]
+    shown = dict.fromkeys(without_parameters(value, names) for value in locus.vanishing)
+    equations = tuple(Row((context.layout.expression(value), Relation("="), ZERO)) for value in shown)
     if locus.decided:
         return [paragraph(OPENING[locus.kind] + "; this happens where", *_slots(locus.kind)), displayed(equations)]
     nodes = sum(size(line) for line in equations)
@@ -94,6 +100,12 @@ def _one(context: Context, locus: SingularSet) -> list[Block]:
         OPENING[locus.kind] + "; this happens where all of these expressions vanish at once:", *_slots(locus.kind)
     )
     return [opening, displayed(tuple(packed(equations)))]
+
+
+def without_parameters(value: Expr, coordinates: Sequence[Symbol]) -> Expr:
+    """What vanishes where a product does, without its sign and the factors that no coordinate is in."""
+    _, factor = value.as_independent(*coordinates, as_Add=False)
+    return -factor if factor.could_extract_minus_sign() else factor
 
 
 def measured_by(locus: SingularSet) -> str:

@@ -42,8 +42,6 @@ from symgen.report.prose import (
     B,
     Q,
     Qa,
-    T,
-    U,
     equals,
     juxtaposed,
     lam,
@@ -59,15 +57,21 @@ from symgen.report.prose import (
     u,
 )
 from symgen.report.sections.bodies import mechanism
+from symgen.report.sections.energies import energies
 
 SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
 def _drawing(context: Context) -> tuple[Block, ...]:
-    """The machine, where it has frames."""
+    """The machine, where it has frames or points."""
+    model = context.model
     if context.input.drawing is None:
         return ()
-    caption = say("The mechanism where its start leads, with its coordinates; driven joints are filled.")
+    shown = "The mechanism where its start leads, with its coordinates; driven joints are filled{}."
+    if not model.mechanism.frames:
+        shown = "Points of the mechanism where its start leads{}."
+    arrows = any(one.velocity is not None for one in model.inputs)
+    caption = say(shown.format(", inputs that act on bodies are named where they do" if arrows else ""))
     figure = Figure(context.input.drawing, caption, "mechanism", wide=False)
     return (paragraph("{} shows the mechanism.", FigureReference(figure.label)), figure)
 
@@ -96,7 +100,7 @@ def system(context: Context) -> Section:
         named = tuple(equation(name_layout(d.name), expression_layout(d.value)) for d in model.definitions)
         blocks += [paragraph("These expressions have names of their own:"), displayed(tuple(packed(named)))]
     blocks += mechanism(context)
-    blocks += [*_energies(context), *_constraints(context), *_inputs(context), *_applied_forces(context)]
+    blocks += [*energies(model), *_constraints(context), *_inputs(context), *_applied_forces(context)]
     blocks += _given(context)
     return Section(say("The system"), tuple(blocks))
 
@@ -157,32 +161,6 @@ def _default(value: Expression) -> Text:
     if isinstance(value, Number) and decimal_text(value.value) is not None:
         return say("{}", rational_text(value.value))
     return (InlineMath(expression_layout(value)),)
-
-
-def _energies(context: Context) -> list[Block]:
-    model = context.model
-    if model.mechanism.has_mass:
-        return _energies_of_bodies(model)
-    potential = expression_layout(model.potential_energy)
-    blocks: list[Block] = [
-        paragraph("The kinetic energy is quadratic in the rates:"),
-        displayed((equation(T, expression_layout(model.kinetic_energy)),), "T"),
-    ]
-    if potential == ZERO:
-        blocks.append(paragraph("There is no potential energy, {}.", equals(U, ZERO)))
-    else:
-        blocks += [paragraph("The potential energy is"), displayed((equation(U, potential),), "U")]
-    return blocks
-
-
-def _energies_of_bodies(model: Model) -> list[Block]:
-    kinetic, potential = expression_layout(model.kinetic_energy), expression_layout(model.potential_energy)
-    sums = "The energies are sums over the bodies; the recursion that the kernels come from never writes them out:"
-    equations = []
-    for symbol, written in ((T, kinetic), (U, potential)):
-        bodies = Scripts(symbol, Letter("bodies", "upright"))
-        equations.append(equation(symbol, bodies if written == ZERO else Sum((("+", bodies), ("+", written)))))
-    return [paragraph(sums), displayed(tuple(equations), "T")]
 
 
 def _constraints(context: Context) -> list[Block]:
