@@ -9,7 +9,7 @@ CAMPAIGN_FILES := $(CAMPAIGN:%=models/%.yaml)
 MODELS := $(wildcard models/*.yaml)
 MECHANISMS := $(filter-out $(CAMPAIGN_FILES),$(MODELS))
 
-.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms bench-derivatives generation stress skipping passes constants trig zoo zoo-case zoo-sweeps docs api site lock robots jax fmpy study
+.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms bench-derivatives generation stress skipping passes constants trig zoo zoo-case zoo-sweeps docs api site lock robots jax fmpy semidefinite study
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -154,6 +154,9 @@ lock: $(VENV)/installed
 	printf 'dask[distributed]\nxarray\nzarr\n' | $(BIN)/uv pip compile --quiet --python-version 3.11 \
 	    --python-platform x86_64-manylinux_2_28 --generate-hashes --constraint requirements.lock --no-header \
 	    --no-annotate --no-emit-index-url --no-emit-find-links --output-file tests/study/study.lock -
+	printf 'clarabel\ncvxpy-base\n' | $(BIN)/uv pip compile --quiet --python-version 3.11 \
+	    --python-platform x86_64-manylinux_2_28 --generate-hashes --constraint requirements.lock --no-header \
+	    --no-annotate --no-emit-index-url --no-emit-find-links --output-file tests/identification/semidefinite.lock -
 	printf 'mkdocs-material\nmkdocstrings[python]\n' | $(BIN)/uv pip compile --quiet --universal --python-version 3.11 \
 	    --generate-hashes --constraint requirements.lock --no-header --no-annotate --no-emit-index-url \
 	    --no-emit-find-links --output-file docs/site.lock -
@@ -165,6 +168,10 @@ robots: $(VENV)/installed
 # Dask, xarray and Zarr, on which studies run.
 study: $(VENV)/installed
 	$(BIN)/pip install --quiet --require-hashes --requirement tests/study/study.lock
+
+# CVXPY and Clarabel, by which `symgen identify` finds bodies that can be: a witness of the way without them.
+semidefinite: $(VENV)/installed
+	$(BIN)/pip install --quiet --require-hashes --requirement tests/identification/semidefinite.lock
 
 # JAX, under which docs/array-api.md runs: beside the environment, so that nothing else meets it.
 jax: $(VENV)/installed

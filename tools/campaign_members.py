@@ -26,7 +26,7 @@ CORES = ("arm-none-eabi-gcc", "qemu-system-arm", "riscv64-unknown-elf-gcc", "qem
 LOCK = "requirements.lock"
 MORE_LOCKS = (
     *("tests/mechanisms/robots.lock", "tests/backends/jax.lock", "tests/backends/fmpy.lock"),
-    "tests/study/study.lock",
+    *("tests/study/study.lock", "tests/identification/semidefinite.lock"),
 )
 # What looks at the product as a whole.
 PRODUCT = ("symgen", "templates", "models", "pyproject.toml", LOCK)

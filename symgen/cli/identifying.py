@@ -45,6 +45,11 @@ def _identify_parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--cutoff", metavar="HZ", type=positive, help="of the low-pass (default: 5 times what the motion has)"
     )
+    parser.add_argument(
+        "--whole-bodies",
+        action="store_true",
+        help="write masses, centres and inertias of all bodies, such as can be, as numbers into the model file",
+    )
     add_out(parser)
     add_quiet(parser)
     return parser
@@ -55,9 +60,10 @@ def _identify(given: argparse.Namespace) -> int:
         raise WrongUseError(f"no such file: {given.log}")
 
     def one(path: Path, progress: Progress) -> int:
-        from symgen.identification.estimates.command import run_identify
+        from symgen.identification.estimates.command import IdentifyRequest, run_identify
 
-        return run_identify(path, given.log, given.out, given.cutoff, given.quiet, progress)
+        request = IdentifyRequest(given.cutoff, given.whole_bodies)
+        return run_identify(path, given.log, given.out, request, given.quiet, progress)
 
     return each_file([given.model], given.out, given.quiet, one)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from copy import copy
 from dataclasses import replace
 from pathlib import Path
 from typing import Literal, TypeAlias
@@ -12,6 +13,9 @@ import numpy as np
 from symgen.generation.rejections import rejected_lines
 from symgen.generation.results import Options, Result
 from symgen.identification.arrays import Array
+from symgen.identification.combinations import BodyCombinations, Combinations, default_like
+from symgen.identification.energies.energy_terms import EnergyTerms
+from symgen.identification.energies.shown_terms import ShownTerms, columns_of_terms, shown_terms
 from symgen.identification.not_identified import NotIdentifiedError
 from symgen.model.checks.feasibility import measures_places
 from symgen.model.combinations.base_parameters import BaseParameters
@@ -44,7 +48,7 @@ class MachineFunctions:
     def __init__(
         self,
         path: Path,
-        base: BaseParameters,
+        base: BaseParameters | EnergyTerms,
         measured: Sequence[str],
         progress: Progress,
         given_by: GivenBy = "measured",
@@ -52,7 +56,13 @@ class MachineFunctions:
     ) -> None:
         model = base.model
         self.base = base
-        self.model = replace(_prepared(model, measured), inertial_base=InertialBase(base.columns, (), NOT_NAMED))
+        self.combinations: Combinations
+        self.model = _prepared(model, measured)
+        if isinstance(base, EnergyTerms):
+            self.combinations = ShownTerms(base, tuple(range(len(base.monomials))), np.eye(len(base.monomials)))
+        else:
+            self.combinations = BodyCombinations(base)
+            self.model = replace(self.model, inertial_base=InertialBase(base.columns, (), NOT_NAMED))
         self.parameters = default_values(model.parameters)
         self.directions = model.m if model.assembly is None else model.assembly.ranks.actuation
         self.is_redundant = model.m > self.directions
@@ -60,7 +70,7 @@ class MachineFunctions:
         self._place, self._rate, self._acceleration = (
             f"{what}_from_{given_by}" for what in ("configuration", "velocity", "acceleration")
         )
-        outputs = ["inverse_dynamics", BASE_REGRESSOR, *further]
+        outputs = ["inverse_dynamics", *(() if isinstance(base, EnergyTerms) else (BASE_REGRESSOR,)), *further]
         outputs += [self._place] if geometric or given_by == "task" else []
         outputs += [self._rate, self._acceleration] if model.constraints or given_by == "task" else []
         outputs += _PROJECTION if self.is_redundant else []
@@ -101,8 +111,25 @@ class MachineFunctions:
         return self.least(state[0], self._called("inverse_dynamics", state, values))
 
     def columns(self, state: tuple[Array, Array, Array]) -> Array:
-        """Those of the base parameters (N, m, b) at (q, qd, qdd), with all parameters of the file as they are."""
-        return self.quantity(BASE_REGRESSOR, *state)
+        """Those of the combinations (N, m, b) at (q, qd, qdd), with all parameters of the file as they are."""
+        if not isinstance(self.combinations, ShownTerms):
+            return self.quantity(BASE_REGRESSOR, *state)
+        made = columns_of_terms(
+            self.combinations.terms, self.parameters, lambda changed: self.inputs(state, self._followed(changed))
+        )
+        return made[..., list(self.combinations.kept)]
+
+    def telling_apart(self, state: tuple[Array, Array, Array]) -> MachineFunctions:
+        """The same with what a motion (q, qd, qdd) tells apart in place of all combinations of energies."""
+        if not isinstance(self.combinations, ShownTerms):
+            return self
+        made = copy(self)
+        made.combinations = shown_terms(self.combinations.terms, self.columns(state))
+        return made
+
+    def _followed(self, changed: Mapping[str, float]) -> dict[str, float]:
+        """All values, those that are expressions of changed ones with them."""
+        return default_like(self.model, self.parameters, changed)
 
     def least(self, q: Array, u: Array) -> Array:
         """The least inputs (N, m) with the same effect: what drives do against each other is taken out."""

@@ -272,6 +272,14 @@ class FurtherArgument:
 
 
 @dataclass(frozen=True, slots=True)
+class IdentifyChoice:
+    """Parameters of energies that identification takes for known: as `geometry`, or `fixed` at their values."""
+
+    geometry: tuple[str, ...]
+    fixed: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Model:
     """A mechanical system, complete: the input of every derivation.
 
@@ -280,6 +288,7 @@ class Model:
     What is `measured` leaves places open where rows hold rates alone (`measures_places`); so may a `task`.
     `taken` are parameters of the file that are numbers here (`as_numbers`).
     `together` are outputs that have a function in common as well.
+    `identify` is what the file says of parameters that a log may tell.
     `inertial_base` is looked for where outputs are made of it (`combinations/inertial_base.py`).
     `released` are the joints of `rough` places whose reactions are no multipliers, `friction_steps` how their
     friction is worked out for a motion, `motion_steps` the same for inputs.
@@ -324,6 +333,7 @@ class Model:
     row_units: tuple[int, ...] = ()
     taken: tuple[tuple[str, Fraction], ...] = ()
     inertial_base: InertialBase | None = None
+    identify: IdentifyChoice | None = None
 
     @property
     def c_name(self) -> str:

@@ -15,6 +15,7 @@ from symgen.model.blocks.bodies import read_mechanism
 from symgen.model.blocks.coordinates import read_coordinates
 from symgen.model.blocks.couplings import read_couplings
 from symgen.model.blocks.elements import read_forces, read_friction, read_springs
+from symgen.model.blocks.identify import read_identify
 from symgen.model.blocks.inputs import read_inputs
 from symgen.model.blocks.joint_forms import JointCoordinate, read_joints
 from symgen.model.blocks.loops import LoopRows
@@ -101,6 +102,7 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
         independent_velocities=_coordinate_list(scope, tree, "independent_velocities", names),
         measured=_coordinate_list(scope, tree, "measured", names) or _driven(tree.get("outputs"), inputs),
         task=read_task(scope, tree),
+        identify=read_identify(scope, tree, parameters),
         derivatives=text_of(tree.get("derivatives")) == "true",
         configuration=_configuration(scope, tree.get("configuration"), names, joint_coordinates),
         constraint_rank_tolerance=_tolerance(scope, tolerances, "constraint_rank"),

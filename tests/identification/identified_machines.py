@@ -82,6 +82,24 @@ inputs:
 configuration: {a: 1.1, b: -0.9, c: 1.3}
 """
 
+# A body in space with all of its moments, turned about one axis.
+WHEEL = """
+model: wheel
+parameters:
+  m: {value: 2, unit: kg}
+  I_x: {value: 0.3, unit: kg*m**2}
+  I_y: {value: 0.4, unit: kg*m**2}
+  I_z: {value: 0.5, unit: kg*m**2}
+  c: {value: 0.1, unit: m}
+gravity: [0, -9.81, 0]
+joints:
+  hub: {type: revolute, axis: z, coordinate: a}
+bodies:
+  hub: {mass: m, com: [c, 0, 0], inertia: {xx: I_x, yy: I_y, zz: I_z}}
+inputs:
+  u: {joint: a}
+"""
+
 
 @dataclass(frozen=True)
 class IdentifiedMachine:

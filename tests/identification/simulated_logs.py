@@ -10,8 +10,11 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from symgen.identification.estimates.identify import IdentifiableMachine, identifiable
-from symgen.identification.estimates.linear_terms import default_like
+from symgen.identification.combinations import default_like
+from symgen.identification.estimates.identification import Identification
+from symgen.identification.estimates.identify import IdentifiableMachine, identifiable, identified_by
+from symgen.identification.logs.filtering import filter_settings
+from symgen.identification.logs.read_log import read_log
 from symgen.identification.machine_functions import MachineFunctions
 from symgen.model.load import load_text
 
@@ -58,6 +61,13 @@ class SimulatedLog:
 def machine_of(text: str, measured: tuple[str, ...]) -> IdentifiableMachine:
     """A model in a text, made and verified once for all logs with these measured coordinates."""
     return identifiable(Path("machine.yaml"), load_text(text, "machine.yaml"), measured, lambda _: None)
+
+
+def of_file(path: Path, text: str, measured: tuple[str, ...]) -> Identification:
+    """What a log says; the machine is made once for all of its logs."""
+    machine = machine_of(text, measured)
+    log = read_log(path, machine.base.model)
+    return identified_by(machine, log, filter_settings(log, None), lambda _: None)
 
 
 def functions_of(text: str, leading: tuple[str, ...]) -> MachineFunctions:

@@ -9,14 +9,13 @@ import numpy as np
 import pytest
 from identified_machines import MACHINES_WITH_LOGS, ROOT
 from scipy import integrate
-from simulated_logs import Array, Sensors, functions_of, machine_of, simulated_log
+from simulated_logs import Array, Sensors, functions_of, machine_of, of_file, simulated_log
 
+from symgen.identification.bodies.pseudo_inertia import pseudo_inertia
+from symgen.identification.combinations import base_map, default_like
 from symgen.identification.estimates.identification import Identification
-from symgen.identification.estimates.identify import identified, identified_by
-from symgen.identification.estimates.linear_terms import base_map, default_like, inertial_values
-from symgen.identification.estimates.notes import notes
-from symgen.identification.logs.filtering import filter_settings
-from symgen.identification.logs.read_log import read_log
+from symgen.identification.estimates.identify import identified
+from symgen.identification.reported.notes import notes
 
 # Standard errors, the share of parameters within them, and what parameters may add to the noise of unseen motion.
 WITHIN, SHARE, ADDED = 3.0, 0.97, 1.2
@@ -35,13 +34,6 @@ def of_log(folder: Path, machine: str, sensors: Sensors, seed: int, seconds: flo
     return of_file(log.write(folder), chosen.text, chosen.measured)
 
 
-def of_file(path: Path, text: str, measured: tuple[str, ...]) -> Identification:
-    """What a log says; the machine is made once for all of its logs."""
-    machine = machine_of(text, measured)
-    log = read_log(path, machine.base.model)
-    return identified_by(machine, log, filter_settings(log, None), quiet)
-
-
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("logs")
@@ -58,7 +50,7 @@ def truth(made: Identification, machine: str) -> Array:
     chosen = MACHINES_WITH_LOGS[machine]
     names = tuple(c.name for c in made.model.coordinates if c.name in chosen.motion.leading)
     numbers = default_like(made.model, functions_of(chosen.text, names).parameters, chosen.truth)
-    combined = base_map(made.base) @ inertial_values(made.model, numbers)
+    combined = made.combinations.at(numbers)
     return np.array([*combined, *(numbers[name] for name in made.names.linear)])
 
 
@@ -137,10 +129,25 @@ def test_values_of_the_file_say_what_the_estimates_say(folder: Path) -> None:
     assert made.values.misfit < WITHIN
     before = functions_of(MACHINES_WITH_LOGS["arm"].text, ("a", "b")).parameters
     numbers = default_like(made.model, before, dict(zip(made.values.names, made.values.values, strict=True)))
-    combined = base_map(made.base) @ inertial_values(made.model, numbers)
+    combined = made.combinations.at(numbers)
     off = (combined - made.estimate.values[: len(combined)]) / made.estimate.errors[: len(combined)]
     assert np.abs(off).max() < WITHIN
     assert made.values.impossible == ()
+
+
+@pytest.mark.parametrize("machine", ["arm", "four_bar", pytest.param("rapkm", marks=pytest.mark.campaign)])
+def test_whole_bodies_say_what_the_estimates_say(folder: Path, machine: str) -> None:
+    """Bodies that can be, with base parameters, friction and springs within the errors: of the truth, too."""
+    made = known(folder, machine)
+    whole, chosen = made.whole, MACHINES_WITH_LOGS[machine]
+    base = machine_of(chosen.text, chosen.measured).base
+    assert whole.misfit < 0.1
+    count = len(made.model.mechanism.bodies)
+    for ten in whole.values[: 10 * count].reshape(count, 10):
+        assert np.linalg.eigvalsh(pseudo_inertia(ten))[0] > 0
+    assert np.all(whole.values[10 * count :] > 0)
+    combined = np.array([*(base_map(base) @ whole.values), *whole.linear.values()])
+    assert np.abs((combined - truth(made, machine)) / made.estimate.errors).max() < WITHIN
 
 
 @pytest.mark.campaign

@@ -9,8 +9,9 @@ from excited_machines import ARM_WITH_LIMITS, SWINGING_FOUR_BAR, designed_once
 from identified_machines import MACHINES_WITH_LOGS, ROOT
 from simulated_logs import machine_of
 
+from symgen.identification.combinations import base_map, default_like, inertial_values
 from symgen.identification.estimates.identify import identified_by
-from symgen.identification.estimates.linear_terms import EstimatedNames, base_map, default_like, inertial_values
+from symgen.identification.estimates.linear_terms import EstimatedNames
 from symgen.identification.estimates.observations import equations
 from symgen.identification.excitation.excitation import Excitation, ExcitationRequest, goes_on
 from symgen.identification.excitation.leading import leading

@@ -6,33 +6,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from identified_machines import ARM_WITH_FRICTION
+from identified_machines import ARM_WITH_FRICTION, WHEEL
 
+from symgen.identification.combinations import BodyCombinations, base_map, default_like, inertial_values
 from symgen.identification.estimates.file_values import FileValues, body_margins, file_values
 from symgen.identification.estimates.least_squares import LinearEstimate
-from symgen.identification.estimates.linear_terms import EstimatedNames, base_map, default_like, inertial_values
+from symgen.identification.estimates.linear_terms import EstimatedNames
 from symgen.identification.estimates.parameter_file import numbers_in_bodies, with_values
 from symgen.model.combinations.base_parameters import base_parameters
 from symgen.model.configurations.mechanics import default_values
 from symgen.model.load import load_model, load_text
-
-# A body in space with all of its moments, turned about one axis.
-WHEEL = """
-model: wheel
-parameters:
-  m: {value: 2, unit: kg}
-  I_x: {value: 0.3, unit: kg*m**2}
-  I_y: {value: 0.4, unit: kg*m**2}
-  I_z: {value: 0.5, unit: kg*m**2}
-  c: {value: 0.1, unit: m}
-gravity: [0, -9.81, 0]
-joints:
-  hub: {type: revolute, axis: z, coordinate: a}
-bodies:
-  hub: {mass: m, com: [c, 0, 0], inertia: {xx: I_x, yy: I_y, zz: I_z}}
-inputs:
-  u: {joint: a}
-"""
 
 
 def nearest(text: str, names: tuple[str, ...], changes: dict[str, float], error: float) -> FileValues:
@@ -44,7 +27,7 @@ def nearest(text: str, names: tuple[str, ...], changes: dict[str, float], error:
         target[[one.stays.name for one in base.base].index(name)] = value
     count = len(target)
     estimate = LinearEstimate(target, error * np.eye(count), (), np.ones(1), 1.0, np.zeros(count), 0.0)
-    return file_values(model, base, EstimatedNames(names, (), ()), numbers, estimate)
+    return file_values(model, BodyCombinations(base), EstimatedNames(names, (), ()), numbers, estimate)
 
 
 def test_the_least_change_meets_the_estimates() -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from identified_machines import FOUR_BAR_WITH_NAMES, MACHINES_WITH_LOGS
-from simulated_logs import Sensors, simulated_log
+from simulated_logs import Sensors, of_file, simulated_log
 
 from symgen.backends.backend import Variant
 from symgen.backends.python import backend
@@ -19,9 +19,20 @@ from symgen.backends.python.module import emit_python
 from symgen.cli.main import main
 from symgen.generation.results import Options
 from symgen.identification import machine_functions
+from symgen.identification.bodies.pseudo_inertia import pseudo_inertia
+from symgen.identification.combinations import base_map, inertial_values
+from symgen.identification.estimates import command
+from symgen.identification.estimates.parameter_file import WrittenFile
+from symgen.identification.reported.document import identification_document
 from symgen.ir.kernel import Program
+from symgen.model.combinations.base_parameters import base_parameters
+from symgen.model.configurations.mechanics import default_values
 from symgen.model.load import load_model
 from symgen.model.model import Model
+from symgen.report.document import Table
+from symgen.report.html import plain, render_html
+from symgen.report.mathematics.typst import quoted
+from symgen.report.pdf import render_typst
 
 ARM_MACHINE = MACHINES_WITH_LOGS["arm"]
 
@@ -91,7 +102,7 @@ def test_the_record_is_the_same_each_time(folder: Path) -> None:
         for out in ("first", "again")
     ]
     assert texts[0] == texts[1]
-    assert {*texts[0]} == {"identified.json", "identified.html", "arm.identified.yaml"}
+    assert {*texts[0]} == {"identified.json", "identified.html", "identified.pdf", "arm.identified.yaml"}
     record = json.loads(texts[0]["identified.json"])
     assert record["measured"] == ["a", "b"]
     assert len(record["covariance"]) == len(record["parameters"]) == 11
@@ -105,6 +116,76 @@ def test_the_page_stands_by_itself(folder: Path) -> None:
     assert not re.search(r'(src|href)="(?!#)', page)
     for text in ("shoulder.mx + l elbow.m", "u_a", "Parameters of the file", "one of "):
         assert text.replace(" ", "") in page.replace("\u00a0", "").replace(" ", "")
+
+
+def test_page_and_pdf_say_the_same(folder: Path) -> None:
+    """Both are made of one document: what its tables hold is in the page and in the source of the PDF."""
+    made = of_file(folder / "log.csv", ARM_MACHINE.text, ARM_MACHINE.measured)
+    document = identification_document(made, WrittenFile(None, "it is not asked for"))
+    page, source = render_html(document), render_typst(document)
+    cells = [cell[0] for section in document.sections for block in section.blocks if isinstance(block, Table)
+             for row in block.rows for cell in row if cell]  # fmt: skip
+    assert len(cells) > 100
+    assert isinstance(cells[0], str)
+    for cell in map(str, cells):
+        assert plain(cell) in page
+        assert quoted(cell) in source
+    for text in ("Whole bodies", "No model file is written: it is not asked for.", "As entries of a model file"):
+        assert text in page
+        assert text in source
+
+
+def test_the_pdf_is_one(folder: Path) -> None:
+    assert run(folder, "log.csv", "pdf", "--quiet") == 0
+    made = (folder / "pdf" / "arm_with_friction" / "identified.pdf").read_bytes()
+    assert made.startswith(b"%PDF-")
+    assert made.rstrip().endswith(b"%%EOF")
+
+
+def test_the_pdf_is_left_out_where_its_package_lacks(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(command, "find_spec", lambda name: None if name == "typst" else object())
+    assert run(folder, "log.csv", "without") == 0
+    text = " ".join(capsys.readouterr().out.split())
+    assert "the PDF is left out: it needs typst, which is not installed: pip install 'symgen[report]'" in text
+    assert not (folder / "without" / "arm_with_friction" / "identified.pdf").exists()
+
+
+@pytest.mark.slow
+def test_whole_bodies_generate_and_verify_at_once(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The file with whole bodies has the estimates as base parameters, and what cannot be is in no body."""
+    assert run(folder, "log.csv", "whole", "--whole-bodies") == 0
+    assert "bodies that can be are " in capsys.readouterr().out
+    made = folder / "whole" / "arm_with_friction"
+    model = load_model(made / "arm.identified.yaml")
+    assert all("is not used" in notice.message for notice in model.notices)
+    tens = inertial_values(model, default_values(model.parameters)).reshape(2, 10)
+    assert all(np.linalg.eigvalsh(pseudo_inertia(ten))[0] > 0 for ten in tens)
+    record = json.loads((made / "identified.json").read_text(encoding="utf-8"))
+    combined = base_map(base_parameters(model)) @ tens.ravel()
+    estimates = [(one["value"], one["standard_error"]) for one in record["parameters"][: len(combined)]]
+    for value, (estimate, error) in zip(combined, estimates, strict=True):
+        assert abs(value - estimate) < 0.5 * error
+    options = ("--only", "python", "--states", "8", "--quiet", "--out", str(folder / "generated"))
+    assert main([str(made / "arm.identified.yaml"), *options]) == 0
+
+
+def test_numbers_that_are_wrong_lead_to_whole_bodies(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A lower arm in numbers cannot follow the log: the command says what can, and that file is right."""
+    numbers = folder / "numbers.yaml"
+    lower = "elbow: {mass: 1.0, com: [0.15, 0, 0], inertia: {zz: 0.012}}"
+    text = ARM_MACHINE.text.replace("elbow: {mass: m_2, com: [c_2, 0, 0], inertia: {zz: J_2}}", lower)
+    assert lower in text
+    numbers.write_text(text, encoding="utf-8")
+    asked = ["identify", str(numbers), str(folder / "log.csv"), "--out", str(folder / "wider"), "--whole-bodies"]
+    assert main(asked) == 0
+    assert "`--whole-bodies` writes bodies that do" in " ".join(capsys.readouterr().out.split())
+    model = load_model(folder / "wider" / "arm_with_friction" / "numbers.identified.yaml")
+    tens = inertial_values(model, default_values(model.parameters))
+    truth = ARM_MACHINE.truth
+    assert tens[11] == pytest.approx(truth["m_2"] * truth["c_2"], rel=0.05)
+    assert tens[16] == pytest.approx(truth["J_2"] + truth["m_2"] * truth["c_2"] ** 2, rel=0.1)
 
 
 def test_rates_of_the_log_are_used(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -192,7 +273,7 @@ def test_models_that_cannot_be_identified(folder: Path, capsys: pytest.CaptureFi
         encoding="utf-8",
     )
     assert main(["identify", str(pendulum), str(folder / "log.csv"), "--out", str(folder / "none")]) == 1
-    assert "the model has no `bodies`" in capsys.readouterr().err.replace("\n  ", " ")
+    assert "no parameter of the energies is left to identify" in capsys.readouterr().err.replace("\n  ", " ")
     rough = folder / "rough.yaml"
     friction = "b: {viscous: d_2, coulomb: f_2, width: w}"
     text = ARM_MACHINE.text.replace(friction, "elbow: {coulomb: 0.1, radius: 0.01, width: 0.1}")

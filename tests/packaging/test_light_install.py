@@ -103,5 +103,7 @@ def test_every_package_beside_has_its_extra() -> None:
     assert everything == set(EXTRA_OF)
     # an extra of a command may bring what others bring, too; studies have a lock of their own
     assert set(extras["all"]) == {f"symgen[{extra}]" for extra in {*EXTRA_OF.values(), "identify"} - {"study"}}
-    assert {*names(extras["identify"])} == {"matplotlib", "scipy"}
+    assert {*names(extras["identify"])} == {"matplotlib", "scipy", "typst"}
+    # what has another way without it
+    assert names(extras["semidefinite"]) == ["clarabel", "cvxpy-base"]
     assert to_install(("scipy",), "this").endswith("is not installed: pip install 'symgen[simulate]'")

@@ -14,18 +14,16 @@ import numpy as np
 from scipy import optimize
 
 from symgen.identification.arrays import Array
+from symgen.identification.bodies.pseudo_inertia import about_centre
+from symgen.identification.combinations import Combinations, default_like, inertial_values
 from symgen.identification.estimates.inverse_root import inverse_root
 from symgen.identification.estimates.least_squares import LinearEstimate
-from symgen.identification.estimates.linear_terms import EstimatedNames, base_map, default_like, inertial_values
-from symgen.model.combinations.base_parameters import BaseParameters
+from symgen.identification.estimates.linear_terms import EstimatedNames
+from symgen.identification.estimates.whitened import deviation_before, whitening
 from symgen.model.expressions.walk import exact_value
 from symgen.model.model import Model
 from symgen.records import dataclass
 
-# The standard deviation of a parameter before the log, as a share of its value.
-HELD_BY = 1.0
-# That of one which is 0, where the file has no range of it.
-HELD_AT_ZERO = 1.0
 # Of a mass or moment of the file, the least that is left where the data ask for less than nothing.
 LEAST_LEFT = 1e-3
 # Of the largest principal moment, what rounding makes negative.
@@ -57,17 +55,21 @@ class FileValues:
 
 
 def file_values(
-    model: Model, base: BaseParameters, names: EstimatedNames, known: Mapping[str, float], estimate: LinearEstimate
+    model: Model,
+    combinations: Combinations,
+    names: EstimatedNames,
+    known: Mapping[str, float],
+    estimate: LinearEstimate,
 ) -> FileValues:
     """The parameters of the file that are nearest to what they were and say what the log says."""
-    return _Nearest(model, base, names, known, estimate).result()
+    return _Nearest(model, combinations, names, known, estimate).result()
 
 
 class _Nearest:
     def __init__(
         self,
         model: Model,
-        base: BaseParameters,
+        combinations: Combinations,
         names: EstimatedNames,
         known: Mapping[str, float],
         estimate: LinearEstimate,
@@ -75,14 +77,12 @@ class _Nearest:
         self._model, self._known, self._linear = model, known, names.linear
         self._names = (*names.inertial, *names.linear)
         self._before = np.array([known[name] for name in self._names])
-        self._map = base_map(base)
+        self._combinations = combinations
         closed = estimate.closed_columns
         self._closed, self._target = closed, estimate.values[closed]
-        scales = estimate.errors[closed]
-        # rows of one length, so that small and large units do not mix; what has no error at all says nothing
-        root = estimate.root[np.ix_(closed, closed)] / scales[:, None]
-        self._whitening = np.linalg.pinv(root) / scales
-        self._held = np.array([_held(model, name, known[name]) for name in self._names])
+        self._whitening = whitening(estimate)
+        by_name = {p.name: p for p in model.parameters}
+        self._held = np.array([deviation_before(by_name[name], known[name]) for name in self._names])
 
     def result(self) -> FileValues:
         """The nearest values, with what they leave."""
@@ -106,7 +106,7 @@ class _Nearest:
     def _combined(self, values: Array) -> Array:
         """Base parameters and linear ones (c) that the log determines."""
         numbers = self._numbers(values)
-        combined = self._map @ inertial_values(self._model, numbers)
+        combined = self._combinations.at(numbers)
         return np.concatenate([combined, [numbers[name] for name in self._linear]])[self._closed]
 
     def _distances(self, values: Array) -> Array:
@@ -162,31 +162,15 @@ def body_margins(model: Model, numbers: Mapping[str, float]) -> list[tuple[str, 
     known = inertial_values(model, numbers)
     margins: list[tuple[str, float]] = []
     for k, body in enumerate(model.mechanism.bodies):
-        mass, first, about_origin = known[10 * k], known[10 * k + 1 : 10 * k + 4], known[10 * k + 4 : 10 * k + 10]
-        margins.append((body.name, float(mass)))
+        mass, _, tensor = about_centre(known[10 * k : 10 * k + 10])
+        margins.append((body.name, mass))
         given = [i for i, row in enumerate(body.inertia.rows) if exact_value(row[i]) != 0]
         if not given:
             continue
-        moments = np.linalg.eigvalsh(_central(mass, first, about_origin)[np.ix_(given, given)])
+        moments = np.linalg.eigvalsh(tensor[np.ix_(given, given)])
         margins.append((body.name, float(moments[0])))
         if len(given) == 3:
             margins.append((body.name, float(moments[0] + moments[1] - moments[2] + ROUNDED_MOMENT * moments[2])))
     rotors = zip(model.mechanism.rotor_inertias, known[10 * len(model.mechanism.bodies) :], strict=True)
     return margins + [(rotor.coordinate, float(inertia)) for rotor, inertia in rotors]
-
-
-def _central(mass: float, first: Array, about_origin: Array) -> Array:
-    """The inertia tensor about the centre of mass."""
-    xx, yy, zz, xy, xz, yz = about_origin
-    tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    square = np.outer(first, first)
-    return np.asarray(tensor - (np.trace(square) * np.eye(3) - square) / (mass or np.inf), dtype=np.float64)
-
-
-def _held(model: Model, name: str, value: float) -> float:
-    parameter = next(p for p in model.parameters if p.name == name)
-    if value:
-        return HELD_BY * abs(value)
-    return float(parameter.range[1] - parameter.range[0]) / 2 if parameter.range else HELD_AT_ZERO
-
 

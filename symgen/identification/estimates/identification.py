@@ -5,14 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from symgen.identification.arrays import Array
+from symgen.identification.combinations import Combinations
 from symgen.identification.estimates.file_values import FileValues
 from symgen.identification.estimates.least_squares import LinearEstimate
 from symgen.identification.estimates.linear_terms import EstimatedNames
 from symgen.identification.estimates.observations import Observations, rms
+from symgen.identification.estimates.whole_bodies import WholeBodies
 from symgen.identification.logs.filtering import FilterSettings
 from symgen.identification.logs.read_log import MeasuredLog
-from symgen.identification.text import combination
-from symgen.model.combinations.base_parameters import BaseParameters
+from symgen.model.configurations.mechanics import default_values
 from symgen.model.model import Model
 from symgen.records import dataclass
 
@@ -72,19 +73,20 @@ class Identification:
     log: MeasuredLog
     settings: FilterSettings
     open_by: float
-    base: BaseParameters
+    combinations: Combinations
     names: EstimatedNames
     fitted_to: Observations
     aside: Observations
     estimate: LinearEstimate
     values: FileValues
+    whole: WholeBodies | None
 
     @property
     def parameters(self) -> tuple[EstimatedParameter, ...]:
         """In the order of columns."""
-        labels = [*map(combination, self.base.base), *self.names.linear]
-        numbers = dict(zip(self.values.names, map(float, self.values.before), strict=True))
-        before = [*(one.value for one in self.base.base), *(numbers[name] for name in self.names.linear)]
+        labels = [*self.combinations.labels, *self.names.linear]
+        numbers = default_values(self.model.parameters)
+        before = [*self.combinations.at(numbers), *(numbers[name] for name in self.names.linear)]
         rows = zip(labels, self.estimate.values, self.estimate.errors, before, strict=True)
         return tuple(EstimatedParameter(name, float(x), float(e), float(b)) for name, x, e, b in rows)
 

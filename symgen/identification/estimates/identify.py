@@ -7,11 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
+from symgen.identification.energies.energy_terms import EnergyTerms, energy_terms
 from symgen.identification.estimates.file_values import file_values
 from symgen.identification.estimates.identification import Identification
 from symgen.identification.estimates.least_squares import estimated
-from symgen.identification.estimates.linear_terms import estimated_names
+from symgen.identification.estimates.linear_terms import estimated_names, some_states
 from symgen.identification.estimates.observations import Observations, observations
+from symgen.identification.estimates.whole_bodies import whole_bodies
 from symgen.identification.logs.completed import completed_motion
 from symgen.identification.logs.filtering import FilterSettings, filter_settings
 from symgen.identification.logs.read_log import MeasuredLog, read_log
@@ -32,7 +34,7 @@ SET_ASIDE = 0.25
 class IdentifiableMachine:
     """A model before any log: its base parameters, and its verified functions of what a log measures."""
 
-    base: BaseParameters
+    base: BaseParameters | EnergyTerms
     functions: MachineFunctions
 
 
@@ -43,7 +45,8 @@ def identified(path: Path, log_path: Path, cutoff: float | None, progress: Progr
     """
     progress("reading the model")
     model = load_model(path)
-    check_bodies(model)
+    if not model.mechanism.has_mass:
+        terms_of(model)  # which says at once where there are none
     progress("reading the log")
     log = read_log(log_path, model)
     settings = filter_settings(log, cutoff)
@@ -54,7 +57,7 @@ def check_bodies(model: Model) -> None:
     """Raises NotIdentifiedError for a model without bodies."""
     if not model.mechanism.has_mass:
         raise NotIdentifiedError(
-            "the model has no `bodies`: identification is of their masses, first moments and inertias; "
+            "the model has no `bodies`: motions are designed for their masses, first moments and inertias; "
             "write the machine with `joints` or `frames` and `bodies`"
         )
 
@@ -65,7 +68,7 @@ def identifiable(path: Path, model: Model, measured: Sequence[str], progress: Pr
     Raises NotIdentifiedError where no parameter counts or verification rejects a function.
     """
     progress("base parameters")
-    base = base_of(model)
+    base = base_of(model) if model.mechanism.has_mass else terms_of(model)
     progress("making functions")
     return IdentifiableMachine(base, MachineFunctions(path, base, measured, progress))
 
@@ -74,10 +77,10 @@ def identified_by(
     machine: IdentifiableMachine, log: MeasuredLog, settings: FilterSettings, progress: Progress
 ) -> Identification:
     """What a log says of a machine.  Raises NotIdentifiedError where it says nothing."""
-    base, functions = machine.base, machine.functions
     progress("closing loops")
-    motion = completed_motion(functions, log, settings, progress)
+    motion = completed_motion(machine.functions, log, settings, progress)
     progress("filtering")
+    functions, base = machine.functions.telling_apart(some_states(motion.state)), machine.base
     names = estimated_names(functions, motion.state)
     seen = observations(functions, names, log, motion, settings)
     first = len(seen.t) - int(SET_ASIDE * len(seen.t))
@@ -87,10 +90,11 @@ def identified_by(
     estimate = estimated(fitted_to)
     if not estimate.closed_columns:
         raise NotIdentifiedError("the motion of this log shows no parameter: record another one", log.file)
-    values = file_values(functions.model, base, names, functions.parameters, estimate)
-    return Identification(
-        base.model, log, settings, motion.open_by, base, names, fitted_to, aside, estimate, values
-    )
+    given = functions.model, functions.combinations, names, functions.parameters, estimate
+    values = file_values(*given)
+    whole = None if isinstance(base, EnergyTerms) else whole_bodies(functions.model, base, *given[2:])
+    parts = base.model, log, settings, motion.open_by, functions.combinations, names
+    return Identification(*parts, fitted_to, aside, estimate, values, whole)
 
 
 def base_of(model: Model) -> BaseParameters:
@@ -99,6 +103,17 @@ def base_of(model: Model) -> BaseParameters:
         return base_parameters(model)
     except (NoBodiesError, NoMotionError):
         raise NotIdentifiedError("no regular motion of the model was found at which parameters count") from None
+
+
+def terms_of(model: Model) -> EnergyTerms:
+    """The products that its energies are linear in; NotIdentifiedError where all of their parameters are known."""
+    terms = energy_terms(model)
+    if not terms.monomials:
+        raise NotIdentifiedError(
+            "no parameter of the energies is left to identify: numbers have no name, and parameters of the geometry "
+            "are taken for known; name masses and inertias under `parameters`, or say under `identify` what is geometry"
+        )
+    return terms
 
 
 def _check_enough(seen: Observations, settings: FilterSettings, place: str) -> None:

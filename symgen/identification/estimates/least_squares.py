@@ -17,18 +17,15 @@ from scipy import linalg
 from symgen.identification.arrays import Array
 from symgen.identification.estimates.inverse_root import inverse_root
 from symgen.identification.estimates.observations import Observations
+from symgen.identification.independent import independent_columns
 from symgen.records import dataclass
 
 # Standard deviations up to which a sample counts in full (95 % efficiency for normal noise).
 HUBER = 1.345
 # The median of absolute normal errors, in standard deviations.
 MEDIAN_DEVIATION = 0.6745
-# Of a column, what is not a combination of others; below it the column says nothing of its own.
-OWN_SHARE = 1e-6
 # Neighbours in time whose residuals may be alike.
 NEIGHBOURS = 6
-# Of the longest column, what rounding makes of one that is 0.
-ROUNDED_LENGTH = 1e-9
 # Of a residual, the share at least that is not the sample's own doing.
 LEAST_SPARE = 0.1
 # Of the inputs, a change of the fit after which weights have settled.
@@ -89,22 +86,6 @@ def estimated(seen: Observations) -> LinearEstimate:
     weakest[kept] = least
     outliers = float(np.mean(rounds.weights < 0.5))
     return LinearEstimate(values, root, left, rounds.sigmas, condition, weakest, outliers)
-
-
-def independent_columns(flat: Array) -> list[int]:
-    """Columns of (N, c) that no combination of those before them gives, in their order."""
-    lengths = np.linalg.norm(flat, axis=0)
-    kept: list[int] = []
-    basis = np.empty((len(flat), 0))
-    for k in np.flatnonzero(lengths > ROUNDED_LENGTH * np.max(lengths, initial=0.0)):
-        own = flat[:, k] / lengths[k]
-        for _ in range(2):  # the second time takes what rounding left
-            own = own - basis @ (basis.T @ own)
-        size = float(np.linalg.norm(own))
-        if size > OWN_SHARE and len(kept) < len(flat):
-            kept.append(int(k))
-            basis = np.column_stack([basis, own / size])
-    return kept
 
 
 class _Rounds:

@@ -9,13 +9,12 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
+from symgen.identification.acting import acting
 from symgen.identification.arrays import Array
+from symgen.identification.combinations import default_like
 from symgen.identification.machine_functions import MachineFunctions
-from symgen.model.combinations.base_parameters import BaseParameters
 from symgen.model.combinations.geometry import geometric_expressions, names_reached
 from symgen.model.expressions.expression import Expression, Number
-from symgen.model.expressions.walk import evaluate
-from symgen.model.inertial_parameters import values
 from symgen.model.model import Model
 from symgen.records import dataclass
 
@@ -39,34 +38,18 @@ class EstimatedNames:
     kept: tuple[tuple[str, str], ...]
 
 
-def inertial_values(model: Model, numbers: Mapping[str, float]) -> Array:
-    """The inertial parameters (p) for values of the parameters of the file."""
-    known = dict(numbers)
-    for definition in model.definitions:
-        try:
-            known[definition.name] = evaluate(definition.value, known)
-        except KeyError:  # made of coordinates, which inertias are not
-            continue
-    return np.array(values(model.mechanism, lambda expression: evaluate(expression, known)))
-
-
-def base_map(base: BaseParameters) -> Array:
-    """Base parameters (b) from inertial parameters (p): a matrix (b, p) of numbers at this geometry."""
-    made = np.zeros((len(base.base), len(base.parameters)))
-    for row, one in zip(made, base.base, strict=True):
-        row[base.parameters.index(one.stays)] = 1.0
-        for other, form in one.added:
-            row[base.parameters.index(other)] = form.value
-    return made
+def some_states(state: State) -> State:
+    """Some of the states, all along a motion."""
+    step = max(1, len(state[0]) // STATES_TRIED)
+    return state[0][::step], state[1][::step], state[2][::step]
 
 
 def estimated_names(functions: MachineFunctions, state: State) -> EstimatedNames:
     """Which parameters a log can say something of."""
     model = functions.model
-    step = max(1, len(state[0]) // STATES_TRIED)
-    seen = state[0][::step], state[1][::step], state[2][::step]
-    fixed = names_reached(model, [*geometric_expressions(model), *_acting(model)])
-    of_bodies = names_reached(model, _of_bodies(model)) - fixed
+    seen = some_states(state)
+    fixed = names_reached(model, [*geometric_expressions(model), *acting(model)]) | functions.combinations.held
+    of_bodies = functions.combinations.reached - fixed
     # another parameter follows from these, and its expression is worth more than a number
     free = [p.name for p in model.parameters if isinstance(p.value, Number) and p.name not in fixed]
     kept: list[tuple[str, str]] = []
@@ -95,15 +78,14 @@ class _Linearity:
         self._functions, self._state = functions, state
         self._values = functions.parameters
         self._inputs = functions.inputs(state)
-        self._columns, self._base = functions.columns(state), base_map(functions.base)
+        self._columns = functions.columns(state)
         self._size = float(np.max(np.abs(self._inputs))) or 1.0
 
     def acts_through_bodies(self, name: str) -> bool:
         """Whether all of its effect is that of the inertial parameters that it changes."""
-        model = self._functions.model
-        changed = default_like(model, self._values, {name: _changed(self._values[name])})
-        moved = inertial_values(model, changed) - inertial_values(model, self._values)
-        predicted = self._columns @ (self._base @ moved)
+        made = self._functions.combinations
+        changed = default_like(self._functions.model, self._values, {name: _changed(self._values[name])})
+        predicted = self._columns @ (made.at(changed) - made.at(self._values))
         return self._alike(self._functions.inputs(self._state, changed) - self._inputs, predicted)
 
     def why_not_linear(self, name: str, others: Sequence[str]) -> str | None:
@@ -128,32 +110,12 @@ class _Linearity:
 
 
 def step_of(value: float) -> float:
-    """What a parameter is changed by: itself, so that one step back is 0."""
-    return value or USUAL_CHANGE
-
-
-def default_like(model: Model, known: Mapping[str, float], changed: Mapping[str, float]) -> dict[str, float]:
-    """All values, where some are changed; others that are expressions of these follow."""
-    numbers: dict[str, float] = {}
-    for p in model.parameters:
-        if p.name in changed:
-            numbers[p.name] = changed[p.name]
-        else:
-            numbers[p.name] = known[p.name] if isinstance(p.value, Number) else evaluate(p.value, numbers)
-    return numbers
+    """What a parameter is changed by: half of itself, as kernels may be bounded to values other than 0."""
+    return value / 2 or USUAL_CHANGE
 
 
 def _changed(value: float) -> float:
     return value * (1 + INERTIAL_CHANGE) if value else INERTIAL_CHANGE
-
-
-def _acting(model: Model) -> Iterable[Expression]:
-    """By what inputs and gravity act: neither is linear in what stands there."""
-    yield from model.mechanism.gravity
-    for one in model.inputs:
-        yield from (expression for _, expression in one.acts_on)
-        if one.velocity is not None:
-            yield one.velocity
 
 
 def _beside_bodies(model: Model) -> Iterable[Expression]:
@@ -161,11 +123,3 @@ def _beside_bodies(model: Model) -> Iterable[Expression]:
     for force in model.forces:
         yield from (force.magnitude, force.velocity)
     yield from (force.expression for force in model.applied_forces)
-
-
-def _of_bodies(model: Model) -> Iterable[Expression]:
-    for body in model.mechanism.bodies:
-        yield body.mass
-        yield from body.com
-        yield from (entry for row in body.inertia.rows for entry in row)
-    yield from (rotor.inertia for rotor in model.mechanism.rotor_inertias)

@@ -5,12 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from symgen.identification.arrays import Array
+from symgen.identification.combinations import default_like
 from symgen.identification.estimates.linear_terms import (
     EstimatedNames,
     State,
-    base_map,
-    default_like,
-    inertial_values,
     step_of,
 )
 from symgen.identification.logs.completed import CompletedMotion
@@ -78,7 +76,7 @@ def equations(functions: MachineFunctions, names: EstimatedNames, state: State) 
     of_base = functions.columns(state)
     inputs = functions.inputs(state)
     columns = [of_base]
-    known = inputs - of_base @ (base_map(functions.base) @ inertial_values(model, values))
+    known = inputs - of_base @ functions.combinations.at(values)
     for name in names.linear:
         step = step_of(values[name])
         changed = default_like(model, values, {name: values[name] + step})

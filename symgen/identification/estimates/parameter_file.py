@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from symgen.diagnostics import ModelError
+from symgen.identification.estimates.bodies_file import with_bodies
 from symgen.model.expressions.expression import Expression
 from symgen.model.expressions.walk import exact_value
 from symgen.model.file.source import MappingNode, Node, ScalarNode, SequenceNode, read_tree
@@ -26,14 +27,29 @@ class WrittenFile:
     widened: tuple[str, ...] = ()
 
 
-def with_values(path: Path, values: Mapping[str, float]) -> WrittenFile:
-    """The file at `path` with these values of parameters; it is read once more, so that it generates at once."""
+@dataclass(frozen=True, slots=True)
+class WrittenBodies:
+    """What is written of bodies, by body and key, and of rotors, by coordinate."""
+
+    entries: Mapping[str, Mapping[str, str]]
+    rotors: Mapping[str, str]
+
+
+def with_values(path: Path, values: Mapping[str, float], whole: WrittenBodies | None = None) -> WrittenFile:
+    """The file at `path` with these values of parameters; it is read once more, so that it generates at once.
+
+    With `whole` its bodies are these numbers, too.
+    """
     text = path.read_bytes().decode("utf-8-sig")
     tree, _ = read_tree(text)
     assert tree is not None
     if described := [key for key in DESCRIPTIONS if tree.get(key) is not None]:
         return WrittenFile(None, f"the bodies stand in the file that `{described[0]}` names, which is left as it is")
-    if not values:
+    if whole is not None:
+        text = with_bodies(text, whole.entries, whole.rotors)
+        tree, _ = read_tree(text)
+        assert tree is not None
+    elif not values:
         return WrittenFile(None, "no parameter of the file was estimated: give masses, centres and inertias names")
     changes, widened = list[tuple[ScalarNode, str]](), list[str]()
     for name, value in values.items():

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from symgen.identification.estimates.summary import reason_lines, wrapped
 from symgen.identification.excitation.charts import excitation_chart
 from symgen.identification.excitation.excitation import Excitation, ExcitationRequest, excitation
 from symgen.identification.excitation.tables import excitation_csv, excitation_path
 from symgen.identification.not_identified import NotIdentifiedError
+from symgen.identification.reported.summary import reason_lines, wrapped
 from symgen.output.write import write_files
 
 Progress = Callable[[str], None]

@@ -6,12 +6,12 @@ import numpy as np
 import numpy.typing as npt
 
 from symgen.identification.arrays import Array
-from symgen.identification.estimates.least_squares import independent_columns
 from symgen.identification.estimates.linear_terms import EstimatedNames, estimated_names
 from symgen.identification.estimates.observations import equations
 from symgen.identification.excitation.limits import MotionLimits
 from symgen.identification.excitation.motions import LedMotions, State
 from symgen.identification.excitation.series import HARMONICS, RestingSeries
+from symgen.identification.independent import independent_columns
 from symgen.identification.machine_functions import MachineFunctions, parts_of
 from symgen.identification.not_identified import NotIdentifiedError
 from symgen.model.model import Model

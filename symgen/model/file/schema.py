@@ -365,6 +365,17 @@ MODEL = RecordShape(
         ),
         Key("independent_velocities", _NAMES, "coordinates whose rates serve in F and the minimal form"),
         Key("measured", _NAMES, "coordinates that encoders say, from which the others are found"),
+        Key(
+            "identify",
+            RecordShape(
+                "`identify`",
+                (
+                    Key("geometry", _NAMES, "parameters of energies that are known from the geometry"),
+                    Key("fixed", _NAMES, "parameters that keep their values"),
+                ),
+            ),
+            "what `symgen identify` takes for known of energies; absent: parameters whose unit has no mass",
+        ),
         Key("task", TableShape(ExpressionShape()), "what motions are planned in: functions of the configuration"),
         Key("derivatives", Word(("true", "false")), "whether `outputs: all` takes derivatives"),
         Key("configuration", TableShape(ExpressionShape()), "a start for Newton's method: the assembly mode"),

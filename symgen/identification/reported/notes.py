@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from symgen.identification.energies.shown_terms import ShownTerms
 from symgen.identification.estimates.identification import Identification
 
 # Times the noise of the inputs, or standard errors, from which on something is more than noise.
@@ -22,7 +23,7 @@ def notes(made: Identification) -> tuple[str, ...]:
     """All of them; that the log contradicts the model comes first, and in place of what follows from that."""
     if made.is_of_another_machine:
         return (contradiction(made),)
-    return (*_of_inputs(made), *_of_parameters(made), *_of_the_file(made))
+    return (*_of_inputs(made), *_of_parameters(made), *_of_energies(made), *_of_the_file(made))
 
 
 def contradiction(made: Identification) -> str:
@@ -67,6 +68,17 @@ def _weakest(made: Identification) -> str:
     return " with ".join(made.parameters[k].name.split(" ")[0] for k in order) or "none in particular"
 
 
+def _of_energies(made: Identification) -> Iterator[str]:
+    if not isinstance(made.combinations, ShownTerms):
+        return
+    terms = made.combinations.terms
+    if terms.geometry and not terms.is_said:
+        yield (
+            f"taken for known, as geometry is: {', '.join(terms.geometry)}; `identify: {{geometry: [...]}}` in the "
+            "model file says otherwise"
+        )
+
+
 def _of_the_file(made: Identification) -> Iterator[str]:
     values = made.values
     if values.impossible:
@@ -74,7 +86,9 @@ def _of_the_file(made: Identification) -> Iterator[str]:
         ending = "bodies keep the values of the file" if values.kept else "the nearest possible values are taken"
         yield f"the data alone give {which} a mass or moment that cannot be: {ending}"
     if values.names and values.misfit > MORE_THAN_NOISE:
+        wider = made.whole is not None and made.whole.misfit < MORE_THAN_NOISE
         yield (
             f"no values of the file's parameters give the estimates (off by {values.misfit:.1f} standard errors): "
             "bodies that share parameters differ, or numbers in the file are wrong"
+            + ("; `--whole-bodies` writes bodies that do" if wider else "")
         )

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from symgen.identification.estimates.identification import Identification
-from symgen.identification.estimates.notes import notes
+from symgen.identification.estimates.whole_bodies import WholeBodies
+from symgen.identification.reported.notes import notes
 
 # Digits of numbers in the record: more depend on the processor.
 RECORDED_DIGITS = 8
@@ -47,6 +48,7 @@ def identification_json(made: Identification) -> str:
             for name, value, error, before in _file_rows(made)
         ],
         "file_misfit": made.values.misfit,
+        "whole_bodies": None if made.whole is None else _whole_record(made.whole),
         "impossible_bodies": list(made.values.impossible),
         "kept": dict(made.names.kept),
         "notes": list(notes(made)),
@@ -57,6 +59,19 @@ def identification_json(made: Identification) -> str:
 def _file_rows(made: Identification) -> list[tuple[str, float, float, float]]:
     values = made.values
     return list(zip(values.names, values.values, values.errors, values.before, strict=True))
+
+
+def _whole_record(whole: WholeBodies) -> dict[str, Any]:
+    rows = zip(whole.parameters, whole.values, whole.errors, whole.before, strict=True)
+    return {
+        "method": whole.method,
+        "misfit": whole.misfit,
+        "at_edge": list(whole.at_edge),
+        "parameters": [
+            {"name": one.name, "value": value, "standard_error": error, "before": before}
+            for one, value, error, before in rows
+        ],
+    }
 
 
 def _rounded(entry: Any) -> Any:

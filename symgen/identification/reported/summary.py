@@ -6,8 +6,9 @@ import textwrap
 from collections.abc import Iterator
 
 from symgen.identification.estimates.identification import EstimatedParameter, Identification
-from symgen.identification.estimates.notes import notes
 from symgen.identification.estimates.parameter_file import numbers_in_bodies
+from symgen.identification.estimates.whole_bodies import WholeBodies
+from symgen.identification.reported.notes import notes
 from symgen.identification.text import LINE_WIDTH
 
 # Characters of a sum of parameters that are printed; the page has all of it.
@@ -25,6 +26,7 @@ def summary(made: Identification) -> str:
         rest = (drive.inputs, drive.fitted, drive.predicted, drive.noise, drive.inner)
         lines.append(f"  {drive.name[:14]:<14}" + "".join(f"{x:>10.3g}" for x in rest) + f"  {drive.unit}")
     lines += ["", *_file_lines(made)]
+    lines += [*_whole_lines(made.whole), ""] if made.whole is not None else []
     for note in notes(made):
         lines += wrapped(note, "  ")
     return "\n".join(lines)
@@ -75,6 +77,11 @@ def _file_lines(made: Identification) -> list[str]:
             lines.append(f"  {name:<{max(width, 11)}} {before:>11.4g} {value:>11.4g} {error:>8.2g}")
     lines += _left(made)
     return [*lines, ""] if lines else []
+
+
+def _whole_lines(whole: WholeBodies) -> list[str]:
+    words = f"bodies that can be are {whole.misfit:.2g} standard errors from the estimates (rms)"
+    return wrapped(words + (f"; at the edge of what can be: {', '.join(whole.at_edge)}" if whole.at_edge else ""), "  ")
 
 
 def _left(made: Identification) -> list[str]:

@@ -1,0 +1,103 @@
+"""What inputs are linear in beside friction and springs: base parameters of bodies, or products of energies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Protocol
+
+import numpy as np
+
+from symgen.identification.arrays import Array
+from symgen.identification.text import combination
+from symgen.model.combinations.base_parameters import BaseParameters
+from symgen.model.combinations.geometry import names_reached
+from symgen.model.expressions.expression import Expression, Number
+from symgen.model.expressions.walk import evaluate
+from symgen.model.inertial_parameters import values
+from symgen.model.model import Model
+from symgen.records import dataclass
+
+
+class Combinations(Protocol):
+    """Numbers (b) that inputs are linear in, for a geometry that is known."""
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """What they are called."""
+
+    @property
+    def reached(self) -> set[str]:
+        """Parameters of the file that they are made of."""
+
+    @property
+    def held(self) -> set[str]:
+        """Parameters of the file that are taken for known."""
+
+    def at(self, numbers: Mapping[str, float]) -> Array:
+        """Their values (b) for values of all parameters of the file."""
+
+
+@dataclass(frozen=True, slots=True)
+class BodyCombinations:
+    """Base parameters of bodies, by the matrix `base_map`."""
+
+    base: BaseParameters
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Sums of inertial parameters."""
+        return tuple(map(combination, self.base.base))
+
+    @property
+    def reached(self) -> set[str]:
+        """What bodies and rotors are made of."""
+        return names_reached(self.base.model, _of_bodies(self.base.model))
+
+    @property
+    def held(self) -> set[str]:
+        """None but those that act elsewhere."""
+        return set()
+
+    def at(self, numbers: Mapping[str, float]) -> Array:
+        """Base parameters (b)."""
+        return np.asarray(base_map(self.base) @ inertial_values(self.base.model, numbers), dtype=np.float64)
+
+
+def inertial_values(model: Model, numbers: Mapping[str, float]) -> Array:
+    """The inertial parameters (p) for values of the parameters of the file."""
+    known = dict(numbers)
+    for definition in model.definitions:
+        try:
+            known[definition.name] = evaluate(definition.value, known)
+        except KeyError:  # made of coordinates, which inertias are not
+            continue
+    return np.array(values(model.mechanism, lambda expression: evaluate(expression, known)))
+
+
+def default_like(model: Model, known: Mapping[str, float], changed: Mapping[str, float]) -> dict[str, float]:
+    """All values, where some are changed; others that are expressions of these follow."""
+    numbers: dict[str, float] = {}
+    for p in model.parameters:
+        if p.name in changed:
+            numbers[p.name] = changed[p.name]
+        else:
+            numbers[p.name] = known[p.name] if isinstance(p.value, Number) else evaluate(p.value, numbers)
+    return numbers
+
+
+def base_map(base: BaseParameters) -> Array:
+    """Base parameters (b) from inertial parameters (p): a matrix (b, p) of numbers at this geometry."""
+    made = np.zeros((len(base.base), len(base.parameters)))
+    for row, one in zip(made, base.base, strict=True):
+        row[base.parameters.index(one.stays)] = 1.0
+        for other, form in one.added:
+            row[base.parameters.index(other)] = form.value
+    return made
+
+
+def _of_bodies(model: Model) -> Iterator[Expression]:
+    for body in model.mechanism.bodies:
+        yield body.mass
+        yield from body.com
+        yield from (entry for row in body.inertia.rows for entry in row)
+    yield from (rotor.inertia for rotor in model.mechanism.rotor_inertias)
