@@ -11,10 +11,14 @@ from symgen.laboratory.bench.tuning.tuned import tuned
 TARGET = Path(__file__).resolve().parent.parent / "docs" / "constants.md"
 
 
-def main(paths: list[str]) -> None:
-    """Writes the page."""
+def main(paths: list[str]) -> int:
+    """Writes the page; 2 where no model is named, of which it would say nothing."""
+    if not paths:
+        print("constants_page.py: name the model files, or run `make constants`", file=sys.stderr)
+        return 2
     TARGET.write_text(page(measured(tuned(), [Path(path) for path in paths])), encoding="utf-8")
+    return 0
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    sys.exit(main(sys.argv[1:]))

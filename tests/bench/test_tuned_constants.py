@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from fractions import Fraction
 from pathlib import Path
@@ -29,6 +30,13 @@ def test_the_page_is_of_the_constants_there_are() -> None:
     shown = {tuple(cell.strip() for cell in row.split(" | ")[:3]) for row in rows}
     named = {(f"| `{one.module.removeprefix('symgen.')}` `{one.name}`", one.value, one.limits) for one in tuned()}
     assert {(name, value, limits.removesuffix(" |")) for name, value, limits in shown} == named
+
+
+def test_the_page_is_of_every_shipped_model() -> None:
+    derived = re.search(r"\((\d+) models, (\d+) kernels\)", PAGE.read_text(encoding="utf-8"))
+    assert derived is not None
+    assert int(derived[1]) == len(list((ROOT / "models").glob("*.yaml")))
+    assert int(derived[2]) > 10 * int(derived[1])
 
 
 def _varied(value: int | Fraction, noticed: set[Key]) -> Varied:
