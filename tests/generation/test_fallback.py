@@ -586,6 +586,24 @@ def test_after_long_methods_twice_the_digits_are_tried_before_the_rest(
     assert (longer and digits_help) or kernel == usual
 
 
+@pytest.mark.parametrize(("short", "digits_help"), [(False, True), (False, False), (True, True)])
+@pytest.mark.campaign
+def test_after_many_methods_of_a_model_long_quantities_begin_with_twice_the_digits(
+    short: bool, digits_help: bool, yoke: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Other plain methods come where more digits are of no help; short quantities try them first in any case."""
+    spoil_choice(monkeypatch, losing_digits)
+    usual = derived(made(yoke))["kernels"]["multipliers"]
+    monkeypatch.setattr(fallback, "TRIED_IN_ALL", -1)
+    monkeypatch.setattr(fallback, "LONGEST_WEIGHED", 6_000 if short else 0)
+    if not digits_help:
+        monkeypatch.setattr(tried_methods, "WIDENED", 0)
+    kernel = derived(made(yoke))["kernels"]["multipliers"]
+    assert "twice_the_digits" not in usual
+    assert ("twice_the_digits" in kernel) is (digits_help and not short)
+    assert (digits_help and not short) or kernel == usual
+
+
 @pytest.mark.campaign
 def test_where_more_digits_of_one_method_do_not_help_float32_the_rest_is_tried(
     yoke: Path, monkeypatch: pytest.MonkeyPatch

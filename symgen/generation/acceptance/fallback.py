@@ -54,6 +54,9 @@ LONGEST_WEIGHED = 6_000
 # Counted cost of all long methods together that are tried for a quantity, or for accelerations and multipliers, before
 # twice the digits are: the rest may do with fewer digits, but each takes seconds to be derived and measured.
 LONG_TRIED = 20_000
+# Counted cost of all methods together that are tried for the quantities of a model before the long ones among the rest
+# begin with twice the digits: what one loses, another is likely to lose in the next quantity, too.
+TRIED_IN_ALL = 40_000
 
 
 class Fallback:
@@ -164,7 +167,8 @@ class Fallback:
         """The next method that passes with a margin, or else the best of those that pass; others are noted."""
         needed = tuple(draft.kernels(quantity))
         for operations in (LONG_TRIED, inf):
-            if (first := self._first_of(draft, quantity, expected, operations)) is not None:
+            plain = operations == inf or not self._begins_with_more_digits(draft, quantity)
+            if plain and (first := self._first_of(draft, quantity, expected, operations)) is not None:
                 return first
             # what passes narrowly may not where it is worst, and is then left to more digits
             widened = True
@@ -255,6 +259,11 @@ class Fallback:
             longer = self._candidates(draft, quantity, tier, expected, MARGIN)
             while self._tried_long(quantity) <= operations and (one := next(longer, None)) is not None:
                 yield one
+
+    def _begins_with_more_digits(self, draft: Draft, quantity: str) -> bool:
+        """Whether enough was tried for the quantities of the model, and what is rejected is long."""
+        in_all = sum(one.operations for one in self._tried.values())
+        return in_all > TRIED_IN_ALL and draft.taken(quantity).cost > LONGEST_WEIGHED
 
     def _tried_long(self, quantity: str) -> int:
         """Counted cost of the long methods tried for a quantity; accelerations and multipliers count together."""
