@@ -151,6 +151,7 @@ def _add_tracking(parser: argparse.ArgumentParser) -> None:
     add("--delay", metavar="S", type=not_negative, default=0.0, help="seconds until inputs act (default: 0)")
     add("--resolution", metavar="R", type=not_negative, default=0.0, help="step of the encoders (default: none)")
     add("--noise", metavar="N", type=not_negative, default=0.0, help="standard deviation of measured coordinates")
+    add("--input-noise", metavar="N", type=not_negative, default=0.0, help="standard deviation of inputs in the log")
     add("--machine", metavar="m=1.2", type=values, default={}, help="parameters that the controller does not know")
 
 
@@ -161,7 +162,7 @@ def _track(given: argparse.Namespace) -> int:
 
         loop = ControlLoop(
             given.track, given.controller, given.bandwidth, given.lqr, given.sample, given.delay, given.resolution,
-            given.noise, given.machine,
+            given.noise, given.machine, given.input_noise,
         )  # fmt: skip
         return run_tracking(path, given.out, loop, max(1, given.frames or 200), given.start, given.quiet, progress)
 

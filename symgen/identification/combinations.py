@@ -88,10 +88,11 @@ def default_like(model: Model, known: Mapping[str, float], changed: Mapping[str,
 def base_map(base: BaseParameters) -> Array:
     """Base parameters (b) from inertial parameters (p): a matrix (b, p) of numbers at this geometry."""
     made = np.zeros((len(base.base), len(base.parameters)))
+    places = {one.name: k for k, one in enumerate(base.parameters)}
     for row, one in zip(made, base.base, strict=True):
-        row[base.parameters.index(one.stays)] = 1.0
+        row[places[one.stays.name]] = 1.0
         for other, form in one.added:
-            row[base.parameters.index(other)] = form.value
+            row[places[other.name]] = form.value
     return made
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from symgen.generation.results import Result
 from symgen.model.model import Model
 from symgen.output.write import write_files
+from symgen.simulate.drive_log import drive_log_csv
 from symgen.simulate.following import followed
 from symgen.simulate.integrate import SimulatedMotion
 from symgen.simulate.simulation import NotSimulatedError, Request, simulated
@@ -45,7 +46,7 @@ def run_simulate(path: Path, out: Path, request: Request, quiet: bool, progress:
 def run_tracking(
     path: Path, out: Path, loop: ControlLoop, frames: int, start: Mapping[str, float], quiet: bool, progress: Progress
 ) -> int:
-    """Writes tracking.csv, .svg and, for a model with frames, .html into OUT/<model>/; 0, or 1 where it stopped.
+    """Writes tracking.csv, .svg, log.csv and, where there are frames, .html into OUT/<model>/; 0, or 1 if it stopped.
 
     Raises ModelError for mistakes in the file and WrongUseError for names that the model does not have.
     """
@@ -58,6 +59,7 @@ def run_tracking(
     progress("drawing")
     motion = made.tracked.motion
     files = {"tracking.csv": tracking_csv(made.model, made.tracked), "tracking.svg": made.chart()}
+    files["log.csv"] = drive_log_csv(made.model, made.tracked.log)
     if (page := made.animation()) is not None:
         files["tracking.html"] = page
     lines = [*tracking_summary(made.model, made.tracked), _checked(made.verified)]

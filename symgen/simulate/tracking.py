@@ -11,6 +11,7 @@ import numpy as np
 
 from symgen.model.input_limits import input_limits
 from symgen.simulate.controllers import Array, Controller, ModelKernels, Planned
+from symgen.simulate.drive_log import DriveLog, drive_log
 from symgen.simulate.integrate import SimulatedMotion
 from symgen.simulate.plant import Plant, PlantError
 
@@ -26,7 +27,7 @@ class ControlLoop:
 
     `sample` and `delay` in s; `resolution` of encoders and standard deviation of `noise` in units of coordinates;
     `bandwidth` in rad/s; `weights` of states and inputs for a regulator; `machine` are parameters of the machine that
-    the controller does not know.
+    the controller does not know; `input_noise` is the standard deviation of inputs in its log, in their units.
     """
 
     path: str
@@ -38,11 +39,12 @@ class ControlLoop:
     resolution: float
     noise: float
     machine: Mapping[str, float]
+    input_noise: float
 
 
 @dataclass(frozen=True, slots=True)
 class TrackedMotion:
-    """A motion with what was planned and put in at each frame.
+    """A motion with what was planned and put in at each frame, and the `log` of all samples.
 
     `largest` are the largest errors of coordinates (n) at any sample; `held` counts samples at which the controller had
     no result and the inputs stayed, `saturated` those at which a drive was at its limit.
@@ -52,6 +54,7 @@ class TrackedMotion:
     planned: tuple[tuple[float, ...], ...]
     inputs: tuple[tuple[float, ...], ...]
     largest: tuple[float, ...]
+    log: DriveLog
     samples: int
     held: int
     saturated: int
@@ -68,6 +71,17 @@ class Encoders:
         self._reconstructs = bool(model.measured) and len(self._places) < model.n
         self._q = q
         self._before: Array | None = None
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the coordinates that are measured."""
+        return tuple(self._kernels.model.coordinates[k].name for k in self._places)
+
+    @property
+    def said(self) -> Array:
+        """What they said last, before anything was made of it."""
+        assert self._before is not None
+        return self._before
 
     def read(self, q: Array, qd: Array) -> tuple[Array, Array]:
         """q and q_dot as the controller knows them; the first rates are those of the machine."""
@@ -103,6 +117,7 @@ def tracked(
     q, qd = np.array(start[0]), np.array(start[1])
     frames: list[tuple[float, Array, Array, Array, Array]] = []
     applied: deque[Array] = deque()
+    readings: list[tuple[float, Array, Array]] = []
     latency = round(loop.delay / loop.sample)
     count = max(1, round(times[-1] / loop.sample))
     shown = deque(times)
@@ -122,6 +137,7 @@ def tracked(
         saturated += bool((allowed != u).any())
         applied.append(allowed)
         acting = applied.popleft() if len(applied) > latency else applied[0]
+        readings.append((time, encoders.said, acting))
         if shown and time >= shown[0] - loop.sample / 2:
             shown.popleft()
             frames.append((time, wanted.q, q, qd, acting))
@@ -145,6 +161,7 @@ def tracked(
         planned=tuple(tuple(frame[1].tolist()) for frame in frames),
         inputs=tuple(tuple(frame[4].tolist()) for frame in frames),
         largest=tuple(largest.tolist()),
+        log=drive_log(encoders.names, readings, loop.input_noise, NOISE_SEED),
         samples=count + 1,
         held=held,
         saturated=saturated,

@@ -118,6 +118,12 @@ MACHINES_WITH_LOGS = {
         ("a_1", "a_2", "a_3"),
         {"m_1": 0.26, "m_2": 0.12, "J_1": 1.1e-3, "J_2": 5e-4, "J_motor": 1.4e-3, "m_payload": 0.2},
     ),
+    "delta": IdentifiedMachine(
+        (ROOT / "models" / "delta.yaml").read_text(encoding="utf-8"),
+        Motion({"a_1": (0.3, 0.35), "a_2": (0.3, 0.35), "a_3": (0.3, 0.35)}),
+        ("a_1", "a_2", "a_3"),
+        {"m_a": 1.0, "J_a": 0.008, "m_r": 0.28, "m_p": 0.9, "J_m": 0.03},
+    ),
     "four_bar": IdentifiedMachine(
         FOUR_BAR_WITH_NAMES,
         Motion({"a": (1.1, 0.9)}),

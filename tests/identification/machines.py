@@ -106,3 +106,51 @@ inputs:
   u: {{joint: a}}
 configuration: {{a: 0.3, b: -0.4, c: 0.4, d: 0.2}}
 """
+
+
+def delta_with_rods(gravity: str, turned: tuple[str, ...]) -> str:
+    """A Delta with rods that are bodies, each on a universal joint at its arm and a ball at the platform, which slides.
+
+    Rods in pairs move alike: one body stands for two.  Arm k is turned by `turned[k]` about the vertical.
+    """
+    frames, joints, bodies, points, loops, inputs, places = (list[str]() for _ in range(7))
+    for k, angle in enumerate(turned, 1):
+        rotation = f"rotation: [[z, {angle}]]"
+        frames += [f"  side_{k}: {{{rotation}}}", f"  foot_{k}: {{parent: platform, {rotation}}}"]
+        joints += [
+            f"  arm_{k}: {{type: revolute, parent: side_{k}, at: [R, 0, 0], axis: y, coordinate: a_{k}}}",
+            f"  cross_{k}: {{type: revolute, parent: arm_{k}, at: [l_1, 0, 0], axis: y, coordinate: b_{k}}}",
+            f"  rod_{k}: {{type: revolute, parent: cross_{k}, axis: z, coordinate: c_{k}}}",
+        ]
+        bodies += [
+            f"  arm_{k}: {{mass: 0.8, com: [0.1, 0.01, 0.02], inertia: {{xx: 0.001, yy: 0.006, zz: 0.006}}}}",
+            f"  rod_{k}: {{mass: 0.2, com: [0.4, 0.01, 0.02], inertia: {{xx: 0.001, yy: 0.01, zz: 0.01, xz: 0.0001}}}}",
+        ]
+        points += [f"  end_{k}: {{frame: rod_{k}, at: [l_2, 0, 0]}}", f"  seat_{k}: {{frame: foot_{k}, at: [r, 0, 0]}}"]
+        loops.append(f"  ball_{k}: {{type: point, between: [end_{k}, seat_{k}]}}")
+        inputs.append(f"  u_{k}: {{joint: a_{k}}}")
+        places.append(f"a_{k}: 0.3, b_{k}: 1, c_{k}: 0")
+    return "\n".join(
+        [
+            "model: delta_with_rods",
+            "parameters: {R: {value: 0.2}, r: {value: 0.05}, l_1: {value: 0.3}, l_2: {value: 0.8}}",
+            f"gravity: {gravity}",
+            "coordinates: {x: {unit: m}, y: {unit: m}, z: {unit: m}}",
+            "frames:",
+            "  platform: {translation: [x, y, z]}",
+            *frames,
+            "joints:",
+            *joints,
+            "bodies:",
+            "  platform: {mass: 0.6, com: [0.01, 0.02, 0.03], inertia: {xx: 0.01, yy: 0.01, zz: 0.01}}",
+            *bodies,
+            "points:",
+            *points,
+            "loops:",
+            *loops,
+            "inputs:",
+            *inputs,
+            f"configuration: {{{', '.join(places)}, x: 0, y: 0, z: -0.75}}",
+            "",
+        ]
+    )

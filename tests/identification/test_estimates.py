@@ -7,14 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from identified_machines import MACHINES_WITH_LOGS, ROOT
-from scipy import integrate
+from identified_machines import MACHINES_WITH_LOGS
 from simulated_logs import Array, Sensors, functions_of, machine_of, of_file, simulated_log
 
 from symgen.identification.bodies.pseudo_inertia import pseudo_inertia
 from symgen.identification.combinations import base_map, default_like
 from symgen.identification.estimates.identification import Identification
-from symgen.identification.estimates.identify import identified
 from symgen.identification.reported.notes import notes
 
 # Standard errors, the share of parameters within them, and what parameters may add to the noise of unseen motion.
@@ -22,10 +20,6 @@ WITHIN, SHARE, ADDED = 3.0, 0.97, 1.2
 # Seeds of a campaign: logs of one machine.
 SEEDS = 20
 USUAL_SENSORS = Sensors()
-
-
-def quiet(_message: str) -> None:
-    return
 
 
 def of_log(folder: Path, machine: str, sensors: Sensors, seed: int, seconds: float = 10.0) -> Identification:
@@ -160,34 +154,6 @@ def test_other_lengths_show_in_the_loops(tmp_path: Path) -> None:
     assert "measured coordinates are off closed loops" in " ".join(notes(made))
     made = of_file(tmp_path / "log.csv", longer, chosen.measured)
     assert "measured coordinates are off closed loops" not in " ".join(notes(made))
-
-
-def test_a_car_that_rolls(tmp_path: Path) -> None:
-    """Rolling constraints, all places measured: the mass of the whole car, its inertia about the rear axle."""
-    text = (ROOT / "models" / "front_car_bodies.yaml").read_text(encoding="utf-8")
-    functions = functions_of(text, ("x", "y", "theta", "phi"))
-    truth = {"m_1": 1300.0, "Theta_1": 1800.0, "Theta_2": 2.0}
-    t, w, length = np.arange(0, 20, 0.002), 2 * np.pi / 5, functions.parameters["L"]
-    v, v_d = 4 + 2.5 * np.sin(w * t) + np.sin(2 * w * t + 1), 2.5 * w * np.cos(w * t) + 2 * w * np.cos(2 * w * t + 1)
-    p, p_d, p_dd = (0.4 * w**k * np.sin(w * t + k * np.pi / 2) + 0.2 * (3 * w) ** k * np.sin(3 * w * t + k * np.pi / 2)
-                    for k in range(3))
-    turn, turn_d = v * np.tan(p) / length, (v_d * np.tan(p) + v * p_d / np.cos(p) ** 2) / length
-    heading = integrate.cumulative_simpson(turn, dx=0.002, initial=0)
-    cos, sin = np.cos(heading), np.sin(heading)
-    x, y = (integrate.cumulative_simpson(v * part, dx=0.002, initial=0) for part in (cos, sin))
-    rates = np.stack([v * cos, v * sin, turn, p_d], axis=-1)
-    accelerations = np.stack([v_d * cos - v * turn * sin, v_d * sin + v * turn * cos, turn_d, p_dd], axis=-1)
-    state = np.stack([x, y, heading, p], axis=-1), rates, accelerations
-    u = functions.inputs(state, default_like(functions.model, functions.parameters, truth))
-    u = u + 0.02 * np.std(u, axis=0) * np.random.default_rng(0).standard_normal(u.shape)
-    table = np.column_stack([t, np.round(state[0], 4), u])
-    np.savetxt(tmp_path / "log.csv", table, "%.9g", ",", header="t,x,y,theta,phi,K_f,T", comments="")
-    (tmp_path / "car.yaml").write_text(text, encoding="utf-8")
-    made = identified(tmp_path / "car.yaml", tmp_path / "log.csv", None, quiet)
-    shown = {one.name.split(" ")[0]: one for one in made.parameters}
-    for name, value in (("chassis.m", 1380), ("chassis.Izz", 1800 + 80 * length**2), ("phi.Ir", 2)):
-        assert abs(shown[name].value - value) < WITHIN * shown[name].error
-        assert shown[name].error < 0.01 * value
 
 
 def test_notes_say_what_the_data_do_not_determine(folder: Path) -> None:

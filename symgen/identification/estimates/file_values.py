@@ -83,6 +83,7 @@ class _Nearest:
         self._whitening = whitening(estimate)
         by_name = {p.name: p for p in model.parameters}
         self._held = np.array([deviation_before(by_name[name], known[name]) for name in self._names])
+        self._at_first = body_margins(model, self._numbers(self._before))
 
     def result(self) -> FileValues:
         """The nearest values, with what they leave."""
@@ -116,16 +117,14 @@ class _Nearest:
 
     def _margins(self, values: Array) -> Array:
         """What has to be positive, body by body, as shares of what the file has."""
-        numbers, at_first = self._numbers(values), self._numbers(self._before)
-        pairs = zip(body_margins(self._model, numbers), body_margins(self._model, at_first), strict=True)
+        pairs = zip(body_margins(self._model, self._numbers(values)), self._at_first, strict=True)
         return np.array([now / then for (_, now), (_, then) in pairs if then > 0])
 
     def _spare(self, values: Array) -> Array:
         return self._margins(values) - LEAST_LEFT
 
     def _impossible(self, values: Array) -> tuple[str, ...]:
-        numbers, at_first = self._numbers(values), self._numbers(self._before)
-        pairs = zip(body_margins(self._model, numbers), body_margins(self._model, at_first), strict=True)
+        pairs = zip(body_margins(self._model, self._numbers(values)), self._at_first, strict=True)
         return tuple(dict.fromkeys(name for (name, now), (_, then) in pairs if then > 0 >= now))
 
     def _possible(self) -> Array:

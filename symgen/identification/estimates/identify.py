@@ -10,8 +10,8 @@ import numpy as np
 from symgen.identification.energies.energy_terms import EnergyTerms, energy_terms
 from symgen.identification.estimates.file_values import file_values
 from symgen.identification.estimates.identification import Identification
-from symgen.identification.estimates.least_squares import estimated
-from symgen.identification.estimates.linear_terms import estimated_names, some_states
+from symgen.identification.estimates.least_squares import LinearEstimate, estimated
+from symgen.identification.estimates.linear_terms import EstimatedNames, estimated_names, some_states
 from symgen.identification.estimates.observations import Observations, observations
 from symgen.identification.estimates.whole_bodies import whole_bodies
 from symgen.identification.logs.completed import completed_motion
@@ -73,14 +73,29 @@ def identifiable(path: Path, model: Model, measured: Sequence[str], progress: Pr
     return IdentifiableMachine(base, MachineFunctions(path, base, measured, progress))
 
 
-def identified_by(
+@dataclass(frozen=True, slots=True)
+class FittedLog:
+    """What a fit to a log says alone, before parameters of the file or bodies are made of it.
+
+    `functions` tell apart what this motion shows, `open_by` is how far measured coordinates are off closed loops.
+    """
+
+    functions: MachineFunctions
+    open_by: float
+    names: EstimatedNames
+    fitted_to: Observations
+    aside: Observations
+    estimate: LinearEstimate
+
+
+def fitted_by(
     machine: IdentifiableMachine, log: MeasuredLog, settings: FilterSettings, progress: Progress
-) -> Identification:
-    """What a log says of a machine.  Raises NotIdentifiedError where it says nothing."""
+) -> FittedLog:
+    """The estimates from a log.  Raises NotIdentifiedError where it says nothing."""
     progress("closing loops")
     motion = completed_motion(machine.functions, log, settings, progress)
     progress("filtering")
-    functions, base = machine.functions.telling_apart(some_states(motion.state)), machine.base
+    functions = machine.functions.telling_apart(some_states(motion.state))
     names = estimated_names(functions, motion.state)
     seen = observations(functions, names, log, motion, settings)
     first = len(seen.t) - int(SET_ASIDE * len(seen.t))
@@ -90,11 +105,20 @@ def identified_by(
     estimate = estimated(fitted_to)
     if not estimate.closed_columns:
         raise NotIdentifiedError("the motion of this log shows no parameter: record another one", log.file)
-    given = functions.model, functions.combinations, names, functions.parameters, estimate
+    return FittedLog(functions, motion.open_by, names, fitted_to, aside, estimate)
+
+
+def identified_by(
+    machine: IdentifiableMachine, log: MeasuredLog, settings: FilterSettings, progress: Progress
+) -> Identification:
+    """What a log says of a machine.  Raises NotIdentifiedError where it says nothing."""
+    made, base = fitted_by(machine, log, settings, progress), machine.base
+    functions, estimate = made.functions, made.estimate
+    given = functions.model, functions.combinations, made.names, functions.parameters, estimate
     values = file_values(*given)
     whole = None if isinstance(base, EnergyTerms) else whole_bodies(functions.model, base, *given[2:])
-    parts = base.model, log, settings, motion.open_by, functions.combinations, names
-    return Identification(*parts, fitted_to, aside, estimate, values, whole)
+    parts = base.model, log, settings, made.open_by, functions.combinations, made.names
+    return Identification(*parts, made.fitted_to, made.aside, estimate, values, whole)
 
 
 def base_of(model: Model) -> BaseParameters:
