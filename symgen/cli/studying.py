@@ -46,7 +46,8 @@ def _study_parser() -> argparse.ArgumentParser:
     )  # fmt: skip
     add(
         "--show", metavar="NAMES", type=names,
-        help="of inputs, power, sensitivity, float32, singularity, control, utilisation, reach, modes; with commas",
+        help="of inputs, power, sensitivity, float32, singularity, control, utilisation, reach, modes, regular; "
+        "with commas",
     )  # fmt: skip
     add("--sample", metavar="KIND", help="grid, random, latin_hypercube or sobol (default: grid)")
     add("--count", metavar="N", type=int, help="points of a sample that is no grid")

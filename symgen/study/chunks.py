@@ -17,8 +17,12 @@ Array = NDArray[np.float64]
 FEWEST_CHUNKS = 32
 # States of a chunk at least: fewer take less time than handing them out does.
 FEWEST_CHUNK_STATES = 16_384
-# States of a chunk at most: what is lost where it is interrupted.
+# States of a chunk at most, of which a core makes ten a second: what is lost where it is interrupted.
 MOST_CHUNK_STATES = 2**22
+# Chunks from which on they get larger instead: 8 for each of 1 000 cores, as many as a scheduler hands out in 10 s.
+MANY_CHUNKS = 8192
+# States of such a larger chunk at most: a core takes 3 s.
+MOST_LARGE_CHUNK_STATES = 2**27
 # Points of a chunk at most: what is kept of them stands in memory.
 MOST_CHUNK_POINTS = 2**19
 
@@ -48,7 +52,8 @@ class ChunkGrid:
 def chunk_grid(plan: StudyPlan) -> ChunkGrid:
     """Boxes of points that stand together in their order: whole last axes, a part of one, single values before."""
     total = plan.points * plan.states
-    wanted = min(max(total // FEWEST_CHUNKS, FEWEST_CHUNK_STATES), MOST_CHUNK_STATES)
+    most = min(max(total // MANY_CHUNKS, MOST_CHUNK_STATES), MOST_LARGE_CHUNK_STATES)
+    wanted = min(max(total // FEWEST_CHUNKS, FEWEST_CHUNK_STATES), most)
     room = max(1, min(wanted // plan.states, MOST_CHUNK_POINTS))
     sides: list[int] = []
     for size in reversed(plan.shape):

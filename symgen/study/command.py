@@ -110,7 +110,7 @@ def _announce(work: StudyWork, run: StudyRun) -> None:
     estimate = estimated(work)
     name = work.plan.model.name
     if estimate.states > MOST_UNASKED_STATES and not run.agreed:
-        if not any(True for _ in work.store.notes()):
+        if not work.store.is_begun:
             work.store.discard()
         raise WrongUseError(f"{name}: {estimate.text}; add --yes to run it")
     if not run.quiet:
@@ -127,13 +127,18 @@ def _worked(work: StudyWork, assignment: Assignment, run: StudyRun, progress: Pr
     def counted(done: int) -> None:
         progress(f"working, {total - len(numbers) + done} of {total} chunks")
 
+    def dashboard(address: str) -> None:
+        if address and not run.quiet:
+            progress("")
+            print(f"  workers are seen at {address}", file=sys.stderr)
+
     counted(0)
     try:
         if run.scheduler is not None:
-            return by_scheduler(assignment, run.scheduler, numbers, counted)
+            return by_scheduler(assignment, run.scheduler, numbers, counted, dashboard)
         if run.workers is None:
             return by_threads(work, numbers, counted)
-        return by_processes(assignment, run.workers, numbers, counted)
+        return by_processes(assignment, run.workers, numbers, counted, dashboard)
     except BaseException as error:
         progress("")
         if not isinstance(error, NoKernelsError):

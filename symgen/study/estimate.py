@@ -16,6 +16,10 @@ from symgen.study.work import StudyWork
 MOST_UNASKED_STATES = 1_000_000_000
 # States of a trial at least; one point has more where its path has.
 TRIAL_STATES = 32_768
+# Seconds below which a trial says little.
+SHORT_TRIAL_SECONDS = 0.1
+# How many times as many points a second trial has then.
+TRIAL_GROWTH = 32
 # Bytes of an entry of the results.
 ENTRY_BYTES = 8
 
@@ -45,18 +49,29 @@ def study_size(plan: StudyPlan) -> int:
 
 
 def estimated(work: StudyWork) -> StudyEstimate:
-    """By a trial of the first points of the first chunk and of the last one."""
-    plan, chunks = work.plan, work.chunks
-    wanted = max(1, TRIAL_STATES // plan.states // 2)
-    trials = [chunk_values(plan, chunks, number)[:wanted] for number in sorted({0, len(chunks) - 1})]
-    began = time.perf_counter()
+    """By a trial of the first points of the first chunk and of the last one; by one of more points where it is over at
+    once, as memory is mapped and what is kept of the machine is made then."""
+    plan = work.plan
     total: float | None = None
     # a chunk that fails says so itself
     with suppress(Exception):
-        for values in trials:
-            chunk_results(plan, work.kernels, work.states, values)
-        total = (time.perf_counter() - began) / sum(map(len, trials)) * plan.points
+        wanted = max(1, TRIAL_STATES // plan.states // 2)
+        took, total = _trial(work, wanted)
+        if took < SHORT_TRIAL_SECONDS:
+            _, total = _trial(work, wanted * TRIAL_GROWTH)
     return StudyEstimate(plan.points, plan.points * plan.states, study_size(plan), total)
+
+
+def _trial(work: StudyWork, wanted: int) -> tuple[float, float]:
+    """Seconds of a trial of so many points of both chunks, and seconds of all points by it."""
+    numbers = sorted({0, len(work.chunks) - 1})
+    trials = [chunk_values(work.plan, work.chunks, number)[:wanted] for number in numbers]
+    began, once_before = time.perf_counter(), work.states.seconds_once
+    for values in trials:
+        chunk_results(work.plan, work.kernels, work.states, values)
+    once = work.states.seconds_once
+    took = time.perf_counter() - began - (once - once_before)
+    return took, once + took / sum(map(len, trials)) * work.plan.points
 
 
 def duration(seconds: float) -> str:

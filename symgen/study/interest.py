@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import combinations
-from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,19 +19,19 @@ from symgen.study.asked.request import (
     MOTOR_TORQUE,
     POWER,
     REACH,
+    REGULAR,
     SENSITIVITY,
     SINGULARITY,
     UTILISATION,
 )
 from symgen.study.assembly_modes import assembly_modes
 from symgen.study.chunks import Array
+from symgen.study.determinants import choices, determinants
 from symgen.study.kernels import Codes, StudyKernels
 from symgen.study.plan import KERNELS, StudyPlan
 from symgen.study.sizing.drives import motor_torques, rotors_at
 from symgen.study.states import BlockStates
 
-# Choices of as many inputs as there are degrees of freedom whose determinants are shown.
-MOST_CHOICES_SHOWN = 20
 CHOICE, MODE_COUNT = "choice", "mode_count"
 
 
@@ -115,16 +113,11 @@ def _interests(model: Model, name: str) -> tuple[Interest, ...]:
         return (Interest(CONTROL, about, "", ("",), (" or ".join(dict.fromkeys(units)),), smallest=True),)
     if name == UTILISATION:
         return (Interest(UTILISATION, "share of their limits that inputs need at least", "", ("",), ("1",)),)
+    if name == REGULAR:
+        about = "1 where a way from the start keeps to the ranges of coordinates and passes no singularity, else 0"
+        return (Interest(REGULAR, about, "", ("",), ("1",), smallest=True, counted=True),)
     about = "1 where there is a configuration, else 0"
     return (Interest(REACH, about, "", ("",), ("1",), smallest=True, counted=True),)
-
-
-def choices(model: Model) -> tuple[tuple[int, ...], ...]:
-    """Choices of as many inputs as there are degrees of freedom, where [B; transposed M] is square with them."""
-    freedom = model.n - assembly_of(model).ranks.constraints
-    if model.n - model.r != freedom or not 0 < freedom <= model.m or comb(model.m, freedom) > MOST_CHOICES_SHOWN:
-        return ()
-    return tuple(combinations(range(model.m), freedom))
 
 
 def keeps_figures_alone(plan: StudyPlan) -> bool:
@@ -240,6 +233,12 @@ class BlockValues:
         return np.asarray(self._states.placed[self._states.group] == 0, dtype=np.float64)[:, None]
 
     @property
+    def regular(self) -> Array:
+        """1 where no singularity is passed on the way, points x 1 x states."""
+        assert self._states.regular is not None
+        return self._states.regular[:, None]
+
+    @property
     def assembled(self) -> Array:
         """1 where an assembly mode is reached, points x modes x states."""
         assert self._states.assembled is not None
@@ -276,18 +275,10 @@ def _smallest_singular_value(block: BlockValues) -> Array:
 
 
 def _determinants(block: BlockValues) -> Array:
-    """Of [B; transposed M] with rows of length 1, for each choice of inputs."""
     model = block.model
-    columns = np.swapaxes(block.matrices("control_matrix", model.m), 2, 3)
-    rows = block.matrices("constraint_jacobian", model.n) if model.r else columns[:, :, :0]
-    made = []
-    for subset in choices(model):
-        square = np.concatenate([rows, columns[:, :, list(subset)]], axis=2)
-        known = np.isfinite(square).all(axis=(2, 3))
-        lengths = np.sqrt((square * square).sum(axis=3, keepdims=True))
-        scaled = np.divide(square, lengths, out=np.zeros_like(square), where=lengths > 0)
-        made.append(np.where(known, np.linalg.det(np.where(known[..., None, None], scaled, 0.0)), np.nan))
-    return np.stack(made, axis=1)
+    columns = block.matrices("control_matrix", model.m)
+    rows = block.matrices("constraint_jacobian", model.n) if model.r else np.swapaxes(columns, 2, 3)[:, :, :0]
+    return np.moveaxis(determinants(model, rows, columns), -1, 1)
 
 
 # Variables that are the entries of a quantity of the model.
@@ -302,6 +293,7 @@ _EVALUATED: dict[str, Callable[[BlockValues], Array]] = {
     CONTROL: _smallest_singular_value,
     UTILISATION: lambda block: block.entries("utilisation"),
     REACH: lambda block: block.reached,
+    REGULAR: lambda block: block.regular,
     MODES: lambda block: block.assembled,
     MODE_COUNT: lambda block: block.assembled.sum(axis=1, keepdims=True),
     DRIVE_SPEED: lambda block: block.drive_speeds,

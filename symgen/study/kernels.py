@@ -24,6 +24,7 @@ from symgen.pipeline import generate
 from symgen.study.float32_inputs import QUANTITY as SINGLE_INPUTS
 from symgen.study.float32_inputs import Float32Inputs
 from symgen.study.loops import loops_source, over_name, reduced_name, walk_name
+from symgen.study.neighbours.hops import hops_name, hops_source
 from symgen.verify.running.compile import Compilation, CompilationError, Compiler, CSource, find_compiler
 from symgen.verify.running.sources import generated_sources
 
@@ -98,7 +99,8 @@ class StudyKernels:
         program = result.programs["float64"]
         self._kernels: Mapping[str, Kernel] = {kernel.name: kernel for kernel in program.kernels}
         source = generated_sources(self.model, result.files)[0]["float64"]
-        loops = (f"{source.stem}_study.c", loops_source(self.model, program.kernels))
+        written = loops_source(self.model, program.kernels) + hops_source(self.model, program.kernels)
+        loops = (f"{source.stem}_study.c", written)
         used = [(name, text) for name, text in source.companions if "_batch" in name]
         self._rooms = local()
         self.float32_inputs = Float32Inputs(result, _compiled) if "float32" in result.programs else None
@@ -154,6 +156,15 @@ class StudyKernels:
         arrays = (p_start, p, x_start, _contiguous(given), q_start, q, status)
         self._call(walk_name(name), (points, count), arrays)
         return q, status
+
+    def hopped(self, name: str, start: tuple[Array, Array, Array], p: Array, given: Array) -> Array:
+        """Configurations (places x n, NaN where there is none) at parameters `p` for what is `given` (places x ...),
+        on the straight way from a `start` each: p, x and q of as many places."""
+        q = np.empty((len(p), self.model.n))
+        p_start, x_start, q_start = map(_contiguous, start)
+        arrays = (p_start, _contiguous(p), x_start, _contiguous(given), q_start, q)
+        self._call(hops_name(name), (len(p),), arrays)
+        return q
 
     def reduced(self, values: Array, smallest: bool = False) -> tuple[Array, NDArray[np.int64]]:
         """Of rows of values: largest, smallest, sum, sum of squares, number, and the largest magnitude, or the smallest

@@ -20,6 +20,7 @@ from symgen.study.asked.request import (
     MOTOR_TORQUE,
     POWER,
     REACH,
+    REGULAR,
     SENSITIVITY,
     SHOWN,
     SINGULARITY,
@@ -48,6 +49,7 @@ KERNELS = {
     UTILISATION: ("utilisation",),
     REACH: (),
     MODES: (),
+    REGULAR: ("constraint_jacobian", "control_matrix"),
     MOTOR_TORQUE: ("inverse_dynamics",),
     DRIVE_SPEED: (),
 }
@@ -137,8 +139,9 @@ def planned_study(model: Model, request: StudyRequest, mistakes: StudyMistakes) 
     placing = _placing(model, request, known, mistakes)
     for one in request.show:
         _check_shown(model, one.name, one.span, mistakes)
-        if one.name == MODES and placing not in ("task", "measured"):
-            message = "`modes` are those of a place, which nothing gives"
+        if one.name in (MODES, REGULAR) and placing not in ("task", "measured"):
+            said = "are those" if one.name == MODES else "is said"
+            message = f"`{one.name}` {said} of a place, which nothing gives"
             mistakes.wrong("show", message, "vary the `task` or `measured` coordinates of a mechanism", one.span)
     drives = drives_of(model) if request.motors else ()
     if request.motors and not drives:

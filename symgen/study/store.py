@@ -113,6 +113,11 @@ class StudyStore:
         key = ".".join(map(str, ("c", *places, *(0 for _ in inner))))
         _written_whole(self.folder / ZARR / name / key, box.tobytes())
 
+    @property
+    def is_begun(self) -> bool:
+        """Whether a chunk is whole; looking for the notes of all takes long where there are millions."""
+        return any((self.folder / DONE_FOLDER).iterdir())
+
     def notes(self) -> Iterator[tuple[int, ChunkNote]]:
         """The notes of all whole chunks in their order."""
         for number in range(len(self._chunks)):

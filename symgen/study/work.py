@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import CancelledError
 from dataclasses import dataclass
 from functools import lru_cache
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,8 @@ TRIES = 2
 # Of the time in which a scheduler has to answer.
 CONNECTION_SECONDS = 10
 Count = Callable[[int], None]
+# Takes the address of a page that shows what workers do.
+Dashboard = Callable[[str], None]
 
 
 class NoSchedulerError(Exception):
@@ -97,8 +100,13 @@ def by_threads(work: StudyWork, numbers: Sequence[int], counted: Count) -> list[
         return list(dask.compute(*tasks, scheduler="threads"))
 
 
-def by_processes(assignment: Assignment, workers: int, numbers: Sequence[int], counted: Count) -> list[ChunkOutcome]:
-    """Chunks by processes of a local cluster; each makes the kernels anew from the model file."""
+def by_processes(
+    assignment: Assignment, workers: int, numbers: Sequence[int], counted: Count, dashboard: Dashboard
+) -> list[ChunkOutcome]:
+    """Chunks by processes of a local cluster; each makes the kernels anew from the model file.
+
+    Its page is for this machine alone, and there is one where Bokeh is installed.
+    """
     from distributed import Client, LocalCluster
 
     with (
@@ -107,15 +115,19 @@ def by_processes(assignment: Assignment, workers: int, numbers: Sequence[int], c
             n_workers=workers,
             threads_per_worker=1,
             processes=True,
-            dashboard_address=None,
+            dashboard_address="127.0.0.1:0",
             local_directory=folder,
         ) as cluster,
         Client(cluster) as client,
     ):
+        if find_spec("bokeh") is not None:
+            dashboard(client.dashboard_link)
         return _by_client(client, assignment, numbers, counted)
 
 
-def by_scheduler(assignment: Assignment, address: str, numbers: Sequence[int], counted: Count) -> list[ChunkOutcome]:
+def by_scheduler(
+    assignment: Assignment, address: str, numbers: Sequence[int], counted: Count, dashboard: Dashboard
+) -> list[ChunkOutcome]:
     """Chunks by the workers of a scheduler that exists, which see the same files.  Raises NoSchedulerError."""
     from distributed import Client
 
@@ -125,6 +137,7 @@ def by_scheduler(assignment: Assignment, address: str, numbers: Sequence[int], c
         raise NoSchedulerError(f"no scheduler of Dask answers at {address}: {error}") from error
     with client:
         _check_workers(client, address)
+        dashboard(client.dashboard_link)
         try:
             return _by_client(client, assignment, numbers, counted)
         except (OSError, CancelledError) as error:
@@ -132,9 +145,20 @@ def by_scheduler(assignment: Assignment, address: str, numbers: Sequence[int], c
 
 
 def _by_client(client: Any, assignment: Assignment, numbers: Sequence[int], counted: Count) -> list[ChunkOutcome]:
+    return handed_out(client, work_in_process, assignment, numbers, counted)
+
+
+def handed_out(
+    client: Any,
+    work: Callable[[Assignment, int], ChunkOutcome],
+    assignment: Assignment,
+    numbers: Sequence[int],
+    counted: Count,
+) -> list[ChunkOutcome]:
+    """What the workers of a client make of chunks by `work`, in the order of their numbers."""
     from distributed import as_completed
 
-    futures = client.map(work_in_process, [assignment] * len(numbers), numbers, pure=False)
+    futures = client.map(work, [assignment] * len(numbers), numbers, pure=False)
     outcomes = []
     for done, (_, outcome) in enumerate(as_completed(futures, loop=client.loop, with_results=True), 1):
         if isinstance(outcome, BaseException):  # a chunk that is lost with its scheduler

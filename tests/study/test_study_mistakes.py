@@ -9,6 +9,7 @@ from studied_arm import ARM, SHIPPED, arm_file
 
 from symgen.cli import studying
 from symgen.cli.main import main
+from symgen.study.asked.request import SHOWN
 
 RAPKM = SHIPPED / "rapkm_2rrr_rr.yaml"
 OPTIONS = {
@@ -38,6 +39,7 @@ OPTIONS = {
     ),
     "seed": (["--over", "m=1:3:4", "--seed", "-1", "--show", "inputs"], "--seed: -1 is no seed"),
     "modes": (["--over", "m=1:3:4", "--show", "modes"], "--show: `modes` are those of a place, which nothing gives"),
+    "regular": (["--over", "m=1:3:4", "--show", "regular"], "--show: `regular` is said of a place, which nothing"),
     "level": (["--over", "m=1:3:4", "--quantiles", "2,x", "--show", "inputs"], "--quantiles: 'x' is no number"),
     "many": (["--over", "m=1:3:4", "--along", "x=0:1:9999999", "--show", "reach"], "states at each point"),
     "workers": (["--over", "m=1:3:4", "--workers", "0"], "argument --workers: '0' is no whole number from 1 up"),
@@ -154,3 +156,9 @@ def test_without_its_packages_a_study_says_what_to_install(
     assert main(["study", str(arm_file()), "--over", "m=1:2:3", "--show", "inputs"]) == 2
     complaint = capsys.readouterr().err
     assert complaint == "symgen: a study needs dask and zarr, which are not installed: pip install 'symgen[study]'\n"
+
+
+def test_help_names_all_that_can_be_shown(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["study", "--help"])
+    assert ", ".join(SHOWN) in " ".join(capsys.readouterr().out.split())

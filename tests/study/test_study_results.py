@@ -115,6 +115,8 @@ def test_two_axes_are_a_map_with_the_curve_where_drives_are_singular(tmp_path: P
     assert filled(made[0]) > 8
     assert "thick one is where it vanishes" in made[2].caption
     assert "singular" in made[3].title
+    # u_1 and u_2 alone are singular nowhere: all three are as far from it as can be
+    assert made[3].caption.endswith("distance from singularities is 1 or more at each point.")
 
 
 def test_more_axes_are_scattered_and_many_are_lines_across(tmp_path: Path) -> None:

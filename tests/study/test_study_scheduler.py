@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 import time
@@ -62,13 +63,14 @@ def studied(out: Path, *more: str) -> int:
 
 
 def test_its_workers_make_the_bytes_of_threads(
-    cluster: Cluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    cluster: Cluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     # the workers of a cluster do not stand where the study does
     monkeypatch.chdir(tmp_path)
     assert main(["study", arm_file().name, *GIVEN, "--quiet"]) == 2
     (tmp_path / "arm.yaml").write_bytes(arm_file().read_bytes())
-    assert main(["study", "arm.yaml", *GIVEN, "--quiet", "--out", "cluster", "--scheduler", cluster.address]) == 0
+    assert main(["study", "arm.yaml", *GIVEN, "--out", "cluster", "--scheduler", cluster.address]) == 0
+    assert re.search(r"workers are seen at http://.*:\d+/status", capsys.readouterr().err)
     assert studied(tmp_path / "threads") == 0
     assert len(tree(tmp_path / "threads")) > 20
     assert tree(tmp_path / "threads") == tree(tmp_path / "cluster")
@@ -100,7 +102,7 @@ def test_a_lost_scheduler_ends_a_study_that_goes_on_later(
 def test_a_worker_with_another_symgen_is_refused_by_name(cluster: Cluster, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(work_module, "__version__", "9.9.9")
     with pytest.raises(NoSchedulerError, match=r"the worker tcp://127\.0\.0\.1:\d+ has symgen .*, and 9\.9\.9 is here"):
-        by_scheduler(None, cluster.address, [0], lambda _: None)
+        by_scheduler(None, cluster.address, [0], lambda _: None, print)
 
 
 def test_a_scheduler_without_workers_or_none_at_all_is_said(
@@ -112,12 +114,12 @@ def test_a_scheduler_without_workers_or_none_at_all_is_said(
         while client.scheduler_info()["workers"] and time.monotonic() < ends:
             time.sleep(0.05)
     with pytest.raises(NoSchedulerError, match="has no workers: start some"):
-        by_scheduler(None, cluster.address, [0], lambda _: None)
+        by_scheduler(None, cluster.address, [0], lambda _: None, print)
     monkeypatch.setattr(work_module, "CONNECTION_SECONDS", 1)
     cluster.scheduler.kill()
     cluster.scheduler.wait()
     with pytest.raises(NoSchedulerError, match="no scheduler of Dask answers at"):
-        by_scheduler(None, cluster.address, [0], lambda _: None)
+        by_scheduler(None, cluster.address, [0], lambda _: None, print)
 
 
 def test_two_clusters_are_one_too_many(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

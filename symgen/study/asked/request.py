@@ -14,14 +14,14 @@ GRID, RANDOM, LATIN_HYPERCUBE, SOBOL = "grid", "random", "latin_hypercube", "sob
 SAMPLES = (GRID, RANDOM, LATIN_HYPERCUBE, SOBOL)
 INPUTS, POWER, SINGULARITY = "inputs", "power", "singularity"
 CONTROL, UTILISATION, REACH, SENSITIVITY = "control", "utilisation", "reach", "sensitivity"
-FLOAT32, MODES = "float32", "modes"
+FLOAT32, MODES, REGULAR = "float32", "modes", "regular"
 # Points of a Latin hypercube at most: the strata of each name are drawn as a whole.
 MOST_STRATA = 10_000_000
 # States that are reduced at a point at most: they stand in memory together.
 MOST_REDUCED = 2_000_000
 # What is worked out for a catalogue of motors.
 MOTOR_TORQUE, DRIVE_SPEED = "motor_torque", "drive_speed"
-SHOWN = (INPUTS, POWER, SENSITIVITY, FLOAT32, SINGULARITY, CONTROL, UTILISATION, REACH, MODES)
+SHOWN = (INPUTS, POWER, SENSITIVITY, FLOAT32, SINGULARITY, CONTROL, UTILISATION, REACH, MODES, REGULAR)
 
 
 @dataclass(frozen=True, slots=True)

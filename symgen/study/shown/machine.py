@@ -37,7 +37,7 @@ def machine_in_map(plan: StudyPlan) -> MachineSketch | None:
     try:
         pose = MachinePose(model)
         views = views_along_axes(pose)
-        task = _task_at_start(model)
+        task = task_at_start(model)
     except (ArithmeticError, ValueError):  # a slide at 0 may have no place
         return None
     here = [task[one.place] for one in varied]
@@ -47,7 +47,7 @@ def machine_in_map(plan: StudyPlan) -> MachineSketch | None:
     return None
 
 
-def _task_at_start(model: Model) -> list[float]:
+def task_at_start(model: Model) -> list[float]:
     """The coordinates of the task where the model's start leads."""
     system = System(model)
     names = [c.name for c in model.coordinates]

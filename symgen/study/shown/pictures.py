@@ -233,5 +233,7 @@ def _singular_curves(plan: StudyPlan, results: Any, machine: MachineSketch | Non
             draw_machine(panel, machine)
         panel.legend(title="singular with", loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=min(3, len(labels)))
 
+    nearest = float(np.nanmin(together))
     caption = "Curves are the level sets at which the determinant of a choice of drives vanishes."
+    caption += f" With all drives together the distance from singularities is {nearest:.2g} or more at each point."
     return StudyPicture("singular curves of choices of drives", caption, with_numbered_regions(svg(draw, 4.8)))
