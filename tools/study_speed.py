@@ -4,11 +4,13 @@
 
 Seconds are those that processors spend in this process, so that others on the machine do not count;
 `wall` is what a clock says.  The bare kernel has as many states a call as fit in the caches, and keeps nothing of them.
+The path is taken as it is in the file, and sampled more finely.
 """
 
 from __future__ import annotations
 
 import ctypes
+import re
 import resource
 import sys
 import tempfile
@@ -33,7 +35,10 @@ from symgen.study.work import StudyWork, by_threads
 
 DEFAULT = ("models/rapkm_2rrr_rr.yaml", "circle", "m_payload", "m_1")
 BARE_STATES, BARE_CALLS = 2**12, 500
-SIDES = (320, 700, 2236)
+# Of a square of points, so that states are 2e7, 1e8 and 1e9.
+STATES = (2e7, 1e8, 1e9)
+# How many times as many steps a path is sampled in.
+FINER = (1, 5)
 
 
 def plan_of(model: Path, path: str, names: tuple[str, str], side: int) -> StudyPlan:
@@ -76,27 +81,42 @@ def studied(plan: StudyPlan, result: Result, kernels: StudyKernels, threads: int
     return states / spent[0], states / spent[1]
 
 
-def main(arguments: list[str]) -> None:
-    """Prints the table."""
-    file, path, *names = arguments or DEFAULT
-    model, pair = Path(file), (names[0], names[1])
-    plan = plan_of(model, path, pair, 2)
+def sampled(model: Path, finer: int, folder: Path) -> Path:
+    """The model file with paths of so many times as many steps."""
+    text = re.sub(
+        r"samples: (\d+)", lambda one: f"samples: {finer * (int(one[1]) - 1) + 1}", model.read_text(encoding="utf-8")
+    )
+    made = folder / model.name
+    made.write_text(text, encoding="utf-8")
+    return made
+
+
+def table(model: Path, path: str, names: tuple[str, str]) -> None:
+    """Prints the rows of a model file."""
+    plan = plan_of(model, path, names, 2)
     options = Options(outputs=plan.kernels, scalars=("float64",), parts=("c",), verify=False)
     result = generate(model, options, lambda _: None)
     kernels = StudyKernels(result)
-    print("| | states | million states per second of a core | of the bare kernel | wall |\n|---|---|---|---|---|")
     states = StudyStates(plan, kernels)
     alone = bare(result, kernels, states, BARE_STATES)
-    print(f"| batch kernel alone | {BARE_STATES} a call | {alone / 1e6:.1f} | | |")
-    short = bare(result, kernels, states, plan.states)
-    print(f"| the same | {plan.states} a call | {short / 1e6:.1f} | {100 * short / alone:.0f} % | |")
-    for side in SIDES:
-        plan = plan_of(model, path, pair, side)
+    print(f"| batch kernel alone | | {BARE_STATES} a call | {alone / 1e6:.1f} | | |")
+    for wanted in STATES:
+        plan = plan_of(model, path, names, round((wanted / plan.states) ** 0.5))
         for threads in (1, 2):
-            runs = [studied(plan, result, kernels, threads) for _ in range(3 if side < SIDES[-1] else 1)]
+            runs = [studied(plan, result, kernels, threads) for _ in range(3 if wanted < STATES[-1] else 1)]
             rate, wall = max(one for one, _ in runs), max(one for _, one in runs)
-            row = f"| {threads} thread{'s' * (threads > 1)} | {plan.points * plan.states:,} | {rate / 1e6:.1f} "
-            print(f"{row}| {100 * rate / alone:.0f} % | {wall / 1e6:.1f} |", flush=True)
+            row = f"| {threads} thread{'s' * (threads > 1)} | {plan.states} | {plan.points * plan.states:,} "
+            print(f"{row}| {rate / 1e6:.1f} | {100 * rate / alone:.0f} % | {wall / 1e6:.1f} |", flush=True)
+
+
+def main(arguments: list[str]) -> None:
+    """Prints the table."""
+    file, path, *names = arguments or DEFAULT
+    print("| | states of a point | states | million states per second of a core | of the bare kernel | wall |")
+    print("|---|---|---|---|---|---|")
+    with tempfile.TemporaryDirectory() as folder:
+        for finer in FINER:
+            table(sampled(Path(file), finer, Path(folder)), path, (names[0], names[1]))
     print(f"\nmemory {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3:.0f} MB")
 
 

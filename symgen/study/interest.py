@@ -142,7 +142,10 @@ class BlockValues:
     def __init__(self, plan: StudyPlan, kernels: StudyKernels, states: BlockStates) -> None:
         self._plan, self._kernels, self._states = plan, kernels, states
         self._made: dict[str, tuple[Array, Codes]] = {}
-        self.status: Codes = states.placed[states.group]
+        self.shape = len(states.group), states.placed.shape[1]
+        """Points and states of each."""
+        self.status: Codes | None = states.placed[states.group] if states.placed.any() else None
+        """Of the states (points x states), or nothing where all are 0."""
 
     def of(self, name: str) -> Array:
         """A variable of the results, points x channels x states; NaN where a kernel has no result."""
@@ -164,9 +167,10 @@ class BlockValues:
         self._count(status)
         return figures, places
 
-    def _count(self, status: Codes) -> None:
-        if status.any():
-            self.status = np.where(self.status == 0, status, self.status)
+    def _count(self, status: Codes | None) -> None:
+        if status is not None and status.any():
+            known = np.zeros_like(status) if self.status is None else self.status
+            self.status = np.where(known == 0, status, known)
 
     def entries(self, name: str) -> Array:
         """A quantity of the model, points x entries x states; its statuses count where there was none before."""
@@ -181,7 +185,7 @@ class BlockValues:
         states = self._states
         if not self._plan.one_machine:
             return self._kernels.over(name, states.parts, states.group, states.parameters)
-        points, count = self.status.shape
+        points, count = self.shape
         together = {part: np.swapaxes(of, 0, 1).reshape(1, -1, points * count) for part, of in states.parts.items()}
         entries, status = self._kernels.over(name, together, np.zeros(1, dtype=np.uintp), states.parameters[:1])
         return np.swapaxes(entries.reshape(-1, points, count), 0, 1), status.reshape(points, count)

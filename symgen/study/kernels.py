@@ -15,7 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from symgen.backends.c.batch import VECTOR
 from symgen.backends.locals import array_arguments
+from symgen.backends.quantities import BATCHED
 from symgen.diagnostics import SymgenBug
 from symgen.generation.results import Options, Result, WrongUseError
 from symgen.ir.kernel import Kernel, Scalar
@@ -124,17 +126,19 @@ class StudyKernels:
 
     def reduced_over(
         self, name: str, parts: Mapping[str, Array], group: NDArray[np.uintp], p: Array, smallest: bool = False
-    ) -> tuple[Array, NDArray[np.int64], Codes]:
-        """What `reduced` makes of the entries that `over` returns, and the statuses."""
+    ) -> tuple[Array, NDArray[np.int64], Codes | None]:
+        """What `reduced` makes of the entries that `over` returns, and the statuses, if one of them is not 0."""
         kernel = self._kernels[name]
-        arguments = [_contiguous(parts[argument.name]) for argument in array_arguments(kernel)]
-        points, count, size = len(group), arguments[0].shape[-1], math.prod(kernel.shape)
-        room = self._room(name, np.dtype(np.float64), (size, count))
+        given = [parts[argument.name] for argument in array_arguments(kernel)]
+        points, count, size = len(group), given[0].shape[-1], math.prod(kernel.shape)
+        stride = -(-count // VECTOR) * VECTOR if name in BATCHED else count
+        arguments = [_padded(one, stride) for one in given]
+        room = self._room(name, np.dtype(np.float64), (size, stride))
         figures, places = np.empty((points * size, 6)), np.empty(points * size, dtype=np.int64)
-        status = self._room(name, np.dtype(np.uint8), (points, count))
+        status = self._room(name, np.dtype(np.uint8), (points, stride))
         arrays = (group, *arguments, p, room, figures, places, status)
-        self._call(reduced_name(name), (points, count, int(smallest)), arrays)
-        return figures, places, status
+        self._call(reduced_name(name), (points, count, stride, int(smallest)), arrays)
+        return figures, places, status[:, :count] if status.any() else None
 
     def _room(self, name: str, dtype: np.dtype[Any], shape: tuple[int, ...]) -> NDArray[Any]:
         """Memory that this thread has written before: what is new has to be mapped by the system, which takes longer
@@ -171,7 +175,7 @@ class StudyKernels:
         (rows x 6); and where that is (rows)."""
         rows, count = values.shape
         figures, places = np.empty((rows, 6)), np.empty(rows, dtype=np.int64)
-        self._call("study_reduced", (rows, count, int(smallest)), (values, figures, places))
+        self._call("study_reduced", (rows, count, count, int(smallest)), (values, figures, places))
         return figures, places
 
     def quantiles(self, values: Array, figures: Array, levels: Sequence[float]) -> Array:
@@ -200,6 +204,12 @@ class StudyKernels:
 
 def _contiguous(array: Array) -> Array:
     return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def _padded(array: Array, stride: int) -> Array:
+    """With so many states in all, the last one again: the kernel for many states copies what fills no vector."""
+    more = stride - array.shape[-1]
+    return _contiguous(np.concatenate((array, np.repeat(array[..., -1:], more, axis=-1)), axis=-1) if more else array)
 
 
 def _compiled(source: CSource) -> ctypes.CDLL:

@@ -97,19 +97,24 @@ def _over(model: Model, kernel: Kernel) -> str:
 
 
 def _reduced_over(model: Model, kernel: Kernel) -> str:
-    """Point by point, so that what is reduced has not left the nearest cache; `room` holds the entries of a point."""
+    """Point by point, so that what is reduced has not left the nearest cache; `room` holds the entries of a point.
+
+    Of `stride` states of a point the first `count` are reduced.
+    """
     arguments, size = array_arguments(kernel), math.prod(kernel.shape)
     params = global_name(model.c_name, "float64", "params")
     given = "".join(f"const double *{a.name}_all, " for a in arguments)
     passed = "".join(f"{a.name}_all, " for a in arguments)
     return dedent(f"""\
-        void {reduced_name(kernel.name)}(size_t points, size_t count, size_t smallest, const size_t *group, {given}
+        void {reduced_name(kernel.name)}(size_t points, size_t count, size_t stride, size_t smallest,
+                const size_t *group, {given}
                 const {params} *p_all, double *room, double *figures, int64_t *places, unsigned char *status_all)
         {{
             for (size_t point = 0; point < points; ++point) {{
-                unsigned char *status = status_all + point * count;
-                {over_name(kernel.name)}(1, count, group + point, {passed}p_all + point, room, status);
-                study_reduced({size}, count, smallest, room, figures + point * {6 * size}, places + point * {size});
+                unsigned char *status = status_all + point * stride;
+                {over_name(kernel.name)}(1, stride, group + point, {passed}p_all + point, room, status);
+                study_reduced({size}, count, stride, smallest, room,
+                    figures + point * {6 * size}, places + point * {size});
             }}
         }}
         """)

@@ -105,12 +105,14 @@ static double study_nearest(size_t count, const double *x)
     return near[0];
 }
 
-/* Of the values of each row that are numbers: largest, smallest, sum, sum of squares, how many; the smallest magnitude,
- * or else the largest, and where it is.  Where all are numbers their sum is one, unless infinite ones cancel. */
-void study_reduced(size_t rows, size_t count, size_t smallest, const double *values, double *figures, int64_t *places)
+/* Of the first values of each row that are numbers: largest, smallest, sum, sum of squares, how many; the smallest
+ * magnitude, or else the largest, and where it is.  Where all are numbers their sum is one, unless infinite ones
+ * cancel. */
+void study_reduced(size_t rows, size_t count, size_t stride, size_t smallest, const double *values, double *figures,
+                   int64_t *places)
 {
     for (size_t row = 0; row < rows; ++row) {
-        const double *x = values + row * count;
+        const double *x = values + row * stride;
         double *figure = figures + 6 * row;
         study_figures(count, x, 1, figure);
         if (figure[2] != figure[2]) {

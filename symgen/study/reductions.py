@@ -107,19 +107,20 @@ def chunk_results(plan: StudyPlan, kernels: StudyKernels, states: StudyStates, v
         block = BlockValues(plan, kernels, states.of(values[start : start + step]))
         for one in interests(plan):
             _reduce(plan, kernels, one, block, made, start)
-        _count(made, block.status, start)
+        _count(made, block, start)
     return made
 
 
-def _count(made: ChunkResults, status: NDArray[np.uint8], start: int) -> None:
+def _count(made: ChunkResults, block: BlockValues, start: int) -> None:
     """Statuses of a block of points."""
-    here = slice(start, start + len(status))
-    if not status.any():
-        made.arrays["valid"][here], made.arrays["status"][here] = status.shape[1], 0
-        made.statuses[0] = made.statuses.get(0, 0) + status.size
+    (points, states), status = block.shape, block.status
+    here = slice(start, start + points)
+    if status is None:
+        made.arrays["valid"][here], made.arrays["status"][here] = states, 0
+        made.statuses[0] = made.statuses.get(0, 0) + points * states
         return
     refused = status != 0
-    made.arrays["valid"][here] = status.shape[1] - np.count_nonzero(refused, axis=1)
+    made.arrays["valid"][here] = states - np.count_nonzero(refused, axis=1)
     made.arrays["status"][here] = status[np.arange(len(status)), refused.argmax(axis=1)]
     counts = np.bincount(status[refused], minlength=1)
     counts[0] = refused.size - np.count_nonzero(refused)
