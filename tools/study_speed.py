@@ -26,12 +26,13 @@ from symgen.pipeline import generate
 from symgen.study.asked.options import request_of
 from symgen.study.asked.request import check_request
 from symgen.study.chunks import chunk_grid
+from symgen.study.command import RECORD_FOLDER
 from symgen.study.kernels import RECORD_FILE, StudyKernels, kernels_hash
 from symgen.study.plan import StudyPlan, planned_study
 from symgen.study.shown.summary import settings_of
 from symgen.study.states import StudyStates
 from symgen.study.store import StudyStore
-from symgen.study.work import StudyWork, by_threads
+from symgen.study.work import Assignment, StudyWork, by_processes, by_threads
 
 DEFAULT = ("models/rapkm_2rrr_rr.yaml", "circle", "m_payload", "m_1")
 BARE_STATES, BARE_CALLS = 2**12, 500
@@ -81,6 +82,27 @@ def studied(plan: StudyPlan, result: Result, kernels: StudyKernels, threads: int
     return states / spent[0], states / spent[1]
 
 
+def processed(plan: StudyPlan, result: Result, workers: int) -> tuple[float, float]:
+    """The same of processes, each of which makes the kernels from the model file first."""
+    chunks = chunk_grid(plan)
+    with tempfile.TemporaryDirectory() as folder:
+        partial = Path(folder) / "partial"
+        store = StudyStore(partial, plan, chunks)
+        record = f"{RECORD_FOLDER}/{plan.model.name}/{RECORD_FILE}"
+        store.begin(settings_of(plan, kernels_hash(result)), {record: result.files[RECORD_FILE]})
+        assignment = Assignment(plan.request, partial, partial / RECORD_FOLDER, kernels_hash(result))
+        began = _children_seconds(), time.perf_counter()
+        by_processes(assignment, workers, range(len(chunks)), lambda _: None, lambda _: None)
+        spent = _children_seconds() - began[0], time.perf_counter() - began[1]
+    states = plan.points * plan.states
+    return states / spent[0], states / spent[1]
+
+
+def _children_seconds() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 def sampled(model: Path, finer: int, folder: Path) -> Path:
     """The model file with paths of so many times as many steps."""
     text = re.sub(
@@ -104,9 +126,16 @@ def table(model: Path, path: str, names: tuple[str, str]) -> None:
         plan = plan_of(model, path, names, round((wanted / plan.states) ** 0.5))
         for threads in (1, 2):
             runs = [studied(plan, result, kernels, threads) for _ in range(3 if wanted < STATES[-1] else 1)]
-            rate, wall = max(one for one, _ in runs), max(one for _, one in runs)
-            row = f"| {threads} thread{'s' * (threads > 1)} | {plan.states} | {plan.points * plan.states:,} "
-            print(f"{row}| {rate / 1e6:.1f} | {100 * rate / alone:.0f} % | {wall / 1e6:.1f} |", flush=True)
+            best = max(one for one, _ in runs), max(one for _, one in runs)
+            _row(f"{threads} thread{'s' * (threads > 1)}", plan, best, alone)
+    for workers in (1, 2):
+        _row(f"{workers} process{'es' * (workers > 1)}", plan, processed(plan, result, workers), alone)
+
+
+def _row(what: str, plan: StudyPlan, best: tuple[float, float], alone: float) -> None:
+    rate, wall = best
+    row = f"| {what} | {plan.states} | {plan.points * plan.states:,} | {rate / 1e6:.1f} "
+    print(f"{row}| {100 * rate / alone:.0f} % | {wall / 1e6:.1f} |", flush=True)
 
 
 def main(arguments: list[str]) -> None:
