@@ -83,13 +83,25 @@ class Products:
             return 1, a
         return -1, opposite
 
-    def forget(self, gone: Set[Scalar]) -> None:
-        """Lets go of scalars, see `Graph.forget`; factors of a product that stays stay with it."""
-        self._known = {
-            a: monomial for a, monomial in self._known.items() if a not in gone and gone.isdisjoint(monomial[1])
-        }
-        self._turning = {a for a in self._turning if a in self._known}
-        self._sums = {value: a for value, a in self._sums.items() if a not in gone}
+    def __len__(self) -> int:
+        return len(self._known)
+
+    def forget(self, first: int, gone: Set[Scalar]) -> None:
+        """Lets go of scalars, see `Graph.forget`, that were made since so many products were known.
+
+        Factors of a product that stays stay with it.
+        """
+        kept = []
+        while len(self._known) > first:
+            a, monomial = self._known.popitem()
+            if a not in gone and gone.isdisjoint(monomial[1]):
+                kept.append((a, monomial))
+            else:
+                self._turning.discard(a)
+        self._known.update(reversed(kept))
+        for a in gone:
+            if self._sums.get(a.value) is a:
+                del self._sums[a.value]
 
     def combined(self, a: Scalar, b: Scalar, sign: int) -> Scalar | None:
         """a + sign * b where the two are products that differ in constants or in two sines and cosines only."""

@@ -16,6 +16,7 @@ from symgen.runtime.effort import SCALAR, spend
 from symgen.symbolic.angles.angle_forms import Angles
 from symgen.symbolic.fingerprint import PRIME, combine, opaque, residue
 from symgen.symbolic.functions import expanded, simplified
+from symgen.symbolic.mark import Mark
 from symgen.symbolic.products import Products
 
 if TYPE_CHECKING:
@@ -171,32 +172,32 @@ class Graph:
         assert node is not None, "a scalar that is in use was forgotten"
         return node
 
-    def mark(self) -> tuple[int, int]:
-        """Where scalars and their keys stand that are made from now on."""
-        return len(self._serials), len(self._nodes)
+    def mark(self) -> Mark:
+        """Where stands what is made from now on."""
+        return Mark(len(self._serials), len(self._nodes), len(self.products))
 
-    def forget(self, mark: tuple[int, int], stays: Callable[[Scalar], bool]) -> Set[Scalar]:
+    def forget(self, mark: Mark, stays: Callable[[Scalar], bool]) -> Set[Scalar]:
         """Lets go of the scalars since the mark that do not stay, and tells which these were.
 
         See `symgen.symbolic.passes.forgetting`.
         """
-        first, keys = mark
-        gone = {node for node in self._serials[first:] if node is not None and not stays(node)}
+        gone = {node for node in self._serials[mark.scalars :] if node is not None and not stays(node)}
         kept = []
         # keys stand in the order in which they were made, and hold operands, too
-        while len(self._nodes) > keys:
+        while len(self._nodes) > mark.keys:
             key, node = self._nodes.popitem()
             args = key[2] if key[0] == "raw" else key[1]
             assert isinstance(args, tuple)
             if node not in gone and gone.isdisjoint(args):
                 kept.append((key, node))
         self._nodes.update(reversed(kept))
-        self._by_value = {value: node for value, node in self._by_value.items() if node not in gone}
         self._angles.forget(gone)
         self.points.clear()
-        self.products.forget(gone)
+        self.products.forget(mark.products, gone)
         for node in gone:
             self._serials[node.serial] = None
+            if self._by_value.get(node.value) is node:
+                del self._by_value[node.value]
         return gone
 
     def dissolve(self) -> None:

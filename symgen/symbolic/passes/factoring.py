@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from symgen.symbolic.angles.sharing import share_angles
 from symgen.symbolic.differences import Differences
 from symgen.symbolic.identity import same_values
+from symgen.symbolic.mark import Mark
 from symgen.symbolic.passes.forgetting import forgetting
 from symgen.symbolic.polynomials.polynomial import Multiplier, refactored
 from symgen.symbolic.scalar import Graph, Scalar
@@ -39,11 +40,12 @@ class Factoring:
             self._fixed[inner] = inner.op == "const" or (bool(inner.args) and all(self._fixed[a] for a in inner.args))
         return self._fixed[node]
 
-    def forget(self, mark: tuple[int, int], needed: Iterable[Scalar]) -> None:
+    def forget(self, mark: Mark, needed: Iterable[Scalar]) -> None:
         """Lets go of what was made since the mark of the graph and is not needed, see `forgetting`."""
         gone = forgetting(self.graph, mark, needed)
         if gone is not None:
-            self._fixed = {node: fixed for node, fixed in self._fixed.items() if node not in gone}
+            for node in gone:
+                self._fixed.pop(node, None)
             self._multipliers.clear()
 
     def multiplier(self, whole: Callable[[Scalar], bool]) -> Multiplier:

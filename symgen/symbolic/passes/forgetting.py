@@ -8,24 +8,23 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Set
 
+from symgen.symbolic.mark import Mark
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import forget_orders
 
 # Scalars that are forgotten together at least: fewer are met again, and looking for those that are needed takes time,
 # too.
 FEWEST_FORGOTTEN = 10_000
-# The mark of a graph that nothing is made on yet.
-START = (0, 0)
 
 
-def forgetting(graph: Graph, mark: tuple[int, int], needed: Iterable[Scalar]) -> Set[Scalar] | None:
+def forgetting(graph: Graph, mark: Mark, needed: Iterable[Scalar]) -> Set[Scalar] | None:
     """Lets the graph go of what was made since the mark (`Graph.mark`), but for what `needed` scalars hold.
 
     Tells which scalars went, to those who remember scalars themselves; None where too little was made to look.  What is
     forgotten is made again where it is met again, with another serial number.
     """
-    first = mark[0]
-    if graph.mark()[0] - first < FEWEST_FORGOTTEN:
+    first = mark.scalars
+    if graph.mark().scalars - first < FEWEST_FORGOTTEN:
         return None
     live = set(needed)
     stack = list(live)

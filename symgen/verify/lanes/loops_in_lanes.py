@@ -116,10 +116,15 @@ class LoopsInLanes:
 
     def shut(self, q: Lanes, p: Lanes, most: float) -> Lanes:
         """Whether what is left of every row, in units of its gradient, is no more than that."""
-        closed = np.ones(len(q), dtype=bool)
+        return self.left_open(q, p) <= most
+
+    def left_open(self, q: Lanes, p: Lanes) -> Lanes:
+        """The most that is left of any row, in units of its gradient; infinite where a row is not finite."""
+        most = np.zeros(len(q))
         for _, rows, gaps, finite in self._evaluated(q, p):
-            closed &= finite & (np.abs(_in_own_units(rows, gaps)[1]).max(axis=1) <= most)
-        return closed
+            gap = np.abs(_in_own_units(rows, gaps)[1]).max(axis=1)
+            most = np.maximum(most, np.where(finite & (gap >= 0), gap, np.inf))
+        return most
 
     def _evaluated(self, q: Lanes, p: Lanes) -> Iterator[tuple[Part, Lanes, Lanes, Lanes]]:
         """Each loop with its rows, what they leave open, and where all of that is finite."""

@@ -132,8 +132,9 @@ class FarStates:
         """Where the loops close with a parameter further and further away, and whether they do.
 
         By side, quarter of a power of ten, parameter that moves them and state: each step starts where the one before
-        it ended.  Where that leads nowhere each power of ten is looked for from the state itself; where none of the
-        states closes at one, a parameter is not led further.
+        it ended.  Where that leads nowhere each power of ten is looked for from the state itself, and quarters beyond
+        one at which a state does not close are left out; where none of the states closes, a parameter is not led
+        further.
         """
         leading, steps = [*self._moving], round(FURTHEST / QUARTER)
         n = self._starts["q"].shape[1]
@@ -144,13 +145,15 @@ class FarStates:
         configurations, shut = np.empty((*shape, n)), np.zeros(shape, dtype=bool)
         for side, sign in enumerate(SIDES):
             led = np.arange(len(leading))
-            q = np.tile(starts["q"], (len(leading), 1))
+            q, lost = np.tile(starts["q"], (len(leading), 1)), np.zeros(len(leading) * count, dtype=bool)
             for step in range(steps):
                 power, place = QUARTER * (step + 1), np.tile(np.arange(count), len(led))
                 p = starts["p"][place]
                 p[np.arange(len(place)), np.array(leading)[led].repeat(count)] *= power_of_ten(sign * power)
-                q, closed = self._newton(q, p)
-                for look in (self._loops.damped, self._further) if power.is_integer() else ():
+                whole = power.is_integer()
+                closed, tried = np.zeros(len(q), dtype=bool), np.flatnonzero(~lost | whole)
+                q[tried], closed[tried] = self._newton(q[tried], p[tried])
+                for look in (self._loops.damped, self._further) if whole else ():
                     still = np.flatnonzero(~closed)
                     with np.errstate(all="ignore"):
                         reached = look(starts["q"][place[still]], p[still])
@@ -158,9 +161,9 @@ class FarStates:
                 q = np.where(closed[:, None], q, starts["q"][place])
                 configurations[side, step, led] = q.reshape(len(led), count, n)
                 shut[side, step, led] = by_parameter = closed.reshape(len(led), count)
-                if power.is_integer():
-                    closes = by_parameter.any(axis=1)
-                    led, q = led[closes], q[closes.repeat(count)]
+                if whole:
+                    kept = by_parameter.any(axis=1).repeat(count)
+                    led, q, lost = led[kept[::count]], q[kept], ~closed[kept]
                 if not len(led):
                     break
         return configurations, shut
@@ -172,9 +175,16 @@ class FarStates:
         return q, shut.all(axis=1)
 
     def _further(self, q: Lanes, p: Lanes) -> Lanes:
-        """Where so many times the steps of Newton's method lead: it takes more of them to far larger lengths."""
+        """Where so many times the steps of Newton's method lead: it takes more of them to far larger lengths.
+
+        Each step halves the way there; what is no nearer after all of them once goes nowhere.
+        """
+        q, moving = q.copy(), np.arange(len(q))
+        left = self._loops.left_open(q, p)
         for _ in range(RENEWED):
-            q, _ = self._newton(q, p)
+            q[moving], shut = self._newton(q[moving], p[moving])
+            before, left[moving] = left[moving], self._loops.left_open(q[moving], p[moving])
+            moving = moving[~shut & (left[moving] < before / 2)]
         return q
 
     @cached_property
