@@ -7,11 +7,13 @@ import random
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from typing import cast
 
 from flint import arb, arb_mat
 
 from symgen.model.combinations.ball_matrices import Matrix, kernel
+from symgen.model.combinations.straight_lines import RecordedLine, RecordedNumber, Recorder
 from symgen.model.combinations.taylor_balls import (
     Ball,
     TimeSeries,
@@ -125,9 +127,17 @@ class BallSystem:
         return None
 
     def _gaps(self, q: Sequence[Ball]) -> list[Ball]:
-        series = cast(Sequence[float], [TimeSeries((one,)) for one in q])
-        values = self.numeric.values(series, range(len(self.numeric.geometric)))
-        return [cast(TimeSeries, value).c[0] for value in values]
+        return self._recorded_gaps.run(q)
+
+    @cached_property
+    def _recorded_gaps(self) -> RecordedLine:
+        recorder = Recorder()
+        given = {name: recorder.constant(series_of(value).c[0]) for name, value in self.numeric.defaults.items()}
+        numeric = self.numeric.having(cast(dict[str, float], given))
+        numeric.numbers = recorder.numbers()
+        q = cast(Sequence[float], [recorder.given() for _ in range(self.n)])
+        values = numeric.values(q, range(len(numeric.geometric)))
+        return recorder.line(cast(Sequence[RecordedNumber], values))
 
 
 def motion_states(system: BallSystem, start: Sequence[float], rank: int) -> Iterator[MotionState]:

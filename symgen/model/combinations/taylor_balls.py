@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from fractions import Fraction
+from functools import cache
 from typing import Any, TypeAlias, cast
 
 from flint import arb, ctx, fmpq
@@ -172,6 +173,13 @@ _RULES: Mapping[str, tuple[_Slope, _Slope, _Slope]] = {
 }
 
 
+# The values of functions, by their names.
+FUNCTIONS_OF_BALLS: Mapping[str, Callable[..., Ball]] = {
+    **{name: rules[0] for name, rules in _RULES.items()},
+    "atan2": arb.atan2,
+}
+
+
 def _function(name: str) -> Callable[..., float]:
     rules = _RULES[name]
     return lambda x: cast(float, _composed(x, *rules))
@@ -197,27 +205,29 @@ def _whole_power(x: Ball, power: int) -> Ball:
     return half * x if power % 2 else half
 
 
-def _power(base: float, exponent: Fraction) -> float:
-    series = cast(TimeSeries, base)
-    value = ball(exponent)
+@cache
+def raising(power: Fraction) -> Callable[[Ball], Ball]:
+    """The function that raises a ball to a power; ValueError where there is none."""
+    if power.denominator == 1:
+        return lambda x: _whole_power(x, int(power))
 
-    def raised(x: Ball, lower: int) -> Ball:
-        power = exponent - lower
-        if power.denominator == 1:
-            return _whole_power(x, int(power))
+    def raised(x: Ball) -> Ball:
         if not x > 0:
             raise ValueError
         return x ** ball(power)
 
-    return cast(
-        float,
-        _composed(
-            series,
-            lambda x: raised(x, 0),
-            lambda x: value * raised(x, 1) if value != 0 else arb(0),
-            lambda x: value * (value - 1) * raised(x, 2) if value * (value - 1) != 0 else arb(0),
-        ),
+    return raised
+
+
+def _power(base: float, exponent: Fraction) -> float:
+    value, bend = ball(exponent), exponent * (exponent - 1)
+    made = _composed(
+        cast(TimeSeries, base),
+        raising(exponent),
+        lambda x: value * raising(exponent - 1)(x) if exponent else arb(0),
+        lambda x: ball(bend) * raising(exponent - 2)(x) if bend else arb(0),
     )
+    return cast(float, made)
 
 
 def ball_numbers() -> Numbers:

@@ -129,7 +129,7 @@ _BINARY: Mapping[str, Callable[[float, _Gradient, float, _Gradient], Dual]] = {
     "+": lambda a, da, b, db: (a + b, _combined(da, 1.0, db, 1.0)),
     "-": lambda a, da, b, db: (a - b, _combined(da, 1.0, db, -1.0)),
     "*": lambda a, da, b, db: (a * b, _combined(da, b, db, a)),
-    "/": lambda a, da, b, db: (a / b, _combined(da, 1 / b, db, -a / (b * b))),
+    "/": lambda a, da, b, db: (a / b, _combined(da, 1 / b, db, -a / (b * b)) if da or db else {}),
 }
 
 
