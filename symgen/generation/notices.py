@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 # Measured on a chain of 16 links: 6336 operations in 45.6 kB with the single precision of a Cortex-M4, gcc -O2.
 BYTES_AN_OPERATION = 7
-# What a step of `backends/c/steps.py` takes in its table.
+# What a step of `backends/c/bodies/steps.py` takes in its table.
 BYTES_A_STEP = 14
 # How far from its value a bound of a parameter goes without saying.
 CLOSE_BY = 100

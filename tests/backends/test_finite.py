@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from symgen.backends.c.finite import FiniteTest
+from symgen.backends.c.bodies.finite import FiniteTest
 
 
 def run(lines: list[str], values: dict[str, float]) -> float:

@@ -16,10 +16,10 @@ import shipped
 from generated_python import load_generated
 
 from symgen.backends.c.batch import emit_c_batch
+from symgen.backends.c.bodies.steps import table
 from symgen.backends.c.given_sines import emit_c_sc
 from symgen.backends.c.plain import emit_c
 from symgen.backends.c.prepared import emit_c_prepared
-from symgen.backends.c.steps import table
 from symgen.backends.defaults import default_values
 from symgen.backends.literals import round_to
 from symgen.backends.locals import array_arguments

@@ -14,7 +14,7 @@ import handmade
 import pytest
 import shipped
 
-from symgen.backends.c.finite import rests
+from symgen.backends.c.bodies.finite import rests
 from symgen.backends.c.given_sines import emit_c_sc
 from symgen.backends.c.plain import emit_c
 from symgen.backends.c.prepared import emit_c_prepared

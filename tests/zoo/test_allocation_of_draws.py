@@ -7,10 +7,10 @@ from fractions import Fraction
 import pytest
 
 from symgen.laboratory.zoo.witness.allocation import directed, members, preloads
-from symgen.laboratory.zoo.witness.fields import Balls, precision
 from symgen.laboratory.zoo.witness.kkt import EquationValues, inverse_dynamics, split
 from symgen.laboratory.zoo.witness.limits import NoInputsError, nearest_within
-from symgen.laboratory.zoo.witness.linear import determinant, transposed
+from symgen.laboratory.zoo.witness.numbers.fields import Balls, precision
+from symgen.laboratory.zoo.witness.numbers.linear import determinant, transposed
 
 # one mass, driven by three forces along it
 AT = EquationValues([[2.0]], [], [[1.0, 2.0, -1.0]], [0.5], [], [])

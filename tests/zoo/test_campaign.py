@@ -20,10 +20,10 @@ from symgen.laboratory.zoo.refusals import UNREPORTED
 from symgen.laboratory.zoo.run import CommandRun
 from symgen.laboratory.zoo.verdict import FAILED, REFUSED, VERIFIED, DrawVerdict
 from symgen.laboratory.zoo.witness.coverage import Coverage
-from symgen.laboratory.zoo.witness.expressions import NotReadError
+from symgen.laboratory.zoo.witness.reading.expressions import NotReadError
+from symgen.laboratory.zoo.witness.reading.urdf_file import expanded
 from symgen.laboratory.zoo.witness.results import CheckResult
 from symgen.laboratory.zoo.witness.states import LOST_STEPS, NOT_CLOSED, STUCK
-from symgen.laboratory.zoo.witness.urdf_file import expanded
 from symgen.model.load import load_text
 
 RIGHT = DrawRecord(1, 0, "disc", VERIFIED, "", "", 2.0, 100)

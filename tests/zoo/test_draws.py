@@ -18,10 +18,10 @@ from symgen.laboratory.zoo.draws.endings import MAIN, independent
 from symgen.laboratory.zoo.draws.families import FAMILIES, draw
 from symgen.laboratory.zoo.draws.sketch import Sketch
 from symgen.laboratory.zoo.features import features
-from symgen.laboratory.zoo.witness.fields import Floats
-from symgen.laboratory.zoo.witness.mechanics import equations
-from symgen.laboratory.zoo.witness.reader import SystemReader
-from symgen.laboratory.zoo.witness.urdf_file import expanded
+from symgen.laboratory.zoo.witness.numbers.fields import Floats
+from symgen.laboratory.zoo.witness.reading.mechanics import equations
+from symgen.laboratory.zoo.witness.reading.reader import SystemReader
+from symgen.laboratory.zoo.witness.reading.urdf_file import expanded
 from symgen.model.load import load_text
 
 DRAWS = range(3)

@@ -15,11 +15,11 @@ from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.draws.families import draw
 from symgen.laboratory.zoo.run import run_command
 from symgen.laboratory.zoo.witness import pinocchio_trees
-from symgen.laboratory.zoo.witness.fields import Floats, precision
+from symgen.laboratory.zoo.witness.numbers.fields import Floats, precision
 from symgen.laboratory.zoo.witness.pinocchio_answers import COMPARED, PinocchioAnswers
 from symgen.laboratory.zoo.witness.pinocchio_trees import SAME, PinocchioTree, disagreement, tree_of
-from symgen.laboratory.zoo.witness.reader import SystemReader
-from symgen.laboratory.zoo.witness.urdf_file import exact_angles, expanded
+from symgen.laboratory.zoo.witness.reading.reader import SystemReader
+from symgen.laboratory.zoo.witness.reading.urdf_file import exact_angles, expanded
 from symgen.laboratory.zoo.witness.witness import Witness
 
 robot_packages.pinocchio()

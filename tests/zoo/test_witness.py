@@ -18,15 +18,15 @@ from symgen.laboratory.zoo.draws.families import draw
 from symgen.laboratory.zoo.run import run_command
 from symgen.laboratory.zoo.witness import states
 from symgen.laboratory.zoo.witness.allocation import is_directed
-from symgen.laboratory.zoo.witness.expressions import FUNCTIONS, NotReadError, read_expression
-from symgen.laboratory.zoo.witness.fields import Balls, Floats, precision
 from symgen.laboratory.zoo.witness.generated import Answer, Target
 from symgen.laboratory.zoo.witness.kkt import EquationValues, GenericRanks
-from symgen.laboratory.zoo.witness.linear import basis
-from symgen.laboratory.zoo.witness.mechanics import equations
-from symgen.laboratory.zoo.witness.reader import SystemReader
+from symgen.laboratory.zoo.witness.numbers.fields import Balls, Floats, precision
+from symgen.laboratory.zoo.witness.numbers.linear import basis
+from symgen.laboratory.zoo.witness.numbers.tape import NodeProgram, NodeTape
+from symgen.laboratory.zoo.witness.reading.expressions import FUNCTIONS, NotReadError, read_expression
+from symgen.laboratory.zoo.witness.reading.mechanics import equations
+from symgen.laboratory.zoo.witness.reading.reader import SystemReader
 from symgen.laboratory.zoo.witness.states import CLOSED, FloatState
-from symgen.laboratory.zoo.witness.tape import NodeProgram, NodeTape
 from symgen.laboratory.zoo.witness.witness import Witness
 from symgen.pipeline import generate
 

@@ -9,12 +9,12 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
+from symgen.backends.c.bodies.finite import rests
+from symgen.backends.c.bodies.functions import CFunctionView
+from symgen.backends.c.bodies.pairs import pair_body
 from symgen.backends.c.endings import BATCH
 from symgen.backends.c.file import file_view, files
-from symgen.backends.c.finite import rests
-from symgen.backends.c.functions import CFunctionView
 from symgen.backends.c.names import c_members, global_name, guard, names_in_file, status_name
-from symgen.backends.c.pairs import pair_body
 from symgen.backends.c.statements import CStatements, c_literal
 from symgen.backends.comments import c_comment_lines
 from symgen.backends.locals import Names, all_statements, array_arguments

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from symgen.backends.c.functions import CFunctionView
+from symgen.backends.c.bodies.functions import CFunctionView
+from symgen.backends.c.bodies.pairs import PairsView, pairs_view
+from symgen.backends.c.bodies.steps import StepsView, steps_view
 from symgen.backends.c.identity import EntryPlaces, IdentityView
 from symgen.backends.c.names import guard
-from symgen.backends.c.pairs import PairsView, pairs_view
-from symgen.backends.c.steps import StepsView, steps_view
 from symgen.backends.c.surroundings import LibraryPair, apart_macro, library_pair, rare_macro, uses_library
 from symgen.backends.render import render
 from symgen.backends.scalars import C_TYPE, SUFFIX, file_stem

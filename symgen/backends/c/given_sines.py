@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from symgen.backends.c.bodies.functions import kernel_function
 from symgen.backends.c.endings import SINES_GIVEN
 from symgen.backends.c.file import StructView, file_view, files
-from symgen.backends.c.functions import kernel_function
 from symgen.backends.c.names import global_name, variant_names
 from symgen.backends.comments import c_comment
 from symgen.backends.quantities import BATCHED, meaning

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from symgen.backends.c.causes import cause_names
+from symgen.backends.c.bodies.causes import cause_names
+from symgen.backends.c.bodies.pairs import pair_names
+from symgen.backends.c.bodies.steps import local_names
 from symgen.backends.c.identity import identity_names
-from symgen.backends.c.pairs import pair_names
 from symgen.backends.c.reserved import is_taken
-from symgen.backends.c.steps import local_names
 from symgen.backends.c.surroundings import surrounding_names
 from symgen.backends.locals import Names, names_of
 from symgen.backends.scalars import SUFFIX, file_stem

@@ -14,8 +14,8 @@ from symgen.backends.about import (
     symbol_lines,
     symbol_text,
 )
+from symgen.backends.c.bodies.functions import CFunctionView, kernel_function
 from symgen.backends.c.file import StatusView, StructView, file_view, files
-from symgen.backends.c.functions import CFunctionView, kernel_function
 from symgen.backends.c.identity import column_view, identity_view
 from symgen.backends.c.names import c_names, defined_macro, global_name, status_name
 from symgen.backends.c.statements import c_literal

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from symgen.backends.c.bodies.functions import CFunctionView, kernel_function
+from symgen.backends.c.bodies.pairs import pairs_view
 from symgen.backends.c.endings import PREPARED
 from symgen.backends.c.file import StructView, file_view, files
-from symgen.backends.c.functions import CFunctionView, kernel_function
 from symgen.backends.c.names import global_name, variant_names
-from symgen.backends.c.pairs import pairs_view
 from symgen.backends.c.statements import CStatements
 from symgen.backends.locals import Names
 from symgen.backends.operations import count_operations

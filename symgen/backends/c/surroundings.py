@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symgen.backends.c.steps import step_names
+from symgen.backends.c.bodies.steps import step_names
 from symgen.backends.locals import all_statements, used_locals
 from symgen.backends.scalars import C_TYPE, SUFFIX
 from symgen.ir.kernel import Kernel, Local, Program

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from symgen.backends.about import count_lines, shape_text
+from symgen.backends.c.bodies.functions import Results, kernel_function
 from symgen.backends.c.endings import TOGETHER
 from symgen.backends.c.file import file_view, files
-from symgen.backends.c.functions import Results, kernel_function
 from symgen.backends.c.names import global_name, variant_names
 from symgen.backends.locals import array_arguments, user_names
 from symgen.backends.quantities import meaning, output_argument

@@ -8,11 +8,11 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
-from symgen.backends.c.causes import cause_names
+from symgen.backends.c.bodies.causes import cause_names
+from symgen.backends.c.bodies.pairs import pair_names
+from symgen.backends.c.bodies.steps import TABLE, step_names
 from symgen.backends.c.names import global_name
-from symgen.backends.c.pairs import pair_names
 from symgen.backends.c.plain import emit_c
-from symgen.backends.c.steps import TABLE, step_names
 from symgen.backends.operations import count_operations
 from symgen.backends.python.module import emit_python
 from symgen.backends.scalars import SUFFIX, file_stem

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from symgen.laboratory.zoo.dice import Dice
-from symgen.laboratory.zoo.witness.float_rows import null_space
 from symgen.laboratory.zoo.witness.kkt import GenericRanks, distances
-from symgen.laboratory.zoo.witness.linear import NOTHING
+from symgen.laboratory.zoo.witness.numbers.float_rows import null_space
+from symgen.laboratory.zoo.witness.numbers.linear import NOTHING
 from symgen.laboratory.zoo.witness.states import FURTHEST, Walker
 
 # what can lose rank, in the order in which each leaves room for the next; a row vanishes beside its usual length

@@ -12,9 +12,9 @@ from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.draws.describe import Description
 from symgen.laboratory.zoo.draws.drawn import ROUNDING, DrawnEquations, reached
 from symgen.laboratory.zoo.draws.names import LEGAL_BY_LANGUAGE
-from symgen.laboratory.zoo.witness.float_rows import normalized
-from symgen.laboratory.zoo.witness.linear import NOTHING
-from symgen.laboratory.zoo.witness.urdf_file import expanded
+from symgen.laboratory.zoo.witness.numbers.float_rows import normalized
+from symgen.laboratory.zoo.witness.numbers.linear import NOTHING
+from symgen.laboratory.zoo.witness.reading.urdf_file import expanded
 
 OVER_CONSTRAINED = {
     "bennett": "Bennett linkage",

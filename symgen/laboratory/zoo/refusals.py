@@ -7,7 +7,7 @@ from collections.abc import Callable
 from symgen.laboratory.zoo.draws.describe import MISTAKE, Description
 from symgen.laboratory.zoo.draws.drawn import DrawnEquations
 from symgen.laboratory.zoo.verdict import FAILED, REFUSED, DrawVerdict
-from symgen.laboratory.zoo.witness.urdf_file import expanded
+from symgen.laboratory.zoo.witness.reading.urdf_file import expanded
 
 UNREPORTED = "mistake not told"
 # what symgen says of a system as a whole, and what must be so then

@@ -9,8 +9,8 @@ from typing import Any
 
 from symgen.laboratory.zoo.dice import decimal
 from symgen.laboratory.zoo.draws.describe import Description, Terms
-from symgen.laboratory.zoo.witness.frames import joint_coordinates
-from symgen.laboratory.zoo.witness.urdf_file import expanded
+from symgen.laboratory.zoo.witness.reading.frames import joint_coordinates
+from symgen.laboratory.zoo.witness.reading.urdf_file import expanded
 
 Fails = Callable[[Description], bool]
 # what may go as a whole, and entry by entry

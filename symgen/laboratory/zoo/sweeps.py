@@ -13,9 +13,9 @@ from pathlib import Path
 from symgen.laboratory.zoo.approach import KINDS, Approach
 from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.draws.describe import Description
-from symgen.laboratory.zoo.witness.expressions import NotReadError
 from symgen.laboratory.zoo.witness.generated import targets
 from symgen.laboratory.zoo.witness.kkt import GenericRanks
+from symgen.laboratory.zoo.witness.reading.expressions import NotReadError
 from symgen.laboratory.zoo.witness.results import JudgedResult
 from symgen.laboratory.zoo.witness.states import FloatState, Walker
 from symgen.laboratory.zoo.witness.witness import ALLOWED, CERTAIN, Witness

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 
 from symgen.laboratory.zoo.dice import Dice
-from symgen.laboratory.zoo.witness.fields import Floats
-from symgen.laboratory.zoo.witness.float_rows import normalized, null_space, rank_of
 from symgen.laboratory.zoo.witness.kkt import EquationEvaluator, EquationValues
-from symgen.laboratory.zoo.witness.mechanics import equations
-from symgen.laboratory.zoo.witness.reader import SystemReader
+from symgen.laboratory.zoo.witness.numbers.fields import Floats
+from symgen.laboratory.zoo.witness.numbers.float_rows import normalized, null_space, rank_of
+from symgen.laboratory.zoo.witness.numbers.tape import NodeProgram
+from symgen.laboratory.zoo.witness.reading.mechanics import equations
+from symgen.laboratory.zoo.witness.reading.reader import SystemReader
 from symgen.laboratory.zoo.witness.states import Walker
-from symgen.laboratory.zoo.witness.tape import NodeProgram
 
 # what rounding leaves at a start that was measured in floats
 ROUNDING = 1e-9

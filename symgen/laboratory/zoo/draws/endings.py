@@ -13,8 +13,8 @@ from symgen.laboratory.zoo.draws.describe import MISTAKE, Description, Terms
 from symgen.laboratory.zoo.draws.drawn import DrawnEquations, rank_at
 from symgen.laboratory.zoo.draws.names import ILLEGAL
 from symgen.laboratory.zoo.draws.sketch import Sketch
-from symgen.laboratory.zoo.witness.linear import NOTHING
-from symgen.laboratory.zoo.witness.urdf_file import expanded
+from symgen.laboratory.zoo.witness.numbers.linear import NOTHING
+from symgen.laboratory.zoo.witness.reading.urdf_file import expanded
 
 MAIN = ("inverse_dynamics", "forward_dynamics", "multipliers")
 OTHERS = (

@@ -11,11 +11,11 @@ import numpy as np
 
 from symgen.laboratory.zoo.dice import Dice, decimal, exact
 from symgen.laboratory.zoo.draws.names import Namer
-from symgen.laboratory.zoo.witness.fields import Floats, settled
-from symgen.laboratory.zoo.witness.mechanics import constraint_jacobian
-from symgen.laboratory.zoo.witness.reader import SystemReader
-from symgen.laboratory.zoo.witness.tape import Node
-from symgen.laboratory.zoo.witness.urdf_file import expanded
+from symgen.laboratory.zoo.witness.numbers.fields import Floats, settled
+from symgen.laboratory.zoo.witness.numbers.tape import Node
+from symgen.laboratory.zoo.witness.reading.mechanics import constraint_jacobian
+from symgen.laboratory.zoo.witness.reading.reader import SystemReader
+from symgen.laboratory.zoo.witness.reading.urdf_file import expanded
 
 # rows that are none, and rows that are as good as dependent
 FLAT, DEPENDENT = 1e-12, 1e-3

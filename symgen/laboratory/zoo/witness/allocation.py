@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from symgen.laboratory.zoo.witness.kkt import EquationValues, GenericRanks, internal_force
-from symgen.laboratory.zoo.witness.linear import NOTHING, Vector
+from symgen.laboratory.zoo.witness.numbers.linear import NOTHING, Vector
 
 # Of an internal force of norm 1, what rounding in balls leaves of an input that takes no part in it.
 NO_PART = 1e-30

@@ -10,8 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from symgen.laboratory.zoo.witness.fields import settled
-from symgen.laboratory.zoo.witness.linear import (
+from symgen.laboratory.zoo.witness.numbers.fields import settled
+from symgen.laboratory.zoo.witness.numbers.linear import (
     NOTHING,
     Matrix,
     Vector,
@@ -25,8 +25,8 @@ from symgen.laboratory.zoo.witness.linear import (
     times,
     transposed,
 )
-from symgen.laboratory.zoo.witness.mechanics import Equations
-from symgen.laboratory.zoo.witness.tape import FileNumber, NodeProgram
+from symgen.laboratory.zoo.witness.numbers.tape import FileNumber, NodeProgram
+from symgen.laboratory.zoo.witness.reading.mechanics import Equations
 
 
 @dataclass(frozen=True)

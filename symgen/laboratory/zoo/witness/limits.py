@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, TypeAlias
 
-from symgen.laboratory.zoo.witness.linear import Matrix, Vector, solve
+from symgen.laboratory.zoo.witness.numbers.linear import Matrix, Vector, solve
 
 # Times what is missing of limits, in the weights: inputs for which others are moved by more take no part.
 MOST_MOVED = 1e4

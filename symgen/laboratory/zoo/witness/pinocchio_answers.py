@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 
 from symgen.laboratory.zoo.witness.allocation import directed, holding, is_directed, preloads
-from symgen.laboratory.zoo.witness.fields import Floats
-from symgen.laboratory.zoo.witness.float_rows import normalized, null_space
 from symgen.laboratory.zoo.witness.kkt import EquationEvaluator, EquationValues, GenericRanks
-from symgen.laboratory.zoo.witness.mechanics import equations
+from symgen.laboratory.zoo.witness.numbers.fields import Floats
+from symgen.laboratory.zoo.witness.numbers.float_rows import normalized, null_space
+from symgen.laboratory.zoo.witness.numbers.tape import NodeProgram
 from symgen.laboratory.zoo.witness.pinocchio_trees import PinocchioTree
-from symgen.laboratory.zoo.witness.reader import SystemReader
+from symgen.laboratory.zoo.witness.reading.mechanics import equations
+from symgen.laboratory.zoo.witness.reading.reader import SystemReader
 from symgen.laboratory.zoo.witness.states import FloatState
-from symgen.laboratory.zoo.witness.tape import NodeProgram
 
 WITHOUT = ("bodies", "gravity")
 # an entry smaller than this beside the largest one is known as well as that, times this

@@ -16,13 +16,20 @@ from typing import Any
 import numpy as np
 
 from symgen.laboratory.zoo.dice import Dice
-from symgen.laboratory.zoo.witness.fields import Floats
-from symgen.laboratory.zoo.witness.frames import BASE, Relative, joint_coordinates, read_frames, read_vector, unit_axis
 from symgen.laboratory.zoo.witness.kkt import EquationEvaluator
-from symgen.laboratory.zoo.witness.mechanics import equations
-from symgen.laboratory.zoo.witness.reader import SystemReader
-from symgen.laboratory.zoo.witness.tape import NodeProgram
-from symgen.laboratory.zoo.witness.urdf_file import exact_angles, expanded
+from symgen.laboratory.zoo.witness.numbers.fields import Floats
+from symgen.laboratory.zoo.witness.numbers.tape import NodeProgram
+from symgen.laboratory.zoo.witness.reading.frames import (
+    BASE,
+    Relative,
+    joint_coordinates,
+    read_frames,
+    read_vector,
+    unit_axis,
+)
+from symgen.laboratory.zoo.witness.reading.mechanics import equations
+from symgen.laboratory.zoo.witness.reading.reader import SystemReader
+from symgen.laboratory.zoo.witness.reading.urdf_file import exact_angles, expanded
 
 ALONE = ("gravity", "parameters", "definitions", "frames", "joints", "bodies", "coordinates")
 # what makes a robot of a file another one than Pinocchio reads there

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from symgen.laboratory.zoo.dice import Dice
-from symgen.laboratory.zoo.witness.fields import Balls, Floats, precision
-from symgen.laboratory.zoo.witness.float_rows import SAME, normalized, null_space, rank_of
 from symgen.laboratory.zoo.witness.kkt import EquationEvaluator, EquationValues, GenericRanks, onto_rows
-from symgen.laboratory.zoo.witness.linear import NOTHING
-from symgen.laboratory.zoo.witness.reader import SystemReader
+from symgen.laboratory.zoo.witness.numbers.fields import Balls, Floats, precision
+from symgen.laboratory.zoo.witness.numbers.float_rows import SAME, normalized, null_space, rank_of
+from symgen.laboratory.zoo.witness.numbers.linear import NOTHING
+from symgen.laboratory.zoo.witness.reading.reader import SystemReader
 
 STEPS = 30
 # steps of refinement at most, and the last of them: it leaves 30 digits of what is 1e-9 away from a singular pose

@@ -16,8 +16,6 @@ from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.draws.describe import Description
 from symgen.laboratory.zoo.witness.allocation import directed, holding, is_directed, limits_of, members, preloads
 from symgen.laboratory.zoo.witness.coverage import Tally
-from symgen.laboratory.zoo.witness.distances import distance, least_distance, norm
-from symgen.laboratory.zoo.witness.fields import Balls, Floats, precision
 from symgen.laboratory.zoo.witness.generated import ARGUMENTS, Answer, Target, targets
 from symgen.laboratory.zoo.witness.kkt import (
     DirectionSplit,
@@ -29,16 +27,18 @@ from symgen.laboratory.zoo.witness.kkt import (
     split,
 )
 from symgen.laboratory.zoo.witness.limits import NoInputsError, nearest_within
-from symgen.laboratory.zoo.witness.linear import NOTHING
-from symgen.laboratory.zoo.witness.mechanics import equations
+from symgen.laboratory.zoo.witness.numbers.distances import distance, least_distance, norm
+from symgen.laboratory.zoo.witness.numbers.fields import Balls, Floats, precision
+from symgen.laboratory.zoo.witness.numbers.linear import NOTHING
+from symgen.laboratory.zoo.witness.numbers.tape import FileNumber, NodeProgram
 from symgen.laboratory.zoo.witness.pinocchio_answers import COMPARED, PinocchioAnswers
 from symgen.laboratory.zoo.witness.pinocchio_trees import SAME, disagreement, tree_of
-from symgen.laboratory.zoo.witness.reader import SystemReader
+from symgen.laboratory.zoo.witness.reading.mechanics import equations
+from symgen.laboratory.zoo.witness.reading.reader import SystemReader
+from symgen.laboratory.zoo.witness.reading.stated_ranges import StatedRanges
+from symgen.laboratory.zoo.witness.reading.urdf_file import expanded
 from symgen.laboratory.zoo.witness.results import CheckResult, Finding, JudgedResult, Truth
-from symgen.laboratory.zoo.witness.stated_ranges import StatedRanges
 from symgen.laboratory.zoo.witness.states import FloatState, Walker, rounded
-from symgen.laboratory.zoo.witness.tape import FileNumber, NodeProgram
-from symgen.laboratory.zoo.witness.urdf_file import expanded
 
 STATES = 20
 PERTURBATIONS = 8

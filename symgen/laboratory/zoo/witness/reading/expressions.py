@@ -6,7 +6,7 @@ import ast
 from collections.abc import Callable
 from fractions import Fraction
 
-from symgen.laboratory.zoo.witness.tape import Node, NodeTape
+from symgen.laboratory.zoo.witness.numbers.tape import Node, NodeTape
 
 FUNCTIONS = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sqrt", "exp", "log", "sinh", "cosh", "tanh")
 Lookup = Callable[[str], Node]

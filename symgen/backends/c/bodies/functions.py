@@ -6,12 +6,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TypeAlias
 
-from symgen.backends.c.causes import Cause, CauseView, cause_view, causes_of, operands_of, place
-from symgen.backends.c.finite import SUM, FiniteTest
+from symgen.backends.c.bodies.causes import Cause, CauseView, cause_view, causes_of, operands_of, place
+from symgen.backends.c.bodies.finite import SUM, FiniteTest
+from symgen.backends.c.bodies.pairs import GROUP_NAMES, group_lines, leading_group
+from symgen.backends.c.bodies.steps import StepTable, table
 from symgen.backends.c.names import global_name, status_name
-from symgen.backends.c.pairs import GROUP_NAMES, group_lines, leading_group
 from symgen.backends.c.statements import CStatements
-from symgen.backends.c.steps import StepTable, table
 from symgen.backends.c.surroundings import apart_name, both_name, rare_name
 from symgen.backends.comments import c_comment_lines
 from symgen.backends.locals import Names, array_arguments, used_locals

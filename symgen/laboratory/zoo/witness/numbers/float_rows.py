@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from symgen.laboratory.zoo.witness.kkt import EquationValues
-from symgen.laboratory.zoo.witness.linear import NOTHING
+from symgen.laboratory.zoo.witness.numbers.linear import NOTHING
 
 # of the largest singular value: what is less is none
 SAME = 1e-8

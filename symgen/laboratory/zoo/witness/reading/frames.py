@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from symgen.laboratory.zoo.witness.expressions import NotReadError
-from symgen.laboratory.zoo.witness.tape import Node, NodeTape
+from symgen.laboratory.zoo.witness.numbers.tape import Node, NodeTape
+from symgen.laboratory.zoo.witness.reading.expressions import NotReadError
 
 Vector = tuple[Node, Node, Node]
 Matrix = tuple[Vector, Vector, Vector]

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from symgen.laboratory.zoo.witness.frames import Vector, cross, dot, transposed, turned
-from symgen.laboratory.zoo.witness.reader import SystemReader
-from symgen.laboratory.zoo.witness.tape import Node
+from symgen.laboratory.zoo.witness.numbers.tape import Node
+from symgen.laboratory.zoo.witness.reading.frames import Vector, cross, dot, transposed, turned
+from symgen.laboratory.zoo.witness.reading.reader import SystemReader
 
 
 @dataclass(frozen=True)

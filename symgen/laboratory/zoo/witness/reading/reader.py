@@ -8,9 +8,10 @@ from functools import cached_property
 from typing import Any
 
 from symgen.laboratory.zoo.dice import Dice
-from symgen.laboratory.zoo.witness.expressions import NotReadError, read_expression
-from symgen.laboratory.zoo.witness.fields import Floats
-from symgen.laboratory.zoo.witness.frames import (
+from symgen.laboratory.zoo.witness.numbers.fields import Floats
+from symgen.laboratory.zoo.witness.numbers.tape import Node, NodeTape
+from symgen.laboratory.zoo.witness.reading.expressions import NotReadError, read_expression
+from symgen.laboratory.zoo.witness.reading.frames import (
     FramePoses,
     Matrix,
     Relative,
@@ -26,7 +27,6 @@ from symgen.laboratory.zoo.witness.frames import (
     transposed,
     turned,
 )
-from symgen.laboratory.zoo.witness.tape import Node, NodeTape
 
 # configurations at which an identity is looked at, and what rounding leaves of it
 TRIES, ROUNDING = 4, 1e-12

@@ -1,0 +1,1 @@
+"""Model files to nodes of the witness: expressions, frames, what they say of motion."""
