@@ -30,7 +30,8 @@ from symgen.closedform.structured import (
 from symgen.model.availability import lacking
 from symgen.model.expressions.expression import Expression, Name
 from symgen.model.kinematics.energy_form import energy_form, points_written
-from symgen.model.model import Allocation, Model, PublishedEquations, PublishedMatrix, PublishedSingularSet
+from symgen.model.model import Allocation, Model
+from symgen.model.published import PublishedEquations, PublishedMatrix, PublishedSingularSet
 from symgen.model.quantities import BASE_PARAMETERS, BASE_REGRESSOR, REGRESSOR, ROWS
 from symgen.records import dataclass
 

@@ -27,14 +27,9 @@ from symgen.closedform.points import RingPoint, generic_points
 from symgen.closedform.singular import essential_factors
 from symgen.closedform.spelling import Speller
 from symgen.model.expressions.expression import Expression
-from symgen.model.model import Matrix as ExpressionMatrix
-from symgen.model.model import (
-    Model,
-    Published,
-    PublishedEquations,
-    PublishedMatrix,
-    PublishedSingularSet,
-)
+from symgen.model.model import Model
+from symgen.model.published import Matrix as ExpressionMatrix
+from symgen.model.published import Published, PublishedEquations, PublishedMatrix, PublishedSingularSet
 from symgen.records import dataclass
 
 IDENTICAL = "identical"

@@ -16,12 +16,12 @@ from symgen.model.configurations.friction_steps import FrictionSteps
 from symgen.model.expressions.expression import Expression
 from symgen.model.inertial_base import InertialBase
 from symgen.model.mechanism import NO_MECHANISM, Mechanism
+from symgen.model.published import Published
 from symgen.model.quantities import FurtherName
 from symgen.naming import c_name
 from symgen.records import dataclass
 
 Range: TypeAlias = tuple[Fraction, Fraction]
-Matrix: TypeAlias = tuple[tuple[Expression, ...], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,45 +178,6 @@ class ReleasedJoint:
     frame: str
     coordinates: tuple[tuple[str, int], ...]
     turns: int
-
-
-@dataclass(frozen=True, slots=True)
-class PublishedMatrix:
-    """A printed matrix (or column) of a quantity, and the corrected form where the print is wrong."""
-
-    equation: str
-    quantity: str
-    value: Matrix
-    corrected: Matrix | None
-    where: tuple[tuple[str, Expression], ...]
-    independent: tuple[str, ...]
-    span: Span | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class PublishedEquations:
-    """Printed equations left = right in q, rates, accelerations, inputs and `multiplier_<row>`."""
-
-    equation: str
-    equations: tuple[tuple[Expression, Expression], ...]
-    corrected: tuple[tuple[Expression, Expression], ...]
-    where: tuple[tuple[str, Expression], ...]
-    span: Span | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class PublishedSingularSet:
-    """The printed set where a quantity does not exist, as the zeros of an expression."""
-
-    equation: str
-    quantity: str
-    independent: tuple[str, ...]
-    where_zero: Expression
-    corrected: Expression | None
-    span: Span | None = None
-
-
-Published: TypeAlias = PublishedMatrix | PublishedEquations | PublishedSingularSet
 
 
 @dataclass(frozen=True, slots=True)

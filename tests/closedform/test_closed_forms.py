@@ -15,7 +15,8 @@ from symgen.closedform.forms import ClosedForm, ClosedForms, derive_closed_forms
 from symgen.closedform.points import RingPoint, generic_points
 from symgen.closedform.spelling import spell_expression
 from symgen.model.load import load_model, load_text
-from symgen.model.model import Model, PublishedMatrix
+from symgen.model.model import Model
+from symgen.model.published import PublishedMatrix
 
 MODELS = Path(__file__).parents[2] / "models"
 

@@ -9,7 +9,8 @@ import pytest
 
 from symgen.model.expressions.expression import Name, Number
 from symgen.model.load import load_text
-from symgen.model.model import Model, PublishedEquations, PublishedMatrix, PublishedSingularSet
+from symgen.model.model import Model
+from symgen.model.published import PublishedEquations, PublishedMatrix, PublishedSingularSet
 
 TEXT = """\
 model: thing

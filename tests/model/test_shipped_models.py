@@ -13,7 +13,8 @@ from shipped import ALL, NAMES
 
 from symgen.model.configurations.mechanics import NumericSystem
 from symgen.model.file.schema import json_schema
-from symgen.model.model import Model, PublishedEquations, PublishedMatrix
+from symgen.model.model import Model
+from symgen.model.published import PublishedEquations, PublishedMatrix
 
 FOLDER = Path(__file__).parents[2] / "models"
 

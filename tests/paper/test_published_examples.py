@@ -17,7 +17,8 @@ from symgen.closedform.points import RingPoint
 from symgen.closedform.published import IDENTICAL, MISPRINTED, ON_MANIFOLD, Verdict, decide_published
 from symgen.model.expressions.expression import Binary, Call, Expression, Negation, Number, Power
 from symgen.model.load import load_model
-from symgen.model.model import Matrix, Model, Published, PublishedEquations, PublishedMatrix, PublishedSingularSet
+from symgen.model.model import Model
+from symgen.model.published import Matrix, Published, PublishedEquations, PublishedMatrix, PublishedSingularSet
 
 MODELS = Path(__file__).parents[2] / "models"
 PAPER = ("skate", "front_car", "front_car_wheelset", "rear_car")

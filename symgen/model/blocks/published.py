@@ -9,7 +9,7 @@ from symgen.model.expressions.names import did_you_mean
 from symgen.model.file.reading import entries, items, member, text_of
 from symgen.model.file.scope import MOTION, Scope
 from symgen.model.file.source import MappingNode, Node, SequenceNode
-from symgen.model.model import Matrix, Published, PublishedEquations, PublishedMatrix, PublishedSingularSet
+from symgen.model.published import Matrix, Published, PublishedEquations, PublishedMatrix, PublishedSingularSet
 from symgen.model.quantities import QUANTITIES
 
 Equations: TypeAlias = tuple[tuple[Expression, Expression], ...]

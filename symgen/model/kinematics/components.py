@@ -7,14 +7,8 @@ from collections.abc import Iterator
 from symgen.model.expressions.expression import Expression
 from symgen.model.expressions.walk import names_in
 from symgen.model.mechanism import is_component
-from symgen.model.model import (
-    Definition,
-    Model,
-    Published,
-    PublishedEquations,
-    PublishedMatrix,
-    PublishedSingularSet,
-)
+from symgen.model.model import Definition, Model
+from symgen.model.published import Published, PublishedEquations, PublishedMatrix, PublishedSingularSet
 
 
 def formulas(model: Model) -> Iterator[Expression]:

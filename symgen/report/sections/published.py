@@ -4,12 +4,7 @@ from __future__ import annotations
 
 from symgen.closedform.published import Verdict
 from symgen.model.expressions.expression import Expression
-from symgen.model.model import (
-    Published,
-    PublishedEquations,
-    PublishedMatrix,
-    PublishedSingularSet,
-)
+from symgen.model.published import Published, PublishedEquations, PublishedMatrix, PublishedSingularSet
 from symgen.report.context import Context, sentence
 from symgen.report.document import Block, Formula, InlineMath, Section, Table, Text, displayed
 from symgen.report.mathematics.from_expression import expression_layout
