@@ -73,6 +73,19 @@ def chunk_values(plan: StudyPlan, chunks: ChunkGrid, number: int) -> Array:
     return np.asarray(first + unit * (last - first))
 
 
+def point_values(plan: StudyPlan, chunks: ChunkGrid, numbers: Sequence[int]) -> Array:
+    """The values of the varied names at points with these numbers, points x names."""
+    if plan.request.sample == GRID:
+        places = [np.unravel_index(number, plan.shape) for number in numbers]
+        axes = [axis_values(plan, k) for k in range(len(plan.over))]
+        values = [[axis[k] for axis, k in zip(axes, at, strict=True)] for at in places]
+        return np.array(values).reshape(len(numbers), -1)
+    side = chunks.sides[0]
+    whole = {number // side for number in numbers}
+    by_chunk = {number: chunk_values(plan, chunks, number) for number in sorted(whole)}
+    return np.stack([by_chunk[number // side][number % side] for number in numbers])
+
+
 def axis_values(plan: StudyPlan, place: int) -> Array:
     """The values of an axis of a grid."""
     axis = plan.over[place].axis

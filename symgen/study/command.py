@@ -16,6 +16,7 @@ from symgen.study.estimate import MOST_UNASKED_STATES, estimated
 from symgen.study.kernels import RECORD_FILE, NoKernelsError, StudyKernels, kernels_hash, verified_result
 from symgen.study.plan import StudyPlan, planned_study
 from symgen.study.shown.compromises import compromise_picture, compromise_table, compromises
+from symgen.study.shown.over_time import band_pictures, time_bands
 from symgen.study.shown.page import study_page
 from symgen.study.shown.pictures import study_pictures
 from symgen.study.shown.summary import StudySummary, settings_of, settings_rows, summarised
@@ -163,10 +164,11 @@ def _finished(
         print(f"{plan.request.model}: {summary.nowhere}", file=sys.stderr)
         _print_failed(failed, summary)
         return 1
-    work.store.finish(folder / ZARR, summary.attributes)
+    bands = () if failed else time_bands(work)
+    work.store.finish(folder / ZARR, summary.attributes, [array for band in bands for array in band.arrays])
     progress("drawing")
     with xarray.open_zarr(folder / ZARR) as results:
-        pictures = study_pictures(plan, results)
+        pictures = [*study_pictures(plan, results), *band_pictures(plan, bands)]
         fits, variants = motor_fits(plan, results), compromises(plan, results)
         pictures += map(compromise_picture, variants)
         tables = (*summary.tables, *sizing_tables(plan, fits), *(compromise_table(plan, results, v) for v in variants))

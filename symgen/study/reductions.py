@@ -22,7 +22,7 @@ BLOCK_STATES = 131_072
 REDUCED_BLOCK_STATES = 2**20
 LARGEST_OF, QUANTILES_OF, PLACE_OF = "largest", "quantiles", "at"
 MAXIMUM_OF, MINIMUM_OF, MEAN_OF, RMS_OF = "max", "min", "mean", "rms"
-QUANTILE = "quantile"
+QUANTILE, TIME = "quantile", "t"
 _ABOUT = {
     MAXIMUM_OF: "largest value",
     MINIMUM_OF: "smallest value",

@@ -12,7 +12,7 @@ import math
 import os
 import shutil
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from symgen.study.asked.request import GRID
 from symgen.study.chunks import ChunkGrid, axis_values
 from symgen.study.plan import StudyPlan, VariedName
-from symgen.study.reductions import ChunkResults, ResultVariable, result_variables
+from symgen.study.reductions import TIME, ChunkResults, ResultVariable, result_variables
 from symgen.study.states import NO_PATH
 
 PARTIAL, ZARR, SETTINGS, DONE_FOLDER = "study.partial", "study.zarr", "study.json", "done"
@@ -127,9 +127,18 @@ class StudyStore:
                 worst = {name: [one and tuple(one) for one in kept] for name, kept in note["worst"].items()}
                 yield number, ChunkNote(statuses, worst)
 
-    def finish(self, target: Path, attributes: Mapping[str, object]) -> None:
-        """Puts the results where they belong and removes the folder."""
-        zarr.open_group(self.folder / ZARR, mode="r+").attrs.update(attributes)
+    def finish(
+        self,
+        target: Path,
+        attributes: Mapping[str, object],
+        further: Sequence[tuple[ResultVariable, NDArray[np.float64]]] = (),
+    ) -> None:
+        """Puts the results, and `further` arrays that no chunk has, where they belong and removes the folder."""
+        group = zarr.open_group(self.folder / ZARR, mode="r+")
+        group.attrs.update(attributes)
+        for one, values in further:
+            _create_array(group, one.name, values.shape, one.dtype, one.dimensions, one.attributes)[:] = values
+        _labels(group, [one for one, _ in further])
         with warnings.catch_warnings():
             # Zarr's third format has no word on it yet; xarray reads it, and warns where it is not there
             warnings.simplefilter("ignore", UserWarning)
@@ -189,16 +198,19 @@ def _create_array(
     )
 
 
-def _labels(group: Any, variables: tuple[ResultVariable, ...]) -> None:
-    """Coordinates of the dimensions that are no axes of the points: names of inputs, levels of quantiles."""
+def _labels(group: Any, variables: Sequence[ResultVariable]) -> None:
+    """Coordinates of the dimensions that are no axes of the points: names of inputs, levels of quantiles, times."""
     by_name = {
         name: labels for one in variables for name, labels in zip(one.dimensions, one.labels, strict=True)
     }
     for name, labels in by_name.items():
+        if name in group:
+            continue
         if isinstance(labels[0], str):
             group.create_array(name, shape=(len(labels),), dtype=str, dimension_names=(name,))[:] = list(labels)
         else:
-            _create_array(group, name, (len(labels),), "f8", (name,), {"long_name": "level"})[:] = labels
+            about = {"long_name": "time along the path", "units": "s"} if name == TIME else {"long_name": "level"}
+            _create_array(group, name, (len(labels),), "f8", (name,), about)[:] = labels
 
 
 def _about(plan: StudyPlan, one: VariedName) -> dict[str, str]:
