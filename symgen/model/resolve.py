@@ -77,13 +77,16 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
     ]  # fmt: skip
     coordinates = read_coordinates(tree, ranges, definitions, used, joint_coordinates)
     made = LoopRows(scope, mechanism, coordinates, without_components(definitions), defaults)
+    before = len(scope.mistakes)
     constraints = (*written, *made.of_loops(tree), *joints.rows, *made.of_wheels(tree))
+    # of loops with mistakes nobody knows how many rows they would have
+    rows = sum(row.kind == "geometric" for row in constraints) if len(scope.mistakes) == before else None
     rough = read_rough_places(scope, tree, mechanism, constraints, defaults)
     names = tuple(coordinate.name for coordinate in coordinates)
     whole = not scope.mistakes
     tolerances = tree.get("tolerances")
     published = read_published(scope, tree, names)
-    paths = read_paths(scope, tree, names, sum(row.kind == "geometric" for row in constraints))
+    paths = read_paths(scope, tree, names, rows)
     model = Model(
         name=_model_name(scope, tree),
         description=one_line(tree.get("description")),

@@ -18,9 +18,11 @@ DEFAULT_SAMPLES = 201
 MAXIMUM_SAMPLES = 100_000
 
 
-def read_paths(scope: Scope, tree: MappingNode, coordinates: tuple[str, ...], rows: int) -> tuple[Path, ...]:
-    """The paths in the order of the file; `rows` geometric ones are known, of loops and joints too."""
-    rows = max(rows, len(entries(member(tree.get("constraints"), "geometric"))))
+def read_paths(scope: Scope, tree: MappingNode, coordinates: tuple[str, ...], rows: int | None) -> tuple[Path, ...]:
+    """The paths in the order of the file; there are so many geometric `rows`, of loops and joints too, if that is
+    known."""
+    if rows is not None:
+        rows = max(rows, len(entries(member(tree.get("constraints"), "geometric"))))
     paths: list[Path] = []
     for key, node in entries(tree.get("paths")):
         mistake = name_mistake(key, "path")
@@ -32,7 +34,7 @@ def read_paths(scope: Scope, tree: MappingNode, coordinates: tuple[str, ...], ro
     return tuple(paths)
 
 
-def _path(scope: Scope, key: ScalarNode, node: Node, coordinates: tuple[str, ...], rows: int) -> Path | None:
+def _path(scope: Scope, key: ScalarNode, node: Node, coordinates: tuple[str, ...], rows: int | None) -> Path | None:
     name = key.value
     duration = constant(scope, member(node, "duration"), f"the duration of path `{name}`")
     count = member(node, "samples")
@@ -65,7 +67,7 @@ def _path(scope: Scope, key: ScalarNode, node: Node, coordinates: tuple[str, ...
         if number is not None:
             start.append((coordinate.value, number))
     given = len(entries(member(node, "conditions")))
-    if 0 < given + rows < len(coordinates):
+    if rows is not None and 0 < given + rows < len(coordinates):
         message = f"path `{name}` has {counted(given, 'condition')} and "
         message += f"{counted(rows, 'geometric constraint')} for {counted(len(coordinates), 'coordinate')}"
         scope.wrong(message, "add conditions until they fix every coordinate", key.span)
