@@ -69,3 +69,14 @@ def test_coordinates_that_move_several_frames_are_told(tmp_path: Path) -> None:
     tip = "frames:\n  tip: {parent: j_4, rotation: [[x, a_0]]}\n"
     (message,) = notices(tmp_path, tip, body="  tip: {mass: 0.3, com: [0, 0.1, 0]}")
     assert message.endswith("give each joint a coordinate of its own")
+
+
+def test_coordinates_without_mass_are_named(tmp_path: Path) -> None:
+    """A lever and a link that drive the first link, and neither has a body."""
+    linkage = "frames:\n  lever: {translation: [0.4, 0, 0], rotation: [[y, p]]}\n"
+    linkage += "  link: {parent: lever, translation: [0, 0, 0.2], rotation: [[y, s]]}\n"
+    linkage += "points:\n  end: {frame: link, at: [0.3, 0, 0.1]}\n  eye: {frame: j_0, at: [0.3, 0, 0.2]}\n"
+    linkage += "loops:\n  pin: {type: point, between: [end, eye]}\n"
+    linkage += "coordinates:\n  p: {unit: rad}\n  s: {unit: rad}\n"
+    (message,) = notices(tmp_path, linkage)
+    assert message.endswith("nothing that p and s alone would move has mass or inertia: give its frame a body")

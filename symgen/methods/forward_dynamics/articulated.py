@@ -234,10 +234,14 @@ def lacking(model: Model, generic: Genericity) -> str:
         return "part of the kinetic energy is written out: describe it by bodies"
     if generic.rank < generic.r:
         return "constraints depend on each other: leave out those that others imply"
+    mechanics = System(model)
     try:
-        ArticulatedFactor(System(model).bodies)
+        ArticulatedFactor(mechanics.bodies)
     except ValueError:
         return "a coordinate moves several frames, or none: give each joint a coordinate of its own"
+    inertias = zip(model.coordinates, mechanics.mass_matrix, strict=True)
+    if names := [c.name for c, row in inertias if all(entry.is_zero for entry in row)]:
+        return f"nothing that {' and '.join(names)} alone would move has mass or inertia: give its frame a body"
     return "the mass matrix is not shown to be positive definite: give masses and inertias a `range` above 0"
 
 
