@@ -46,7 +46,7 @@ def estimate_of(name: str, changes: Mapping[str, float]) -> LinearEstimate:
         target[[one.stays.name for one in base.base].index(parameter)] += value
     count = len(target)
     root = np.diag(KNOWN_TO * (np.abs(target) + 0.01))
-    return LinearEstimate(target, root, (), np.ones(1), 1.0, np.zeros(count), 0.0)
+    return LinearEstimate(target, root, (), np.empty((count, 0)), np.ones(1), 1.0, np.zeros(count), 0.0)
 
 
 def whole_of(name: str, changes: Mapping[str, float]) -> WholeBodies:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from identified_machines import ARM_WITH_FRICTION, WHEEL
+from identified_machines import ARM_WITH_FRICTION, FOUR_BAR_WITH_NAMES, WHEEL
 
 from symgen.identification.combinations import BodyCombinations, base_map, default_like, inertial_values
 from symgen.identification.estimates.file_values import FileValues, body_margins, file_values
@@ -26,7 +26,8 @@ def nearest(text: str, names: tuple[str, ...], changes: dict[str, float], error:
     for name, value in changes.items():
         target[[one.stays.name for one in base.base].index(name)] = value
     count = len(target)
-    estimate = LinearEstimate(target, error * np.eye(count), (), np.ones(1), 1.0, np.zeros(count), 0.0)
+    root, none = error * np.eye(count), np.empty((count, 0))
+    estimate = LinearEstimate(target, root, (), none, np.ones(1), 1.0, np.zeros(count), 0.0)
     return file_values(model, BodyCombinations(base), EstimatedNames(names, (), ()), numbers, estimate)
 
 
@@ -61,6 +62,28 @@ def test_bodies_stay_such_as_can_be(asked: float) -> None:
     numbers = default_like(model, default_values(model.parameters), dict(zip(made.names, made.values, strict=True)))
     assert all(margin > 0 for _, margin in body_margins(model, numbers))
     assert numbers["I_z"] == pytest.approx(0.7 if asked > 0 else 0.1, rel=0.01)
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("text", [ARM_WITH_FRICTION, FOUR_BAR_WITH_NAMES])
+def test_what_is_well_known_holds_where_the_rest_is_impossible(text: str, seed: int) -> None:
+    """Light links, and errors of combinations between 1e-8 and 10: bodies that can be are no further off than the
+    truth, though the file is wrong by half of itself."""
+    model = load_text(text, "machine.yaml")
+    base, numbers = base_parameters(model), default_values(model.parameters)
+    generator = np.random.default_rng(seed)
+    names = tuple(name for name in numbers if name[:2] in ("m_", "J_", "c_"))
+    light = {name: value * (0.02 if name.startswith("J_") else 1.0) for name, value in numbers.items()}
+    truth = base_map(base) @ inertial_values(model, light)
+    count = len(truth)
+    root = np.linalg.qr(generator.normal(size=(count, count)))[0] * np.logspace(-8, 1, count)
+    target = truth + root @ generator.normal(size=count)
+    estimate = LinearEstimate(target, root, (), np.empty((count, 0)), np.ones(1), 1.0, np.zeros(count), 0.0)
+    known = default_like(model, numbers, {name: numbers[name] * generator.uniform(0.3, 1.7) for name in names})
+    made = file_values(model, BodyCombinations(base), EstimatedNames(names, (), ()), known, estimate)
+    assert made.misfit < 2
+    after = default_like(model, known, dict(zip(names, made.values, strict=True)))
+    assert all(margin > 0 for _, margin in body_margins(model, after))
 
 
 def test_bodies_in_the_plane_need_no_other_moments() -> None:

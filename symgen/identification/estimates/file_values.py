@@ -8,7 +8,8 @@ consistent inertial parameter identification, 2018): masses are positive, princi
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from scipy import optimize
@@ -31,7 +32,9 @@ ROUNDED_MOMENT = 1e-9
 # Of its size, what the cost still changes by where an optimisation ends.
 OPTIMISED = 1e-10
 # How often it begins anew where it ended, with a cost of the size that it has there.
-ROUNDS_OF_OPTIMISING = 3
+ROUNDS_OF_OPTIMISING = 8
+# Steps of differences, in standard deviations of parameters before the log.
+DIFFERENCE = 1e-6
 # Steps of an optimisation at most.
 MOST_OPTIMISING_STEPS = 200
 
@@ -78,8 +81,7 @@ class _Nearest:
         self._names = (*names.inertial, *names.linear)
         self._before = np.array([known[name] for name in self._names])
         self._combinations = combinations
-        closed = estimate.closed_columns
-        self._closed, self._target = closed, estimate.values[closed]
+        self._estimate, self._target = estimate, estimate.values[estimate.closed_columns]
         self._whitening = whitening(estimate)
         by_name = {p.name: p for p in model.parameters}
         self._held = np.array([deviation_before(by_name[name], known[name]) for name in self._names])
@@ -108,7 +110,7 @@ class _Nearest:
         """Base parameters and linear ones (c) that the log determines."""
         numbers = self._numbers(values)
         combined = self._combinations.at(numbers)
-        return np.concatenate([combined, [numbers[name] for name in self._linear]])[self._closed]
+        return self._estimate.shown(np.concatenate([combined, [numbers[name] for name in self._linear]]))
 
     def _distances(self, values: Array) -> Array:
         """In standard deviations: from the estimates, and from the file."""
@@ -128,21 +130,64 @@ class _Nearest:
         return tuple(dict.fromkeys(name for (name, now), (_, then) in pairs if then > 0 >= now))
 
     def _possible(self) -> Array:
-        """The nearest values of bodies that can be, from those of the file on."""
-        values = self._before
+        """The nearest values of bodies that can be, from those of the file on.
+
+        They are looked for along directions in which distances change alike, as what the data say of one combination
+        may be 10^8 times as much as what they say of another, and parameter by parameter, where products bend these
+        directions.
+        """
+        values, along = self._before, np.diag(self._held)
         for _ in range(ROUNDS_OF_OPTIMISING):
-            # the optimiser takes functions of about one for what they are
-            size = self._cost(values) or 1.0
-            solved = optimize.minimize(
-                lambda shares, size: self._cost(self._before + shares * self._held) / size,
-                (values - self._before) / self._held,
-                args=(size,),
-                method="SLSQP",
-                constraints=[{"type": "ineq", "fun": lambda shares: self._spare(self._before + shares * self._held)}],
-                options={"maxiter": MOST_OPTIMISING_STEPS, "ftol": OPTIMISED},
-            )
-            values = np.asarray(self._before + solved.x * self._held, dtype=np.float64)
+            size = self._cost(values)
+            directions = math.sqrt(size) * inverse_root(self._slopes(self._distances, values))
+            for units in (directions, along):
+                values = self._nearer(values, units)
+            if not self._cost(values) < (1 - OPTIMISED) * size:
+                break
         return values
+
+    def _nearer(self, values: Array, units: Array) -> Array:
+        """Values of less cost of bodies that can be, by steps in these units (k, k); the same where none are found."""
+        size = self._cost(values)
+        if not size > 0:
+            return values
+        moved = self._optimised(values, units, size)
+        return values if self._impossible(moved) or not self._cost(moved) < size else moved
+
+    def _optimised(self, start: Array, units: Array, size: float) -> Array:
+        """The nearest values of bodies that can be, by steps in units (k, k) and for a cost of this size: the optimiser
+        takes both for what they are where they are about one."""
+
+        def at(steps: Array) -> Array:
+            return np.asarray(start + units @ steps, dtype=np.float64)
+
+        def slope(steps: Array) -> Array:
+            values = at(steps)
+            return np.asarray(2 * self._distances(values) @ self._slopes(self._distances, values) @ units / size)
+
+        spare = {
+            "type": "ineq",
+            "fun": lambda steps: self._spare(at(steps)),
+            "jac": lambda steps: self._slopes(self._spare, at(steps)) @ units,
+        }
+        solved = optimize.minimize(
+            lambda steps: self._cost(at(steps)) / size,
+            np.zeros(len(start)),
+            jac=slope,
+            method="SLSQP",
+            constraints=[spare],
+            options={"maxiter": MOST_OPTIMISING_STEPS, "ftol": OPTIMISED},
+        )
+        return at(solved.x)
+
+    def _slopes(self, of: Callable[[Array], Array], values: Array) -> Array:
+        """The derivatives of a function by the parameters, by differences."""
+        here, columns = of(values), []
+        for k, step in enumerate(DIFFERENCE * self._held):
+            moved = values.copy()
+            moved[k] += step
+            columns.append((of(moved) - here) / step)
+        return np.stack(columns, axis=1)
 
     def _cost(self, values: Array) -> float:
         return float(np.sum(self._distances(values) ** 2))

@@ -38,6 +38,7 @@ MOST_ROUNDS = 50
 class LinearEstimate:
     """Values (c) with a root (c, c) of their covariance; NaN where the columns leave a value open.
 
+    What is open adds to values that are not: `shares` (closed, open) are the coefficients of its columns by the others.
     `sigmas` (m) are the residuals of drives, `condition` that of the weighted columns at unit length, `weakest` (c)
     the combination of unit length that these show least.  `outliers` is the share of samples that count less than half.
     """
@@ -45,6 +46,7 @@ class LinearEstimate:
     values: Array
     root: Array
     open_columns: tuple[int, ...]
+    shares: Array
     sigmas: Array
     condition: float
     weakest: Array
@@ -65,6 +67,10 @@ class LinearEstimate:
         """Those whose values were determined."""
         return [k for k in range(len(self.values)) if k not in self.open_columns]
 
+    def shown(self, whole: Array) -> Array:
+        """What the values that were determined would be for `whole` columns (c) or rows (c, ...) of values."""
+        return np.asarray(whole[self.closed_columns] + self.shares @ whole[list(self.open_columns)], dtype=np.float64)
+
     def predicted(self, seen: Observations) -> Array:
         """Inputs (S, m) less what is known."""
         return np.asarray(seen.columns @ np.nan_to_num(self.values), dtype=np.float64)
@@ -81,11 +87,12 @@ def estimated(seen: Observations) -> LinearEstimate:
     values, root = np.full(count, math.nan), np.zeros((count, count))
     values[kept], root[np.ix_(kept, kept)] = rounds.solution / lengths, rounds.covariance_root() / lengths[:, None]
     root[list(left)] = math.nan
+    shares = rounds.shares(seen.columns[..., left]) / lengths[:, None]
     condition, least = rounds.condition()
     weakest = np.zeros(count)
     weakest[kept] = least
     outliers = float(np.mean(rounds.weights < 0.5))
-    return LinearEstimate(values, root, left, rounds.sigmas, condition, weakest, outliers)
+    return LinearEstimate(values, root, left, shares, rounds.sigmas, condition, weakest, outliers)
 
 
 class _Rounds:
@@ -126,11 +133,9 @@ class _Rounds:
         # what drives share in one direction is one error
         spare = max(1, samples * self._directions - count) / (samples * drives)
         triangle = linalg.qr(_flat(columns), mode="r")[0][:count]
-        white = inverse @ triangle.T * math.sqrt(float(np.mean(bounded**2)) / spare)
         middle = _of_neighbours(np.einsum("smc,sm->sc", columns, _as_if_left_out(columns, bounded)))
-        alike = np.einsum("ck,kl,cl->c", inverse, middle, inverse)
-        factors = np.sqrt(np.maximum(1.0, alike / np.maximum(np.sum(white**2, axis=1), 1e-300)))
-        return np.asarray(white * factors[:, None], dtype=np.float64)
+        spread = triangle.T * math.sqrt(float(np.mean(bounded**2)) / spare)
+        return np.asarray(inverse @ _larger(spread, middle), dtype=np.float64)
 
     def condition(self) -> tuple[float, Array]:
         """The condition number of the weighted columns at unit length, and the combination that they show least."""
@@ -141,12 +146,19 @@ class _Rounds:
     def _weighted(self) -> Array:
         return np.asarray(self._columns / self.sigmas[:, None], dtype=np.float64)
 
+    def shares(self, others: Array) -> Array:
+        """Coefficients (c, k) of other columns (S, m, k) by these: what their values add to the solution."""
+        return self._solved_for(others)
+
     def _solved(self) -> Array:
+        return self._solved_for(self._inputs[..., None])[:, 0]
+
+    def _solved_for(self, wanted: Array) -> Array:
         root = np.sqrt(self.weights)[:, None]
-        flat = _flat(self._weighted() * root[..., None])
+        flat, wanted = (_flat(of / self.sigmas[:, None] * root[..., None]) for of in (self._columns, wanted))
         lengths = np.linalg.norm(flat, axis=0)
-        solved = np.linalg.lstsq(flat / lengths, (self._inputs / self.sigmas * root).ravel(), rcond=None)[0]
-        return np.asarray(solved / lengths, dtype=np.float64)
+        solved = np.linalg.lstsq(flat / lengths, wanted, rcond=None)[0]
+        return np.asarray(solved / lengths[:, None], dtype=np.float64)
 
     def _deviations(self) -> Array:
         sizes = np.median(np.abs(self.residuals), axis=0) / MEDIAN_DEVIATION
@@ -156,7 +168,8 @@ class _Rounds:
 
 def _flat(columns: Array) -> Array:
     """Columns (S, m, c) as one matrix (S m, c)."""
-    return columns.reshape(-1, columns.shape[2])
+    samples, drives, count = columns.shape
+    return columns.reshape(samples * drives, count)
 
 
 def _as_if_left_out(columns: Array, residuals: Array) -> Array:
@@ -165,6 +178,17 @@ def _as_if_left_out(columns: Array, residuals: Array) -> Array:
     # a sample that the fit rests on alone says nothing of its error
     left += np.eye(columns.shape[1]) * np.maximum(0.0, LEAST_SPARE - np.linalg.eigvalsh(left)[:, 0])[:, None, None]
     return np.asarray(np.linalg.solve(left, residuals[..., None])[..., 0], dtype=np.float64)
+
+
+def _larger(root: Array, other: Array) -> Array:
+    """A root (c, c) of the larger of two covariances in each of the directions in which both are uncorrelated.
+
+    The one is given by its root, lower triangular, the other (c, c) as it is.  What hardly shows by itself may show
+    well together with others: errors that are scaled one by one would put these out of reach.
+    """
+    half = linalg.solve_triangular(root, other, lower=True)
+    ratios, directions = linalg.eigh(linalg.solve_triangular(root, half.T, lower=True))
+    return np.asarray(root @ directions * np.sqrt(np.maximum(1.0, ratios)), dtype=np.float64)
 
 
 def _of_neighbours(scores: Array) -> Array:

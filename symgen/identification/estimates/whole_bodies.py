@@ -80,7 +80,7 @@ def whole_bodies(
     unknowns = linalg.block_diag(scaled.unknowns, np.diag(held))
     possible = np.concatenate([scaled.possible, np.array([known[name] for name in names.linear]) / held])
     closed = estimate.closed_columns
-    combined = linalg.block_diag(base_map(base), np.eye(len(held)))[closed] @ unknowns
+    combined = estimate.shown(linalg.block_diag(base_map(base), np.eye(len(held))) @ unknowns)
     white = whitening(estimate)
     problem = _problem(white @ combined, white @ estimate.values[closed], possible, scaled)
     x, method = _solved(problem)

@@ -48,7 +48,9 @@ class FilterSettings:
 
     def smoothed(self, values: Array) -> Array:
         """The values (N, ...) through the low-pass, forwards and backwards."""
-        return np.asarray(signal.sosfiltfilt(self._sections, values, axis=0), dtype=np.float64)
+        # beyond both ends values go on as they came: what is shorter than the filter's memory shows inside
+        beyond = min(len(values) - 1, int(LEFT_OUT * self.rate / self.cutoff))
+        return np.asarray(signal.sosfiltfilt(self._sections, values, axis=0, padlen=beyond), dtype=np.float64)
 
     def kept(self, values: Array) -> Array:
         """The low-passed values (N, ...) at the samples that are kept."""
