@@ -9,7 +9,7 @@ CAMPAIGN_FILES := $(CAMPAIGN:%=models/%.yaml)
 MODELS := $(wildcard models/*.yaml)
 MECHANISMS := $(filter-out $(CAMPAIGN_FILES),$(MODELS))
 
-.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms bench-derivatives generation stress skipping passes constants trig zoo zoo-case zoo-sweeps docs api site lock robots jax fmpy semidefinite study
+.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms bench-derivatives generation stress stress-derivatives skipping passes constants trig zoo zoo-case zoo-sweeps docs api site lock robots jax fmpy semidefinite study
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -76,6 +76,10 @@ trig: $(VENV)/installed
 stress: $(VENV)/installed
 	$(RECORDED) run stress; status=$$?; \
 	    $(BIN)/python tools/stress_pages.py generated $(CAMPAIGN_FILES) && exit $$status
+
+# Derivatives of u beside those of the paper's formulas, where these fail: docs/stress/derivatives.md, in minutes.
+stress-derivatives: $(VENV)/installed
+	$(BIN)/python tools/stress_derivatives_page.py models/rapkm_2rrr_rr.yaml
 
 # Every model on every emulated core, the goals of cost, the example firmware.
 firmware: $(VENV)/installed

@@ -19,7 +19,7 @@ IN_FULL = "rapkm_2rrr_rr"  # the model whose methods are drawn quantity by quant
 def main(generated: Path, names: list[str]) -> None:
     """Writes docs/stress/README.md and its charts."""
     TARGET.mkdir(parents=True, exist_ok=True)
-    for old in TARGET.glob("*.svg"):
+    for old in TARGET.glob("*.*.svg"):
         old.unlink()
     charts: dict[str, list[str]] = {}
     for name in names:

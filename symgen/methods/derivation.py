@@ -34,7 +34,8 @@ from symgen.methods.idle_coordinates import idle_coordinates
 from symgen.methods.least_inputs import least_inputs
 from symgen.methods.redundancy.allocation import InputAllocation
 from symgen.model.quantities import DIRECTION
-from symgen.symbolic.calculus import derivative_along, gradient, jacobian
+from symgen.symbolic.accumulation import shortest_jacobian
+from symgen.symbolic.calculus import derivative_along, gradient
 from symgen.symbolic.matrix import (
     Matrix,
     Vector,
@@ -378,7 +379,7 @@ class Derivation:
 
     def inverse_dynamics_jacobian(self, by: Vector) -> Matrix:
         """The derivatives of u by symbols, a column each."""
-        return jacobian(self.graph, self.inverse_dynamics, by)
+        return shortest_jacobian(self.graph, self.inverse_dynamics, by)
 
     def inverse_dynamics_gradient(self) -> Vector:
         """The derivatives of w^T u by q, q_dot and q_ddot, in one reverse sweep."""

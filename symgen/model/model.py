@@ -287,6 +287,8 @@ class Model:
     derivatives: bool = False
     together: tuple[tuple[str, ...], ...] = ()
     measured: tuple[str, ...] = ()
+    # standard deviations of what their encoders say, in their units; none where all count alike
+    deviations: tuple[Fraction, ...] = ()
     measures_places: bool = True
     task: tuple[TaskCoordinate, ...] = ()
     task_leaves: TaskLeaves = TaskLeaves()
@@ -306,6 +308,11 @@ class Model:
         """The numbers of the measured coordinates, in the order of the file."""
         names = [c.name for c in self.coordinates]
         return tuple(names.index(name) for name in self.measured)
+
+    @property
+    def measured_scales(self) -> tuple[Fraction, ...]:
+        """What differences of the measured coordinates are multiplied by before they are squared: 1 at most."""
+        return tuple(min(self.deviations) / one for one in self.deviations) or (Fraction(1),) * len(self.measured)
 
     @property
     def further_arguments(self) -> tuple[FurtherArgument, ...]:

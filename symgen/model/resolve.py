@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import Literal
@@ -104,6 +104,7 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
         together=_together(tree.get("outputs")),
         independent_velocities=_coordinate_list(scope, tree, "independent_velocities", names),
         measured=_coordinate_list(scope, tree, "measured", names) or _driven(tree.get("outputs"), inputs),
+        deviations=_deviations(scope, tree.get("measured")),
         task=read_task(scope, tree),
         identify=read_identify(scope, tree, parameters),
         derivatives=text_of(tree.get("derivatives")) == "true",
@@ -206,7 +207,8 @@ def _driven(outputs: Node | None, inputs: tuple[Input, ...]) -> tuple[str, ...]:
 def _coordinate_list(scope: Scope, tree: MappingNode, key: str, names: tuple[str, ...]) -> tuple[str, ...]:
     chosen: list[str] = []
     node = tree.get(key)
-    for item in items(node):
+    listed: Sequence[Node] = [name for name, _ in entries(node)] or items(node)
+    for item in listed:
         name = text_of(item)
         if name is None:
             continue
@@ -220,7 +222,20 @@ def _coordinate_list(scope: Scope, tree: MappingNode, key: str, names: tuple[str
         else:
             chosen.append(name)
     # With a faulty name the count would be wrong too; one mistake is enough.
-    return tuple(chosen) if len(chosen) == len(items(node)) else ()
+    return tuple(chosen) if len(chosen) == len(listed) else ()
+
+
+def _deviations(scope: Scope, node: Node | None) -> tuple[Fraction, ...]:
+    """What encoders are off by, where the file says it."""
+    deviations: list[Fraction] = []
+    for key, value in entries(node):
+        number = constant(scope, value, f"the standard deviation of `{key.value}`")
+        if number is not None and number <= 0:
+            scope.wrong(f"the standard deviation of `{key.value}` is not positive", "write what its encoder is off by, "
+                        "such as 1e-4", value.span)  # fmt: skip
+            number = None
+        deviations += [] if number is None else [number]
+    return tuple(deviations) if len(deviations) == len(entries(node)) else ()
 
 
 def _configuration(

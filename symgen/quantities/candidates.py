@@ -19,7 +19,7 @@ from symgen.methods.forward_dynamics.minor_motion import CANCELLATION_WORTH, LAR
 from symgen.methods.forward_dynamics.motion import Motion
 from symgen.methods.forward_dynamics.motions import BY_FRAMES, cost_factor, motions_alone, motions_along
 from symgen.methods.graphs import derived_on, moved
-from symgen.methods.method import INPUTS, Candidate
+from symgen.methods.method import INPUTS, Candidate, counted_weight
 from symgen.methods.quantity import scalars
 from symgen.methods.selection import FACTORING_LIMIT, Methods, cheapest, select
 from symgen.methods.spaces import derivations
@@ -71,7 +71,7 @@ class Candidates:
             made.values(),
             self._validity,
             _counted,
-            lambda _: None if minors is None else self._factored(minors),
+            lambda best: None if minors is None else self._factored(minors, best),
             # F is unbounded near its singularities: there it is the one determinant of the minors that keeps its digits
             lambda one: self._weight(one) / (MOST_WORTH if entry.needs == PARTITION and one is minors else 1),
         )
@@ -179,11 +179,12 @@ class Candidates:
         graph = self._mechanics.graph
         return {title: replace(one, derived=moved(graph, one.derived)) for title, one in made.items()}
 
-    def _factored(self, minors: Candidate) -> Candidate | None:
+    def _factored(self, minors: Candidate, best: Candidate) -> Candidate | None:
         """What was derived along minors multiplied out and factored, where that is short.
 
         Minors of rows that depend on each other become small together: multiplied out, their squares would cancel.  So
-        do those of a task that leaves directions open, beside its singularities.
+        do those of a task that leaves directions open, beside its singularities.  Derivatives of steps that are no
+        minors, or of equations, have nothing to cancel: beside them it has to count less.
         """
         of_task = BY_NAME[minors.derived.name].needs in (TASK_RATES, TASK_OPEN)
         cancels = self._generic.rank < self._generic.r or (of_task and self._mechanics.model.task_leaves.rates > 0)
@@ -191,7 +192,9 @@ class Candidates:
             return None
         kept = self._spaces[self._methods.workspace].derivations["minors"].whole
         outputs = self._mechanics.factoring.shorten(minors.derived.outputs, kept)
-        return replace(minors, derived=replace(minors.derived, outputs=outputs), along="factored")
+        made = replace(minors, derived=replace(minors.derived, outputs=outputs), along="factored")
+        of_steps = minors.derived.name in FUNCTIONS and best is not minors
+        return None if of_steps and _counted(made) >= _counted(best) else made
 
     def _validity(self, one: Candidate) -> Validity:
         """Of a method; along a null space only ranks are divided by."""
@@ -202,7 +205,12 @@ class Candidates:
 
 
 def _counted(one: Candidate) -> int:
-    """The counted cost of outputs and tested denominators, as they stand on a graph that others share."""
+    """The counted cost of outputs and tested denominators, as they stand on a graph that others share.
+
+    Derivatives of equations in absolute angles hold sums of angles, which cost less than they do as they stand.
+    """
+    if one.derived.name in FUNCTIONS:
+        return counted_weight(one.derived)
     return cost(scalars(one.derived)).weight
 
 

@@ -11,13 +11,15 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import islice, permutations
+from itertools import chain, islice, permutations
 
 from symgen.linear_algebra.guards import Guard
+from symgen.mechanics.absolute_angles import absolute_angles
 from symgen.mechanics.system import System
 from symgen.methods.graphs import moved
 from symgen.methods.method import counted_weight
 from symgen.methods.quantity import Quantity, scalars
+from symgen.model.quantities import ROWS
 from symgen.records import dataclass
 from symgen.symbolic.evaluate import Evaluator, inner_point
 from symgen.symbolic.hidden_zeros import ROUNDING_OF_ZEROS
@@ -25,7 +27,7 @@ from symgen.symbolic.identity import same_values
 from symgen.symbolic.matrix import Vector
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.transplant import rebuilt, transplanted
-from symgen.symbolic.traverse import reached, substitute
+from symgen.symbolic.traverse import ANGLE_WEIGHT, reached, substitute
 
 # Scalars that are made in trying the headings of one quantity, each of which makes it anew.
 MOST_TURNED = 50_000
@@ -35,11 +37,13 @@ MOST_TURNED = 50_000
 class _Heading:
     """The place of an angle by which something heads, and of two coordinates that carry it along axes of the world.
 
-    What holds neither these coordinates nor their rates has no `carried`.
+    What holds neither these coordinates nor their rates has no `carried`.  Where several legs stand on the ground each
+    has such an angle: `others` turn with the first.
     """
 
     angle: int
     carried: tuple[int, ...]
+    others: tuple[int, ...] = ()
 
 
 def in_moving_axes(mechanics: System, derived: Quantity) -> Quantity:
@@ -47,11 +51,17 @@ def in_moving_axes(mechanics: System, derived: Quantity) -> Quantity:
     held = reached(scalars(derived))
     best, least = derived, counted_weight(derived)
     numbers = _TurnedNumbers(mechanics, derived.outputs)
-    for heading in islice(_headings(mechanics, held), MOST_TURNED // (1 + len(held))):
+    headings = _headings(mechanics, held)
+    if ROWS[derived.name].is_derivative:
+        # u and q_ddot are made of differences of these angles; what holds lambda is not
+        headings = chain(headings, _common_headings(mechanics, held))
+    for heading in islice(headings, MOST_TURNED // (1 + len(held))):
+        # what evaluates as many sines as before is no shorter but by chance
+        worth = ANGLE_WEIGHT if heading.others else 1
         # beside what it is made of, some parts find others to share, and some the longer functions they are to replace
         for graph in (mechanics.graph, Graph()) if numbers.may_turn(heading) else ():
             turned = _turned(mechanics, derived, heading, graph)
-            if turned is not None and (weight := counted_weight(turned)) < least:
+            if turned is not None and (weight := counted_weight(turned)) <= least - worth:
                 best, least = turned, weight
     return best
 
@@ -68,13 +78,15 @@ class _TurnedNumbers:
         """Whether the outputs may do no more than turn with it; rounding leaves more apart of none that does."""
         mechanics = self._mechanics
         turning = mechanics.q[heading.angle]
+        others = [mechanics.q[k] for k in heading.others]
         vectors = [[vector[k] for k in heading.carried] for vector in (mechanics.qd, mechanics.qdd)]
-        if any(node.op != "symbol" for node in (turning, *vectors[0], *vectors[1])):
+        if any(node.op != "symbol" for node in (turning, *others, *vectors[0], *vectors[1])):
             return True
         name = str(turning.payload)
         angle = self._point.get(name, 0.0)
         cosine, sine = math.cos(angle), math.sin(angle)
-        point = {**self._point, name: 0.0}
+        turned = {str(node.payload): self._point.get(str(node.payload), 0.0) - angle for node in others}
+        point = {**self._point, **turned, name: 0.0}
         for carried in vectors if heading.carried else ():
             along, across = (str(node.payload) for node in carried)
             x, y = (self._point.get(one, 0.0) for one in (along, across))
@@ -108,6 +120,18 @@ def _headings(mechanics: System, held: Collection[Scalar]) -> Iterator[_Heading]
         yield from (heading for heading in headings if _turns_rows(mechanics, heading))
 
 
+def _common_headings(mechanics: System, held: Collection[Scalar]) -> Iterator[_Heading]:
+    """By the angles of all legs, each of which may be the one that is taken to 0."""
+    parents = absolute_angles(mechanics.q, mechanics.constraint_jacobian).parents
+    legs = [
+        k
+        for k, (c, parent) in enumerate(zip(mechanics.model.coordinates, parents, strict=True))
+        if c.is_angle and parent is None and mechanics.q[k] in held
+    ]
+    for angle in legs if len(legs) > 1 else ():
+        yield _Heading(angle, (), tuple(k for k in legs if k != angle))
+
+
 def _turns_rows(mechanics: System, heading: _Heading) -> bool:
     """Whether the rows of B only turn with it, which is soon told; most pairs have nothing to do with it."""
     graph, angle = mechanics.graph, mechanics.q[heading.angle]
@@ -130,10 +154,10 @@ def _forward(mechanics: System, heading: _Heading, entries: Sequence[Scalar]) ->
 
 def _turned(mechanics: System, derived: Quantity, heading: _Heading, graph: Graph) -> Quantity | None:
     """The quantity at heading 0 with what comes in turned back, made on a graph; None where that is another one."""
-    angle = mechanics.q[heading.angle]
-    (own,) = transplanted(graph, [angle])
+    angle, others = mechanics.q[heading.angle], [mechanics.q[k] for k in heading.others]
+    own, *beside = transplanted(graph, [angle, *others])
     cosine, sine = graph.trig("cos", own), graph.trig("sin", own)
-    back = {angle: graph.zero}
+    back = {angle: graph.zero} | {other: one - own for other, one in zip(others, beside, strict=True)}
     for vector in (mechanics.qd, mechanics.qdd) if heading.carried else ():
         along, across = (vector[k] for k in heading.carried)
         x, y = transplanted(graph, [along, across])

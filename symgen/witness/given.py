@@ -5,6 +5,7 @@ Of a task that leaves directions open it is the least motion, and what leaves th
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import casadi
@@ -20,13 +21,22 @@ SOLVING_STEPS = 8
 
 @dataclass(frozen=True)
 class GivenFunctions:
-    """Functions of q (k) with their derivatives (k x n), and symbols for their values, rates and accelerations."""
+    """Functions of q (k) with their derivatives (k x n), and symbols for their values, rates and accelerations.
+
+    Where these disagree, differences count in `scales` (k).
+    """
 
     functions: casadi.SX
     slopes: casadi.SX
+    scales: Sequence[float]
     values: casadi.SX
     rates: casadi.SX
     accelerations: casadi.SX
+
+    def inverse(self, directions: casadi.SX, rank: int) -> casadi.SX:
+        """(W S N)^+ W: what is nearest along directions N (n x n), W the diagonal matrix of the scales."""
+        weights = casadi.diag(casadi.SX(list(self.scales)))
+        return pseudoinverse(weights @ self.slopes @ directions, rank) @ weights
 
 
 def quantities_of_given(model: Model, s: Lagrange, ranks: ConfigurationRanks) -> dict[str, casadi.SX]:
@@ -35,12 +45,14 @@ def quantities_of_given(model: Model, s: Lagrange, ranks: ConfigurationRanks) ->
     if model.measured:
         S = casadi.SX.eye(model.n)[list(model.measured_places), :]
         given = (s.further[name] for name in ("q_m", "qd_m", "qdd_m"))
-        quantities |= _determined(model, s, ranks, GivenFunctions(S @ s.q, S, *given), "measured")
+        scales = [float(scale) for scale in model.measured_scales]
+        quantities |= _determined(model, s, ranks, GivenFunctions(S @ s.q, S, scales, *given), "measured")
     if model.task:
         slopes = casadi.densify(casadi.jacobian(s.task, s.q))
         quantities |= {"task_position": s.task, "task_velocity": slopes @ s.qd, "task_jacobian": slopes}
         given = (s.further[name] for name in ("x_t", "xd_t", "xdd_t"))
-        quantities |= _determined(model, s, ranks, GivenFunctions(s.task, slopes, *given), "task")
+        alike = [1.0] * len(model.task)
+        quantities |= _determined(model, s, ranks, GivenFunctions(s.task, slopes, alike, *given), "task")
     return quantities
 
 
@@ -54,7 +66,7 @@ def _determined(
     projector, leaves = casadi.SX.eye(n) - B_plus @ s.jacobian, model.task_leaves
     least_motion = of == "task" and bool(leaves.rates) and not leaves.idle
     if k >= n - ranks.constraints or least_motion:
-        inverse = pseudoinverse(slopes @ projector, min(k, n - ranks.constraints))
+        inverse = given.inverse(projector, min(k, n - ranks.constraints))
         velocity = inverse @ given.rates
         least = -B_plus @ (casadi.substitute(s.jacobian_dot, s.qd, velocity) @ velocity)
         left = given.accelerations - along(slopes, s.q, velocity) @ velocity
@@ -75,7 +87,7 @@ def _configuration(s: Lagrange, given: GivenFunctions, rank: int) -> casadi.SX:
     B = s.jacobian[:rows, :]
     B_plus = pseudoinverse(B, rank)
     least = -B_plus @ s.residual
-    moving = pseudoinverse(S @ (casadi.SX.eye(n) - B_plus @ B), min(S.shape[0], n - rank))
+    moving = given.inverse(casadi.SX.eye(n) - B_plus @ B, min(S.shape[0], n - rank))
     after = s.q + least + moving @ (given.values - given.functions - S @ least)
     step = casadi.Function("step", [s.q, given.values, s.p], [after])
     result = s.q

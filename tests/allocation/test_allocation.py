@@ -22,6 +22,8 @@ from symgen.linear_algebra.reflected_inputs import ReflectedInputs
 from symgen.methods.derivation import Derivation
 from symgen.methods.redundancy.allocation import InputAllocation
 from symgen.methods.spaces import derivations
+from symgen.model.load import load_text
+from symgen.report.sections.allocation import allocated_inputs
 from symgen.symbolic.evaluate import Evaluator
 from symgen.verify.reference.arithmetic.linear import column, norm, solve
 from symgen.verify.reference.arithmetic.tape import ball, precision
@@ -312,6 +314,25 @@ def test_one_axis_by_hand() -> None:
     status, u = weighted.run("inverse_dynamics", weighted.state([0.3], qdd=[2.0]))
     # least 2 u_1^2 + u_2^2 with u_1 + 2 u_2 = 10: (10/9, 40/9); z^T W z = 1 for z = (2, -1)/3
     assert u == pytest.approx([10 / 9 + 2, 40 / 9 - 1], rel=1e-15)
+
+
+def test_kinks_are_where_an_input_reaches_its_limit() -> None:
+    """u_1 + 2 u_2 = 5 x_ddot: (1, 2) x_ddot up to u_1 = 3, then u_2 grows by 5/2 instead of 2."""
+    made = system(models.AXIS, "limits: {left: [-3, 3], right: [-20, 20]}")
+
+    def inputs(acceleration: float) -> list[float]:
+        return made.run("inverse_dynamics", made.state([0.0], qdd=[acceleration]))[1]
+
+    for middle, slopes in ((1.0, (2.0, 2.0)), (3.0, (2.0, 2.5)), (5.0, (2.5, 2.5)), (-3.0, (2.5, 2.0))):
+        below, here, above = (inputs(middle + step)[1] for step in (-0.25, 0.0, 0.25))
+        assert ((here - below) / 0.25, (above - here) / 0.25) == pytest.approx(slopes, rel=1e-12)
+    for block, many in (("scale: true", True), ("preload: 3", False)):
+        limits = "limits: {left: [-3, 3], right: [-9, 9]}"
+        model = load_text(f"{models.AXIS}allocation: {{{limits}, {block}}}\n", "axis.yaml")
+        assert model.allocation is not None
+        section = repr(allocated_inputs(model, model.allocation, determined=False))
+        assert "have kinks" in section
+        assert ("A further one is where" in section) is many
 
 
 def test_limits_that_contradict_each_other_leave_the_preload_where_it_is() -> None:

@@ -13,6 +13,8 @@ import pytest
 import shipped
 from numpy.typing import NDArray
 
+from symgen.backends.operations import count_operations
+from symgen.lowering.schedule import schedule
 from symgen.mechanics.genericity import genericity, parameter_values
 from symgen.mechanics.system import System
 from symgen.methods.derivatives.differentiated import FUNCTIONS
@@ -24,7 +26,7 @@ from symgen.model.quantities import ROWS
 from symgen.quantities.select import Selection, derive_quantities
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.identity import every_identity_evaluated, same_values
-from symgen.symbolic.traverse import reached
+from symgen.symbolic.traverse import ANGLE_WEIGHT, QUOTIENT_WEIGHT, reached
 from symgen.verify.reference.reference import Reference, State
 
 Array = NDArray[np.float64]
@@ -197,6 +199,29 @@ def test_equations_and_the_steps_that_solve_them_have_the_same_derivatives(name:
     first, second = (np.array(Evaluator(one)(values)) for one in outputs)
     assert np.abs(second).max() > 0
     assert np.allclose(first, second, rtol=1e-9, atol=1e-9 * np.abs(second).max())
+
+
+# The whole Jacobian of u and a gradient, in operations of u: a sine with its cosine counts 30, a division or root 6.
+GOALS = {"front_car": 1.4, "delta": 2.3, "rapkm_2rrr_rr": 2.5, "arm7": 5.5, "gough_stewart": 6.0}
+GOAL_OF_GRADIENTS = 2.2
+
+
+@pytest.mark.parametrize("name", shipped.sparing(GOALS, ("rapkm_2rrr_rr", "arm7", "gough_stewart")))
+def test_derivatives_count_no_more_than_their_goals(name: str) -> None:
+    u, swept, whole = (
+        weighted_count(shipped.model(name), quantity)
+        for quantity in ("inverse_dynamics", "inverse_dynamics_gradient", "inverse_dynamics_jacobian")
+    )
+    assert u < whole <= GOALS[name] * u
+    assert u < swept <= GOAL_OF_GRADIENTS * u
+
+
+def weighted_count(model: Model, quantity: str) -> int:
+    """What the kernel of a quantity takes, derived by itself."""
+    selection = derive_quantities(model, (quantity,))
+    (kernel,) = schedule(selection.mechanics, selection.quantities, ("float64",))["float64"].kernels
+    counts = count_operations(kernel.statements)
+    return counts.add + counts.mul + QUOTIENT_WEIGHT * (counts.div + counts.sqrt) + ANGLE_WEIGHT * counts.sincos
 
 
 @pytest.mark.campaign

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import re
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 
 from symgen.backends.about import statuses_of
 from symgen.cli.main import main
+from symgen.diagnostics import ModelError
 from symgen.ir.kernel import Status
 from symgen.model.load import load_text
 
@@ -151,8 +153,12 @@ def test_rates_and_accelerations_are_those_of_the_motion(tmp_path: Path) -> None
     assert np.allclose(acceleration, bends, atol=1e-8, rtol=0)
 
 
-def test_of_too_many_encoders_the_nearest_configuration_is_taken(tmp_path: Path) -> None:
-    module = kernels(linkage("[c, a]"), tmp_path)
+@pytest.mark.parametrize(
+    ("measured", "share"), [("[c, a]", 1), ("{c: 2e-4, a: 5e-4}", 2.5), ("{c: 3e-3, a: 1e-4}", 1 / 30)]
+)
+def test_of_too_many_encoders_the_nearest_configuration_is_taken(measured: str, share: float, tmp_path: Path) -> None:
+    """An encoder that is off by a `share` of the other's error counts as many times more, squared."""
+    module = kernels(linkage(measured), tmp_path)
     near = closed_by_hand(np.array(0.6))
     readings = near[[2, 0]] + [0.02, -0.03]
     configuration = module.configuration_from_measured(readings, near)
@@ -164,7 +170,7 @@ def test_of_too_many_encoders_the_nearest_configuration_is_taken(tmp_path: Path)
         length = mp.hypot(x, y)
         b = mp.atan2(y, x) + mp.acos((length**2 + L2**2 - L3**2) / (2 * length * L2))
         c = mp.atan2(L1 * mp.sin(crank) + L2 * mp.sin(b), L1 * mp.cos(crank) + L2 * mp.cos(b) - L0)
-        return (c - readings[0]) ** 2 + (crank - readings[1]) ** 2
+        return (share * (c - readings[0])) ** 2 + (crank - readings[1]) ** 2
 
     # the slope of the distance along the motion vanishes
     with mp.workdps(50):
@@ -172,6 +178,28 @@ def test_of_too_many_encoders_the_nearest_configuration_is_taken(tmp_path: Path)
     assert bend > 0
     assert abs(slope / bend) < 1e-14
     assert away(configuration[0]) < away(near[0])
+
+
+@pytest.mark.parametrize(
+    ("measured", "message"),
+    [
+        ("{c: 0, a: 1}", "the standard deviation of `c` is not positive"),
+        ("{c: 1e-4, d: 1e-4}", "`d` in `measured` is no coordinate"),
+        ("{c: 1e-4, a: b}", "the standard deviation of `a`"),
+    ],
+)
+def test_mistakes_of_standard_deviations_are_told(measured: str, message: str) -> None:
+    with pytest.raises(ModelError, match=re.escape(message)):
+        load_text(linkage(measured), "linkage.yaml")
+
+
+@pytest.mark.campaign
+@pytest.mark.toolchain
+def test_weighed_kernels_pass_verification(tool: Callable[[str], str], tmp_path: Path) -> None:
+    tool("gcc")
+    path = tmp_path / "model.yaml"
+    path.write_text(linkage("{c: 2e-4, a: 5e-4}"), encoding="utf-8")
+    assert main([str(path), "--only", "c,python", "--states", "8", "--quiet", "--out", str(tmp_path)]) == 0
 
 
 @pytest.mark.slow

@@ -14,6 +14,7 @@ from symgen.model.quantities import MOTIONS
 from symgen.quantities import moving_axes
 from symgen.quantities.moving_axes import in_moving_axes
 from symgen.quantities.select import Selection, derive_quantities
+from symgen.symbolic.angles.sharing import share_angles
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.traverse import cost, reached
 
@@ -120,3 +121,51 @@ def test_what_was_derived_beside_does_not_hide_what_a_turn_is_worth(tmp_path: Pa
     alone = derive_quantities(model, MOTIONS, dict.fromkeys(MOTIONS, "minor"))
     for one, other in zip(selection.quantities, alone.quantities, strict=True):
         assert cost(scalars(one)).weight <= 1.02 * cost(scalars(other)).weight
+
+
+# Two arms on a level table that carry one plate: everything turns with both of their first angles.
+PLATE = """
+model: plate
+parameters: {m: {value: 2}, J: {value: 0.1}, l: {value: 0.5}, slope: {value: 0.2}}
+coordinates: {a: {unit: rad}, b: {unit: rad}, c: {unit: rad}, d: {unit: rad}}
+kinetic_energy: >-
+  J*(a_dot**2 + b_dot**2 + c_dot**2 + d_dot**2)/2
+  + m*(a_dot**2 + cos(b)*a_dot*(a_dot + b_dot) + (a_dot + b_dot)**2)/2
+  + m*(c_dot**2 + cos(d)*c_dot*(c_dot + d_dot) + (c_dot + d_dot)**2)/2
+potential_energy: POTENTIAL
+constraints:
+  geometric:
+    along: l*(cos(a) + cos(a + b) - cos(c) - cos(c + d)) - 0.1
+    across: l*(sin(a) + sin(a + b) - sin(c) - sin(c + d))
+inputs: {left: {acts_on: {a: 1}}, right: {acts_on: {c: 1}}}
+configuration: {a: 1.9, b: -0.8, c: 0.8, d: 0.9}
+"""
+TABLE, TILTED = (PLATE.replace("POTENTIAL", potential) for potential in ("0", "m*slope*sin(a + b)"))
+
+
+@pytest.mark.parametrize(("text", "pairs"), [(TABLE, 1), (TILTED, 0)])
+def test_derivatives_turn_with_the_angles_of_all_legs(
+    text: str, pairs: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One of these is 0 in axes of its leg, which saves its sine and cosine; not where a slope is felt."""
+    path = tmp_path / "plate.yaml"
+    path.write_text(text, encoding="utf-8")
+    model = load_model(path)
+
+    def jacobian() -> Quantity:
+        return derive_quantities(model, ("inverse_dynamics_jacobian",)).quantities[0]
+
+    turned = jacobian()
+    monkeypatch.setattr(moving_axes, "_common_headings", lambda *_: iter(()))
+    plain = jacobian()
+    assert _pairs(plain) - _pairs(turned) == pairs
+    dice = random.Random(2)
+    names = sorted({str(n.payload) for n in reached((*plain.outputs, *turned.outputs)) if n.op == "symbol"})
+    for _ in range(5):
+        at = {name: dice.uniform(0.3, 1.5) for name in names}
+        assert Evaluator(turned.outputs)(at) == pytest.approx(Evaluator(plain.outputs)(at), rel=1e-9, abs=1e-9)
+
+
+def _pairs(quantity: Quantity) -> int:
+    outputs = scalars(quantity)
+    return cost(share_angles(outputs[0].graph, outputs)).angles

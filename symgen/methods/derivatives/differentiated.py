@@ -16,7 +16,8 @@ from symgen.methods.table import Use, methods
 from symgen.methods.workspace import Workspace
 from symgen.model.quantities import DIRECTION, MOTIONS, ROWS, WEIGHT_ARGUMENTS
 from symgen.records import dataclass
-from symgen.symbolic.calculus import derivative_along, jacobian
+from symgen.symbolic.accumulation import shortest_jacobian
+from symgen.symbolic.calculus import derivative_along
 from symgen.symbolic.matrix import Matrix, Vector, dot, flatten
 
 # What is the derivative of what.
@@ -38,7 +39,7 @@ def derivatives(mechanics: System, quantity: str, values: Vector, swept: bool) -
     weights = _weights(mechanics, quantity)
     if weights and swept:
         values = tuple(dot(graph, one, values) for one in weights)
-    slopes = jacobian(graph, values, by)
+    slopes = shortest_jacobian(graph, values, by)
     outputs = flatten(slopes)
     if weights and not swept:
         outputs = tuple(dot(graph, one, column) for one in weights for column in zip(*slopes, strict=True))

@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from symgen.records import dataclass
-from symgen.symbolic.calculus import gradient, jacobian
+from symgen.symbolic.accumulation import shortest_jacobian
+from symgen.symbolic.calculus import gradient
 from symgen.symbolic.matrix import Matrix, Vector, dot, matmul
 from symgen.symbolic.scalar import Graph, Scalar
 from symgen.symbolic.traverse import substitute
@@ -31,7 +32,7 @@ class Slopes:
 def all_slopes(shares: Matrix, residuals: Vector, by: Vector) -> Slopes:
     """The derivatives of all unknowns by symbols, a row each."""
     graph = by[0].graph
-    entries = jacobian(graph, residuals, by)
+    entries = shortest_jacobian(graph, residuals, by)
     return Slopes(matmul(graph, shares, entries, len(by)), entries)
 
 

@@ -30,7 +30,8 @@ from symgen.methods.system import MethodInput
 from symgen.methods.workspace import Workspace
 from symgen.model.quantities import ROWS, FurtherName
 from symgen.records import dataclass
-from symgen.symbolic.calculus import gradient, jacobian
+from symgen.symbolic.accumulation import shortest_jacobian
+from symgen.symbolic.calculus import gradient
 from symgen.symbolic.matrix import Matrix, Vector, dot, flatten, identity, matvec, subtract_vectors, transpose
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import substitute
@@ -95,21 +96,21 @@ def _held_equations(mechanics: System, core: CoreEquations, forces: Vector, weig
         held.update(zip(symbols, substitute(graph, substitute(graph, values, real), dict(held)), strict=True))
         return symbols
 
-    shares = jacobian(graph, matvec(graph, weights, solved.u), forces)
+    shares = shortest_jacobian(graph, matvec(graph, weights, solved.u), forces)
     values, first_input = core.all_values(solved.particular, homogeneous=False), len(columns) - len(solved.u)
     if not core.internal:
         return _HeldEquations(_residuals(mechanics.balance, columns, hold(values)), shares, held, solved.guards)
     null = core.all_values(solved.null[0], homogeneous=True)
     z = null[first_input:]
-    length = dot(graph, z, z)
-    share = dot(graph, z, values[first_input:]) / length
+    inverse = 1 / dot(graph, z, z)
+    share = dot(graph, z, values[first_input:]) * inverse
     multipliers = tuple(x - y * share for x, y in zip(values, null, strict=True))[:first_input]
     inputs = hold(solved.u)
     rho = _residuals(mechanics.balance, columns, (*hold(multipliers), *inputs))
     along = hold(tuple(gradient(graph, dot(graph, inputs, solved.u), forces)))
     minus_sigma = _residuals((graph.zero,) * mechanics.n, columns, hold(null))
     weighted = matvec(graph, weights, z)
-    with_internal = tuple((*row, -x / length) for row, x in zip(shares, weighted, strict=True))
+    with_internal = tuple((*row, -x * inverse) for row, x in zip(shares, weighted, strict=True))
     return _HeldEquations((*rho, dot(graph, along, minus_sigma)), with_internal, held, solved.guards)
 
 

@@ -27,7 +27,8 @@ from symgen.model.blocks.frames import ONE
 from symgen.model.model import Input, Model
 from symgen.model.quantities import MOTIONS, ROWS, FurtherName
 from symgen.records import dataclass
-from symgen.symbolic.calculus import derivative_along, jacobian
+from symgen.symbolic.accumulation import shortest_jacobian
+from symgen.symbolic.calculus import derivative_along
 from symgen.symbolic.matrix import Matrix, Vector, flatten, matmul, matvec, subtract_vectors, transpose
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import substitute
@@ -114,8 +115,8 @@ class _ImplicitMotions(ByTheorem):
 def _of_accelerations(system: _Loaded) -> Matrix:
     """-[K, Y]; K is symmetric."""
     graph, n = system.mechanics.graph, system.mechanics.n
-    answers = jacobian(graph, system.accelerations.outputs, system.loads)
-    pressed = jacobian(graph, system.multipliers, system.loads)
+    answers = shortest_jacobian(graph, system.accelerations.outputs, system.loads)
+    pressed = shortest_jacobian(graph, system.multipliers, system.loads)
     return tuple(
         (*(-answers[min(i, j)][max(i, j)] for j in range(n)), *(-row[i] for row in pressed)) for i in range(n)
     )
@@ -124,7 +125,7 @@ def _of_accelerations(system: _Loaded) -> Matrix:
 def _of_multipliers(system: _Loaded) -> Matrix:
     """-[Y^T, -Y^T G Y]."""
     mechanics, graph = system.mechanics, system.mechanics.graph
-    pressed = jacobian(graph, system.multipliers, system.loads)
+    pressed = shortest_jacobian(graph, system.multipliers, system.loads)
     weighted = matmul(graph, pressed, mechanics.mass_matrix, mechanics.n)
     held = matmul(graph, weighted, transpose(pressed, mechanics.n), mechanics.r)
     return tuple((*(-x for x in row), *other) for row, other in zip(pressed, held, strict=True))

@@ -38,12 +38,21 @@ GivenBy: TypeAlias = Callable[["System"], Given]
 
 
 def measured(mechanics: System) -> Given:
-    """What encoders say of some coordinates."""
-    places, units = mechanics.model.measured_places, identity(mechanics.graph, mechanics.n)
-    functions = tuple(mechanics.q[k] for k in places)
-    slopes = tuple(units[k] for k in places)
-    values, rates, accelerations = mechanics.measured
-    return Given(functions, slopes, places, values, rates, accelerations, Status.MEASURED_RANK)
+    """What encoders say of some coordinates, in parts of what each is off by where the model says that."""
+    model, units = mechanics.model, identity(mechanics.graph, mechanics.n)
+    places, scales = model.measured_places, model.measured_scales
+    values, rates, accelerations = (
+        tuple(x * scale for x, scale in zip(given, scales, strict=True)) for given in mechanics.measured
+    )
+    return Given(
+        tuple(mechanics.q[k] * scale for k, scale in zip(places, scales, strict=True)),
+        tuple(tuple(x * scale for x in units[k]) for k, scale in zip(places, scales, strict=True)),
+        tuple(k if scale == 1 else -1 for k, scale in zip(places, scales, strict=True)),
+        values,
+        rates,
+        accelerations,
+        Status.MEASURED_RANK,
+    )
 
 
 def task(mechanics: System) -> Given:

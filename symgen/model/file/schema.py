@@ -364,7 +364,11 @@ MODEL = RecordShape(
             "quantities to generate, or all; {together: [...]}: these in one function as well",
         ),
         Key("independent_velocities", _NAMES, "coordinates whose rates serve in F and the minimal form"),
-        Key("measured", _NAMES, "coordinates that encoders say, from which the others are found"),
+        Key(
+            "measured",
+            Either((_NAMES, TableShape(ExpressionShape()))),
+            "coordinates that encoders say, from which the others are found; with standard deviations to weigh them",
+        ),
         Key(
             "identify",
             RecordShape(

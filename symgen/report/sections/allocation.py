@@ -125,6 +125,7 @@ def _limits(allocation: Allocation) -> list[Block]:
             u,
             equals(z_k, ZERO),
         ),
+        _kinks(allocation),
     ]
 
 
@@ -156,7 +157,22 @@ def _nearest_within(allocation: Allocation) -> list[Block]:
             start,
             InlineCode("LIMITS"),
         ),
+        _kinks(allocation),
     ]
+
+
+def _kinks(allocation: Allocation) -> Block:
+    """Where the inputs are not differentiable by the motion."""
+    lower, upper, own = (Scripts(Letter(x), k) for x in ("l", "h", "u"))
+    text = (
+        "As functions of the motion the inputs have kinks: where one of them reaches or leaves its limit, {} or {}, "
+        "and where one that is at its limit takes the place of another. {} is continuous there, its derivatives are "
+        "not; everywhere else it is smooth. {} is that of one side."
+    )
+    slots = (equals(own, lower), equals(own, upper), u, InlineCode("inverse_dynamics_jacobian"))
+    if not allocation.scale:
+        return paragraph(text, *slots)
+    return paragraph(f"{text} A further one is where {{}}.", *slots, equals(Letter("ρ"), ONE))
 
 
 def _utilisation(allocation: Allocation) -> list[Block]:
@@ -181,7 +197,13 @@ def _utilisation(allocation: Allocation) -> list[Block]:
             rho,
         ),
         displayed((equals(rho, largest),), "rho"),
-        paragraph("Here {} runs over all choices of {} columns of {}.", J, minus_sum((delta_diff,), (ONE,)), M),
+        paragraph(
+            "Here {} runs over all choices of {} columns of {}; where another one becomes the largest, {} has a kink.",
+            J,
+            minus_sum((delta_diff,), (ONE,)),
+            M,
+            rho,
+        ),
     ]
     if allocation.scale:
         supplied, text = juxtaposed(M, bold("a")), "Where it is more, {} produces {} times the load {} beside {}."

@@ -203,7 +203,8 @@ def _given(context: Context) -> list[Block]:
     blocks: list[Block] = []
     if model.measured:
         names = listed(tuple(name_layout(name) for name in model.measured))
-        blocks.append(paragraph("Measured are {}; the other coordinates are found from these.", names))
+        weighed = ", weighed by the standard deviations of their encoders" if model.deviations else ""
+        blocks.append(paragraph(f"Measured are {{}}; the other coordinates are found from these{weighed}.", names))
     if model.task:
         equations = tuple(equation(name_layout(x.name), expression_layout(x.expression)) for x in model.task)
         one = len(model.task) == 1

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import Any
 
-from flint import arb_mat, ctx
+from flint import arb, arb_mat, ctx
 
-from symgen.verify.reference.arithmetic.linear import column, identity, norm, right_pseudoinverse, rows_of
+from symgen.verify.reference.arithmetic.linear import column, norm, right_pseudoinverse
 from symgen.verify.reference.evaluation import Evaluation
 
 # Seconds after which encoders are read, or a task is to be met.
@@ -45,8 +45,11 @@ class GivenValues:
 
 def _measured(e: Evaluation) -> GivenValues:
     """A moment later, at rates and accelerations as they are."""
-    selected = rows_of(identity(e.system.n), e.system.model.measured_places)
-    still = arb_mat(selected.nrows(), e.system.n)
+    model, n = e.system.model, e.system.n
+    scales = [arb(scale.numerator) / scale.denominator for scale in model.measured_scales]
+    scaled = zip(model.measured_places, scales, strict=True)
+    selected = arb_mat([[scale * (place == j) for j in range(n)] for place, scale in scaled])
+    still = arb_mat(selected.nrows(), n)
     return GivenValues(
         lambda q: (selected * column(q), selected),
         lambda _: still,
