@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 import os
+import re
 import shutil
 import sys
 import textwrap
@@ -25,6 +26,8 @@ _CLEAR_LINE = "\r\x1b[K"
 USUAL_WIDTH = 80
 # Columns before a table, and between two columns.
 _MARGIN = 2 + 3
+# Lines of a file in a message, and the marks below them.
+_EXCERPT = re.compile(r" *\d* *\| ")
 SPELLED = "symgen-spelled"
 _SPELLINGS = {"─": "-", "−": "-", "·": "*", "×": "x", "√": "sqrt", "≠": "!=", "≤": "<=", "≥": ">=", "→": "->"}
 _SPELLINGS |= {"\u0303": "~", "\u0307": "_dot", "\u0308": "_ddot"}  # accents that stand behind their letter
@@ -142,6 +145,25 @@ def written_table(folder: Path, files: Sequence[Path]) -> str:
 def terminal_width(stream: TextIO) -> int | None:
     """The columns of the terminal that a stream leads to; None where it leads elsewhere."""
     return _width(stream) if stream.isatty() else None
+
+
+def fitted(text: str, stream: TextIO) -> str:
+    """The text as it is, or for a terminal with long lines folded at words; excerpts of files stay."""
+    width = terminal_width(stream)
+    if width is None:
+        return text
+    lines = text.splitlines(keepends=True)
+    return "".join(line if len(line) <= width or _EXCERPT.match(line) else _hanging(line, width) for line in lines)
+
+
+def _hanging(line: str, width: int) -> str:
+    """A line over several, what goes on indented by more."""
+    own = line[: len(line) - len(line.lstrip())]
+    ending = "\n" if line.endswith("\n") else ""
+    parts = textwrap.wrap(
+        line, width, subsequent_indent=f"{own}    ", break_long_words=False, break_on_hyphens=False
+    )
+    return "\n".join(parts) + ending
 
 
 def notice_line(file: str, notice: Notice) -> str:

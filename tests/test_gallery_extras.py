@@ -11,7 +11,7 @@ from gallery_extras import FOLDER, NAMED, PAGE, PERIOD, TURNING, add_extras, mov
 
 from symgen.drawing.pose import MachinePose
 from symgen.model.configurations.mechanics import NumericSystem
-from symgen.model.load import load_model
+from symgen.model.load import load_model, load_text
 
 ROOT = Path(__file__).parent.parent
 MODELS = ROOT / "models"
@@ -38,7 +38,8 @@ def test_a_motion_keeps_to_the_constraints(name: str) -> None:
 
 
 def test_models_without_frames_do_not_move() -> None:
-    assert moving(load_model(MODELS / "skate.yaml")) is None
+    text = (MODELS / "skate.yaml").read_text(encoding="utf-8")
+    assert moving(load_text(text[: text.index("\npicture:")], "skate.yaml")) is None
 
 
 def test_every_machine_of_the_page_has_its_file_named() -> None:
@@ -55,7 +56,8 @@ def test_links_lead_to_equations_and_motions(tmp_path: Path) -> None:
     page.write_text("\n".join(lines), encoding="utf-8")
     add_extras(tmp_path, MODELS)
     skate, scara = page.read_text(encoding="utf-8").split("\n\n")
-    assert skate == "[models/skate.yaml](../models/skate.yaml) · [equations](gallery/skate.equations.html)"
+    named = "[models/skate.yaml](../models/skate.yaml)"
+    assert skate == f"{named} · [equations](gallery/skate.equations.html) · [motion](gallery/skate.motion.html)"
     assert scara.rstrip().endswith("(gallery/scara.equations.html) · [motion](gallery/scara.motion.html)")
     assert "Singular configurations" in (tmp_path / FOLDER / "skate.equations.html").read_text(encoding="utf-8")
     assert '"spindle"' in (tmp_path / FOLDER / "scara.motion.html").read_text(encoding="utf-8")

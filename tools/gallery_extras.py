@@ -63,7 +63,7 @@ def _extras(path: Path) -> Iterator[tuple[str, str]]:
 
 def moving(model: Model) -> str | None:
     """A page that plays a motion of the machine; None without frames."""
-    if not model.mechanism.frames:
+    if not model.pictured.frames:
         return None
     pose = MachinePose(model)
     shown = scene(model, pose.parameters, [tuple(q) for q in swinging(model, pose.size)])

@@ -19,9 +19,9 @@ HEAD = """# Gallery
 
 Written by `tools/gallery_page.py` from `models/` and `generated/`.
 
-Machines given by bodies are drawn where their start leads; driven joints are filled. A count of operations is that of
+Machines are drawn where their start leads; driven joints are filled. A count of operations is that of
 the kernel in `generated/`, a pair of sine and cosine being one and changes of sign not counted. On the site
-(`make site`) each machine has the report with its equations here, and those that are drawn move.
+(`make site`) each machine has the report with its equations here, and moves.
 
 """
 

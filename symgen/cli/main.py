@@ -38,7 +38,7 @@ from symgen.model.quantities import BASE_PARAMETERS
 from symgen.output.write import begin_writing, changed_folders, compare, recover_folders, write_files
 from symgen.registered import USUAL
 from symgen.runtime.processes import ToolError
-from symgen.terminal import SPELLED, Progress, notice_line, summary_table, terminal_width, written_table
+from symgen.terminal import SPELLED, Progress, fitted, notice_line, summary_table, terminal_width, written_table
 
 # Read by OpenBLAS and MKL where NumPy loads them, which is later.
 BLAS_THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
@@ -327,7 +327,7 @@ def _each_model(models: Sequence[Path], options: Options, quiet: bool, finish: C
         if other != path:
             raise WrongUseError(f"{other} and {path} are both models named {result.model.name}")
         for notice in () if quiet else result.notices:
-            print(notice_line(str(path), notice), file=sys.stderr)
+            print(fitted(notice_line(str(path), notice), sys.stderr), file=sys.stderr)
         if result.failures:
             print(f"{path}: verification failed, nothing is written", file=sys.stderr)
             print(*(f"  {failure}" for failure in result.failures), sep="\n", file=sys.stderr)

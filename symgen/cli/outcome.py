@@ -14,7 +14,7 @@ from symgen.diagnostics import ModelError, SymgenBug
 from symgen.generation.packages import EXTRA_OF, to_install
 from symgen.generation.results import WrongUseError
 from symgen.runtime.processes import ToolError
-from symgen.terminal import Progress
+from symgen.terminal import Progress, fitted
 
 # Exit codes: all went well, a model is wrong, or the command or symgen itself is.
 DONE, MODEL_WRONG, WRONG_USE = 0, 1, 2
@@ -70,7 +70,7 @@ def guarded(work: Callable[[], int]) -> int:
     try:
         return work()
     except ModelError as error:
-        print(error.render(), end="", file=sys.stderr)
+        print(fitted(error.render(), sys.stderr), end="", file=sys.stderr)
         return MODEL_WRONG
     except (WrongUseError, OSError):
         raise

@@ -1,7 +1,8 @@
 """Inputs that act on the machine itself: forces at points and along cables as arrows, torques on frames by their names.
 
 The rate that an input works on is linear in velocities and turning rates; their coefficients are the force at each
-place and the torque on each frame for an input of 1.
+place and the torque on each frame for an input of 1.  An input that is given by what it does to several coordinates is
+a force where a force of 1 does the same.
 """
 
 from __future__ import annotations
@@ -9,6 +10,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+
+import numpy as np
 
 from symgen.drawing.pose import NEXT_TO_NOTHING, MachinePose, Place
 from symgen.model.configurations.gradient import Gradients
@@ -31,6 +34,25 @@ def drawn_forces(pose: MachinePose) -> Iterator[DrawnForce]:
     for one in pose.model.inputs:
         if one.velocity is not None:
             yield from _of_input(pose, one)
+        elif len(one.acts_on) > 1 and (force := _of_column(pose, one)) is not None:
+            yield force
+
+
+def _of_column(pose: MachinePose, one: Input) -> DrawnForce | None:
+    """The force d of 1 at the first frame or point whose place moves by J q_dot, where J^T d is the column."""
+    index = {coordinate.name: k for k, coordinate in enumerate(pose.model.coordinates)}
+    definitions = {definition.name: definition.value for definition in pose.model.definitions}
+    gradients = Gradients(pose.values, {}, definitions, lambda name: (pose.component(component(name)), {}))
+    column = np.zeros(len(index))
+    for coordinate, factor in one.acts_on:
+        column[index[coordinate]] = gradients.of(factor)[0]
+    for owner, place in pose.places.items():
+        jacobian = np.array([[form.get(k, 0.0) for k in index.values()] for form in pose.place_rate(owner)])
+        x, y, z = map(float, np.linalg.lstsq(jacobian.T, column, rcond=NEXT_TO_NOTHING)[0])
+        left = float(np.abs(np.array([x, y, z]) @ jacobian - column).max())
+        if abs(math.hypot(x, y, z) - 1) < NEXT_TO_NOTHING and left < NEXT_TO_NOTHING * float(np.abs(column).max()):
+            return DrawnForce(one.name, place, (x, y, z))
+    return None
 
 
 def _of_input(pose: MachinePose, one: Input) -> Iterator[DrawnForce]:

@@ -46,7 +46,7 @@ def kinematics_at(model: Model, values: Mapping[str, float]) -> Kinematics[float
     """The frames and points of a model at these values of coordinates and parameters."""
     index = {coordinate.name: i for i, coordinate in enumerate(model.coordinates)}
     definitions = {definition.name: definition.value for definition in model.definitions}
-    return Kinematics(model.mechanism, FloatArithmetic(Gradients(values, index, definitions)), False)
+    return Kinematics(model.pictured, FloatArithmetic(Gradients(values, index, definitions)), False)
 
 
 class MachinePose:
@@ -59,7 +59,7 @@ class MachinePose:
     def __init__(
         self, model: Model, parameters: Mapping[str, float] | None = None, q: Sequence[float] | None = None
     ) -> None:
-        self.model, self.mechanism = model, model.mechanism
+        self.model, self.mechanism = model, model.pictured
         self.parameters = parameter_values(System(model)) if parameters is None else dict(parameters)
         q = assembly_of(model).places[0].q if q is None else q
         self._names = [coordinate.name for coordinate in model.coordinates]
@@ -79,7 +79,11 @@ class MachinePose:
 
     def is_still(self, owner: str) -> bool:
         """Whether a point, or the origin of a frame, stays where it is, whatever moves."""
-        return not any(value for form in self._kinematics.position_rate(owner) for value in form.values())
+        return not any(value for form in self.place_rate(owner) for value in form.values())
+
+    def place_rate(self, owner: str) -> Rates[Form]:
+        """How the place of a point, or of the origin of a frame, moves in the world: coefficients of the rates."""
+        return self._kinematics.position_rate(owner)
 
     def component(self, one: Component) -> float:
         """A component of a point or frame that is no rate."""

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain
+from itertools import chain, product
 
 from symgen.drawing.lengths import drawn_lengths
 from symgen.drawing.links import LinkPlaces
@@ -40,10 +40,23 @@ class Hoop:
 
 @dataclass(frozen=True, slots=True)
 class MovingLink:
-    """A link by its places in the axes of a turned frame, from its origin; those of the world are where it stands."""
+    """A link by its places in the axes of a turned frame, from its origin; those of the world are where it stands.
+
+    One that solids stand for is not `shown`: its places say how far it reaches.
+    """
 
     frame: int
     places: tuple[Place, ...]
+    shown: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class MovingSolid:
+    """What a part looks like: corners in the axes of a turned frame, and faces by the numbers of their corners."""
+
+    frame: int
+    corners: tuple[Place, ...]
+    faces: tuple[tuple[int, ...], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +108,7 @@ class Scene:
     turned: tuple[int, ...]
     balls: tuple[Ball, ...]
     hoops: tuple[Hoop, ...]
+    solids: tuple[MovingSolid, ...]
     stand: Stand
     places: tuple[tuple[Place, ...], ...]
     axes: tuple[tuple[tuple[float, ...], ...], ...]
@@ -102,7 +116,7 @@ class Scene:
 
 def scene(model: Model, parameters: Mapping[str, float], motion: Sequence[Sequence[float]]) -> Scene | None:
     """The mechanism along the motion; None for a model without frames."""
-    mechanism = model.mechanism
+    mechanism = model.pictured
     if not mechanism.frames:
         return None
     names = (*(frame.name for frame in mechanism.frames), *(point.name for point in mechanism.points))
@@ -111,6 +125,7 @@ def scene(model: Model, parameters: Mapping[str, float], motion: Sequence[Sequen
     links = LinkPlaces(pose)
     used = {*links.places, *links.root.values(), *(body.frame for body in mechanism.bodies)}
     used |= {wheel.frame for wheel in mechanism.wheels} | {frame.parent for frame in mechanism.frames}
+    used |= {solid.frame for solid in mechanism.solids}
     turned = tuple(k for k, frame in enumerate(mechanism.frames) if frame.name in used)
     places, axes = [], []
     for q in motion:
@@ -129,7 +144,7 @@ def scene(model: Model, parameters: Mapping[str, float], motion: Sequence[Sequen
             )
             if carrier != WORLD
         ),
-        tuple(MovingLink(number[name], _in_axes(pose, name, there)) for name, there in links.places.items()),
+        tuple(_links(pose, links, number)),
         tuple(_joints(pose, number)),
         (
             *(MovingTie(tie.kind, (number[tie.ends[0]], number[tie.ends[1]])) for tie in mechanism.ties),
@@ -138,10 +153,23 @@ def scene(model: Model, parameters: Mapping[str, float], motion: Sequence[Sequen
         turned,
         _balls(mechanism, parameters, number),
         tuple(Hoop(number[w.frame], evaluate(w.radius, parameters), w.axle) for w in mechanism.wheels),
+        tuple(MovingSolid(number[one.frame], one.corners, one.faces) for one in mechanism.solids),
         _stand(view_of(pose)),
         tuple(places),
         tuple(axes),
     )
+
+
+def _links(pose: MachinePose, links: LinkPlaces, number: Mapping[str, int]) -> Iterator[MovingLink]:
+    """Bars and plates, and boxes around solids, which stand for the links that they belong to."""
+    solids = pose.mechanism.solids
+    covered = {links.root[solid.frame] for solid in solids} - {WORLD}
+    for name, places in links.places.items():
+        yield MovingLink(number[name], _in_axes(pose, name, places), name not in covered)
+    for solid in solids:
+        low, high = (tuple(map(end, zip(*solid.corners, strict=True))) for end in (min, max))
+        corners = ((x, y, z) for x, y, z in product(*zip(low, high, strict=True)))
+        yield MovingLink(number[solid.frame], tuple(corners), shown=False)
 
 
 def _in_axes(pose: MachinePose, frame: str, places: Sequence[Place]) -> tuple[Place, ...]:

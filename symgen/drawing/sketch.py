@@ -10,16 +10,17 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from symgen.drawing.forces import drawn_forces
+from symgen.drawing.forces import DrawnForce, drawn_forces
 from symgen.drawing.lengths import drawn_lengths
 from symgen.drawing.links import LinkPlaces
-from symgen.drawing.pose import DrawnJoint, MachinePose, Place
+from symgen.drawing.pose import NEXT_TO_NOTHING, DrawnJoint, MachinePose, Place
 from symgen.drawing.view import Flat, View, view_of
 from symgen.model.expressions.walk import evaluate
+from symgen.model.kinematics.triples import cross, inner
 from symgen.model.mechanism import WORLD
 
-Role: TypeAlias = Literal["link", "base", "tie", "spring", "cable", "rail", "wheel", "axis", "force"]
-Mark: TypeAlias = Literal["ground", "joint", "driven", "slider", "driven slider", "ball", "pin", "point"]
+Role: TypeAlias = Literal["link", "base", "tie", "spring", "cable", "rail", "wheel", "tyre", "axis", "force"]
+Mark: TypeAlias = Literal["ground", "guide", "joint", "driven", "slider", "driven slider", "ball", "pin", "point"]
 # Sides of the polygon that stands for a circle.
 ROUND = 48
 # Directions of links that add up to less are balanced.
@@ -44,7 +45,7 @@ class Stroke:
 
 @dataclass(frozen=True, slots=True)
 class Symbol:
-    """A mark at a place; `along` is the direction of a slider."""
+    """A mark at a place; `along` is the direction of a slider, or of the guide that it stands in."""
 
     mark: Mark
     place: Flat
@@ -79,14 +80,16 @@ def sketch(pose: MachinePose) -> MachineSketch:
 
 def sketch_in(pose: MachinePose, view: View) -> MachineSketch:
     """The picture of a machine in a certain view."""
-    links = _Links(pose, view)
-    arrows, inputs = _forces(pose, view)
+    forces = tuple(drawn_forces(pose))
+    links = _Links(pose, view, frozenset(force.input for force in forces))
+    arrows, inputs = _forces(pose, view, forces)
     legs, lengths = _lengths(pose, view)
+    axes, bars = tuple(_world(pose, view)), tuple(links.strokes())
+    # a plate would hide them
+    covered = any(bar.closed and _is_inside(view.flat((0.0, 0.0, 0.0)), bar.places) for bar in bars)
+    below, above = ((), axes) if covered else (axes, ())
     return MachineSketch(
-        (
-            *(*_world(pose, view), *links.base(), *_wheels(pose, view), *links.strokes()),
-            *(*_ties(pose, view), *legs, *arrows),
-        ),
+        (*below, *links.base(), *_wheels(pose, view), *bars, *above, *_ties(pose, view), *legs, *arrows),
         (*links.grounds(), *links.symbols(), *links.pins()),
         (*links.labels(), *lengths, *inputs),
         view.planar,
@@ -94,13 +97,13 @@ def sketch_in(pose: MachinePose, view: View) -> MachineSketch:
 
 
 class _Links:
-    """Frames as links: the places of each, and the joints between them."""
+    """Frames as links: the places of each, and the joints between them; some inputs are named `elsewhere`."""
 
-    def __init__(self, pose: MachinePose, view: View) -> None:
-        self._pose, self._view = pose, view
+    def __init__(self, pose: MachinePose, view: View, elsewhere: frozenset[str]) -> None:
+        self._pose, self._view, self._elsewhere = pose, view, elsewhere
         self._joints = {joint.frame: joint for joint in pose.joints}
         links = LinkPlaces(pose)
-        self._places, self._is_among = links.places, links.is_among
+        self._places, self._roots, self._is_among = links.places, links.root, links.is_among
 
     def strokes(self) -> Iterator[Stroke]:
         """Bars and hulls, the far ones first; rails of sliders."""
@@ -124,8 +127,22 @@ class _Links:
             yield Stroke("base", (self._view.flat((0.0, 0.0, 0.0)), self._view.flat(places[0])))
 
     def grounds(self) -> Iterator[Symbol]:
-        """Where joints stand on the world, and points of loops."""
-        return (Symbol("ground", self._view.flat(place)) for place in self._places.get(WORLD, []))
+        """Where joints stand on the world, and points of loops; in a plane sliders stand in guides."""
+        sliding = [joint for joint in self._world_sliders() if self._view.planar]
+        standing = [place for joint in self._moving() if joint not in sliding for place in (joint.place, joint.foot)]
+        standing += [self._pose.places[point.name] for point in self._pose.mechanism.points]
+        for place in self._places.get(WORLD, []):
+            if self._is_among(place, standing) or not self._is_among(place, (joint.foot for joint in sliding)):
+                yield Symbol("ground", self._view.flat(place))
+        for joint in sliding:
+            yield Symbol("guide", self._view.flat(joint.place), self._view.flat(joint.slides[0]))
+
+    def _world_sliders(self) -> Iterator[DrawnJoint]:
+        """Joints that slide on what stands still."""
+        parents = {frame.name: frame.parent for frame in self._pose.mechanism.frames}
+        for joint in self._moving():
+            if joint.kind == "sliding" and self._roots[parents[joint.frame]] == WORLD:
+                yield joint
 
     def _moving(self) -> Iterator[DrawnJoint]:
         return (joint for joint in self._joints.values() if joint.kind not in ("fixed", "free"))
@@ -176,7 +193,7 @@ class _Links:
         for joints in together:
             place = joints[0].place
             coordinates = tuple(name for joint in joints for name in joint.coordinates)
-            inputs = tuple(name for joint in joints for name in joint.inputs)
+            inputs = tuple(name for joint in joints for name in joint.inputs if name not in self._elsewhere)
             yield MachineLabel(self._view.flat(place), self._away(place), coordinates, inputs)
         shown = [point.name for point in self._pose.mechanism.points if self._is_shown(point.name)]
         places: list[Place] = []
@@ -217,7 +234,12 @@ def _world(pose: MachinePose, view: View) -> Iterator[Stroke]:
 def _wheels(pose: MachinePose, view: View) -> Iterator[Stroke]:
     for wheel in pose.mechanism.wheels:
         centre, radius = pose.places[wheel.frame], evaluate(wheel.radius, pose.parameters)
-        one, other = (pose.axis(wheel.frame, (wheel.axle + k) % 3) for k in (1, 2))
+        axle, one, other = (pose.axis(wheel.frame, (wheel.axle + k) % 3) for k in (0, 1, 2))
+        if abs(inner(axle, view.near)) < NEXT_TO_NOTHING:
+            (x, y), (right, up) = view.flat(centre), view.flat(cross(axle, view.near))
+            ends = (x + radius * right, y + radius * up), (x - radius * right, y - radius * up)
+            yield Stroke("tyre", ends)
+            continue
         rim = []
         for step in range(ROUND):
             angle = 2 * math.pi * step / ROUND
@@ -251,12 +273,14 @@ def _lengths(pose: MachinePose, view: View) -> tuple[list[Stroke], list[MachineL
     return legs, names
 
 
-def _forces(pose: MachinePose, view: View) -> tuple[list[Stroke], list[MachineLabel]]:
+def _forces(
+    pose: MachinePose, view: View, forces: Sequence[DrawnForce]
+) -> tuple[list[Stroke], list[MachineLabel]]:
     """Arrows of inputs that act on the machine itself, and the names of these inputs; torques have names alone."""
     arrows: list[Stroke] = []
     names: list[MachineLabel] = []
     length = ARROW_LENGTH * pose.size
-    for force in drawn_forces(pose):
+    for force in forces:
         place = view.flat(force.place)
         right, up = view.flat(force.direction) if force.direction else (0.0, 0.0)
         if (seen := math.hypot(right, up)) > NO_DIRECTION:
@@ -291,6 +315,11 @@ def _hull(places: Sequence[Flat]) -> list[Flat]:
             chain.append(place)
         halves.append(chain[:-1])
     return halves[0] + halves[1]
+
+
+def _is_inside(place: Flat, hull: Sequence[Flat]) -> bool:
+    """Whether a convex hull has a place on it, or inside."""
+    return all(_turn(hull[k - 1], hull[k], place) >= 0 for k in range(len(hull)))
 
 
 def _turn(a: Flat, b: Flat, c: Flat) -> float:

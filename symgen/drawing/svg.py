@@ -34,6 +34,8 @@ MARKED: dict[Mark, tuple[float, float, float]] = {
     "pin": (JOINT - 1.5, JOINT - 1.5, JOINT - 1.5),
     "point": (2.6, 2.6, 2.6),
 }
+# Half the length of the wall of a guide, and how far it is from the middle of its slider.
+GUIDE = (17, 9)
 # Of the ellipse that stands for the ground in space.
 FOOT = (12, 5)
 INK, LIGHT, DRIVEN, PALE = "#2b2f36", "#dfe5ee", "#d1432f", "#8a93a3"
@@ -46,6 +48,7 @@ LOOKS: dict[Role, tuple[str, float, str, str]] = {
     "cable": (INK, 1.2, "none", ""),
     "rail": (PALE, 2.0, "none", "5 3"),
     "wheel": (INK, 2.0, "#eef1f6", ""),
+    "tyre": (INK, 9.0, "none", ""),
     "axis": (PALE, 1.2, "none", ""),
     "force": (DRIVEN, 1.8, DRIVEN, ""),
 }
@@ -53,7 +56,7 @@ LOOKS: dict[Role, tuple[str, float, str, str]] = {
 
 def drawing(model: Model) -> str | None:
     """The picture of a model's machine where its start leads; None without frames and points, or without places."""
-    mechanism = model.mechanism
+    mechanism = model.pictured
     if not (mechanism.frames or mechanism.points) or not assembly_of(model).places:
         return None
     try:
@@ -143,6 +146,9 @@ class Paper:
         match symbol.mark:
             case "ground":
                 return self._ground(x, y)
+            case "guide":
+                angle = -math.degrees(math.atan2(symbol.along[1], symbol.along[0]))
+                return _guide(f"translate({x:.1f} {y:.1f}) rotate({angle:.1f})")
             case "slider" | "driven slider":
                 angle = -math.degrees(math.atan2(symbol.along[1], symbol.along[0]))
                 fill = DRIVEN if symbol.mark == "driven slider" else "white"
@@ -172,6 +178,9 @@ class Paper:
     def _marks(self) -> Iterator[Box]:
         for symbol in self._sketch.symbols:
             x, y = self._at(symbol.place)
+            if symbol.mark == "guide":
+                yield _wall(x, y, symbol.along)
+                continue
             aside, above, below = MARKED[symbol.mark]
             if symbol.mark == "ground" and not self._sketch.planar:
                 aside, above, below = FOOT[0], FOOT[1], FOOT[1]
@@ -191,6 +200,22 @@ class Paper:
                 away = (u - x) / far, -(v - y) / far
                 wanted = Wanted((u, v), away, LETTER * NOTE_HEIGHT, NOTE_HEIGHT, TIP_GAP, TIP_GAP + 2)
                 yield wanted, (_name(stroke.name, PALE), NOTE_HEIGHT)
+
+
+def _guide(place: str) -> str:
+    """A wall that the slider stands on."""
+    wide, high = GUIDE
+    ticks = " ".join(f"M{step} {high} l-5 5" for step in range(5 - wide, wide + 1, 6))
+    return f'<path d="M{-wide} {high} H{wide} {ticks}" transform="{place}" fill="none" stroke="{INK}"/>'
+
+
+def _wall(x: float, y: float, along: Flat) -> Box:
+    """What the wall of a guide takes, with its ticks."""
+    wide, high = GUIDE
+    right, up = along
+    corners = [(step, far) for step in (-wide, wide) for far in (high, high + 5)]
+    ends = [(x + step * right + far * up, y - step * up + far * right) for step, far in corners]
+    return Box(min(u for u, _ in ends), min(v for _, v in ends), max(u for u, _ in ends), max(v for _, v in ends))
 
 
 def _spelled(label: MachineLabel) -> str:

@@ -63,12 +63,13 @@ def _is_planar(pose: MachinePose, normal: Place) -> bool:
 
 
 def _moves_along(pose: MachinePose, normal: Place) -> bool:
-    """Whether all joints turn about this normal, and slide at right angles to it."""
+    """Whether all joints turn about this normal, and slide at right angles to it; wheels may be seen from the edge."""
     axles = [pose.axis(wheel.frame, wheel.axle) for wheel in pose.mechanism.wheels]
     turns = [turn for joint in pose.joints for turn in joint.turns]
     slides = [slide for joint in pose.joints for slide in joint.slides]
-    square = all(abs(inner(axis, normal)) > 1 - NEXT_TO_NOTHING for axis in (*turns, *axles))
-    return square and all(abs(inner(slide, normal)) < NEXT_TO_NOTHING for slide in slides)
+    square = all(abs(inner(axis, normal)) > 1 - NEXT_TO_NOTHING for axis in turns)
+    straight = all(not NEXT_TO_NOTHING < abs(inner(axle, normal)) < 1 - NEXT_TO_NOTHING for axle in axles)
+    return square and straight and all(abs(inner(slide, normal)) < NEXT_TO_NOTHING for slide in slides)
 
 
 def _upward(pose: MachinePose) -> Place | None:

@@ -14,6 +14,7 @@ from symgen.model.file.schema import MODEL
 from symgen.model.file.scope import Scope
 from symgen.model.file.shape import check_shape
 from symgen.model.file.source import MappingNode, read_tree
+from symgen.model.mechanism import DrawnSolid
 from symgen.model.model import Model
 from symgen.model.resolve import resolve
 
@@ -49,6 +50,7 @@ def load_text(text: str, file: str) -> Model:
     scope = Scope(mistakes=all_mistakes, attempted=attempted_names(tree, all_mistakes))
     tree = rest
     beside: dict[str, str] = {}
+    solids: tuple[DrawnSolid, ...] = ()
     described = [key for key in DESCRIPTIONS if tree.get(key) is not None]
     if described:
         for further in described[1:]:
@@ -57,14 +59,14 @@ def load_text(text: str, file: str) -> Model:
         if scope.mistakes:
             raise ModelError(file, text, tuple(scope.mistakes))
         imported = _import(described[0], scope, tree, Path(file).parent)
-        tree, beside = imported.tree, {imported.file: imported.text}
+        tree, beside, solids = imported.tree, {imported.file: imported.text}, imported.solids
         # without the robot every name of it would be unknown
         if scope.mistakes:
             raise ModelError(file, text, tuple(scope.mistakes), beside)
     model = resolve(scope, tree, "".join((text, *beside.values())))
     if scope.mistakes:
         raise ModelError(file, text, tuple(scope.mistakes), beside)
-    return replace(model, notices=tuple(scope.notices))
+    return replace(model, notices=tuple(scope.notices), picture=replace(model.picture, solids=solids))
 
 
 def _import(key: str, scope: Scope, tree: MappingNode, folder: Path) -> Imported:

@@ -124,8 +124,17 @@ class Tie:
 
 
 @dataclass(frozen=True, slots=True)
+class DrawnSolid:
+    """What a part looks like: corners (m) in the axes of a frame, and flat faces by the numbers of their corners."""
+
+    frame: str
+    corners: tuple[tuple[float, float, float], ...]
+    faces: tuple[tuple[int, ...], ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Mechanism:
-    """The bodies form of a model; empty where the model has energies only.  Wheels and ties are for pictures."""
+    """The bodies form of a model; empty where the model has energies only.  Wheels, ties, solids are for pictures."""
 
     gravity: Vector3 = NO_VECTOR
     frames: tuple[Frame, ...] = ()
@@ -134,6 +143,7 @@ class Mechanism:
     rotor_inertias: tuple[RotorInertia, ...] = ()
     wheels: tuple[Wheel, ...] = ()
     ties: tuple[Tie, ...] = ()
+    solids: tuple[DrawnSolid, ...] = ()
 
     @property
     def has_mass(self) -> bool:

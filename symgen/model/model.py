@@ -7,6 +7,7 @@ parameters, definitions (kept as names, in order of use), and in paths the time 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
@@ -253,6 +254,7 @@ class Model:
     `inertial_base` is looked for where outputs are made of it (`combinations/inertial_base.py`).
     `released` are the joints of `rough` places whose reactions are no multipliers, `friction_steps` how their
     friction is worked out for a motion, `motion_steps` the same for inputs.
+    `picture` are frames, points, wheels, springs and solids that drawings alone have.
     """
 
     name: str
@@ -297,6 +299,20 @@ class Model:
     taken: tuple[tuple[str, Fraction], ...] = ()
     inertial_base: InertialBase | None = None
     identify: IdentifyChoice | None = None
+    picture: Mechanism = NO_MECHANISM
+
+    @property
+    def pictured(self) -> Mechanism:
+        """The mechanism as drawings have it: what equations are made of, and what is drawn beside that."""
+        own, drawn = self.mechanism, self.picture
+        return replace(
+            own,
+            frames=own.frames + drawn.frames,
+            points=own.points + drawn.points,
+            wheels=own.wheels + drawn.wheels,
+            ties=own.ties + drawn.ties,
+            solids=own.solids + drawn.solids,
+        )
 
     @property
     def c_name(self) -> str:

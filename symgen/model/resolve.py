@@ -14,6 +14,7 @@ from symgen.model.blocks.allocation import declare_settings, read_allocation
 from symgen.model.blocks.bodies import read_mechanism
 from symgen.model.blocks.coordinates import read_coordinates
 from symgen.model.blocks.couplings import read_couplings
+from symgen.model.blocks.drawn import read_picture
 from symgen.model.blocks.elements import read_forces, read_friction, read_springs
 from symgen.model.blocks.identify import read_identify
 from symgen.model.blocks.inputs import read_inputs
@@ -121,8 +122,9 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
         rough=rough.places,
         released=rough.released,
         trig_range="wide" if text_of(tree.get("trig_range")) == "wide" else "normal",
+        picture=read_picture(scope, tree, defaults),
     )
-    as_written = replace(model, potential_energy=potential, forces=elements)
+    as_written = replace(model, potential_energy=potential, forces=elements, mechanism=model.pictured)
     scope.mistakes.extend(check_units(tree, as_written, (*fits, *fits_of_friction, *rough.fits)))
     model = check_mechanics(scope, tree, model, kinetic_read, whole)
     if not scope.mistakes:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from symgen.diagnostics import ModelError
 from symgen.model.expressions.names import did_you_mean
 from symgen.model.load import DESCRIPTIONS, load_model, load_text
+from symgen.model.urdf.looks import named_meshes
 from symgen.notebook.language import Block, as_block, as_blocks, as_yaml
 from symgen.notebook.words import BlockWord, block_words
 
@@ -184,7 +185,7 @@ class ModelFile:
                 raise ModelError(str(self._path or self.name), error.text, error.mistakes, error.texts) from None
 
     def _bring_robot(self, folder: Path) -> None:
-        """The robot description lies beside the file, as it does beside the one that was read."""
+        """The robot description and its meshes lie beside the file, as they do beside the one that was read."""
         described = next((block for key in DESCRIPTIONS if (block := self._blocks.get(key))), None)
         named = described.get("file") if isinstance(described, dict) else described
         if not named:
@@ -193,6 +194,11 @@ class ModelFile:
         if beside.is_file() and ".." not in Path(named).parts and not Path(named).is_absolute():
             (folder / named).parent.mkdir(parents=True, exist_ok=True)
             (folder / named).write_bytes(beside.read_bytes())
+            meshes = named_meshes(beside.read_text(encoding="utf-8", errors="replace"), beside.parent)
+            for name, mesh in meshes.items():
+                there = (folder / named).parent / name
+                there.parent.mkdir(parents=True, exist_ok=True)
+                there.write_bytes(mesh.read_bytes())
 
     def __repr__(self) -> str:
         counts = (f"{len(value)} {block}" for block, value in self._blocks.items() if isinstance(value, dict) and value)

@@ -20,8 +20,8 @@ from symgen.output.lock import folder_lock
 from symgen.output.manifest import FILES, checksum_of, is_inside, manifest_text, read_checksums, read_manifest
 
 MEASURED = (
-    "certificate.json", "*.pdf", "bench.*", "stress.*", "target.*", "proof.json", "simulation.*", "identified.*",
-    "*.identified.yaml", ".symgen-*",
+    "certificate.json", "*.pdf", "*.measured.html", "*.measured.tex", "bench.*", "stress.*", "target.*", "proof.json",
+    "simulation.*", "identified.*", "*.identified.yaml", ".symgen-*",
 )
 _HELD_SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 # Files that are named; the others are counted.

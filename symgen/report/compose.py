@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from symgen.model.model import Model
 from symgen.report.content import ReportInput
 from symgen.report.context import Context, sentence, text_of
 from symgen.report.document import Document, Section, Text, layouts
@@ -21,9 +22,10 @@ from symgen.report.sections.targets import targets
 from symgen.report.sections.verification import charts, verification
 
 MEASURED_ELSEWHERE = (
-    " What verification measures, and charts along paths, are in the PDF: other machines measure other numbers."
+    " What verification measures, and charts along paths, are in the PDF and, where a run has verified, in {0}.html "
+    "and {0}.tex beside this file: other machines measure other numbers."
 )
-"""What HTML and LaTeX, whose bytes are the same everywhere, leave to the PDF."""
+"""What HTML and LaTeX, whose bytes are the same everywhere, leave to files of their own."""
 
 
 def compose(report_input: ReportInput) -> Document:
@@ -40,7 +42,7 @@ def compose(report_input: ReportInput) -> Document:
     ]
     if report_input.operation_counts:
         sections.append(operations(context))
-    sections += [*published(context), *verification(context), *targets(context), *proof(context), *charts(context)]
+    sections += [*published(context), *_measured(context)]
     model = report_input.model
     return Document(
         name=model.c_name,
@@ -51,8 +53,30 @@ def compose(report_input: ReportInput) -> Document:
         colophon=f"Derived by symgen {report_input.version}. Numbers with the word paper refer to A. Müller, "
         "Motion equations in redundant "
         "coordinates with application to inverse dynamics of constrained mechanical systems."
-        + ("" if report_input.verification else MEASURED_ELSEWHERE),
+        + ("" if report_input.verification else MEASURED_ELSEWHERE.format(measured_name(model))),
     )
+
+
+def compose_measured(report_input: ReportInput) -> Document:
+    """What a run measured alone, for HTML and LaTeX: the last sections of the PDF."""
+    context, model = Context(report_input), report_input.model
+    return Document(
+        name=model.c_name,
+        title=text_of(model.description) or model.name,
+        subtitle=f"What a run measured of the model {model.name}",
+        summary=say("The derivation is in {}.html; other machines measure other numbers.", model.c_name),
+        sections=_measured(context),
+        colophon=f"Measured by symgen {report_input.version}.",
+    )
+
+
+def measured_name(model: Model) -> str:
+    """The stem of the files that have what was measured."""
+    return f"{model.c_name}.measured"
+
+
+def _measured(context: Context) -> tuple[Section, ...]:
+    return (*verification(context), *targets(context), *proof(context), *charts(context))
 
 
 def _summary(context: Context) -> Text:

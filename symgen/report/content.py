@@ -30,7 +30,7 @@ class ErrorRow:
 
 @dataclass(frozen=True, slots=True)
 class Verification:
-    """What a run measured; shown in the PDF only: (target, law, violation) and (name, value) as text."""
+    """What a run measured: (target, law, violation) and (name, value) as text."""
 
     states: int
     errors: tuple[ErrorRow, ...]

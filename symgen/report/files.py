@@ -1,4 +1,4 @@
-"""The files of a report: HTML and LaTeX from the model alone, the PDF with what a run measured."""
+"""The files of a report: HTML and LaTeX from the model alone, the PDF, and what a run measured as HTML and LaTeX."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import Any
 from symgen.closedform.algebra.limits import TooLargeError
 from symgen.diagnostics import Notice
 from symgen.model.model import Model
-from symgen.report.compose import compose
+from symgen.report.compose import compose, compose_measured, measured_name
 from symgen.report.facts import Facts, ReportFiles
 from symgen.report.gather import gather, path_charts, with_measurements
 from symgen.report.html import render_html
-from symgen.report.latex import drawing_file, render_latex
+from symgen.report.latex import drawing_file, render_latex, render_latex_sections
 from symgen.report.pdf import render_drawing, render_pdf
 from symgen.report.proof import ProofFacts
 from symgen.report.targets import TargetCore
@@ -53,6 +53,13 @@ def report_files(model: Model, receive: Callable[[], Any], measured: bool) -> Re
     proof: ProofFacts | None = receive()
     if certificate is None:
         return ReportFiles(files, notices)
-    pdf = render_pdf(compose(with_measurements(report, certificate, charts, targets, proof)))
-    drawings = {f"report/{drawing_file(stem, figure)}": render_drawing(figure) for figure in document.figures()}
-    return ReportFiles({**files, f"report/{stem}.pdf": pdf, **drawings}, notices)
+    report = with_measurements(report, certificate, charts, targets, proof)
+    measurements, beside = compose_measured(report), measured_name(model)
+    files |= {
+        f"report/{beside}.html": render_html(measurements),
+        f"report/{beside}.tex": render_latex_sections(measurements),
+        f"report/{stem}.pdf": render_pdf(compose(report)),
+    }
+    figures = (*document.figures(), *measurements.figures())
+    files |= {f"report/{drawing_file(stem, figure)}": render_drawing(figure) for figure in figures}
+    return ReportFiles(files, notices)

@@ -63,6 +63,11 @@ def render_latex(document: Document) -> str:
     return render("report/report.tex.j2", _LatexView(document))
 
 
+def render_latex_sections(document: Document) -> str:
+    """Its sections alone, for the source that has them by \\input."""
+    return "\n\n".join(_LatexView(document).sections) + "\n"
+
+
 class _LatexView(Markup):
     """What the template prints: prepared source."""
 
@@ -117,7 +122,7 @@ class _LatexView(Markup):
         file = drawing_file(self.name, figure)
         drawn = rf"\IfFileExists{{{file}}}{{\includegraphics[width={FIGURE_SHARE}\linewidth]{{{file}}}}}"
         return (
-            f"\\begin{{figure}}[htbp]\n\\centering\n{drawn}{{\\emph{{(drawn in {self.plain(self.name)}.html)}}}}\n"
+            f"\\begin{{figure}}[htbp]\n\\centering\n{drawn}{{\\emph{{(drawn in the HTML)}}}}\n"
             f"\\caption{{{self.text(figure.caption)}}}\n\\label{{fig:{self.name}:{figure.label}}}\n\\end{{figure}}"
         )
 

@@ -80,7 +80,8 @@ def _of_links(
 
 def _has_base(shown: Scene) -> bool:
     """Whether a machine in space stands on one place, to which a base leads from the origin of the world."""
-    return not shown.stand.planar and [len(link.places) for link in shown.links if link.frame == IN_WORLD] == [1]
+    stands = [len(link.places) for link in shown.links if link.frame == IN_WORLD and link.shown]
+    return not shown.stand.planar and stands == [1]
 
 
 def _box(places: Sequence[Place], room: float) -> Box:
@@ -121,14 +122,14 @@ def _trails(planned: Scene) -> list[list[list[float]]]:
 
 def _caption(shown: Scene, planned: bool) -> str:
     """What the lines and colours are."""
-    parts = ["Links as bars and plates"]
+    parts = ["Links as the URDF shows them, or else as bars and plates" if shown.solids else "Links as bars and plates"]
     if any(joint.driven for joint in shown.joints):
         parts.append("driven joints filled")
     if shown.balls:
         parts.append("balls at the centres of mass, as large as their masses")
     parts.append("axes of frames x red, y green, z blue")
     if shown.hoops:
-        parts.append("wheels on the plane z = 0")
+        parts.append("wheels, and the plane z = 0")
     if planned:
         parts.append("planned ways green")
     turning = "The" if shown.stand.planar else "Drag turns, the"

@@ -101,6 +101,6 @@ def _summary(model: Model, motion: SimulatedMotion) -> list[str]:
     ]
     if all(max(curve) - min(curve) < STILL for curve in zip(*motion.q, strict=True)):
         lines.append("  nothing moves: give rates or another place with --start, or --inputs")
-    if not model.mechanism.frames:
+    if not model.pictured.frames:
         lines.append("  no animation: the model has no frames")
     return lines

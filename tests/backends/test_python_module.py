@@ -187,3 +187,55 @@ def test_parameters_are_numbers_or_arrays_of_them(car: ModuleType) -> None:
     for wrong in ("2", None, 1j, [None]):
         with pytest.raises(TypeError, match=r"the parameter m_1 is .*, neither a number nor an array of numbers"):
             car.Parameters(m_1=wrong)
+
+
+def test_a_parameter_that_is_not_finite_is_named(car: ModuleType) -> None:
+    for wrong in (float("nan"), np.float64("inf"), np.array(-np.inf)):
+        with pytest.raises(ValueError, match=r"^the parameter m_1 is .*(nan|inf).*, no finite number$"):
+            car.Parameters(m_1=wrong)
+    # of many states those get NaN whose parameter is none
+    masses = car.Parameters(m_1=[1100.0, np.nan])
+    moving = [0.0, 0.0, 0.3, 0.2]
+    assert np.isnan(car.inverse_dynamics(moving, moving, moving, masses)).any(axis=1).tolist() == [False, True]
+
+
+def test_what_is_no_parameters_is_told(car: ModuleType, tool: Callable[[str], str]) -> None:
+    tool("cc")
+    moving = [0.0, 0.0, 0.3, 0.2]
+    for functions in (car, car.compile()):
+        for wrong, said in (
+            ({"L": 2.4}, r"^p is of type dict, which has no L: give Parameters\(\*\*p\) of this module$"),
+            ((2.4, 1100.0), r"^p is of type tuple, which has no L: give Parameters\(\.\.\.\) of this module$"),
+            (None, r"^p is of type NoneType, which has no L"),
+            (SimpleNamespace(L=2.4), r"^p is of type SimpleNamespace, which has no m_1"),
+        ):
+            for states in (moving, [moving, moving]):
+                with pytest.raises(TypeError, match=said):
+                    functions.inverse_dynamics(states, moving, moving, wrong)
+
+
+def test_parameters_have_leading_axes_as_states_have(car: ModuleType, tool: Callable[[str], str]) -> None:
+    """One state with many parameters gives as many results; axes that do not go together are named."""
+    tool("cc")
+    moving = [0.0, 0.0, 0.3, 0.2]
+    lengths = np.linspace(2.0, 3.0, 5)
+    wanted = np.array([car.inverse_dynamics(moving, moving, moving, car.Parameters(L=length)) for length in lengths])
+    grid = car.Parameters(L=lengths, m_1=[[1100.0], [1200.0]])
+    for functions in (car, car.compile()):
+        swept = functions.inverse_dynamics(moving, moving, moving, car.Parameters(L=lengths))
+        assert swept.tobytes() == wanted.tobytes()
+        assert functions.inverse_dynamics(moving, moving, moving, grid).shape == (2, 5, 2)
+        assert functions.inverse_dynamics(moving, moving, moving, grid)[0].tobytes() == wanted.tobytes()
+        with pytest.raises(ValueError, match=r"^leading axes .*: q has shape \(3, 4\), .*, L has shape \(5,\)$"):
+            functions.inverse_dynamics([moving] * 3, moving, moving, car.Parameters(L=lengths))
+        with pytest.raises(ValueError, match=r"L has shape \(5,\), m_1 has shape \(2,\)$"):
+            functions.inverse_dynamics(moving, moving, moving, car.Parameters(L=lengths, m_1=[1.0, 2.0]))
+
+
+def test_what_is_no_state_is_told(car: ModuleType) -> None:
+    moving = [0.0, 0.0, 0.3, 0.2]
+    for wrong in ({"x": 1.0}, None, "0123", [moving, [0.0]]):
+        with pytest.raises((TypeError, ValueError), match=r"^qd (is .*, no array of states of 4 numbers|has shape)"):
+            car.inverse_dynamics(moving, wrong, moving)
+    with pytest.raises(TypeError, match=r"^the parameter L is .*, neither a number nor an array of numbers$"):
+        car.Parameters(L=[[1.0], [1.0, 2.0]])

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from symgen.generation.results import Summary
-from symgen.terminal import SPELLED, Progress, summary_table, written_table
+from symgen.terminal import SPELLED, Progress, fitted, summary_table, written_table
 
 
 class Terminal(io.StringIO):
@@ -51,6 +51,25 @@ def test_a_narrow_terminal_does_not_wrap(monkeypatch: pytest.MonkeyPatch) -> Non
     terminal = Terminal()
     Progress("car", quiet=False, stream=terminal)("reference, state 1 of 64")
     assert terminal.getvalue() == "\r\x1b[Kcar: reference, sta"
+
+
+def test_long_lines_are_folded_at_words_in_terminals_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Excerpts of files stay, whose marks would otherwise be elsewhere."""
+    monkeypatch.setenv("COLUMNS", "40")
+    excerpt = f"   14 |   foot: {{{'m' * 40}}}\n      | {' ' * 30}^^^^^^^^^^^\n"
+    message = "wrong.yaml:14:25: unknown name `L` in the centre of mass"
+    remedy = "  remedy: name the coordinate of that joint"
+    text = f"{message}\n{excerpt}{remedy}\n"
+    assert fitted(text, io.StringIO()) == text
+    shown = fitted(text, Terminal())
+    assert excerpt in shown
+    assert shown.replace(excerpt, "").splitlines() == [
+        "wrong.yaml:14:25: unknown name `L` in",
+        "    the centre of mass",
+        "  remedy: name the coordinate of that",
+        "      joint",
+    ]
+    assert fitted("short", Terminal()) == "short"
 
 
 @pytest.mark.parametrize(

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 
-from symgen.drawing.forces import drawn_forces
+from symgen.diagnostics import ModelError
+from symgen.drawing.forces import DrawnForce, drawn_forces
 from symgen.drawing.lengths import drawn_lengths
 from symgen.drawing.names import Bar, Box, Wanted, placed
 from symgen.drawing.pose import MachinePose
@@ -20,12 +22,11 @@ from symgen.drawing.svg import DRIVEN, Paper, drawing
 from symgen.drawing.view import ABOVE, view_of
 from symgen.model.kinematics.triples import cross
 from symgen.model.load import load_model, load_text
+from symgen.model.mechanism import NO_MECHANISM
 from symgen.model.model import Model
 
 MODELS = Path(__file__).parents[2] / "models"
-# Given by bodies; energies have no places.
-BY_ENERGIES = "\nkinetic_energy:"
-DRAWN = [path.stem for path in sorted(MODELS.glob("*.yaml")) if BY_ENERGIES not in path.read_text(encoding="utf-8")]
+DRAWN = [path.stem for path in sorted(MODELS.glob("*.yaml"))]
 CRANE = """model: crane
 parameters: {h: {value: 3, unit: m}, l: {value: 1.5, unit: m}, m: {value: 5, unit: kg}}
 gravity: [0, 0, -9.81]
@@ -250,8 +251,8 @@ def test_points_of_a_model_by_energies_are_drawn() -> None:
     assert shown.planar
     assert [symbol.mark for symbol in shown.symbols].count("point") == 3
     assert [symbol.place for symbol in shown.symbols if symbol.mark == "ground"] == [(1, 0)]
-    assert [label.point for label in shown.labels] == ["rear", "front", "post"]
-    assert not [stroke for stroke in shown.strokes if stroke.role != "axis"]
+    assert [label.point or label.inputs for label in shown.labels] == ["rear", "front", "post", ("F",)]
+    assert [stroke.role for stroke in shown.strokes if stroke.role != "axis"] == ["force"]
     assert drawing(pose.model) is not None
 
 
@@ -307,7 +308,107 @@ def test_the_length_of_a_line_inside_a_rectangle() -> None:
 
 
 def test_energies_alone_have_no_picture() -> None:
-    assert drawing(load_model(MODELS / "front_car.yaml")) is None
+    text = (MODELS / "front_car.yaml").read_text(encoding="utf-8")
+    assert drawing(load_text(re.split(r"^(?:published|picture):", text, flags=re.M)[0], "front_car.yaml")) is None
+
+
+def test_what_is_drawn_of_energies_is_in_no_equation() -> None:
+    """The model has no frames; its picture has the car's wheels from the edge, and the force where it acts."""
+    text = (MODELS / "front_car.yaml").read_text(encoding="utf-8")
+    model, plain = (load_text(part, "front_car.yaml") for part in (text, text[: text.index("\npicture:")]))
+    assert replace(model, picture=NO_MECHANISM, text_hash=plain.text_hash, notices=plain.notices) == plain
+    pose = MachinePose(model)
+    shown = sketch(pose)
+    tyres = [stroke.places for stroke in shown.strokes if stroke.role == "tyre"]
+    lengths = [math.dist(*ends) for ends in tyres]
+    assert lengths == pytest.approx([0.6] * 4)
+    ahead = [math.atan2(end[1] - start[1], end[0] - start[0]) % math.pi for start, end in tyres]
+    assert ahead == pytest.approx([0.3, 0.3, 0.5, 0.5])
+    (force,) = drawn_forces(pose)
+    assert (force.input, force.place) == ("K_f", pose.places["front"])
+    assert force.direction == pytest.approx((math.cos(0.5), math.sin(0.5), 0))
+    assert [label.inputs for label in shown.labels if label.inputs] == [("T",), ("K_f",)]
+    # the axes of the world stand on the chassis, which would hide them
+    roles = [stroke.role for stroke in shown.strokes]
+    assert roles.index("axis") > roles.index("link")
+
+
+def test_an_input_on_coordinates_is_a_force_where_one_of_1_does_the_same() -> None:
+    def forces(acts_on: str) -> list[DrawnForce]:
+        text = POINTS.replace("{x: cos(theta), y: sin(theta)}", acts_on)
+        return list(drawn_forces(MachinePose(load_text(text, "car_by_energies.yaml"))))
+
+    at_front = "{x: -sin(theta), y: cos(theta), theta: L}"
+    (rear,), (front,) = forces("{x: cos(theta), y: sin(theta)}"), forces(at_front)
+    assert (rear.place, rear.direction) == ((0, 0, 0), pytest.approx((math.cos(0.3), math.sin(0.3), 0)))
+    assert front.place == pytest.approx((2.6 * math.cos(0.3), 2.6 * math.sin(0.3), 0))
+    assert front.direction == pytest.approx((-math.sin(0.3), math.cos(0.3), 0))
+    # twice the force, a force beside both points, and one coordinate alone
+    assert not forces("{x: 2*cos(theta), y: 2*sin(theta)}")
+    assert not forces("{x: cos(theta), y: sin(theta), theta: L}")
+    assert not forces("{theta: L}")
+
+
+DRAWN_CRANK = """model: crank
+coordinates: {a: {unit: rad}, s: {unit: m}}
+parameters: {r: {value: 0.1, unit: m}, m: {value: 1, unit: kg}}
+kinetic_energy: m/2*(s_dot**2 + r**2*a_dot**2)
+inputs: {T: {unit: N*m, acts_on: {a: 1}}}
+configuration: {a: 1, s: 0.3}
+picture:
+  frames:
+    slide: {translation: [s, 0, 0]}
+    flange: {parent: wheel}
+    wheel: {rotation: [[z, a]]}
+  points: {pin: {frame: wheel, at: [r, 0, 0]}, wall: {at: [1, 0, 0]}}
+  wheels: {rim: {frame: wheel, radius: 2*r, axle: z}}
+  springs: {spring: [wall, slide]}
+"""
+
+
+def test_a_picture_has_frames_points_wheels_and_springs() -> None:
+    model = load_text(DRAWN_CRANK, "crank.yaml")
+    assert [frame.name for frame in model.picture.frames] == ["slide", "wheel", "flange"]
+    shown = sketch(MachinePose(model))
+    round_or_stretched = [stroke.role for stroke in shown.strokes if stroke.role in ("wheel", "tyre", "spring")]
+    assert round_or_stretched == ["wheel", "spring"]
+    assert math.dist(shown.strokes[2].places[0], (0, 0)) == pytest.approx(0.2)
+    # a slider of the world has a guide where it is, and no stand where it would be at 0
+    marks = [symbol.mark for symbol in shown.symbols]
+    assert (marks.count("ground"), marks.count("guide"), marks.count("driven")) == (2, 1, 1)
+    played = scene(model, {"r": 0.1, "m": 1.0}, [(1.0, 0.3), (1.5, 0.4)])
+    assert played is not None
+    assert (played.names[:3], len(played.hoops), len(played.ties)) == (("slide", "wheel", "flange"), 1, 1)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "said"),
+    [
+        ("pin: {frame", "r: {frame", "`r` is already a parameter (line 3)"),
+        ("[s, 0, 0]", "[z, 0, 0]", "unknown name `z` in the translation of the frame `slide`"),
+        ("[s, 0, 0]", "[s_dot, 0, 0]", "is a rate, which the translation of the frame `slide` must not contain"),
+        ("[s, 0, 0]", "[m, 0, 0]", "the translation of `slide`"),
+        ("parent: wheel", "parent: weel", "unknown frame `weel` in `parent` of the frame `flange`"),
+        ("radius: 2*r", "radius: -r", "the radius of the wheel `rim` is -0.1: it has no sign"),
+        ("radius: 2*r", "radius: a", "`a` is a coordinate, which the radius of the wheel `rim` must not contain"),
+        ("axle: z", "axle: w", "`w`"),
+        ("{frame: wheel, radius", "{frame: pin, radius", "is a point, but `frame` of the wheel `rim` names a frame"),
+        ("[wall, slide]", "[wall, slid]", "unknown point `slid` in the spring `spring`"),
+        ("[wall, slide]", "[wall]", "spring"),
+        ("{frame: wheel, at", "{moves_with: wheel, at", "`moves_with` is no key of a drawn point"),
+        ("r**2*a_dot**2", "r**2*a_dot**2 + pin.vx**2", "unknown point or frame `pin` in the kinetic energy"),
+    ],
+)
+def test_mistakes_in_a_picture_have_their_places(before: str, after: str, said: str) -> None:
+    assert before in DRAWN_CRANK
+    text = DRAWN_CRANK.replace(before, after, 1)
+    with pytest.raises(ModelError) as error:
+        load_text(text, "crank.yaml")
+    (mistake,) = error.value.mistakes
+    assert said in mistake.message
+    line = next(k for k, written in enumerate(text.split("\n"), 1) if after in written)
+    assert mistake.span is not None
+    assert mistake.span.line == line
 
 
 def test_definitions_that_nest_are_looked_through_once() -> None:

@@ -16,13 +16,13 @@ from typing import Any
 import pytest
 import sympy
 import typst
-from report_inputs import HERE, document, measured_document, report_input
+from report_inputs import HERE, document, measured_document, measured_input, report_input
 
-from symgen.report.compose import compose
+from symgen.report.compose import compose, compose_measured
 from symgen.report.content import Verification
 from symgen.report.document import ROOM, InlineMath, Items, Paragraph, Table
 from symgen.report.html import render_html
-from symgen.report.latex import drawing_file, latex_text, render_latex
+from symgen.report.latex import drawing_file, latex_text, render_latex, render_latex_sections
 from symgen.report.mathematics.measure import page_width
 from symgen.report.pdf import render_drawing, render_pdf, render_typst
 from symgen.report.prose import INLINE_ROOM, say
@@ -120,13 +120,35 @@ def test_figures_are_numbered_and_referred_to(name: str) -> None:
         assert f'link(label("f{number}"), "Figure {number}")' in render_typst(shown)
 
 
+@pytest.mark.parametrize("name", ["front_car", "hostile"])
+def test_what_was_measured_is_in_html_and_latex_of_its_own(name: str) -> None:
+    """The last sections of the PDF: what is without them is the same on every machine."""
+    measured, everything = compose_measured(measured_input(name)), measured_document(name)
+    assert measured.sections == everything.sections[-len(measured.sections) :]
+    assert document(name).sections == everything.sections[: -len(measured.sections)]
+    page, source = render_html(measured), render_latex_sections(measured)
+    for text in (page, source):
+        assert "64 admissible states" in text
+        assert "Charts" in text
+    ElementTree.fromstring(page.removeprefix("<!DOCTYPE html>\n"))
+    assert r"\begin{document}" not in source
+    # one document has the labels of both
+    labels = re.findall(r"\\label\{([^}]*)\}", source + render_latex(document(name)))
+    assert len(labels) == len(set(labels))
+    stem = measured.name
+    assert rf"\IfFileExists{{{stem}.measured.tex}}{{\input{{{stem}.measured.tex}}}}{{}}" in render_latex(document(name))
+    assert f"{stem}.measured.html" in document(name).colophon
+
+
 @pytest.mark.toolchain
 @pytest.mark.parametrize("name", ["front_car", "delta", "hostile"])
 def test_latex_compiles(name: str, tmp_path: Path, tool: Callable[[str], str]) -> None:
-    """By itself, and brought into another document: references are found, nothing sticks out of the page."""
+    """By itself with what was measured, and brought into another document: references are found, nothing sticks out."""
+    measured = compose_measured(measured_input(name))
     (tmp_path / "report.tex").write_text(render_latex(document(name)), encoding="utf-8")
+    (tmp_path / f"{measured.name}.measured.tex").write_text(render_latex_sections(measured), encoding="utf-8")
     (tmp_path / "paper.tex").write_text(PAPER, encoding="utf-8")
-    figures = document(name).figures()
+    figures = (*document(name).figures(), *measured.figures())
     drawings = {drawing_file(document(name).name, figure): render_drawing(figure) for figure in figures}
     for file, drawn in drawings.items():
         (tmp_path / file).write_bytes(drawn)

@@ -223,7 +223,7 @@ STAND = Stand((1, 0, 0), (0, 0, 1), (0, -1, 0), 0.4, planar=False)
 
 def drawn(places: tuple[tuple[tuple[float, float, float], ...], ...]) -> tuple[list[list[float]], float]:
     """The centres and the size of the picture of a rod that goes through those places."""
-    shown = Scene(("a", "b"), 0, ((0, 1),), (), (), (), (), (), (), STAND, places, tuple(() for _ in places))
+    shown = Scene(("a", "b"), 0, ((0, 1),), (), (), (), (), (), (), (), STAND, places, tuple(() for _ in places))
     page = animation("rod", tuple(map(float, range(len(places)))), shown)
     data = json.loads(page.split('id="motion">')[1].split("</script>")[0])
     return data["centres"], data["radius"]
@@ -271,7 +271,7 @@ outputs: [forward_dynamics]
 def test_planned_ways_of_the_ends_of_chains_are_drawn() -> None:
     """Of a tool on an arm that moves; not of the arm that it hangs on, nor of a post that stands."""
     places = (((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (5.0, 0.0, 0.0)), ((0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (5.0, 0.0, 0.0)))
-    arm = Scene(("arm", "tool", "post"), 2, ((0, 1),), (), (), (), (), (), (), STAND, places, ((), ()))
+    arm = Scene(("arm", "tool", "post"), 2, ((0, 1),), (), (), (), (), (), (), (), STAND, places, ((), ()))
     data = re.search('id="motion">(.*?)</script>', animation("arm", (0.0, 1.0), arm, arm))
     assert data is not None
     assert json.loads(data[1])["trails"] == [[[1, 0, 0], [0, 1, 0]]]

@@ -71,7 +71,7 @@ def test_what_takes_no_part_is_told_by_name(tmp_path: Path) -> None:
     ).replace('<link name="base"/>', '<link name="base"><visual/><collision/></link>')
     messages = [notice.message for notice in load(tmp_path, text).notices]
     assert messages == [
-        "`visual` and `collision` of the URDF are geometry and take no part",
+        "`visual` and `collision` of the URDF are geometry, for animations alone",
         "`transmission` of the URDF takes no part (gear): inputs stand in the model file, as forces and torques of the "
         "joints",
         "`gazebo` of the URDF takes no part (upper): it is for a simulator",

@@ -204,6 +204,23 @@ _POINT = RecordShape(
         _DESCRIPTION,
     ),
 )
+_PICTURE = RecordShape(
+    "`picture`",
+    (
+        Key("frames", TableShape(_FRAME), "axes that move with what is drawn, as under `frames`"),
+        Key(
+            "points",
+            TableShape(RecordShape("a drawn point", tuple(key for key in _POINT.fields if key.key != "moves_with"))),
+            "places by name: ends of links",
+        ),
+        Key(
+            "wheels",
+            TableShape(RecordShape("a drawn wheel", tuple(key for key in _WHEEL.fields if key.key != "plane"))),
+            "discs about the origins of frames",
+        ),
+        Key("springs", TableShape(Listing(Word(), 2, 2)), "name: the two points or frames between which it is drawn"),
+    ),
+)
 _PUBLISHED = EitherRecord(
     (
         (
@@ -398,6 +415,7 @@ MODEL = RecordShape(
         Key("trig_range", Word(("normal", "wide")), "how far angles may go before status 4"),
         Key("published", Listing(_PUBLISHED), "formulas as printed somewhere, to be decided for this model"),
         Key("paths", TableShape(_PATH), "trajectories as functions of t, for charts and tests"),
+        Key("picture", _PICTURE, "what drawings show beside frames and points; equations and code have nothing of it"),
         Key("report", Word(("full", "short")), "length of the report"),
     ),
 )

@@ -9,16 +9,18 @@ from symgen.diagnostics import Mistake, Span
 from symgen.model.file.reading import items, key_span, member, text_of
 from symgen.model.file.scope import Scope
 from symgen.model.file.source import MAXIMUM_CHARACTERS, MappingNode, Node, ScalarNode
+from symgen.model.mechanism import DrawnSolid
 from symgen.model.robots.xml import Element, parse_xml
 
 
 @dataclass(frozen=True, slots=True)
 class Imported:
-    """The tree with the robot in it; the text of its file and the name of that file in messages."""
+    """The tree with the robot in it; the text of its file and that file's name in messages; what links look like."""
 
     tree: MappingNode
     text: str
     file: str
+    solids: tuple[DrawnSolid, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ from pathlib import Path
 from symgen.diagnostics import Mistake, Notice, Span, printable
 from symgen.model.file.scope import Scope
 from symgen.model.file.source import MappingNode
+from symgen.model.mechanism import DrawnSolid
 from symgen.model.robots.file import Imported, read_description
 from symgen.model.robots.names import read_names
 from symgen.model.robots.nodes import ranged_names
@@ -15,6 +16,7 @@ from symgen.model.urdf.blocks import with_robot
 from symgen.model.urdf.bodies import judge_links
 from symgen.model.urdf.checks import check_joints, find_root
 from symgen.model.urdf.elements import GEOMETRY, read_robot
+from symgen.model.urdf.looks import read_looks, said_of
 from symgen.model.urdf.robot import Robot, named_things
 
 ABOUT = {
@@ -44,15 +46,19 @@ def import_robot(scope: Scope, tree: MappingNode, folder: Path) -> Imported:
     names = read_names(scope, given.node, named_things(robot), span)
     own = ranged_names(tree)
     scope.mistakes.extend(check_joints(robot, {joint for joint, name in names.coordinates.items() if name in own}))
+    solids: tuple[DrawnSolid, ...] = ()
     if not scope.mistakes:
         tree = with_robot(scope, tree, robot, names, span)
-        notices = (*_notices(robot, span), *judge_links(robot))
+        looks = read_looks(root, names.frames, given.unread, Path(file).parent)
+        solids = tuple(looks.solids)
+        undrawn = (Notice(said, span) for said in said_of(looks))
+        notices = (*_notices(robot, span), *undrawn, *judge_links(robot))
         # names in the file are any text
         scope.notices.extend(Notice(printable(notice.message), notice.span) for notice in notices)
         efforts = _listed(robot, "effort")
         if efforts:
             scope.efforts = Notice(printable(f"effort limits of the URDF bound no input ({efforts})"), span)
-    return Imported(tree, text, file)
+    return Imported(tree, text, file, solids)
 
 
 def _notices(robot: Robot, span: Span) -> list[Notice]:
@@ -60,7 +66,8 @@ def _notices(robot: Robot, span: Span) -> list[Notice]:
     notices = []
     geometry = [f"`{tag}`" for tag in GEOMETRY if tag in robot.left_out]
     if geometry:
-        notices.append(Notice(f"{' and '.join(geometry)} of the URDF are geometry and take no part", span))
+        are = "is" if len(geometry) == 1 else "are"
+        notices.append(Notice(f"{' and '.join(geometry)} of the URDF {are} geometry, for animations alone", span))
     for tag, names in robot.left_out.items():
         if tag not in GEOMETRY:
             listed = ", ".join(dict.fromkeys(name for name in names if name)) or "no name"

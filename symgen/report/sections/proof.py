@@ -1,4 +1,4 @@
-"""The section of the PDF about proofs: alarms of Eva, and Gappa's bounds beside measured errors."""
+"""The section about proofs: alarms of Eva, and Gappa's bounds beside measured errors."""
 
 from __future__ import annotations
 

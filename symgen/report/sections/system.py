@@ -68,7 +68,7 @@ def _drawing(context: Context) -> tuple[Block, ...]:
     if context.input.drawing is None:
         return ()
     shown = "The mechanism where its start leads, with its coordinates; driven joints are filled{}."
-    if not model.mechanism.frames:
+    if not model.pictured.frames:
         shown = "Points of the mechanism where its start leads{}."
     arrows = any(one.velocity is not None for one in model.inputs)
     caption = say(shown.format(", inputs that act on bodies are named where they do" if arrows else ""))

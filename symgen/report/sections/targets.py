@@ -1,4 +1,4 @@
-"""The section of the PDF about microcontrollers: what `symgen target` measured."""
+"""The section about microcontrollers: what `symgen target` measured."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The sections of the PDF alone: what verification measured, and charts."""
+"""What verification measured, and charts."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ def machine_in_map(plan: StudyPlan) -> MachineSketch | None:
     """
     model = plan.model
     varied = [one for one in plan.over if one.kind == "task"]
-    if plan.request.sample != GRID or len(varied) != 2 or len(plan.over) != 2 or not model.mechanism.frames:
+    if plan.request.sample != GRID or len(varied) != 2 or len(plan.over) != 2 or not model.pictured.frames:
         return None
     if not assembly_of(model).places:
         return None
