@@ -28,13 +28,13 @@
  * velocity_from_task               30     43      3      0      3      0
  * acceleration_from_task           69    105      6      0      3      0
  * inverse_dynamics                 52     71      1      0      3      0
- * forward_dynamics                173    287     11      2      3      0
- * multipliers                     163    268     11      2      3      0
+ * forward_dynamics                141    235      5      0      3      0
+ * multipliers                     131    216      5      0      3      0
  * singularity                      56    107     13      3      3      0
  * (changes of sign are not counted)
  *
  * Beyond these bounds of parameters results would lose digits; they have the status PARAMETER_RANGE there:
- *   configuration_from_measured r <= 0.7, 0.00076 <= l_2 <= 8.5
+ *   configuration_from_measured r <= 0.7, 4.3e-05 <= l_2 <= 8.5
  *   velocity_from_measured r <= 0.39, 4.3e-05 <= l_2 <= 8.5
  *   acceleration_from_measured r <= 0.39, 4.3e-05 <= l_2 <= 8.5
  *   configuration_from_task 0.0045 <= l_1 <= 3.5, l_2 <= 8.5

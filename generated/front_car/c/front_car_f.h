@@ -79,7 +79,7 @@ extern "C" {
 /** The version of symgen that generated this. */
 #define FRONT_CAR_SYMGEN_VERSION "0.1.0"
 /** SHA-256 of the model file. */
-#define FRONT_CAR_MODEL_HASH "800983edeb6582770765865f7392aabc1003bb722de176daeae6e85cd5d34fc5"
+#define FRONT_CAR_MODEL_HASH "f802d5365a901e5641f76b8f070643c82742f8a2abe9a876d4156277067fee76"
 
 /** How many entries q, qd and qdd have. */
 #define FRONT_CAR_SIZE_Q 4
