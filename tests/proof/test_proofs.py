@@ -174,6 +174,23 @@ def test_short_campaign(tool: Callable[[str], str], tmp_path: Path, name: str, c
     assert all(int(compared) > 100 for _, compared, _ in counted)
 
 
+def test_short_campaign_of_what_encoders_say(tool: Callable[[str], str], tmp_path: Path) -> None:
+    """Arrays beside q, qd, qdd and u: all of them are given, changed and aliased."""
+    path = tmp_path / "levers.yaml"
+    path.write_text(SUMMED.replace("summed", "levers") + "coupling: {b: 2*a}\nmeasured: [a]\n")
+    outputs = "inverse_dynamics,velocity_from_measured,acceleration_from_measured"
+    asked = ["--outputs", outputs, "--only", "c,proof", "--no-verify", "--quiet", "--out", str(tmp_path)]
+    assert main([str(path), *asked]) == 0
+    folder = tmp_path / "levers"
+    made = [f"c/{file.name}" for file in (folder / "c").glob("*.c") if "_batch" not in file.name]
+    options = [*SANITIZE, *CAMPAIGNS["clang"], "-Ic", "proof/levers_fuzz.c", *made, "-o", "fuzz", "-lm"]
+    run(tool("clang"), *options, folder=folder)
+    printed = run(folder / "fuzz", "4000")
+    counted = {name: int(count) for name, count in re.findall(r"(?m)^(\w+): (\d+) compared", printed)}
+    assert counted["velocity_from_measured"] > 100
+    assert counted["acceleration_from_measured"] > 100
+
+
 @pytest.mark.campaign
 @pytest.mark.parametrize("compiler", [*CAMPAIGNS])
 def test_short_campaign_with_twice_the_digits_in_one_type(
