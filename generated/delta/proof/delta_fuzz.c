@@ -232,20 +232,20 @@ static int multipliers_sc_32(float *const *x, const delta_params_f *p, float *y)
 }
 
 static const Kernel kernels[] = {
-    {"configuration_from_measured", configuration_from_measured_64, configuration_from_measured_32, {1, 0, 0, 0, 1}, 6u, 0, 0, NULL, NULL},
-    {"velocity_from_measured", velocity_from_measured_64, velocity_from_measured_32, {1, 0, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
-    {"acceleration_from_measured", acceleration_from_measured_64, acceleration_from_measured_32, {1, 0, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
-    {"configuration_from_task", configuration_from_task_64, configuration_from_task_32, {1, 0, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
-    {"velocity_from_task", velocity_from_task_64, velocity_from_task_32, {1, 0, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
-    {"acceleration_from_task", acceleration_from_task_64, acceleration_from_task_32, {1, 0, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
-    {"inverse_dynamics", inverse_dynamics_64, inverse_dynamics_32, {1, 1, 1, 0, 0}, 3u, 1, 0, NULL, NULL},
-    {"forward_dynamics", forward_dynamics_64, forward_dynamics_32, {1, 1, 0, 1, 0}, 6u, 1, 0, NULL, NULL},
-    {"multipliers", multipliers_64, multipliers_32, {1, 1, 0, 1, 0}, 3u, 0, 0, NULL, NULL},
-    {"singularity", singularity_64, singularity_32, {1, 0, 0, 0, 0}, 2u, 0, 0, NULL, NULL},
-    {"inverse_dynamics_prepared", inverse_dynamics_prepared_64, inverse_dynamics_prepared_32, {1, 1, 1, 0, 0}, 3u, 1, 0, inverse_dynamics_64, inverse_dynamics_32},
-    {"inverse_dynamics_sc", inverse_dynamics_sc_64, inverse_dynamics_sc_32, {1, 1, 1, 0, 0}, 3u, 1, 1, NULL, NULL},
-    {"forward_dynamics_sc", forward_dynamics_sc_64, forward_dynamics_sc_32, {1, 1, 0, 1, 0}, 6u, 1, 1, NULL, NULL},
-    {"multipliers_sc", multipliers_sc_64, multipliers_sc_32, {1, 1, 0, 1, 0}, 3u, 0, 1, NULL, NULL},
+    {"configuration_from_measured", configuration_from_measured_64, configuration_from_measured_32, {1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
+    {"velocity_from_measured", velocity_from_measured_64, velocity_from_measured_32, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
+    {"acceleration_from_measured", acceleration_from_measured_64, acceleration_from_measured_32, {1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
+    {"configuration_from_task", configuration_from_task_64, configuration_from_task_32, {1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0}, 6u, 0, 0, NULL, NULL},
+    {"velocity_from_task", velocity_from_task_64, velocity_from_task_32, {1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0}, 6u, 0, 0, NULL, NULL},
+    {"acceleration_from_task", acceleration_from_task_64, acceleration_from_task_32, {1, 0, 0, 0, 0, 0, 0, 0, 1, 1, 0}, 6u, 0, 0, NULL, NULL},
+    {"inverse_dynamics", inverse_dynamics_64, inverse_dynamics_32, {1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0}, 3u, 1, 0, NULL, NULL},
+    {"forward_dynamics", forward_dynamics_64, forward_dynamics_32, {1, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0}, 6u, 1, 0, NULL, NULL},
+    {"multipliers", multipliers_64, multipliers_32, {1, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0}, 3u, 0, 0, NULL, NULL},
+    {"singularity", singularity_64, singularity_32, {1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, 2u, 0, 0, NULL, NULL},
+    {"inverse_dynamics_prepared", inverse_dynamics_prepared_64, inverse_dynamics_prepared_32, {1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0}, 3u, 1, 0, inverse_dynamics_64, inverse_dynamics_32},
+    {"inverse_dynamics_sc", inverse_dynamics_sc_64, inverse_dynamics_sc_32, {1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0}, 3u, 1, 1, NULL, NULL},
+    {"forward_dynamics_sc", forward_dynamics_sc_64, forward_dynamics_sc_32, {1, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0}, 6u, 1, 1, NULL, NULL},
+    {"multipliers_sc", multipliers_sc_64, multipliers_sc_32, {1, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0}, 3u, 0, 1, NULL, NULL},
 };
 enum { KERNELS = 14 };
 
@@ -598,12 +598,12 @@ static double sensitivity(const Kernel *kernel, const State *s, const double *y,
     for (size_t i = 0; i < sizes[0]; i++) {
         size = fmax(size, fabs(s->x[0][i]));
     }
-    const int absolute[ARRAYS] = {sums, 0, 0, 0, sums};
+    const int absolute[ARRAYS] = {sums, 0, 0, 0, 0, 0, 0, 0, 0, 0, sums};
     uint32_t seed = 0x9e3779b9u;
     for (int way = 0; way < ways; way++) {
         State t = *s;
         double changed[RESULT];
-        double *arrays[ARRAYS] = {t.x[0], t.x[1], t.x[2], t.x[3], t.x[4]};
+        double *arrays[ARRAYS] = {t.x[0], t.x[1], t.x[2], t.x[3], t.x[4], t.x[5], t.x[6], t.x[7], t.x[8], t.x[9], t.x[10]};
         for (size_t a = 0; a < ARRAYS; a++) {
             for (size_t i = 0; i < sizes[a]; i++) {
                 t.x[a][i] = nudged(t.x[a][i], absolute[a] != 0 ? size : t.x[a][i], &seed);
