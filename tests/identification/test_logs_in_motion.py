@@ -51,15 +51,15 @@ def test_errors_of_columns_that_are_nearly_alike_hold_together() -> None:
     common = np.sin(t) + 0.3 * t
     columns = np.stack([common + 1e-5 * np.cos(k * t) for k in (2, 3, 5)], axis=-1)
     truth = np.array([4.0, -1.0, 2.5])
-    found = []
+    misfits = []
     for seed in SEEDS:
         noise = np.random.default_rng(seed).normal(0, NOISE, SAMPLES + 4)
         estimate = estimated(observed(columns, truth, np.convolve(noise, np.ones(5) / 5, "valid")))
         assert np.min(estimate.errors) > 50
         assert abs(np.sum(estimate.values - truth)) < 0.01
-        found.append(misfit(estimate, truth))
-    assert np.mean(found) < 2
-    assert max(found) < 4
+        misfits.append(misfit(estimate, truth))
+    assert np.mean(misfits) < 2
+    assert max(misfits) < 4
 
 
 def test_what_a_motion_leaves_open_is_part_of_the_rest() -> None:

@@ -65,12 +65,12 @@ def test_solids_are_closed_and_as_large_as_they_are(made: Faces, volume: float) 
     passed = edges(made)
     assert set(passed.values()) == {1}
     assert {(b, a) for a, b in passed} == set(passed)
-    found = 0.0
+    within = 0.0
     for face in made.faces:
         (a, b, c), *others = (made.corners[k] for k in face)
         for (d, e, f), (g, h, i) in pairwise(others):
-            found += (a * (e * i - f * h) + b * (f * g - d * i) + c * (d * h - e * g)) / 6
-    assert found == pytest.approx(volume, rel=0.1)
+            within += (a * (e * i - f * h) + b * (f * g - d * i) + c * (d * h - e * g)) / 6
+    assert within == pytest.approx(volume, rel=0.1)
 
 
 def test_stl_is_read_in_both_forms() -> None:
@@ -134,9 +134,9 @@ def test_meshes_lie_in_the_folder_of_the_robot(tmp_path: Path) -> None:
         "meshes/wedge.dae", "../wedge.stl", "link.stl", str(outside), f"file://{outside}", "package://arm/wedge.stl",
         "meshes", "none.stl", "",
     ):  # fmt: skip
-        none, (told,) = solids(name)
+        none, (notice,) = solids(name)
         assert not none
-        assert f"not drawn ({name}): an STL file" in told
+        assert f"not drawn ({name}): an STL file" in notice
     # in a notebook the model lies elsewhere, and its meshes with it
     solids("meshes/wedge.stl")
     assert len(load(inside / "arm.yaml").resolved.picture.solids) == 1

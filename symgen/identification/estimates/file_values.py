@@ -34,7 +34,7 @@ OPTIMISED = 1e-10
 # How often it begins anew where it ended, with a cost of the size that it has there.
 ROUNDS_OF_OPTIMISING = 8
 # Steps of differences, in standard deviations of parameters before the log.
-DIFFERENCE = 1e-6
+PARAMETER_STEP = 1e-6
 # Steps of an optimisation at most.
 MOST_OPTIMISING_STEPS = 200
 
@@ -183,7 +183,7 @@ class _Nearest:
     def _slopes(self, of: Callable[[Array], Array], values: Array) -> Array:
         """The derivatives of a function by the parameters, by differences."""
         here, columns = of(values), []
-        for k, step in enumerate(DIFFERENCE * self._held):
+        for k, step in enumerate(PARAMETER_STEP * self._held):
             moved = values.copy()
             moved[k] += step
             columns.append((of(moved) - here) / step)

@@ -14,7 +14,7 @@ from symgen.records import dataclass
 
 Corner: TypeAlias = Triple[float]
 # Sides of the polygons that stand for circles, and rings of them in a sphere.
-SIDES, RINGS = 16, 8
+ROUND_SIDES, RINGS = 16, 8
 # Triangles of a mesh that are read; a browser turns ten times as many without a halt.
 MOST_TRIANGLES = 5000
 # Bytes of STL: its head with the number of triangles, and each of these.
@@ -42,24 +42,25 @@ def box(x: float, y: float, z: float) -> Faces:
 def cylinder(radius: float, length: float) -> Faces:
     """About the z axis, its middle at the origin."""
     low, high = (_circle(radius, half) for half in (-length / 2, length / 2))
-    return Faces((*low, *high), (*_band(0, SIDES), tuple(range(SIDES - 1, -1, -1)), tuple(range(SIDES, 2 * SIDES))))
+    bottom, top = range(ROUND_SIDES - 1, -1, -1), range(ROUND_SIDES, 2 * ROUND_SIDES)
+    return Faces((*low, *high), (*_band(0, ROUND_SIDES), tuple(bottom), tuple(top)))
 
 
 def sphere(radius: float) -> Faces:
     """About the origin."""
     angles = [math.pi * k / RINGS for k in range(1, RINGS)]
     rings = [_circle(radius * math.sin(angle), -radius * math.cos(angle)) for angle in angles]
-    bands = [face for k in range(len(rings) - 1) for face in _band(k * SIDES, SIDES)]
-    south, north, last = len(rings) * SIDES, len(rings) * SIDES + 1, (len(rings) - 1) * SIDES
-    caps = [face for k in range(SIDES) for face in (
-        (south, (k + 1) % SIDES, k), (last + k, last + (k + 1) % SIDES, north)
+    bands = [face for k in range(len(rings) - 1) for face in _band(k * ROUND_SIDES, ROUND_SIDES)]
+    south, north, last = len(rings) * ROUND_SIDES, len(rings) * ROUND_SIDES + 1, (len(rings) - 1) * ROUND_SIDES
+    caps = [face for k in range(ROUND_SIDES) for face in (
+        (south, (k + 1) % ROUND_SIDES, k), (last + k, last + (k + 1) % ROUND_SIDES, north)
     )]  # fmt: skip
     corners = (*(corner for ring in rings for corner in ring), (0.0, 0.0, -radius), (0.0, 0.0, radius))
     return Faces(corners, (*bands, *caps))
 
 
 def _circle(radius: float, height: float) -> list[Corner]:
-    turns = (2 * math.pi * k / SIDES for k in range(SIDES))
+    turns = (2 * math.pi * k / ROUND_SIDES for k in range(ROUND_SIDES))
     return [(radius * math.cos(turn), radius * math.sin(turn), height) for turn in turns]
 
 

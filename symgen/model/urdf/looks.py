@@ -20,7 +20,7 @@ from symgen.model.robots.xml import Element
 # Faces that are drawn of a robot, all its links together.
 MOST_FACES = 4 * MOST_TRIANGLES
 # Metres from the origin of its link beyond which nothing is drawn.
-FARTHEST = 1e4
+FARTHEST_DRAWN = 1e4
 # Where a robot description names files.
 FILE_NAMED = re.compile(r"""\bfilename\s*=\s*(?:"([^"]*)"|'([^']*)')""")
 
@@ -76,7 +76,7 @@ def _faces(shown: Element, geometry: Element, folder: Path) -> Faces | None:
     if not all(map(math.isfinite, angles)):
         return None
     corners = tuple(_turned(corner, shift, angles) for corner in made.corners)
-    return Faces(corners, made.faces) if all(abs(x) <= FARTHEST for corner in corners for x in corner) else None
+    return Faces(corners, made.faces) if all(abs(x) <= FARTHEST_DRAWN for corner in corners for x in corner) else None
 
 
 def _simple(geometry: Element) -> Faces | None:
