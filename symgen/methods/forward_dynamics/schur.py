@@ -10,16 +10,15 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
+from symgen.ir.kernel import Status
 from symgen.linear_algebra.constrained_inverse import Cholesky, diagonal_sizes
 from symgen.linear_algebra.guards import Guard
 from symgen.linear_algebra.null_space.null_spaces import LONGEST_PRODUCT
-from symgen.linear_algebra.null_space.pivoted import reflected
 from symgen.linear_algebra.orthogonal import PivotedGramSchmidt, WeightedGramSchmidt
 from symgen.linear_algebra.refinement import Solution, less_forces, missing, of_columns, refined
-from symgen.mechanics.never_zero import Definite
 from symgen.methods.forward_dynamics.motion import Motion, Problem
 from symgen.symbolic.matrix import Matrix, Vector, subtract_vectors
-from symgen.symbolic.scalar import Scalar
+from symgen.symbolic.scalar import Graph, Scalar
 
 
 class MassMatrixFactor(Protocol):
@@ -48,7 +47,7 @@ class SchurQR:
 
     def __init__(self, problem: Problem, rank: int, factor: MassMatrixFactor | None = None) -> None:
         self._graph = problem.graph
-        self._factor = OrderedCholesky(problem) if factor is None else factor
+        self._factor = OrderedCholesky(problem.graph, problem.mass_matrix) if factor is None else factor
         columns = [self._factor.lowered(row) for row in problem.rows]
         self._elimination = SchurElimination(problem, self._factor, columns, rank)
 
@@ -91,11 +90,13 @@ class SchurElimination:
         )
         self._all_rows = problem.rows
         self.rows = self._orthogonal.chosen(problem.rows)
-        # the rank of B is measured where its rows are made orthogonal anyway; of few rows it is told, once something is
-        # lost, whether it is that, or light bodies leave nothing of a difference of rows that are far from parallel
-        few = 1 < r <= min(rank, LONGEST_PRODUCT)
-        causes = reflected(graph, problem.rows, problem.n, r).guards if few else ()
-        self.guards: tuple[Guard, ...] = (*(self._orthogonal.regularity(causes) if r else ()), *factor.guards)
+        if r > min(rank, LONGEST_PRODUCT):
+            # with many rows, or rows to choose from, the rank of B is measured where they are made orthogonal anyway
+            self.guards: tuple[Guard, ...] = (*self._orthogonal.regularity(Status.CONSTRAINT_RANK), *factor.guards)
+        else:
+            # light bodies may leave nothing of the difference of two rows, which are far from parallel by themselves
+            metric = self._orthogonal.regularity(Status.MASS_RANK) if r > 1 else ()
+            self.guards = (*problem.guards, *factor.guards, *metric)
 
     def asked(self, bias: Vector) -> Vector:
         """What the rows that are solved with ask for."""
@@ -145,11 +146,10 @@ class OrderedCholesky:
     in between; the other way round the pivot of a light link is a difference of heavy ones.
     """
 
-    def __init__(self, problem: Problem) -> None:
-        graph, mass_matrix = problem.graph, problem.mass_matrix
+    def __init__(self, graph: Graph, mass_matrix: Matrix) -> None:
         self.order = elimination_order(mass_matrix)
         turned = tuple(tuple(mass_matrix[i][j] for j in self.order) for i in self.order)
-        self._factor = Cholesky(graph, turned, diagonal_sizes(graph, turned, Definite(problem.mechanics).adds_up))
+        self._factor = Cholesky(graph, turned, diagonal_sizes(graph, turned))
         self.pivots: Sequence[Scalar] = self._factor.pivots
         self.guards = self._factor.guards
 
