@@ -24,13 +24,14 @@ from symgen.linear_algebra.null_space.pivoted import reflected
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.mechanics.system import System
+from symgen.methods.coordinates.idle_coordinates import idle_coordinates
+from symgen.methods.coordinates.minimal_coordinates import MinimalCoordinates
 from symgen.methods.forward_dynamics.minor_motion import LARGEST_DELTA, MinorMotion, minor_motion
 from symgen.methods.forward_dynamics.motion import Problem
 from symgen.methods.friction.reactions import ReactionFriction
 from symgen.methods.given.configuration import GivenConfiguration
 from symgen.methods.given.functions import GivenBy
 from symgen.methods.given.least_motion import MotionOfGiven, motion_of
-from symgen.methods.idle_coordinates import idle_coordinates
 from symgen.methods.least_inputs import least_inputs
 from symgen.methods.redundancy.allocation import InputAllocation
 from symgen.model.quantities import DIRECTION
@@ -43,7 +44,6 @@ from symgen.symbolic.matrix import (
     dot,
     identity,
     matmul,
-    matvec,
     scale,
     subtract,
     subtract_vectors,
@@ -122,7 +122,7 @@ class Derivation:
     def actuation_guards(self) -> tuple[Guard, ...]:
         """The denominator of the input equations; a drop of rank B is named first."""
         forms, _ = self._actuation
-        return self._solvable(forms, self.mechanics.inputs, Status.ACTUATION_RANK)
+        return self._solvable(forms)
 
     @property
     def input_measures(self) -> list[Scalar]:
@@ -130,8 +130,9 @@ class Derivation:
         forms = [self._actuation[0], *(() if self.allocation is None else (self.allocation.forms,))]
         return [measure for one in forms for measure in one.rank_measures]
 
-    def _solvable(self, forms: InputEquations, columns: Sequence[Vector], status: Status) -> tuple[Guard, ...]:
-        return solvable(self.mechanics, self.generic, self.space, forms, columns, status)
+    def _solvable(self, forms: InputEquations) -> tuple[Guard, ...]:
+        inputs = self.mechanics.inputs
+        return solvable(self.mechanics, self.generic, self.space, forms, inputs, Status.ACTUATION_RANK)
 
     def _solve_inputs(self, force: Vector) -> Vector:
         forms, restriction = self._actuation
@@ -271,62 +272,9 @@ class Derivation:
     # minimal coordinates (8), (9) ------------------------------------------------------------------------------------
 
     @cached_property
-    def _independent(self) -> tuple[int, ...]:
-        names = [c.name for c in self.mechanics.model.coordinates]
-        return tuple(names.index(name) for name in self.mechanics.model.independent_velocities)
-
-    @cached_property
-    def _partition(self) -> tuple[InputEquations, Restriction]:
-        axes = identity(self.graph, self.n)
-        family = [axes[i] for i in self._independent]
-        forms, restriction = self.space.actuation(family, len(self._independent))
-        return forms.cancelled(self.mechanics.factoring.cancelled), restriction
-
-    @cached_property
-    def complement(self) -> Matrix:
-        """F (8), n x delta: B F = 0, the identity in the independent rows; (M~^+)^T for an M that selects those."""
-        forms, restriction = self._partition
-        rows = tuple(forms.solve(restriction(axis)) for axis in identity(self.graph, self.n))
-        chosen = {i: k for k, i in enumerate(self._independent)}
-        units = identity(self.graph, len(self._independent))
-        return tuple(units[chosen[i]] if i in chosen else row for i, row in enumerate(rows))
-
-    @property
-    def partition_guards(self) -> tuple[Guard, ...]:
-        """The parametrisation singularity of the chosen independent velocities; reported as a drop of rank."""
-        forms, _ = self._partition
-        axes = identity(self.graph, self.n)
-        return self._solvable(forms, [axes[i] for i in self._independent], Status.CONSTRAINT_RANK)
-
-    def complement_dot(self, velocity: Vector) -> Matrix:
-        """F_dot = -(I - F E) B^+ B_dot F, with E selecting the independent rows."""
-        graph, n, delta = self.graph, self.n, self.generic.delta
-        if self.r == 0:
-            return scale(self.complement, graph.zero)
-        rates = matmul(graph, self.mechanics.constraint_jacobian_dot(velocity), self.complement, delta)
-        lifted = matmul(graph, self.space.pseudoinverse, rates, delta)
-        selected = tuple(lifted[i] for i in self._independent)
-        correction = matmul(graph, self.complement, selected, delta)
-        dependent = subtract(correction, lifted)
-        zeros = (graph.zero,) * delta
-        return tuple(zeros if i in self._independent else dependent[i] for i in range(n))
-
-    def minimal(self, a: Matrix) -> Matrix:
-        """F^T A F for symmetric A."""
-        graph, delta = self.graph, self.generic.delta
-        product = matmul(graph, transpose(self.complement, delta), matmul(graph, a, self.complement, delta), delta)
-        return tuple(tuple(product[min(i, j)][max(i, j)] for j in range(delta)) for i in range(delta))
-
-    def minimal_vector(self, x: Vector) -> Vector:
-        """F^T x."""
-        return matvec(self.graph, transpose(self.complement, self.generic.delta), x)
-
-    def minimal_coriolis_matrix(self) -> Matrix:
-        """C- = F^T (C F + G F_dot), along q_dot as given."""
-        graph, delta, qd = self.graph, self.generic.delta, self.mechanics.qd
-        coriolis = matmul(graph, self.mechanics.coriolis_matrix(qd), self.complement, delta)
-        inertial = matmul(graph, self.mechanics.mass_matrix, self.complement_dot(qd), delta)
-        return matmul(graph, transpose(self.complement, delta), add(coriolis, inertial), delta)
+    def minimal(self) -> MinimalCoordinates:
+        """The equations in the velocities that the model names as independent."""
+        return MinimalCoordinates(self.mechanics, self.generic, self.space)
 
     # inverse dynamics (27) and Remark 3 ------------------------------------------------------------------------------
 
@@ -366,8 +314,7 @@ class Derivation:
             return (*self.space.guards, *self.actuation_guards, *self.friction.guards)
         if self.allocation is None:
             return self.actuation_guards
-        solvable = self._solvable(self.allocation.forms, self.mechanics.inputs, Status.ACTUATION_RANK)
-        return (*solvable, *self.allocation.guards(self.inverse_dynamics))
+        return (*self._solvable(self.allocation.forms), *self.allocation.guards(self.inverse_dynamics))
 
     def inverse_dynamics_residual(self) -> Vector:
         """N_B (tau - M u); nothing is left where the system is fully actuated."""

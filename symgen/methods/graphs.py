@@ -13,8 +13,8 @@ from symgen.linear_algebra.guards import Guard
 from symgen.mechanics.system import System
 from symgen.methods.method import Candidate
 from symgen.methods.quantity import Quantity, is_fixed
-from symgen.symbolic.mark import START
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import START, Graph
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.transplant import transplanted
 
 

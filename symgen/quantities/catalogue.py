@@ -8,7 +8,7 @@ from typing import TypeAlias
 from symgen.linear_algebra.guards import Guard, tested
 from symgen.linear_algebra.null_space.null_spaces import rests_on_rank
 from symgen.mechanics.genericity import Genericity
-from symgen.methods.actuator_coordinates import actuator_bias, actuator_mass_matrix, actuator_velocity
+from symgen.methods.coordinates.actuator_coordinates import actuator_bias, actuator_mass_matrix, actuator_velocity
 from symgen.methods.derivation import Derivation
 from symgen.methods.derivatives.variations import constraint_variations
 from symgen.methods.given.functions import GivenBy, measured, task
@@ -83,11 +83,11 @@ def _residual(d: Derivation) -> tuple[Guard, ...]:
 
 
 def _partition(d: Derivation) -> tuple[Guard, ...]:
-    return d.partition_guards
+    return d.minimal.guards
 
 
 def _partition_rate(d: Derivation) -> tuple[Guard, ...]:
-    return (*d.space.guards, *d.partition_guards)
+    return (*d.space.guards, *d.minimal.guards)
 
 
 def _variations(d: Derivation) -> tuple[Guard, ...]:
@@ -138,17 +138,17 @@ _DERIVED: dict[str, _Derived] = {
         _constraint,
     ),
     "projected_control_pseudoinverse": (lambda d: flatten(d.control_pseudoinverse), _actuation),
-    "orthogonal_complement": (lambda d: flatten(d.complement), _partition),
+    "orthogonal_complement": (lambda d: flatten(d.minimal.complement), _partition),
     "projected_mass_matrix": (lambda d: flatten(d.projected_mass_matrix()), _constraint),
     "projected_coriolis_matrix": (lambda d: flatten(d.projected_coriolis_matrix()), _constraint),
     "projected_potential_force": (lambda d: d.space.project(d.mechanics.potential_force), _constraint),
     "projected_applied_force": (lambda d: d.space.project(d.mechanics.applied_force_at(d.admissible)), _constraint),
-    "minimal_mass_matrix": (lambda d: flatten(d.minimal(d.mechanics.mass_matrix)), _partition),
-    "minimal_coriolis_matrix": (lambda d: flatten(d.minimal_coriolis_matrix()), _partition_rate),
-    "minimal_potential_force": (lambda d: d.minimal_vector(d.mechanics.potential_force), _partition),
-    "minimal_applied_force": (lambda d: d.minimal_vector(d.mechanics.applied_force), _partition),
+    "minimal_mass_matrix": (lambda d: flatten(d.minimal.matrix(d.mechanics.mass_matrix)), _partition),
+    "minimal_coriolis_matrix": (lambda d: flatten(d.minimal.coriolis_matrix), _partition_rate),
+    "minimal_potential_force": (lambda d: d.minimal.vector(d.mechanics.potential_force), _partition),
+    "minimal_applied_force": (lambda d: d.minimal.vector(d.mechanics.applied_force), _partition),
     "minimal_control_matrix": (
-        lambda d: tuple(x for row in zip(*map(d.minimal_vector, d.mechanics.inputs), strict=True) for x in row),
+        lambda d: tuple(x for row in zip(*map(d.minimal.vector, d.mechanics.inputs), strict=True) for x in row),
         _partition,
     ),
     "admissible_velocity": (lambda d: d.admissible, _constraint),

@@ -22,10 +22,11 @@ from symgen.methods.quantity import Quantity, scalars
 from symgen.model.quantities import ROWS
 from symgen.records import dataclass
 from symgen.symbolic.evaluate import Evaluator, inner_point
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.hidden_zeros import ROUNDING_OF_ZEROS
 from symgen.symbolic.identity import same_values
 from symgen.symbolic.matrix import Vector
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.transplant import rebuilt, transplanted
 from symgen.symbolic.traverse import ANGLE_WEIGHT, reached, substitute
 

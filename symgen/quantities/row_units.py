@@ -21,8 +21,9 @@ from symgen.model.configurations.assembly import Assembly
 from symgen.model.expressions.expression import Binary, Number
 from symgen.model.model import Model
 from symgen.quantities.constant_dependence import Numbers, numbers_of_dependent_rows, projector
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, matmul, transpose
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 # Units are powers of this, so that nothing is rounded.
 UNIT_BASE = Fraction(2)

@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from symgen.symbolic.exact import ExactValues
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.hidden_zeros import without_hidden_zeros
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import substitute
 
 

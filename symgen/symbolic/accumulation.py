@@ -12,9 +12,10 @@ import heapq
 from collections.abc import Sequence
 
 from symgen.symbolic.calculus import jacobian, partials
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.identity import same_values
 from symgen.symbolic.matrix import Matrix, flatten
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost, topological
 
 

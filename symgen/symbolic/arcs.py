@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 
 # Halvings of the angle before the series is summed.
 HALVINGS = 2

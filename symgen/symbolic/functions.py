@@ -7,7 +7,8 @@ from math import isqrt
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from symgen.symbolic.scalar import Graph, Scalar
+    from symgen.symbolic.graph import Graph
+    from symgen.symbolic.scalar import Scalar
 
 
 def simplified(graph: Graph, name: str, args: tuple[Scalar, ...]) -> Scalar | None:

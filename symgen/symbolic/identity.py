@@ -12,7 +12,8 @@ from contextlib import contextmanager
 
 from symgen.diagnostics import SymgenBug
 from symgen.symbolic.exact import ExactValues, Value, holding_roots
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 
 # Points at which signs are right, half of them by chance.
 POINTS_OF_SIGNS = 12

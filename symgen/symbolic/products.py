@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, TypeAlias
 from symgen.symbolic.fingerprint import PRIME, residue
 
 if TYPE_CHECKING:
-    from symgen.symbolic.scalar import Graph, Scalar
+    from symgen.symbolic.graph import Graph
+    from symgen.symbolic.scalar import Scalar
 
 # Whole coefficients are integers: their arithmetic is many times faster than that of fractions.
 Monomial: TypeAlias = "tuple[int | Fraction, dict[Scalar, int]]"

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 
 from symgen.diagnostics import SymgenBug
 from symgen.model.expressions.expression import Binary, Call, Expression, Name, Negation, Number, Pi, Power
-from symgen.symbolic.scalar import PI, Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import PI, Scalar
 
 
 def translate(graph: Graph, expression: Expression, names: Mapping[str, Scalar]) -> Scalar:

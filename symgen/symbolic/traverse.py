@@ -10,7 +10,8 @@ from itertools import chain
 
 from symgen.records import dataclass
 from symgen.runtime.garbage import cleared_with_the_rest
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 
 # What counts as arithmetic, as an angle, or not at all; every other operation is a function.
 _NO_FUNCTIONS = frozenset({"add", "sub", "min", "max", "mul", "div", "ratio_or_zero", "sqrt", "sin", "cos"})

@@ -29,7 +29,8 @@ from symgen.methods.selection import Methods
 from symgen.pipeline import generate
 from symgen.quantities import alternatives, candidates, everything
 from symgen.quantities.alternatives import Alternative
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 from symgen.verify.certificate import LeftOut
 from symgen.verify.margins import far_parameters
 from symgen.verify.reference.reference import State

@@ -14,7 +14,7 @@ from symgen.quantities.candidates import ARTICULATED
 from symgen.quantities.select import derive_quantities
 from symgen.runtime import effort
 from symgen.runtime.effort import SCALAR, TooLongError, at_most
-from symgen.symbolic.scalar import Graph
+from symgen.symbolic.graph import Graph
 
 
 def tree(links: int) -> str:

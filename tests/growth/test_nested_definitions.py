@@ -15,7 +15,7 @@ from symgen.model.load import load_text
 from symgen.pipeline import generate
 from symgen.quantities.select import derive_quantities
 from symgen.symbolic.angles.angle_forms import angle_form
-from symgen.symbolic.scalar import Graph
+from symgen.symbolic.graph import Graph
 from symgen.verify.reference.reference import Reference
 
 LINES = {

@@ -10,7 +10,8 @@ from symgen.diagnostics import SymgenBug
 from symgen.ir import lifted
 from symgen.ir.kernel import Argument, Block, Kernel, Load, Local, Operand, OperationName, Statement
 from symgen.ir.lifted import Lifted, Meant, same_kernel
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 
 STATES = ("x", "y")
 

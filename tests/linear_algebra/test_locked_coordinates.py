@@ -14,8 +14,8 @@ from symgen.mechanics.system import System
 from symgen.methods.spaces import derivations
 from symgen.model.load import load_text
 from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import flatten
-from symgen.symbolic.scalar import Graph
 
 # a and b are locked, by two rows and by one more that follows from these; c and d move along, and with c what b drives
 TRUSS = """model: truss

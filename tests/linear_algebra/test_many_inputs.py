@@ -17,7 +17,8 @@ from symgen.methods.method import INPUTS, Candidate
 from symgen.methods.selection import Methods
 from symgen.model.load import load_text
 from symgen.symbolic.evaluate import Evaluator
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 from symgen.validity.rank_measures import rank_measures
 
 SHAPES = [(5, 7, 5), (6, 4, 4), (5, 5, 5), (6, 6, 4), (5, 8, 3), (4, 1, 1)]

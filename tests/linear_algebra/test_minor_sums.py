@@ -12,7 +12,7 @@ from flint import fmpq, fmpq_mat
 from symgen.linear_algebra.exterior import small_family
 from symgen.linear_algebra.minor_sums import squared_minors
 from symgen.symbolic.evaluate import Evaluator
-from symgen.symbolic.scalar import Graph
+from symgen.symbolic.graph import Graph
 
 
 def exactly(columns: list[list[float]], degree: int) -> Fraction:

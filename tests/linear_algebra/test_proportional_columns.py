@@ -17,8 +17,8 @@ from symgen.methods.spaces import derivations
 from symgen.methods.system import MethodInput
 from symgen.model.load import load_text
 from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, flatten
-from symgen.symbolic.scalar import Graph
 
 # Two slides on one line and two wheels of a gear, which move against each other, and a lever that they hold
 LIFT = """model: lift

@@ -24,8 +24,9 @@ from symgen.methods.derivation import Derivation
 from symgen.model.load import load_text
 from symgen.quantities.select import derive_quantities
 from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.verify.interpreted import outcomes
 from symgen.verify.reference.reference import State
 

@@ -20,9 +20,10 @@ from symgen.linear_algebra.null_space.null_spaces import HouseholderSpace, Minor
 from symgen.linear_algebra.null_space.pivoted import reflected
 from symgen.linear_algebra.null_space.proportional_columns import FamilySpace, families
 from symgen.linear_algebra.square import by_rows
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.identity import every_identity_evaluated, same_values
 from symgen.symbolic.matrix import Matrix, Vector, flatten, identity, matmul, matvec, transpose
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 SEEDS = range(6)
 

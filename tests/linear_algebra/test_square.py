@@ -10,7 +10,7 @@ import pytest
 
 from symgen.linear_algebra.square import by_rows
 from symgen.symbolic.evaluate import Evaluator
-from symgen.symbolic.scalar import Graph
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.traverse import topological
 
 

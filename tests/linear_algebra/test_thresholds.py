@@ -9,7 +9,7 @@ from symgen.linear_algebra.constrained_inverse import diagonal_sizes
 from symgen.linear_algebra.guards import Guard, multiplied
 from symgen.linear_algebra.null_space.null_spaces import MinorSpace
 from symgen.symbolic.evaluate import Evaluator
-from symgen.symbolic.scalar import Graph
+from symgen.symbolic.graph import Graph
 
 EPS = UNIT_ROUNDOFF["float32"]
 

@@ -14,8 +14,8 @@ from symgen.linear_algebra.rows.sparser_rows import SparserRows
 from symgen.linear_algebra.rows.turned_rows import TurnedRows
 from symgen.linear_algebra.triangular_blocks import BlockwiseSolution, triangular_blocks
 from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix
-from symgen.symbolic.scalar import Graph
 from symgen.symbolic.traverse import reached
 
 

@@ -8,7 +8,8 @@ import pytest
 
 from symgen.linear_algebra.guards import where_negligible
 from symgen.symbolic.evaluate import Evaluator
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost, reached
 
 

@@ -17,9 +17,10 @@ from symgen.methods.forward_dynamics.motion import Motion, Problem
 from symgen.methods.inverse_dynamics.rates import combined, reduced_rates
 from symgen.model.load import load_text
 from symgen.symbolic.fingerprint import PRIME
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.identity import every_identity_evaluated, same_values
 from symgen.symbolic.matrix import Matrix, flatten, identity, matmul, matvec, transpose
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.transplant import transplanted
 
 FIELD = fmpz_mod_ctx(PRIME)

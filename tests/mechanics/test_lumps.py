@@ -19,8 +19,9 @@ from symgen.model.load import load_model
 from symgen.model.model import Model
 from symgen.symbolic.angles.sharing import angles_of, share_angles
 from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.polynomials.content import divided, usual_number
-from symgen.symbolic.scalar import PI, Graph, Scalar
+from symgen.symbolic.scalar import PI, Scalar
 from symgen.symbolic.traverse import cost
 
 BODIES = ("front_car_bodies", "rapkm_bodies", "delta", "arm7", "gough_stewart", "rolling_disc", "three_rrr", "scara")

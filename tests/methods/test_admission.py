@@ -24,7 +24,8 @@ from symgen.methods.system import MethodInput
 from symgen.methods.workspace import Workspace
 from symgen.runtime.effort import done
 from symgen.symbolic.evaluate import Evaluator
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 from symgen.validity import search as search_module
 from symgen.validity.precise import PreciseEvaluator, UndefinedError, precise, precision
 from symgen.validity.proof import Proof

@@ -16,7 +16,8 @@ from symgen.methods.given.row_solution import solvable_row, solved
 from symgen.model.load import load_text
 from symgen.symbolic.arcs import turn_of
 from symgen.symbolic.evaluate import Evaluator
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import topological
 
 BASE = """

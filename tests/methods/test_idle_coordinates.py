@@ -8,7 +8,7 @@ import pytest
 
 from symgen.mechanics.genericity import genericity
 from symgen.mechanics.system import System
-from symgen.methods.idle_coordinates import idle_coordinates
+from symgen.methods.coordinates.idle_coordinates import idle_coordinates
 from symgen.model.load import load_text
 from symgen.quantities.select import derive_quantities
 from symgen.symbolic.evaluate import Evaluator

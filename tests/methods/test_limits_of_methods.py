@@ -27,8 +27,9 @@ from symgen.methods.table import Use, methods
 from symgen.methods.workspace import Workspace
 from symgen.model.load import load_text
 from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import reached
 
 

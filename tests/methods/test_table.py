@@ -23,7 +23,8 @@ from symgen.model.quantities import MOTIONS
 from symgen.quantities.alternatives import Alternatives
 from symgen.quantities.select import Selection, derive_quantities
 from symgen.symbolic.evaluate import Evaluator
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 
 # A motor turns three equal drums by gear wheels.
 DRUMS = """

@@ -8,7 +8,7 @@ from itertools import pairwise
 import pytest
 
 from symgen.quantities.constant_dependence import numbers_of_dependent_rows, projector
-from symgen.symbolic.scalar import Graph
+from symgen.symbolic.graph import Graph
 
 ONE = Fraction(1)
 

@@ -8,8 +8,9 @@ import pytest
 
 from symgen.symbolic.accumulation import accumulated_jacobian, shortest_jacobian
 from symgen.symbolic.calculus import jacobian
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, flatten
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost
 
 NO_LIMIT = 10**9

@@ -7,8 +7,9 @@ from fractions import Fraction
 
 import pytest
 
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.identity import every_identity_evaluated, same_values
-from symgen.symbolic.scalar import PI, Graph, Scalar
+from symgen.symbolic.scalar import PI, Scalar
 from symgen.symbolic.transplant import transplanted
 from symgen.symbolic.traverse import substitute
 

@@ -15,7 +15,8 @@ from symgen.symbolic.angles.angle_forms import angle_form
 from symgen.symbolic.angles.sharing import share_angles
 from symgen.symbolic.calculus import derivative_along, gradient
 from symgen.symbolic.evaluate import FUNCTIONS, Evaluator
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost, substitute, topological, weights_alone
 
 NAMES = ("x", "y", "z")

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.passes.factoring import Factoring
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 
 def shortened(graph: Graph, output: Scalar) -> Scalar:

@@ -13,7 +13,8 @@ from symgen.ir.pairs.wide_functions import WIDE
 from symgen.linear_algebra.guards import magnitude
 from symgen.symbolic.calculus import derivative_along, gradient
 from symgen.symbolic.evaluate import FUNCTIONS, Evaluator
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import rebuild
 
 POINT = {"x": 0.37, "y": 0.82}

@@ -14,8 +14,9 @@ from symgen.symbolic import identity
 from symgen.symbolic.angles.circle import FIELD, INNER, INNERMOST, LAST, STEPS, Field
 from symgen.symbolic.angles.sharing import share_angles
 from symgen.symbolic.exact import MOST_DEGREE, ExactValues, half_turns
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.identity import every_identity_evaluated, same_values
-from symgen.symbolic.scalar import PI, Graph, Scalar
+from symgen.symbolic.scalar import PI, Scalar
 
 NAMES = ("x", "y", "z")
 QUICK = settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.too_slow])

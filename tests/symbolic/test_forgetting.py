@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.identity import same_values
 from symgen.symbolic.passes import forgetting as forgets
 from symgen.symbolic.passes.forgetting import forgetting
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import reached
 
 

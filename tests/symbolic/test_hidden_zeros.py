@@ -12,9 +12,10 @@ from symgen.generation.results import Options
 from symgen.mechanics.system import System
 from symgen.model.load import load_text
 from symgen.quantities.select import derive_quantities
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.hidden_zeros import without_hidden_zeros
 from symgen.symbolic.identity import every_identity_evaluated, same_values
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 
 def _turned(graph: Graph, axis: tuple[Scalar, ...], angle: Scalar) -> list[Scalar]:

@@ -6,8 +6,9 @@ import random
 from fractions import Fraction
 
 from symgen.symbolic.fingerprint import PRIME
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.passes.shared_parts import with_shared_products, with_shared_sums
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 DRAWS = 400
 

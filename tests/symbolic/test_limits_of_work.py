@@ -14,12 +14,13 @@ from symgen.mechanics.structure import MOST_ENTRIES, analyse
 from symgen.mechanics.system import System
 from symgen.model.load import load_text
 from symgen.runtime.effort import done
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.passes.shared_parts import MOST_SHARING_TERMS, with_shared_sums
 from symgen.symbolic.polynomials import content, polynomial
 from symgen.symbolic.polynomials.content import usual_number
 from symgen.symbolic.polynomials.polynomial import MOST_EXPANDED_TERMS, Multiplier, refactored
 from symgen.symbolic.products import MOST_FACTORS
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.validity.driven import MOST_LISTED_MINORS, driven_minors
 from symgen.validity.search import MOST_DRIVEN_SQUARES, PreciseEvaluator, ZeroSearch
 

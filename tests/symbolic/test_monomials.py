@@ -8,9 +8,10 @@ from fractions import Fraction
 
 import pytest
 
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.polynomials.monomials import LARGEST_POWER, Coefficient, Monomials, Terms
 from symgen.symbolic.polynomials.polynomial import Multiplier
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 
 class Drawn:

@@ -7,8 +7,9 @@ import random
 import pytest
 
 from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.polynomials.nested_factors import nested_factors
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 LETTERS = "abcdefgh"
 

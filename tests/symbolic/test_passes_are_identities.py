@@ -16,12 +16,13 @@ from symgen.ir.lifted import Lifted, same_kernel
 from symgen.lowering.schedule import schedule
 from symgen.quantities.select import derive_quantities
 from symgen.symbolic.angles.sharing import share_angles
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.identity import every_identity_evaluated, same_values
 from symgen.symbolic.passes import grouping
 from symgen.symbolic.passes.factoring import Factoring
 from symgen.symbolic.polynomials.content import divided, usual_number
 from symgen.symbolic.polynomials.polynomial import Multiplier, refactored
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 SEEDS = range(60)
 PARAMETERS, STATES = "abcd", "pqrs"

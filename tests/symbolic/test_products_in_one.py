@@ -9,11 +9,12 @@ import pytest
 
 from symgen.symbolic.differences import Differences
 from symgen.symbolic.fingerprint import PRIME, residue
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.identity import every_identity_evaluated, same_values
 from symgen.symbolic.passes.factoring import Factoring
 from symgen.symbolic.polynomials.monomials import Monomials, Terms
 from symgen.symbolic.polynomials.polynomial import Multiplier, factored
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 SEEDS = range(150)
 Made = tuple[Graph, random.Random, Factoring, list[Scalar]]

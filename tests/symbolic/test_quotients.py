@@ -10,9 +10,10 @@ import pytest
 
 from symgen.diagnostics import SymgenBug
 from symgen.symbolic.fingerprint import PRIME, residue
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.identity import every_identity_evaluated, same_values
 from symgen.symbolic.products import MOST_FACTORS, Products
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 DRAWS = 400
 NUMBERS = (1, -1, 2, Fraction(-3, 2), Fraction(5, 7))

@@ -7,13 +7,14 @@ from collections.abc import Sequence
 import pytest
 
 from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.passes.factoring import Factoring
 from symgen.symbolic.passes.grouping import grouped
 from symgen.symbolic.passes.quotients import with_quotients
 from symgen.symbolic.passes.rebuilt import rebuilt
 from symgen.symbolic.passes.sum_factors import with_common_factors
 from symgen.symbolic.passes.terms import MOST_FACTORED_TERMS, sum_of
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost, topological
 
 NAMES = "a b c f g h k x y z"

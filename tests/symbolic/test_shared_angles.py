@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from symgen.symbolic.angles.sharing import angles_of, share_angles
-from symgen.symbolic.scalar import PI, Graph
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import PI
 from symgen.symbolic.traverse import reached
 
 

@@ -11,10 +11,11 @@ from shipped import model
 from symgen.linear_algebra.guards import magnitude
 from symgen.quantities.select import derive_quantities
 from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.passes.shared_parts import with_shared_products, with_shared_sums
 from symgen.symbolic.passes.sum_factors import with_common_factors
 from symgen.symbolic.polynomials.content import divided
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost, reached
 
 VALUES = {name: 0.3 + 0.7 * k for k, name in enumerate("abcdefpq")}

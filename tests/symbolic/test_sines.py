@@ -10,7 +10,7 @@ from flint import arb, ctx
 
 from symgen.symbolic.angles.sines import PARTS, cosine, sine
 from symgen.symbolic.evaluate import FUNCTIONS, Evaluator
-from symgen.symbolic.scalar import Graph
+from symgen.symbolic.graph import Graph
 
 
 @pytest.mark.parametrize("largest", [1e-3, 7.0, 1e5])

@@ -6,7 +6,8 @@ import pytest
 
 from symgen.mechanics.system import System
 from symgen.model.load import load_text
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.transplant import transplanted
 from symgen.symbolic.traverse import reached, substitute
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from symgen.symbolic.scalar import Graph
+from symgen.symbolic.graph import Graph
 from symgen.validity.floats import FloatGradients
 from symgen.validity.precise import PreciseEvaluator, precise
 

@@ -11,7 +11,8 @@ from symgen.model.expressions.expression import Expression
 from symgen.model.expressions.parser import parse_expression
 from symgen.model.file.source import ScalarNode
 from symgen.symbolic.exact import ExactValues
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.translate import translate
 from symgen.validity.formula import formula, quoted
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 from symgen.validity.residues import Residues
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from symgen.ir.kernel import UNIT_ROUNDOFF, Status
 from symgen.linear_algebra.guards import Guard
-from symgen.symbolic.scalar import Graph
+from symgen.symbolic.graph import Graph
 from symgen.validity.resolution import distinguishable
 
 N = 4

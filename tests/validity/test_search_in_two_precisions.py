@@ -11,7 +11,8 @@ from symgen.mechanics.genericity import genericity
 from symgen.mechanics.system import System
 from symgen.model.load import load_text
 from symgen.runtime.effort import done
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 from symgen.validity.search import ZeroSearch
 
 TEXT = """

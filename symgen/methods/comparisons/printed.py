@@ -22,8 +22,9 @@ from symgen.methods.admission import OfInputs
 from symgen.methods.method import Candidate, Method, solved_for_u
 from symgen.methods.system import MethodInput
 from symgen.symbolic.evaluate import Evaluator
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, dot, identity, matvec
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 Projection: TypeAlias = Callable[[Vector], Vector]
 # Choices of inputs up to which the method `printed` is made of them.

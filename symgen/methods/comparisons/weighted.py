@@ -14,8 +14,8 @@ from symgen.linear_algebra.guards import Guard
 from symgen.methods.admission import OfInputs
 from symgen.methods.method import Candidate, Method, solved_for_u
 from symgen.methods.system import MethodInput
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, dot, matvec, subtract_vectors
-from symgen.symbolic.scalar import Graph
 
 
 def weighted_candidate(system: MethodInput) -> Candidate | str:

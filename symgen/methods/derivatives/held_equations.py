@@ -12,8 +12,9 @@ from collections.abc import Mapping
 from symgen.records import dataclass
 from symgen.symbolic.accumulation import shortest_jacobian
 from symgen.symbolic.calculus import gradient
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, dot, matmul
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import substitute
 
 

@@ -15,7 +15,8 @@ from symgen.methods.forward_dynamics.motion import Motion
 from symgen.methods.graphs import GraphCopy
 from symgen.methods.quantity import Quantity
 from symgen.model.model import Model
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 
 
 def in_absolute_angles(model: Model) -> System | None:

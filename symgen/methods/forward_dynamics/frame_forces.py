@@ -16,8 +16,9 @@ from symgen.model.kinematics.triples import applied
 from symgen.model.kinematics.walk import Kinematics, Twist
 from symgen.model.mechanism import component
 from symgen.symbolic.calculus import gradient
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Vector, dot
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.translate import translate
 from symgen.symbolic.traverse import substitute
 

@@ -21,8 +21,8 @@ from symgen.model.expressions.expression import Expression, Number
 from symgen.model.expressions.walk import names_in
 from symgen.model.mechanism import Frame, Quaternion
 from symgen.records import dataclass
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, dot
-from symgen.symbolic.scalar import Graph
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,10 +12,11 @@ from symgen.mechanics.system import System
 from symgen.model.quantities import MOTIONS
 from symgen.records import dataclass
 from symgen.symbolic.angles.sharing import share_angles
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.identity import same_values
 from symgen.symbolic.matrix import Matrix, Vector
 from symgen.symbolic.polynomials.polynomial import Multiplier, refactored
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 
 @dataclass(frozen=True, slots=True)

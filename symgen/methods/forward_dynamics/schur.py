@@ -17,8 +17,9 @@ from symgen.linear_algebra.null_space.null_spaces import LONGEST_PRODUCT
 from symgen.linear_algebra.orthogonal import PivotedGramSchmidt, WeightedGramSchmidt
 from symgen.linear_algebra.refinement import Solution, less_forces, missing, of_columns, refined
 from symgen.methods.forward_dynamics.motion import Motion, Problem
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, subtract_vectors
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 
 class MassMatrixFactor(Protocol):

@@ -24,8 +24,9 @@ from itertools import chain
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.guards import Guard
 from symgen.model.configurations.friction_steps import LOCKING_SHARE, MOST_FRICTION_STEPS, FrictionSteps
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Vector, dot
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 
 class FrictionLoads:

@@ -17,8 +17,9 @@ from symgen.methods.system import MethodInput
 from symgen.methods.workspace import Workspace
 from symgen.records import dataclass
 from symgen.symbolic.arcs import turn_of
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Vector
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import substitute
 
 

@@ -25,8 +25,9 @@ from symgen.linear_algebra.null_space.null_spaces import HouseholderSpace
 from symgen.linear_algebra.null_space.pivoted import reflected
 from symgen.methods.given.functions import Given
 from symgen.symbolic.calculus import gradient, jacobian
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, add, dot, matmul, matvec, transpose
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import substitute
 
 if TYPE_CHECKING:

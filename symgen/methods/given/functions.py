@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, TypeAlias
 from symgen.ir.kernel import Status
 from symgen.records import dataclass
 from symgen.symbolic.calculus import derivative_along, gradient
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, dot, flatten, identity
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.translate import translate
 
 if TYPE_CHECKING:

@@ -15,7 +15,8 @@ from symgen.linear_algebra.guards import Guard
 from symgen.records import dataclass
 from symgen.symbolic.arcs import turn_of
 from symgen.symbolic.calculus import derivative_along
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 
 Form: TypeAlias = Literal["linear", "quadratic", "angle"]
 

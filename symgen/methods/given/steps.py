@@ -17,8 +17,9 @@ from symgen.linear_algebra.rows.sparser_rows import MOST_ROWS_COMBINED, SparserR
 from symgen.methods.given.row_solution import SolvableRow, solvable_row
 from symgen.records import dataclass
 from symgen.symbolic.calculus import derivative_along, gradient
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import dot
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost, reached, substitute
 
 

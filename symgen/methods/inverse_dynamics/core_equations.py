@@ -13,9 +13,10 @@ from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
 from symgen.methods.inverse_dynamics.elimination import Elimination
 from symgen.records import dataclass
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, dot, transpose
 from symgen.symbolic.polynomials.content import divided, usual_number
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.transplant import transplanted
 from symgen.symbolic.traverse import cost
 

@@ -23,10 +23,11 @@ from symgen.linear_algebra.balance import along_rates, multipliers_alone
 from symgen.linear_algebra.null_space.null_spaces import LONGEST_PRODUCT
 from symgen.mechanics.system import System
 from symgen.methods.inverse_dynamics.taken_back import SolvedUnknown, Step, TurnedUnknowns, taken_back
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, dot
 from symgen.symbolic.passes.factoring import LONGEST_CANCELLED
 from symgen.symbolic.polynomials.content import divided, usual_number
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost
 
 

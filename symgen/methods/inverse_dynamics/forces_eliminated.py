@@ -25,8 +25,9 @@ from symgen.methods.inverse_dynamics.elimination import Elimination
 from symgen.methods.method import Candidate, Method, solved_for_u
 from symgen.methods.system import MethodInput
 from symgen.methods.workspace import Workspace
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Vector
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost, substitute
 
 NOT_ELIMINATED = "its steps leave more than a few rows, or M does not select rows"

@@ -27,9 +27,10 @@ from symgen.methods.method import Candidate, Method, solved_for_u
 from symgen.methods.system import MethodInput
 from symgen.methods.workspace import Workspace
 from symgen.records import dataclass
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, dot, identity, matmul, transpose
 from symgen.symbolic.polynomials.nested_factors import nested_factors
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost
 
 # Bases of the null space that are tried: where each of the first has a determinant that vanishes, others mostly have.

@@ -12,8 +12,9 @@ from itertools import combinations
 
 from symgen.mechanics.never_zero import Definite
 from symgen.records import dataclass
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, identity
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,8 +15,9 @@ from fractions import Fraction
 
 from symgen.linear_algebra.reflections import Reflections
 from symgen.records import dataclass
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Vector, dot
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 # Below this an input takes no part in the internal force; quotients by it are finite in float32, too.
 NO_PART = Fraction(1, 10**30)

@@ -24,8 +24,9 @@ from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.reflected_rows import reflected_rows
 from symgen.mechanics.system import System
 from symgen.model.model import Limit
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, dot, matvec, subtract_vectors, transpose
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 # Dimensions in which normals are determinants: in more they lose digits that reflections keep.
 MOST_BY_DETERMINANTS = 3

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 from symgen.symbolic.fingerprint import angle_pair, leaf_pair
 
 if TYPE_CHECKING:
-    from symgen.symbolic.scalar import Graph, Scalar
+    from symgen.symbolic.graph import Graph
+    from symgen.symbolic.scalar import Scalar
 
 
 class Angles:

@@ -11,8 +11,9 @@ from fractions import Fraction
 
 from symgen.model.kinematics.fixed_angles import sine_of_steps
 from symgen.symbolic.angles.angle_forms import angle_form
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.identity import same_values
-from symgen.symbolic.scalar import PI, Graph, Scalar
+from symgen.symbolic.scalar import PI, Scalar
 from symgen.symbolic.traverse import topological
 
 # An odd number without a pattern, and a prime modulo which its powers are taken: sums are equal by chance hardly

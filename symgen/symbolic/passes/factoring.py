@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterable, Sequence
 
 from symgen.symbolic.angles.sharing import share_angles
 from symgen.symbolic.differences import Differences
+from symgen.symbolic.graph import Graph, Mark
 from symgen.symbolic.identity import same_values
-from symgen.symbolic.mark import Mark
 from symgen.symbolic.passes.forgetting import forgetting
 from symgen.symbolic.polynomials.polynomial import Multiplier, refactored
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import topological
 
 # Operations of a scalar up to which it is multiplied out to see what cancels: a longer one would not get shorter.

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Set
 
-from symgen.symbolic.mark import Mark
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph, Mark
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import forget_orders
 
 # Scalars that are forgotten together at least: fewer are met again, and looking for those that are needed takes time,

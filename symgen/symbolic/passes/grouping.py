@@ -10,13 +10,14 @@ from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
 from symgen.records import dataclass
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.identity import same_values
 from symgen.symbolic.passes.factoring import Factoring
 from symgen.symbolic.passes.quotients import with_quotients
 from symgen.symbolic.passes.shared_parts import with_shared_products, with_shared_sums
 from symgen.symbolic.passes.sum_factors import with_common_factors
 from symgen.symbolic.passes.twins import without_twins
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import cost, reached
 
 Rewriting: TypeAlias = Callable[[Graph, Factoring, Sequence[Scalar]], list[Scalar]]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 
 
 def rebuilt(graph: Graph, node: Scalar, args: tuple[Scalar, ...]) -> Scalar:

@@ -11,9 +11,10 @@ from collections.abc import Collection, Mapping, Sequence
 from heapq import heapify, heappop, heappush
 from typing import TypeAlias
 
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.passes.rebuilt import rebuilt
 from symgen.symbolic.passes.terms import Term, product_of, sum_of, terms_of
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import reached, topological, uses_of
 
 _Pair: TypeAlias = tuple[Term, Term]

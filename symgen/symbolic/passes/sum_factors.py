@@ -6,9 +6,10 @@ from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
 
 from symgen.records import dataclass
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.passes.rebuilt import rebuilt
 from symgen.symbolic.passes.terms import MOST_FACTORED_TERMS, SUMS, product_of, sum_of, terms_of, without_opposites
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import topological, uses_of
 
 

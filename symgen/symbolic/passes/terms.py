@@ -7,7 +7,8 @@ from collections.abc import Collection, Mapping, Sequence
 from itertools import combinations
 from typing import TypeAlias
 
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 
 Term: TypeAlias = tuple[int, Scalar]
 SUMS = frozenset({"add", "sub"})

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.passes.rebuilt import rebuilt
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import topological
 
 

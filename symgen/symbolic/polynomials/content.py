@@ -6,8 +6,9 @@ from collections import Counter
 from collections.abc import Iterable
 from fractions import Fraction
 
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.identity import same_values
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 # Sums nested in each other up to which a common number is looked for; deeper ones are taken as they stand.
 DEEPEST = 12

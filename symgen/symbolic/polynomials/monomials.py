@@ -14,7 +14,7 @@ from math import lcm
 from struct import unpack
 from typing import TypeAlias
 
-from symgen.symbolic.scalar import Graph
+from symgen.symbolic.graph import Graph
 
 Code: TypeAlias = int
 # Whole coefficients are integers: their arithmetic is many times faster than that of fractions.

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 
 
 def nested_factors(scalar: Scalar, fixed: Callable[[Scalar], bool]) -> tuple[Scalar, ...]:

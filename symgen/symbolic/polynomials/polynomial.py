@@ -13,8 +13,9 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from symgen.symbolic.differences import Differences
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.polynomials.monomials import LARGEST_POWER, Coefficient, Monomial, Monomials, Terms
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 Polynomial: TypeAlias = dict[Monomial, Coefficient]
 
