@@ -14,7 +14,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from symgen.drawing.pose import NEXT_TO_NOTHING, MachinePose, Place
-from symgen.model.configurations.gradient import Gradients
 from symgen.model.expressions.walk import names_in
 from symgen.model.mechanism import Component, component, is_component
 from symgen.model.model import Input
@@ -41,9 +40,7 @@ def drawn_forces(pose: MachinePose) -> Iterator[DrawnForce]:
 def _of_column(pose: MachinePose, one: Input) -> DrawnForce | None:
     """The force d of 1 at the first frame or point whose place moves by J q_dot, where J^T d is the column."""
     index = {coordinate.name: k for k, coordinate in enumerate(pose.model.coordinates)}
-    definitions = {definition.name: definition.value for definition in pose.model.definitions}
-    gradients = Gradients(pose.values, {}, definitions, lambda name: (pose.component(component(name)), {}))
-    column = np.zeros(len(index))
+    gradients, column = pose.gradients({}), np.zeros(len(index))
     for coordinate, factor in one.acts_on:
         column[index[coordinate]] = gradients.of(factor)[0]
     for owner, place in pose.places.items():
@@ -60,12 +57,7 @@ def _of_input(pose: MachinePose, one: Input) -> Iterator[DrawnForce]:
     names = (part.name for part in names_in(one.velocity) if is_component(part.name))
     rates = [rate for rate in map(component, dict.fromkeys(names)) if rate.is_rate]
     index = {rate.name: k for k, rate in enumerate(rates)}
-
-    def known(name: str) -> tuple[float, dict[int, float]]:
-        return (0.0, {index[name]: 1.0}) if name in index else (pose.component(component(name)), {})
-
-    definitions = {definition.name: definition.value for definition in pose.model.definitions}
-    _, coefficients = Gradients(pose.values, {}, definitions, known).of(one.velocity)
+    _, coefficients = pose.gradients(index).of(one.velocity)
     for owner in dict.fromkeys(rate.owner for rate in rates):
         own = [(rate, coefficients.get(index[rate.name], 0.0)) for rate in rates if rate.owner == owner]
         force = _summed(pose, [(rate, factor) for rate, factor in own if rate.what[0] == "v"])

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from symgen.drawing.pose import MachinePose, Place
-from symgen.model.configurations.gradient import Gradients
 from symgen.model.expressions.walk import names_in
 from symgen.model.kinematics.triples import cross
 from symgen.model.mechanism import WORLD, component, is_component
@@ -47,12 +46,7 @@ def _ends(pose: MachinePose, row: ConstraintRow) -> tuple[str, str] | None:
     if len(owners) != 2 or any(one.axes != WORLD or one.what not in ("x", "y", "z") for one in places):
         return None
     index = {one.name: k for k, one in enumerate(places)}
-    definitions = {definition.name: definition.value for definition in pose.model.definitions}
-
-    def known(name: str) -> tuple[float, dict[int, float]]:
-        return pose.component(component(name)), {index[name]: 1.0} if name in index else {}
-
-    _, gradient = Gradients(pose.values, {}, definitions, known).of(row.expression)
+    _, gradient = pose.gradients(index).of(row.expression)
     first, second = (
         tuple(gradient.get(index.get(f"{owner}.{axis}", -1), 0.0) for axis in "xyz") for owner in owners
     )

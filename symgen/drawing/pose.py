@@ -15,7 +15,7 @@ from symgen.model.configurations.gradient import Gradients
 from symgen.model.kinematics.float_kinematics import FloatArithmetic, Form
 from symgen.model.kinematics.triples import Rates, Triple, applied, cross, transposed
 from symgen.model.kinematics.walk import Kinematics
-from symgen.model.mechanism import WORLD, Component, Frame
+from symgen.model.mechanism import WORLD, Component, Frame, component
 from symgen.model.model import Model
 
 Place: TypeAlias = Triple[float]
@@ -84,6 +84,19 @@ class MachinePose:
     def place_rate(self, owner: str) -> Rates[Form]:
         """How the place of a point, or of the origin of a frame, moves in the world: coefficients of the rates."""
         return self._kinematics.position_rate(owner)
+
+    def gradients(self, by: Mapping[str, int]) -> Gradients:
+        """What evaluates expressions here, with gradients by the components of points and frames that have numbers.
+
+        Rates of these are 0.
+        """
+        definitions = {definition.name: definition.value for definition in self.model.definitions}
+
+        def known(name: str) -> tuple[float, dict[int, float]]:
+            one = component(name)
+            return 0.0 if one.is_rate else self.component(one), {by[name]: 1.0} if name in by else {}
+
+        return Gradients(self.values, {}, definitions, known)
 
     def component(self, one: Component) -> float:
         """A component of a point or frame that is no rate."""

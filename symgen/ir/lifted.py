@@ -16,8 +16,8 @@ from symgen.ir.last_kernels import LastKernels
 from symgen.ir.pairs.wide_functions import is_wide, plain_operation
 from symgen.records import dataclass
 from symgen.symbolic.fingerprint import PRIME, angle_pair, combine, leaf_pair, opaque, residue
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.identity import same_values
-from symgen.symbolic.scalar import Graph
 from symgen.symbolic.scalar import Scalar as Node
 from symgen.symbolic.traverse import topological
 

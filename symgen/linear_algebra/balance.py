@@ -10,8 +10,9 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TypeAlias
 
 from symgen.model.kinematics.triples import Rows, transposed
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, dot
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 Coefficients: TypeAlias = dict[int, Scalar]
 

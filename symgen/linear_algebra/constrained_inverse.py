@@ -13,8 +13,9 @@ from symgen.ir.kernel import Status
 from symgen.linear_algebra.exterior import wedge
 from symgen.linear_algebra.guards import Guard, magnitude
 from symgen.linear_algebra.null_space.null_spaces import HouseholderSpace, MinorSpace
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, dot, identity, matmul, matvec, transpose
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 # Of its bound, what an inertia is taken for at least: tested in float32, about the square of what rounding leaves.
 REST = Fraction(1, 2**28)

@@ -13,9 +13,10 @@ from collections.abc import Callable, Iterable, Sequence
 from itertools import combinations
 from typing import TypeAlias
 
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector
 from symgen.symbolic.passes.factoring import LONGEST_CANCELLED
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 Multivector: TypeAlias = dict[int, Scalar]
 

@@ -18,7 +18,8 @@ from fractions import Fraction
 
 from symgen.ir.kernel import Status
 from symgen.records import dataclass
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import reached, substitute, topological
 
 # What a direction may be shorter by, in lengths or in squares, without being lost.

@@ -11,8 +11,9 @@ from itertools import combinations
 from symgen.linear_algebra.blocks import components
 from symgen.linear_algebra.exterior import small_family, square, unit, wedge_all
 from symgen.linear_algebra.reflections import Reflections
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, transpose
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 
 def squared_minors(graph: Graph, columns: Sequence[Vector], degree: int) -> Scalar:

@@ -12,8 +12,9 @@ from collections.abc import Sequence
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.guards import Guard, multiplied
 from symgen.linear_algebra.null_space.pivoted import longest
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, dot, transpose
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 
 class WeightedGramSchmidt:

@@ -10,8 +10,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, dot, matvec, subtract_vectors
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 Solution: TypeAlias = tuple[Vector, Vector]  # accelerations, or what is solved for in their place, and lambda
 

@@ -10,8 +10,9 @@ from collections.abc import Callable, Sequence
 
 from symgen.linear_algebra.null_space.null_spaces import HouseholderSpace, Restriction
 from symgen.linear_algebra.null_space.pivoted import reflected
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, transpose
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 
 class ReflectedInputs:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Vector, dot
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 
 class Reflections:

@@ -13,8 +13,9 @@ from collections.abc import Sequence
 
 from symgen.linear_algebra.exterior import cross_product
 from symgen.records import dataclass
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, dot
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 # Rows up to which a square system is solved by minors.
 LARGEST_SQUARE_BY_MINORS = 3

@@ -14,9 +14,10 @@ from symgen.linear_algebra.exterior import cross_product
 from symgen.linear_algebra.guards import Guard
 from symgen.linear_algebra.square import LARGEST_SQUARE_BY_MINORS, by_rows
 from symgen.records import dataclass
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, dot
 from symgen.symbolic.passes.factoring import LONGEST_CANCELLED
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 
 @dataclass(frozen=True, slots=True)

@@ -34,7 +34,7 @@ from symgen.methods.quantity import Quantity
 from symgen.model.quantities import ROWS
 from symgen.runtime.activity import each
 from symgen.symbolic.angles.sharing import share_angles
-from symgen.symbolic.scalar import Graph
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.scalar import Scalar as Node
 from symgen.symbolic.traverse import topological
 

@@ -10,7 +10,7 @@ from symgen.ir.kernel import Block, Check, Literal, Load, Local, Operand, Statem
 from symgen.mechanics.system import System
 from symgen.model.quantities import Argument
 from symgen.records import dataclass
-from symgen.symbolic.scalar import Graph
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.scalar import Scalar as Node
 from symgen.symbolic.traverse import topological
 

@@ -9,9 +9,10 @@ from collections.abc import Mapping, Sequence
 from typing import TypeAlias
 
 from symgen.symbolic.calculus import derivative_along
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.hidden_zeros import without_hidden_zeros
 from symgen.symbolic.matrix import Matrix, Vector, dot
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import reached
 
 # The entries of dG/dq^k that are not zero, by row and column, i <= j.

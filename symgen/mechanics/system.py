@@ -21,9 +21,10 @@ from symgen.model.kinematics.triples import Rows
 from symgen.model.model import Model
 from symgen.model.quantities import MEASURED_ARGUMENTS, FurtherName
 from symgen.symbolic.calculus import derivative_along, gradient
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, matvec, subtract_vectors, transpose
 from symgen.symbolic.passes.factoring import Factoring
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.translate import translate
 from symgen.symbolic.traverse import cost, substitute
 

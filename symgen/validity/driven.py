@@ -12,8 +12,9 @@ from itertools import combinations
 from math import prod
 
 from symgen.linear_algebra.exterior import few_minors, unit, wedge_all
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 # Minors of B up to which those that inputs drive are listed.
 MOST_LISTED_MINORS = 600

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from symgen.ir.kernel import UNIT_ROUNDOFF
 from symgen.linear_algebra.guards import Guard, magnitude
 from symgen.symbolic.evaluate import Evaluator
-from symgen.symbolic.scalar import Graph
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.transplant import transplanted
 
 # Times the threshold that a denominator exceeds at ordinary states.

@@ -20,9 +20,10 @@ from symgen.linear_algebra.null_space.null_spaces import InputEquations, MinorSp
 from symgen.linear_algebra.reflected_inputs import ReflectedInputs
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.system import System
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Vector, dot
 from symgen.symbolic.polynomials.nested_factors import nested_factors
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import reached
 
 

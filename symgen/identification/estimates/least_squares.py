@@ -87,7 +87,7 @@ def estimated(seen: Observations) -> LinearEstimate:
     values, root = np.full(count, math.nan), np.zeros((count, count))
     values[kept], root[np.ix_(kept, kept)] = rounds.solution / lengths, rounds.covariance_root() / lengths[:, None]
     root[list(left)] = math.nan
-    shares = rounds.shares(seen.columns[..., left]) / lengths[:, None]
+    shares = rounds.solved_for(seen.columns[..., left]) / lengths[:, None]
     condition, least = rounds.condition()
     weakest = np.zeros(count)
     weakest[kept] = least
@@ -146,14 +146,11 @@ class _Rounds:
     def _weighted(self) -> Array:
         return np.asarray(self._columns / self.sigmas[:, None], dtype=np.float64)
 
-    def shares(self, others: Array) -> Array:
-        """Coefficients (c, k) of other columns (S, m, k) by these: what their values add to the solution."""
-        return self._solved_for(others)
-
     def _solved(self) -> Array:
-        return self._solved_for(self._inputs[..., None])[:, 0]
+        return self.solved_for(self._inputs[..., None])[:, 0]
 
-    def _solved_for(self, wanted: Array) -> Array:
+    def solved_for(self, wanted: Array) -> Array:
+        """The values (c, k) of the columns that come nearest to wanted ones (S, m, k), by weights as they are."""
         root = np.sqrt(self.weights)[:, None]
         flat, wanted = (_flat(of / self.sigmas[:, None] * root[..., None]) for of in (self._columns, wanted))
         lengths = np.linalg.norm(flat, axis=0)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from symgen.identification.arrays import Array
+from symgen.identification.estimates.inverse_root import inverse_root
 from symgen.identification.estimates.least_squares import LinearEstimate
 from symgen.model.model import Parameter
 
@@ -17,10 +18,8 @@ HELD_AT_ZERO = 1.0
 def whitening(estimate: LinearEstimate) -> Array:
     """The matrix (c, c) that takes errors of the determined columns to standard deviations of 1."""
     closed = estimate.closed_columns
-    scales = estimate.errors[closed]
-    # rows of one length, so that small and large units do not mix; what has no error at all says nothing
-    root = estimate.root[np.ix_(closed, closed)] / scales[:, None]
-    return np.asarray(np.linalg.pinv(root) / scales, dtype=np.float64)
+    # what has no error at all says nothing
+    return inverse_root(estimate.root[np.ix_(closed, closed)].T).T
 
 
 def deviation_before(parameter: Parameter, value: float) -> float:

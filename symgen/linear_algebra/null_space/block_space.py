@@ -20,8 +20,9 @@ from symgen.linear_algebra.null_space.null_spaces import (
     Restriction,
     has_few_minors,
 )
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, identity, transpose
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 
 @dataclass(frozen=True)

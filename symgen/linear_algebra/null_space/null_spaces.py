@@ -15,8 +15,9 @@ from symgen.ir.kernel import Status
 from symgen.linear_algebra.exterior import ActuationForms, RowForms, few_minors, small_family
 from symgen.linear_algebra.guards import Guard, beside_lengths
 from symgen.linear_algebra.reflections import Reflections
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, dot, identity, matvec, subtract_vectors, transpose
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 # Minors of B up to which a null space is built from them; beyond, Householder reflections are cheaper anyway.
 MINOR_LIMIT = 300

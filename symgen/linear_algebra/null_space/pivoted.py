@@ -23,8 +23,9 @@ from functools import cached_property
 
 from symgen.linear_algebra.null_space.null_spaces import HouseholderSpace
 from symgen.linear_algebra.reflections import Reflections
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, dot, identity, transpose
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 
 class PivotedReflections(Reflections):

@@ -18,8 +18,9 @@ from symgen.linear_algebra.null_space.null_spaces import HouseholderSpace, Restr
 from symgen.linear_algebra.null_space.pivoted import reflected
 from symgen.records import dataclass
 from symgen.symbolic.evaluate import Evaluator, inner_point
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, identity, transpose
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 # What rounding may leave of a ratio.
 ROUNDING_OF_RATIOS = 1e-9

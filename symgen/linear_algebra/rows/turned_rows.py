@@ -12,8 +12,9 @@ from itertools import combinations
 from symgen.linear_algebra.rows.sparser_rows import MOST_ROWS_COMBINED
 from symgen.records import dataclass
 from symgen.symbolic.calculus import derivative_along
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.traverse import reached, substitute
 
 

@@ -21,8 +21,9 @@ from symgen.model.kinematics.triples import Rows, applied, cross, plus, transpos
 from symgen.model.mechanism import WORLD
 from symgen.records import dataclass
 from symgen.symbolic.calculus import gradient
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, dot
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 # Turning rates and velocities of the origin, or moments and forces, in the frame's axes.
 Six = tuple[Scalar, ...]

@@ -10,8 +10,9 @@ from symgen.model.kinematics.triples import Triple, applied, inner
 from symgen.model.kinematics.walk import Kinematics
 from symgen.model.mechanism import Component, Mechanism, component
 from symgen.symbolic.calculus import derivative_along, gradient
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.translate import translate
 
 Vector3 = Triple[Scalar]

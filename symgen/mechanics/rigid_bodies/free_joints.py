@@ -11,7 +11,8 @@ from collections.abc import Mapping, Sequence
 from symgen.mechanics.rigid_bodies.bodies import Vector3
 from symgen.model.kinematics.triples import Rows, applied, cross, inner, transposed, triple
 from symgen.records import dataclass
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.graph import Graph
+from symgen.symbolic.scalar import Scalar
 
 Six = tuple[Scalar, ...]
 

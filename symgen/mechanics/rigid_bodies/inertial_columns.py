@@ -16,8 +16,9 @@ from symgen.model.inertial_parameters import ELEMENTS
 from symgen.model.kinematics.triples import Rows, cross, inner, transposed, triple
 from symgen.model.mechanism import INERTIA_ELEMENTS, WORLD, Mechanism
 from symgen.symbolic.calculus import gradient
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Vector
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 
 def inertial_columns(bodies: Bodies, mechanism: Mechanism, qd: Vector, qdd: Vector) -> tuple[Vector, ...]:

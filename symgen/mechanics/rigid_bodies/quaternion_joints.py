@@ -15,8 +15,9 @@ from symgen.model.kinematics.triples import Rows, applied, transposed, triple
 from symgen.model.mechanism import Quaternion
 from symgen.records import dataclass
 from symgen.symbolic.calculus import gradient
+from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Vector, dot
-from symgen.symbolic.scalar import Graph, Scalar
+from symgen.symbolic.scalar import Scalar
 
 Six = tuple[Scalar, ...]
 Rates3 = tuple[Scalar, Scalar, Scalar]

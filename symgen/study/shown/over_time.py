@@ -32,7 +32,7 @@ class TimeBand:
     """A quantity of interest at the times (s) of a path: the smallest, the largest and the mean value of the `points`
     that were looked at (channels x times each), NaN where none has a result.
 
-    `lines` are some of them, with the value of the one name that is varied.
+    `lines` are some of them, with the value of the one name that is varied over a grid.
     """
 
     interest: Interest
@@ -71,11 +71,12 @@ def time_bands(work: StudyWork) -> tuple[TimeBand, ...]:
     values = point_values(plan, work.chunks, np.linspace(0, plan.points - 1, count).round().astype(int).tolist())
     lines = np.unique(np.linspace(0, count - 1, min(count, MOST_BAND_LINES)).round().astype(int))
     sums = [_Sums(one, len(times)) for one in shown]
+    has_lines = plan.request.sample == GRID and len(plan.over) == 1
     step = max(1, BLOCK_STATES // plan.states)
     for start in range(0, count, step):
         here = values[start : start + step]
         block = BlockValues(plan, work.kernels, work.states.of(here))
-        kept = [k for k in lines.tolist() if start <= k < start + step] if len(plan.over) == 1 else []
+        kept = [k for k in lines.tolist() if start <= k < start + step] if has_lines else []
         for one in sums:
             one.add(block.of(one.interest.name), [(float(values[k, 0]), k - start) for k in kept])
     return tuple(one.band(times, count) for one in sums)
@@ -113,7 +114,7 @@ def band_pictures(plan: StudyPlan, bands: Sequence[TimeBand]) -> list[StudyPictu
 def _picture(plan: StudyPlan, band: TimeBand) -> StudyPicture:
     one = band.interest
     channels = list(enumerate(one.channels))[:MOST_PANELS]
-    has_lines = plan.request.sample == GRID and len(plan.over) == 1 and len(band.lines) > 1
+    has_lines = len(band.lines) > 1
 
     def draw(figure: Any) -> None:
         panels = figure.subplots(len(channels), 1, sharex=True, squeeze=False)[:, 0]
