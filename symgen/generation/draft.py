@@ -10,6 +10,7 @@ from symgen.generation.results import Options, Trig, WrongUseError
 from symgen.ir.bounded import Bound, bounded
 from symgen.ir.bounded_coordinates import CoordinateBound, within
 from symgen.ir.kernel import Kernel, Program, Scalar
+from symgen.ir.last_kernels import LastKernels
 from symgen.ir.library_trig import with_library_trig
 from symgen.ir.raised import Raised, with_raised_thresholds
 from symgen.lowering.schedule import schedule
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 REJECTED = "verification rejects it"
 # Scalars, at half a kilobyte each: derivations of fewer leave little behind.
 LARGE_GRAPH = 100_000
+# Of kernels in float64 that work with pairs those with plain numbers which they are made of: searches ask for these.
+_PLAIN = LastKernels[Kernel](12)
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,14 +126,21 @@ class Draft:
         by_scalar = {scalar: kernels[scalar] for scalar in scalars}
         if "float32" in wide:
             by_scalar["float32"] = with_sharp_thresholds(kernels["float32"], kernels["float64"])
-        return {scalar: widened(one, scalar) if scalar in wide else one for scalar, one in by_scalar.items()}
+        along = {scalar: widened(one, scalar) if scalar in wide else one for scalar, one in by_scalar.items()}
+        if "float64" in wide:
+            _PLAIN.of(along["float64"], lambda: kernels["float64"])
+        return along
 
     def plain_kernel(self, alternative: Alternative, kernels: Mapping[Scalar, Kernel]) -> Kernel:
         """The kernel in float64 that works with plain numbers, of an alternative with these kernels."""
         if "float64" in kernels and "float64" not in alternative.choice.wide:
             return kernels["float64"]
         plain = replace(alternative, choice=replace(alternative.choice, wide=()))
-        return self.kernels_along(plain, ("float64",))["float64"]
+
+        def made() -> Kernel:
+            return self.kernels_along(plain, ("float64",))["float64"]
+
+        return _PLAIN.of(kernels["float64"], made) if "float64" in kernels else made()
 
     def along(self, alternative: Alternative, kernels: Mapping[Scalar, Kernel]) -> Draft:
         """The draft with a quantity by another method, by kernels of `kernels_along`."""

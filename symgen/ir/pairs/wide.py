@@ -108,8 +108,9 @@ class _PairWriter:
     def _wide(self, statement: Statement) -> None:
         """A sum, product, quotient or root; multiples by powers of two are exact."""
         (target,), operands = statement.targets, statement.operands
-        factors = [x for x in operands if isinstance(x, Literal) and x.is_power_of_two]
-        if statement.operation == "mul" and factors:
+        is_product = statement.operation == "mul"
+        factors = [x for x in operands if is_product and isinstance(x, Literal) and x.is_power_of_two]
+        if factors:
             self._lines.statements.append(statement)
             other = operands[0] if factors[0] is operands[1] else operands[1]
             self._keep(target, self.times(factors[0], self.rest(other)))

@@ -239,8 +239,9 @@ class _Squares:
 
 def _is_exact(statement: Statement) -> bool:
     """Whether nothing is rounded: signs, choices and multiples by powers of two."""
-    powers = any(isinstance(x, Literal) and x.is_power_of_two for x in statement.operands)
-    return statement.operation in EXACT or (statement.operation == "mul" and powers)
+    if statement.operation != "mul":
+        return statement.operation in EXACT
+    return any(isinstance(x, Literal) and x.is_power_of_two for x in statement.operands)
 
 
 def _ratio(a: Lanes, b: Lanes) -> Lanes:
