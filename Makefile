@@ -9,7 +9,7 @@ CAMPAIGN_FILES := $(CAMPAIGN:%=models/%.yaml)
 MODELS := $(wildcard models/*.yaml)
 MECHANISMS := $(filter-out $(CAMPAIGN_FILES),$(MODELS))
 
-.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms bench-derivatives generation stress stress-derivatives skipping passes constants trig zoo zoo-case zoo-sweeps docs api site lock robots jax fmpy semidefinite study
+.PHONY: run quick lint test generated mechanisms fuzz proof campaigns campaigns-changed firmware bench bench-mechanisms bench-derivatives generation stress stress-derivatives skipping passes constants trig zoo zoo-case zoo-sweeps docs api site lock robots jax torch fmpy semidefinite study
 
 run: $(VENV)/installed
 	$(BIN)/symgen $(PAPER:%=models/%.yaml)
@@ -152,6 +152,11 @@ lock: $(VENV)/installed
 	printf 'jax\n' | $(BIN)/uv pip compile --quiet --python-version 3.11 --python-platform x86_64-manylinux_2_28 \
 	    --generate-hashes --constraint requirements.lock --no-emit-package numpy --no-emit-package scipy --no-header \
 	    --no-annotate --no-emit-index-url --no-emit-find-links --output-file tests/backends/jax.lock -
+	printf 'torch\narray-api-compat\n' | $(BIN)/uv pip compile --quiet --python-version 3.11 \
+	    --python-platform x86_64-manylinux_2_28 --generate-hashes --constraint requirements.lock --no-emit-package numpy \
+	    --no-emit-package jinja2 --no-emit-package markupsafe --no-emit-package sympy --no-emit-package mpmath \
+	    --no-emit-package setuptools --no-header --no-annotate --no-emit-index-url --no-emit-find-links \
+	    --output-file tests/backends/torch.lock -
 	printf 'fmpy\n' | $(BIN)/uv pip compile --quiet --python-version 3.11 --python-platform x86_64-manylinux_2_28 \
 	    --generate-hashes --constraint requirements.lock --no-emit-package numpy --no-header --no-annotate \
 	    --no-emit-index-url --no-emit-find-links --output-file tests/backends/fmpy.lock -
@@ -180,6 +185,11 @@ semidefinite: $(VENV)/installed
 # JAX, under which docs/array-api.md runs: beside the environment, so that nothing else meets it.
 jax: $(VENV)/installed
 	$(BIN)/pip install --quiet --require-hashes --no-deps --upgrade --target build/jax --requirement tests/backends/jax.lock
+
+# PyTorch for the same page: 5 GB, which its check is skipped without.
+torch: $(VENV)/installed
+	$(BIN)/pip install --quiet --require-hashes --no-deps --upgrade --target build/torch \
+	    --requirement tests/backends/torch.lock
 
 # FMPy, which runs units of FMI: beside the environment as well.
 fmpy: $(VENV)/installed

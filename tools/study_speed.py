@@ -38,6 +38,8 @@ DEFAULT = ("models/rapkm_2rrr_rr.yaml", "circle", "m_payload", "m_1")
 BARE_STATES, BARE_CALLS = 2**12, 500
 # Of a square of points, so that states are 2e7, 1e8 and 1e9.
 STATES = (2e7, 1e8, 1e9)
+# The same for processes, which take seconds each to start and to make the kernels.
+STATES_OF_PROCESSES = (1e9, 4e9)
 # How many times as many steps a path is sampled in.
 FINER = (1, 5)
 
@@ -128,8 +130,10 @@ def table(model: Path, path: str, names: tuple[str, str]) -> None:
             runs = [studied(plan, result, kernels, threads) for _ in range(3 if wanted < STATES[-1] else 1)]
             best = max(one for one, _ in runs), max(one for _, one in runs)
             _row(f"{threads} thread{'s' * (threads > 1)}", plan, best, alone)
-    for workers in (1, 2):
-        _row(f"{workers} process{'es' * (workers > 1)}", plan, processed(plan, result, workers), alone)
+    for wanted in STATES_OF_PROCESSES:
+        plan = plan_of(model, path, names, round((wanted / plan.states) ** 0.5))
+        for workers in (1, 2):
+            _row(f"{workers} process{'es' * (workers > 1)}", plan, processed(plan, result, workers), alone)
 
 
 def _row(what: str, plan: StudyPlan, best: tuple[float, float], alone: float) -> None:

@@ -238,34 +238,80 @@ def test_names_of_a_model_and_of_the_module_do_not_meet(tmp_path: Path) -> None:
     assert values.tobytes() == plain.inverse_dynamics(np, *arrays)[0].tobytes()
 
 
-# Where `make jax` puts it: beside the environment, where nothing else meets it.
-JAX = shipped.ROOT / "build/jax"
+# Where `make jax` and `make torch` put them: beside the environment, where nothing else meets them.
+BESIDE = {library: shipped.ROOT / "build" / library for library in ("jax", "torch")}
 SHOWN = {
     "numpy": "assert u.shape == (1000, 2)",
     "jax": "assert u.shape == (2,)\nassert all(jnp.isfinite(x).all() for x in (u, by_q, *by_p))",
+    "torch": "assert u.shape == (1000, 2) and by_q.shape == (1000, 2, 4)\n"
+    "assert all(torch.isfinite(x).all() for x in (u, by_q, m_1.grad))",
 }
 
 
-def has_jax() -> bool:
-    if JAX.is_dir() or find_spec("jax") is not None:
+def has(library: str) -> bool:
+    """Whether it is there; PyTorch, of 5 GB, is never asked for."""
+    if library == "numpy" or BESIDE[library].is_dir() or find_spec(library) is not None:
         return True
-    message = "JAX (make jax) is not installed"
-    if os.environ.get("SYMGEN_REQUIRE_TOOLS"):
+    message = f"{library} (make {library}) is not installed"
+    if library == "jax" and os.environ.get("SYMGEN_REQUIRE_TOOLS"):
         pytest.fail(message)
     pytest.skip(message)
 
 
-@pytest.mark.parametrize("library", ["numpy", pytest.param("jax", marks=pytest.mark.campaign)])
-def test_what_the_page_shows_runs(library: str, tmp_path: Path) -> None:
-    """In a process of its own: the threads of JAX do not outlive it."""
-    assert library == "numpy" or has_jax()
+def run_beside(library: str, folder: Path, program: str) -> str:
+    """What a program prints that has the modules of the front car, in a process of its own: the threads of such
+    libraries do not outlive it."""
     for scalar in shipped.SCALARS:
         for path, text in emit_array_api(shipped.model("front_car"), shipped.programs("front_car")[scalar]).items():
-            (tmp_path / Path(path).name).write_text(text, encoding="utf-8")
-    page = (shipped.ROOT / "docs/array-api.md").read_text(encoding="utf-8")
-    (block,) = (one for one in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if f"import {library}" in one)
-    (tmp_path / "page.py").write_text(f"{block}\nassert not status.any()\n{SHOWN[library]}\n", encoding="utf-8")
-    environment = {**os.environ, "PYTHONPATH": str(JAX)}
-    command = [sys.executable, str(tmp_path / "page.py")]
+            (folder / Path(path).name).write_text(text, encoding="utf-8")
+    (folder / "program.py").write_text(program, encoding="utf-8")
+    environment = {**os.environ, "PYTHONPATH": str(BESIDE.get(library, ""))}
+    command = [sys.executable, str(folder / "program.py")]
     made = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     assert made.returncode == 0, made.stderr
+    return made.stdout
+
+
+CAMPAIGN = pytest.mark.campaign
+
+
+@pytest.mark.parametrize(
+    "library", ["numpy", pytest.param("jax", marks=CAMPAIGN), pytest.param("torch", marks=CAMPAIGN)]
+)
+def test_what_the_page_shows_runs(library: str, tmp_path: Path) -> None:
+    assert has(library)
+    page = (shipped.ROOT / "docs/array-api.md").read_text(encoding="utf-8")
+    (block,) = (one for one in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if f"import {library}" in one)
+    run_beside(library, tmp_path, f"{block}\nassert not status.any()\n{SHOWN[library]}\n")
+
+
+@CAMPAIGN
+def test_pytorch_has_the_numbers_of_numpy(tmp_path: Path) -> None:
+    """Its sines are its own; statuses, derivatives by vmap and what a tracer makes of a kernel are compared, too."""
+    assert has("torch")
+    program = """
+import numpy as np
+import torch
+import array_api_compat.torch as xp
+import front_car
+
+arrays = np.random.default_rng(5).uniform(-1, 1, (3, 200, 4))
+arrays[0, 7, 2] = np.nan
+q, qd, qdd = map(torch.tensor, arrays)
+u, status = front_car.inverse_dynamics(xp, q, qd, qdd)
+expected, codes = front_car.inverse_dynamics(np, *arrays)
+assert (status.numpy() == codes).all() and np.isnan(u.numpy()[7]).all() and codes[7] != 0
+traced = torch.compile(front_car.inverse_dynamics, backend="eager", fullgraph=True)
+assert torch.equal(torch.nan_to_num(traced(xp, q, qd, qdd)[0]), torch.nan_to_num(u))
+print(np.nanmax(np.abs(u.numpy() - expected)) / np.nanmax(np.abs(expected)))
+jacobian = torch.func.jacrev(lambda a: front_car.inverse_dynamics(xp, q[0], qd[0], a)[0])
+by_qdd = torch.func.vmap(jacobian)(qdd[:7])
+step = np.array([1.0, 0.0, 0.0, 0.0])
+first = arrays[0, 0], arrays[1, 0]
+moved = np.subtract(*(front_car.inverse_dynamics(np, *first, arrays[2, :7] + one)[0] for one in (step, 0 * step)))
+print(np.abs(by_qdd.numpy()[..., 0] - moved).max() / np.abs(moved).max())
+"""
+    of_inputs, of_derivatives = map(float, run_beside("torch", tmp_path, program).split())
+    # a sine that is off by a unit in the last place, and the difference of two results
+    assert of_inputs < 1e-15
+    assert of_derivatives < 1e-12
