@@ -26,6 +26,10 @@ _CLEAR_LINE = "\r\x1b[K"
 USUAL_WIDTH = 80
 # Columns before a table, and between two columns.
 _MARGIN = 2 + 3
+# What a message says of how far a stage is: k of n, or percent.
+_COUNTED, _PERCENT = re.compile(r"\b(\d+) of (\d+)\b"), re.compile(r"\b(\d+) %")
+# Cells of the bar that shows it, and seconds of a stage before which no time that is left is told.
+_CELLS, _TOO_SOON = 20, 2.0
 # Lines of a file in a message, and the marks below them.
 _EXCERPT = re.compile(r" *\d* *\| ")
 SPELLED = "symgen-spelled"
@@ -38,6 +42,7 @@ class Progress:
 
     Elsewhere (a log) each stage gets one line: what follows the first comma of a message counts within its stage. A
     stage that takes longer is told again every 2 s, with what it is at, how long it has taken and how long it will.
+    On a terminal a stage that counts has a bar, and the time that is left if it goes on so.
     """
 
     def __init__(self, label: str, quiet: bool, stream: TextIO | None = None) -> None:
@@ -46,7 +51,7 @@ class Progress:
         self._stream = sys.stderr if stream is None else stream
         self._live = self._stream.isatty()
         self._stage = self._message = ""
-        self._began = 0.0
+        self._began = self._first = 0.0
         self._printing = False  # a signal must not print into a line that is being printed
         self._clock = Clock(self._tick)
 
@@ -60,7 +65,7 @@ class Progress:
         stage = message.partition(",")[0]
         new = stage != self._stage
         if new:
-            self._began = time.monotonic()
+            self._began, self._first = time.monotonic(), _share(message) or 0.0
         self._stage, self._message = stage, message
         if self._live:
             self._print(message)
@@ -86,11 +91,34 @@ class Progress:
         try:
             if self._live:
                 room = _width(self._stream) - 1  # a line that wraps could not be cleared
-                print(_CLEAR_LINE + line[:room], end="", file=self._stream, flush=True)
+                bar = self._bar()
+                shown = line + bar if len(line) + len(bar) <= room else line[:room]
+                print(_CLEAR_LINE + shown, end="", file=self._stream, flush=True)
             else:
                 print(line, file=self._stream, flush=True)
         finally:
             self._printing = False
+
+    def _bar(self) -> str:
+        """How far the stage is, and how many seconds are left; empty where it does not count."""
+        share = _share(self._message)
+        if share is None:
+            return ""
+        full = round(_CELLS * share)
+        bar = f" [{'#' * full}{'-' * (_CELLS - full)}]"
+        spent = time.monotonic() - self._began
+        if spent < _TOO_SOON or share <= self._first:
+            return bar
+        return f"{bar} {spent * (1 - share) / (share - self._first):.0f} s left"
+
+
+def _share(message: str) -> float | None:
+    """What a message says is done, from 0 to 1."""
+    if (counted := _COUNTED.search(message)) is not None:
+        done, total = map(int, counted.groups())
+        return min(1.0, done / total) if total else None
+    percent = _PERCENT.search(message)
+    return None if percent is None else min(1.0, int(percent[1]) / 100)
 
 
 def _width(terminal: TextIO) -> int:

@@ -36,6 +36,21 @@ def test_a_terminal_shows_every_step_in_one_line() -> None:
     assert terminal.getvalue().endswith("\r\x1b[K")
 
 
+def test_a_stage_that_counts_has_a_bar_and_says_what_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    seconds = iter((100.0, 100.0, 110.0, 110.0))
+    monkeypatch.setattr("symgen.terminal.time.monotonic", lambda: next(seconds, 110.0))
+    terminal = Terminal()
+    progress = Progress("car", quiet=False, stream=terminal)
+    progress("working, 100 of 400 chunks")
+    progress("working, 200 of 400 chunks")
+    progress.done()
+    lines = terminal.getvalue().split("\r\x1b[K")
+    assert lines[1] == "car: working, 100 of 400 chunks ... [#####---------------]"
+    # what was there before this run took no time
+    assert lines[2] == "car: working, 200 of 400 chunks ... [##########----------] 20 s left"
+
+
 def test_an_empty_message_makes_room_for_tables() -> None:
     terminal, log = Terminal(), io.StringIO()
     for stream in (terminal, log):
@@ -49,8 +64,10 @@ def test_an_empty_message_makes_room_for_tables() -> None:
 def test_a_narrow_terminal_does_not_wrap(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "20")
     terminal = Terminal()
-    Progress("car", quiet=False, stream=terminal)("reference, state 1 of 64")
+    progress = Progress("car", quiet=False, stream=terminal)
+    progress("reference, state 1 of 64")
     assert terminal.getvalue() == "\r\x1b[Kcar: reference, sta"
+    progress.done()
 
 
 def test_long_lines_are_folded_at_words_in_terminals_alone(monkeypatch: pytest.MonkeyPatch) -> None:
