@@ -5,7 +5,7 @@ K f is the acceleration that the force f causes along the constraints.  Only G p
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Protocol
 
@@ -83,15 +83,19 @@ class Cholesky:
         return tuple(x)
 
 
-def diagonal_sizes(graph: Graph, mass_matrix: Matrix) -> list[Scalar]:
+def diagonal_sizes(
+    graph: Graph, mass_matrix: Matrix, whole: Callable[[Scalar], bool] = lambda _: False
+) -> list[Scalar]:
     """The diagonal entries G_ii, positive; |G_ij|^2 <= G_ii G_jj because G is positive semidefinite.
 
     What bounds the way of a body behind many turns is many times that way, so that nothing is measured by the bound of
-    an entry, but that an entry which is a rest of its terms is none.
+    an entry, but that an entry which is a rest of its terms is none.  One that is `whole` adds up masses and inertias,
+    of which there is no rest.
     """
     entries = _diagonal(mass_matrix)
     bounds = magnitude(graph, entries)
-    return [g if g is bound else g + bound * REST for g, bound in zip(entries, bounds, strict=True)]
+    pairs = zip(entries, bounds, strict=True)
+    return [g if g is bound or whole(g) else g + bound * REST for g, bound in pairs]
 
 
 class FreeInertia:

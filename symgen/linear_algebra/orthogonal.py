@@ -8,9 +8,10 @@ Methods for Least Squares Problems, 2.4 and 4.4).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
 
 from symgen.ir.kernel import Status
-from symgen.linear_algebra.guards import Guard, multiplied
+from symgen.linear_algebra.guards import POORER, Guard, multiplied
 from symgen.linear_algebra.null_space.pivoted import longest
 from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, dot, transpose
@@ -52,10 +53,35 @@ class WeightedGramSchmidt:
         """The right-hand sides of these."""
         return c
 
-    def regularity(self, status: Status) -> tuple[Guard, ...]:
-        """What is left of each column beside its length: 0 exactly where columns depend on each other."""
-        lengths = [_squared(self._graph, column, self._metric) for column in self._columns]
-        return multiplied(status, self._squares, lengths)
+    def regularity(self, causes: tuple[Guard, ...] = ()) -> tuple[Guard, ...]:
+        """What is left of each column beside its length, and that there is something of what is divided by.
+
+        Where `causes` tell ranks of rows by themselves, it may be masses that leave nothing of a difference of rows.
+        A step loses again what the steps before have lost, as in `multiplied`: the inverse of what a column counts for
+        there is (5 + |a|^2 / |v|^2) / 6.  All are compared beside the last |v|^2, so that nothing more is divided.
+        """
+        lengths, last = self._lengths(), self._squares[-1]
+        rows = Status.CONSTRAINT_RANK
+        if len(lengths) == 1:
+            return (Guard(rows, last, 2, scale=last),)
+        before = tuple(Guard(rows, square, 2, scale=square) for square in self._squares[:-1])
+        pairs = zip(lengths, self._inverses[:-1], strict=False)
+        lost = self._graph.product((POORER - 1) + length * inverse for length, inverse in pairs)
+        scale = lost * (lengths[-1] + (POORER - 1) * last) * Fraction(1, POORER ** len(lengths))
+        return (*before, Guard(Status.MASS_RANK if causes else rows, last, 2, causes, scale))
+
+    def _lengths(self) -> list[Scalar]:
+        """Squared lengths of the columns, with entries as long as all that stand in their place.
+
+        So long a point moves that turns about a joint, along one axis or another: eps of it is what rounding makes of
+        an entry, also where that is small itself.
+        """
+        squares = [[x * w * x for x, w in zip(column, self._metric, strict=True)] for column in self._columns]
+        places = [self._graph.sum(entries) for entries in zip(*squares, strict=True)]
+        return [
+            self._graph.sum(place for place, x in zip(places, column, strict=True) if not x.is_zero)
+            for column in self._columns
+        ]
 
     def solve(self, b: Vector, c: Vector, again: bool = False) -> tuple[Vector, Vector]:
         """y and l of y + A l = b, A^T W y = c.
@@ -191,9 +217,9 @@ class PivotedGramSchmidt(WeightedGramSchmidt):
         base = WeightedGramSchmidt(graph, self.chosen(rows), (graph.one,) * len(rows[0]))
         return base, transpose(tuple(map(base.shares, rows)), len(self._choices))
 
-    def regularity(self, status: Status) -> tuple[Guard, ...]:
+    def regularity(self, causes: tuple[Guard, ...] = ()) -> tuple[Guard, ...]:  # noqa: ARG002 - of independent rows only
         """What is left of each chosen column, in units of its length."""
-        return multiplied(status, self._measures, [self._graph.one] * len(self._measures))
+        return multiplied(Status.CONSTRAINT_RANK, self._measures, [self._graph.one] * len(self._measures))
 
 
 def _combined(graph: Graph, shares: Sequence[Scalar], vectors: Sequence[Vector]) -> Vector:

@@ -86,8 +86,33 @@ class _GuardTests:
         return {ANGLE: Literal(angle_limit(scalar, self.wide)), **thresholds}
 
     def tests(self, guards: Sequence[Guard]) -> list[Test]:
-        """The tests in the order in which statuses are reported."""
-        return [self._test(guard) for guard in sorted(guards, key=_place)]
+        """The tests in the order in which statuses are reported, but each behind those of what it divides by."""
+        ordered = sorted(guards, key=_place)
+        needed = self._needed(ordered)
+        placed: dict[Guard, Test] = {}
+        stack = list(reversed(ordered))
+        while stack:
+            guard = stack.pop()
+            if guard in placed:
+                continue
+            if before := needed.pop(guard, ()):
+                stack += [guard, *reversed(before)]
+            else:
+                placed[guard] = self._test(guard)
+        return list(placed.values())
+
+    def _needed(self, ordered: Sequence[Guard]) -> dict[Guard, list[Guard]]:
+        """By guard, the first one of each denominator that it divides by where no guard before it does."""
+        of_denominators = {guard.denominator: guard for guard in reversed(ordered)}
+        needed: dict[Guard, list[Guard]] = {}
+        known: set[Node] = set()
+        for guard in ordered:
+            test = self._test(guard)
+            nodes = topological((test.size, test.limit), known)
+            known.update(nodes)
+            divided = (of_denominators.get(node.args[1]) for node in nodes if node.op in ("div", "ratio_or_zero"))
+            needed[guard] = [one for one in divided if one is not None]
+        return needed
 
     def _test(self, guard: Guard) -> Test:
         if guard not in self._known:

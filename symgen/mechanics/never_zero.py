@@ -65,6 +65,17 @@ class Definite:
             self._known[inner] = self._enclosure(inner, args)
         return self._known[node]
 
+    def adds_up(self, node: Scalar) -> bool:
+        """Whether all sums in it are of what is nowhere below 0, so that nothing cancels."""
+        for inner in topological([node]):
+            if inner.op == "add":
+                bounds = [self.bounds(argument) for argument in inner.args]
+                if any(one is None or one.low < 0 for one in bounds):
+                    return False
+            elif inner.op not in ("const", "symbol", "mul"):
+                return False
+        return True
+
     def _enclosure(self, node: Scalar, args: list[Interval | None]) -> Interval | None:
         if node.constant is not None:
             return Interval(node.constant, node.constant, not node.is_zero)

@@ -29,6 +29,7 @@ from symgen.methods.table import methods as methods_of
 from symgen.model.quantities import MAIN, MOTIONS, PARTITION, TASK_OPEN, TASK_RATES
 from symgen.quantities.catalogue import BY_NAME, CatalogueEntry, by_blocks, derive, derived_from, sizes
 from symgen.quantities.everything import WorkBudget
+from symgen.quantities.moving_axes import in_moving_axes
 from symgen.runtime.activity import working
 from symgen.runtime.effort import TooLongError, at_most, worth_trying
 from symgen.symbolic.traverse import cost
@@ -201,6 +202,10 @@ class Candidates:
         return self._methods.validity(one, first_only=True) if one.method else VALID
 
     def _weight(self, one: Candidate) -> Fraction:
+        """What is compared: of q_ddot and lambda the cost in axes that they are finished in, on a graph of its own."""
+        if one.derived.name in MOTIONS:
+            apart = System(self._mechanics.model)
+            one = replace(one, derived=in_moving_axes(apart, moved(apart.graph, one.derived)))
         return _counted(one) * cost_factor(one.method, self._mechanics)
 
 

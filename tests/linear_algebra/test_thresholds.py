@@ -8,6 +8,7 @@ from symgen.ir.kernel import UNIT_ROUNDOFF, Status
 from symgen.linear_algebra.constrained_inverse import diagonal_sizes
 from symgen.linear_algebra.guards import Guard, multiplied
 from symgen.linear_algebra.null_space.null_spaces import MinorSpace
+from symgen.linear_algebra.orthogonal import WeightedGramSchmidt
 from symgen.symbolic.evaluate import Evaluator
 from symgen.symbolic.graph import Graph
 
@@ -37,6 +38,34 @@ def test_of_several_steps_what_one_loses_ordinarily_hardly_counts() -> None:
     assert lost == pytest.approx(6e-9 * 6 / 7)
 
 
+def left_of_three(x: float, y: float) -> float:
+    """What is compared for the columns (1, 0, x), (0, 1, y) and (1, 1, 1), beside its scale; all weights are 1."""
+    graph = Graph()
+    one, zero = graph.one, graph.zero
+    columns = (one, zero, graph.symbol("x")), (zero, one, graph.symbol("y")), (one, one, one)
+    *before, guard = WeightedGramSchmidt(graph, columns, (one, one, one)).regularity()
+    assert [one.scale for one in before] == [one.denominator for one in before]
+    assert guard.scale is not None
+    left, scale = Evaluator([guard.denominator, guard.scale])({"x": x, "y": y})
+    return left / scale
+
+
+def test_orthogonal_columns_are_tested_by_what_is_left_of_each_beside_its_length() -> None:
+    """Of lengths that have each entry as long as all in its place: (2, 2, 1 + x^2 + y^2), summed where a column is."""
+    x, y = 0.5, 0.25
+    place = 1 + x * x + y * y
+    lengths = 2 + place, 2 + place, 4 + place
+    second = 1 + y * y - (x * y) ** 2 / (1 + x * x)
+    third = (1 - x - y) ** 2 / ((1 + x * x) * second)  # by the determinant
+    shares = [left / length for left, length in zip((1 + x * x, second, third), lengths, strict=True)]
+    kept = [6 * share / (1 + 5 * share) for share in shares]
+    assert left_of_three(x, y) == pytest.approx(kept[0] * kept[1] * kept[2], rel=1e-12)
+
+
+def test_columns_that_all_but_depend_on_each_other_are_beneath_any_threshold_of_float32() -> None:
+    assert left_of_three(0.5, 0.5 - 1e-8) < (8 * 3 * EPS) ** 2 < left_of_three(0.5, 0.499)
+
+
 def test_a_row_that_vanishes_is_taken_for_a_millionth_of_the_others() -> None:
     graph = Graph()
     x, y = graph.symbol("x"), graph.symbol("y")
@@ -54,3 +83,10 @@ def test_an_inertia_that_is_a_rest_of_its_terms_is_measured_by_a_share_of_these(
     (at_0, elsewhere) = (Evaluator([size])({"x": x})[0] for x in (0.0, 1.5))
     assert at_0 == pytest.approx(4 * 2**-28)
     assert elsewhere == pytest.approx((1 - 0.0707372016677029) ** 2, rel=1e-7)
+
+
+def test_an_inertia_that_adds_up_is_measured_by_itself() -> None:
+    graph = Graph()
+    entry = graph.symbol("J") + graph.symbol("m") * graph.symbol("l") * graph.symbol("l")
+    assert diagonal_sizes(graph, ((entry,),), lambda _: True) == [entry]
+    assert diagonal_sizes(graph, ((entry,),)) != [entry]

@@ -96,7 +96,7 @@ def test_multipliers_by_the_method_asked_for_are_verified(method: str, tmp_path:
         assert derivation["kernels"][quantity]["method"] == method
         assert derivation[f"method_of_{quantity}"]["valid_at_every_regular_state"] is True
     counted = derivation["kernels"]["multipliers"]["counted_cost"][method]
-    assert {"minor": 226, "schur_qr": 235}.get(method, counted) == counted
+    assert {"minor": 226, "schur_qr": 216}.get(method, counted) == counted
 
 
 def test_a_method_of_accelerations_that_fails_says_where(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -8,7 +8,7 @@ from functools import partial
 
 from symgen.linear_algebra.constrained_inverse import ConstrainedInertia
 from symgen.linear_algebra.guards import Guard
-from symgen.linear_algebra.null_space.null_spaces import LONGEST_PRODUCT, MinorSpace, NullSpace
+from symgen.linear_algebra.null_space.null_spaces import MinorSpace, NullSpace
 from symgen.linear_algebra.refinement import of_motion, refined
 from symgen.mechanics.genericity import Genericity
 from symgen.methods.derivation import Derivation
@@ -63,10 +63,8 @@ def _by_elimination(derivation: Derivation) -> bool:
     return not _by_basis(derivation) or positive_definite(derivation.mechanics)
 
 
-def _solved_apart(
-    derivation: Derivation, solved: Callable[[Problem], Motion], measured: bool = False
-) -> Motion:
-    """A motion worked out in absolute angles; `measured` tells that it looks at the rank of B itself.
+def _solved_apart(derivation: Derivation, solved: Callable[[Problem], Motion]) -> Motion:
+    """A motion worked out in absolute angles.
 
     There G keeps the inertias of bodies apart: that of a crank holds nothing of what the links behind it carry.  They
     are so on a graph of their own and brought here as they stand: beside each other equal functions are one node.
@@ -79,21 +77,20 @@ def _solved_apart(
     made = replace(made, multipliers=completed(made.multipliers))
     made = motion_brought_back(own.graph, apart if own.change is None else None, made)
     apart.graph.dissolve()
-    return replace(made, guards=(*(() if measured else derivation.space.guards), *made.guards))
+    return made
 
 
 def _minor(derivation: Derivation) -> Motion:
     if derivation.mechanics.model.rough:
         return rough_by_minors(derivation)
-    return _solved_apart(derivation, lambda problem: minor_motion(problem).motion)
+    made = _solved_apart(derivation, lambda problem: minor_motion(problem).motion)
+    return replace(made, guards=(*derivation.space.guards, *made.guards))
 
 
 def _schur_qr(derivation: Derivation, refining: bool = False) -> Motion:
     if derivation.mechanics.model.rough:
         return rough_by_elimination(derivation, refining)
     rank = derivation.generic.rank
-    # it measures ranks itself where rows are many, or depend on each other
-    measured = derivation.r > min(rank, LONGEST_PRODUCT)
 
     def solved(problem: Problem) -> Motion:
         columns_apart = apart(problem)
@@ -101,7 +98,7 @@ def _schur_qr(derivation: Derivation, refining: bool = False) -> Motion:
             return schur_qr(problem, rank, refining=refining)
         return columns_apart.brought_back(schur_qr(columns_apart, rank, columns_apart.factor, refining))
 
-    return _solved_apart(derivation, solved, measured)
+    return _solved_apart(derivation, solved)
 
 
 def _nullspace(derivation: Derivation) -> Motion:

@@ -12,9 +12,6 @@ from collections.abc import Callable, Sequence
 from enum import Enum, auto
 from functools import cached_property, partial
 
-from symgen.linear_algebra.guards import Guard
-from symgen.linear_algebra.null_space.null_spaces import LONGEST_PRODUCT
-from symgen.linear_algebra.null_space.pivoted import reflected
 from symgen.linear_algebra.refinement import Solution, refined
 from symgen.mechanics.genericity import Genericity
 from symgen.mechanics.rigid_bodies.articulated_inertias import ArticulatedFactor, Six
@@ -42,10 +39,8 @@ from symgen.validity.local_inertias import definite_along_motion, definite_by_fr
 class _SpatialLoops(Problem):
     """Loops in space are accelerated as their points are; each has its rows along the axes of the frame beside it."""
 
-    def __init__(
-        self, mechanics: System, guards: tuple[Guard, ...], loops: Sequence[tuple[LoopPoint, str]]
-    ) -> None:
-        super().__init__(mechanics, guards)
+    def __init__(self, mechanics: System, loops: Sequence[tuple[LoopPoint, str]]) -> None:
+        super().__init__(mechanics, ())
         self.loops = loops
 
     @cached_property
@@ -102,12 +97,7 @@ class BodyEquations:
     def __init__(
         self, mechanics: System, factor: ArticulatedFactor, held: HeldLengths, rank: int, turned: bool
     ) -> None:
-        self._mechanics, self._factor, graph = mechanics, factor, mechanics.graph
-        rows = mechanics.constraint_jacobian
-        others = held.others(len(rows))
-        tested = [rows[i] for i in others] if held.apart(rows) else rows
-        few = 0 < len(others) <= LONGEST_PRODUCT and rank == len(rows)
-        guards = reflected(graph, tuple(tested), mechanics.n, len(tested)).guards if few else ()
+        self._mechanics, self._factor = mechanics, factor
         forces = FrameForces(mechanics)
         self._forces, self._given = forces.of_rows(), forces.given()
         columns = [factor.lowered(direct, loads) for direct, loads in self._forces]
@@ -119,7 +109,7 @@ class BodyEquations:
             for i, column, load in zip(places, own, loads, strict=True):
                 columns[i], self._forces[i] = column, (self._forces[i][0], load)
             loops.append((loop, frame))
-        self._problem = _SpatialLoops(mechanics, guards, loops)
+        self._problem = _SpatialLoops(mechanics, loops)
         self._completed = held.multipliers(mechanics)
         self._apart = LengthsApart(self._problem, factor, columns, held, rank)
         self.guards = self._apart.guards

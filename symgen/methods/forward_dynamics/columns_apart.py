@@ -80,7 +80,7 @@ class _Turned(OrderedCholesky):
     """
 
     def __init__(self, problem: Problem, shares: Mapping[int, Share]) -> None:
-        super().__init__(problem.graph, problem.mass_matrix)
+        super().__init__(problem)
         place = {j: i for i, j in enumerate(self.order)}
         lower = list(self._factor.lower)
         for parent, share in shares.items():

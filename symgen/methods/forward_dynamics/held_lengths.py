@@ -123,7 +123,7 @@ class _Rest(Problem):
     """The rows that are left."""
 
     def __init__(self, problem: Problem, chosen: Sequence[int]) -> None:
-        self.graph, self.guards, self.n, self.r = problem.graph, problem.guards, problem.n, len(chosen)
+        self.graph, self.n, self.r = problem.graph, problem.n, len(chosen)
         self._rows = tuple(problem.rows[i] for i in chosen)
 
     @property

@@ -19,6 +19,7 @@ from symgen.ir.kernel import Status
 from symgen.linear_algebra.constrained_inverse import diagonal_sizes
 from symgen.linear_algebra.exterior import Multivector, in_either_sign, unit, wedge, wedge_all
 from symgen.linear_algebra.guards import Guard, magnitude
+from symgen.mechanics.never_zero import Definite
 from symgen.methods.forward_dynamics.motion import Motion, Problem
 from symgen.symbolic.matrix import Matrix, Vector, dot, identity, matmul, matvec, transpose
 from symgen.symbolic.scalar import Scalar
@@ -66,7 +67,7 @@ class MinorMotion:
             (minor,) = self._problem.multiplied_out([g[i][i] * g[j][j] - g[i][j] * g[i][j]])
             (size,) = magnitude(self._graph, [minor])
             return size
-        sizes = diagonal_sizes(self._graph, g)
+        sizes = diagonal_sizes(self._graph, g, Definite(self._problem.mechanics).adds_up)
         return self._graph.product(sizes[i] for i in axes)
 
     @cached_property

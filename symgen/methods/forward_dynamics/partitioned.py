@@ -16,8 +16,7 @@ from functools import cached_property
 
 from symgen.ir.kernel import Status
 from symgen.linear_algebra.guards import Guard
-from symgen.linear_algebra.null_space.null_spaces import LONGEST_PRODUCT, MinorSpace, has_few_minors
-from symgen.linear_algebra.null_space.pivoted import reflected
+from symgen.linear_algebra.null_space.null_spaces import MinorSpace, has_few_minors
 from symgen.mechanics.never_zero import Definite
 from symgen.mechanics.system import System
 from symgen.methods.admission import Validity, validity_of
@@ -170,7 +169,7 @@ def pivots(mechanics: System) -> list[Pivot]:
 
 def _free(problem: Reduced) -> Motion:
     """Accelerations that nothing holds any more."""
-    factor = OrderedCholesky(problem.graph, problem.mass_matrix)
+    factor = OrderedCholesky(problem)
     halfway = (x / pivot for x, pivot in zip(factor.lowered(problem.force), factor.pivots, strict=True))
     return Motion(factor.raised(tuple(halfway)), (), factor.guards)
 
@@ -185,7 +184,6 @@ def _solved(problem: Reduced) -> Motion | None:
         return minor_motion(problem).motion
     if not positive_definite(problem.mechanics):
         return None
-    problem.guards = reflected(graph, problem.rows, n, r).guards if r <= LONGEST_PRODUCT else ()
     return schur_qr(problem, r)
 
 

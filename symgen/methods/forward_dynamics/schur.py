@@ -10,12 +10,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
-from symgen.ir.kernel import Status
 from symgen.linear_algebra.constrained_inverse import Cholesky, diagonal_sizes
 from symgen.linear_algebra.guards import Guard
 from symgen.linear_algebra.null_space.null_spaces import LONGEST_PRODUCT
+from symgen.linear_algebra.null_space.pivoted import reflected
 from symgen.linear_algebra.orthogonal import PivotedGramSchmidt, WeightedGramSchmidt
 from symgen.linear_algebra.refinement import Solution, less_forces, missing, of_columns, refined
+from symgen.mechanics.never_zero import Definite
 from symgen.methods.forward_dynamics.motion import Motion, Problem
 from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, subtract_vectors
@@ -48,7 +49,7 @@ class SchurQR:
 
     def __init__(self, problem: Problem, rank: int, factor: MassMatrixFactor | None = None) -> None:
         self._graph = problem.graph
-        self._factor = OrderedCholesky(problem.graph, problem.mass_matrix) if factor is None else factor
+        self._factor = OrderedCholesky(problem) if factor is None else factor
         columns = [self._factor.lowered(row) for row in problem.rows]
         self._elimination = SchurElimination(problem, self._factor, columns, rank)
 
@@ -91,13 +92,11 @@ class SchurElimination:
         )
         self._all_rows = problem.rows
         self.rows = self._orthogonal.chosen(problem.rows)
-        if r > min(rank, LONGEST_PRODUCT):
-            # with many rows, or rows to choose from, the rank of B is measured where they are made orthogonal anyway
-            self.guards: tuple[Guard, ...] = (*self._orthogonal.regularity(Status.CONSTRAINT_RANK), *factor.guards)
-        else:
-            # light bodies may leave nothing of the difference of two rows, which are far from parallel by themselves
-            metric = self._orthogonal.regularity(Status.MASS_RANK) if r > 1 else ()
-            self.guards = (*problem.guards, *factor.guards, *metric)
+        # the rank of B is measured where its rows are made orthogonal anyway; of few rows it is told, once something is
+        # lost, whether it is that, or light bodies leave nothing of a difference of rows that are far from parallel
+        few = 1 < r <= min(rank, LONGEST_PRODUCT)
+        causes = reflected(graph, problem.rows, problem.n, r).guards if few else ()
+        self.guards: tuple[Guard, ...] = (*(self._orthogonal.regularity(causes) if r else ()), *factor.guards)
 
     def asked(self, bias: Vector) -> Vector:
         """What the rows that are solved with ask for."""
@@ -147,10 +146,11 @@ class OrderedCholesky:
     in between; the other way round the pivot of a light link is a difference of heavy ones.
     """
 
-    def __init__(self, graph: Graph, mass_matrix: Matrix) -> None:
+    def __init__(self, problem: Problem) -> None:
+        graph, mass_matrix = problem.graph, problem.mass_matrix
         self.order = elimination_order(mass_matrix)
         turned = tuple(tuple(mass_matrix[i][j] for j in self.order) for i in self.order)
-        self._factor = Cholesky(graph, turned, diagonal_sizes(graph, turned))
+        self._factor = Cholesky(graph, turned, diagonal_sizes(graph, turned, Definite(problem.mechanics).adds_up))
         self.pivots: Sequence[Scalar] = self._factor.pivots
         self.guards = self._factor.guards
 
