@@ -56,32 +56,31 @@ class WeightedGramSchmidt:
     def regularity(self, causes: tuple[Guard, ...] = ()) -> tuple[Guard, ...]:
         """What is left of each column beside its length, and that there is something of what is divided by.
 
-        Where `causes` tell ranks of rows by themselves, it may be masses that leave nothing of a difference of rows.
         A step loses again what the steps before have lost, as in `multiplied`: the inverse of what a column counts for
         there is (5 + |a|^2 / |v|^2) / 6.  All are compared beside the last |v|^2, so that nothing more is divided.
+
+        A column is measured by its own length, however long the others are.  What is computed is right for columns
+        that are off by some eps of their own lengths (Bjorck, 2.4), and v_j that is off by e_j |v_j| changes what is
+        left of a_k by some e_j |a_k|: of v_j (v_j, a_k) / |v_j|^2 is taken, no longer than a_k however short v_j is.
+        So e_j alone counts, some eps of |a_j| / |v_j| and of what steps before have added, and a row may be 1e-16 of
+        the others.  Its entries are off by more where their terms cancel, up to its whole length; but so they are for
+        the next numbers, and what that does to results is in d of docs/theory.md.
+
+        Where `causes` tell ranks of rows by themselves, it may be masses that leave nothing of a difference of rows.
+        Nothing else tests the rows then.  One that is lost counts for its share of all rows it is made of, each off by
+        eps of its length: for s / r, not 6 s.
         """
-        lengths, last = self._lengths(), self._squares[-1]
-        rows = Status.CONSTRAINT_RANK
-        if len(lengths) == 1:
-            return (Guard(rows, last, 2, scale=last),)
+        lengths, count = [_squared(self._graph, a, self._metric) for a in self._columns], len(self._columns)
+        rows, last = Status.CONSTRAINT_RANK, self._squares[-1]
         before = tuple(Guard(rows, square, 2, scale=square) for square in self._squares[:-1])
-        pairs = zip(lengths, self._inverses[:-1], strict=False)
-        lost = self._graph.product((POORER - 1) + length * inverse for length, inverse in pairs)
-        scale = lost * (lengths[-1] + (POORER - 1) * last) * Fraction(1, POORER ** len(lengths))
+        # of the first column, and of those that share no entry with one before, all is left
+        less = [k for k in range(count) if lengths[k] is not self._squares[k]]
+        if not less:
+            return (*before, Guard(rows, last, 2, scale=last))
+        lost = [(POORER - 1) + lengths[k] * self._inverses[k] for k in less if k < count - 1]
+        counted = Fraction(POORER * count if causes else 1, POORER ** (len(lost) + 1))
+        scale = self._graph.product(lost) * (lengths[-1] + (POORER - 1) * last) * counted
         return (*before, Guard(Status.MASS_RANK if causes else rows, last, 2, causes, scale))
-
-    def _lengths(self) -> list[Scalar]:
-        """Squared lengths of the columns, with entries as long as all that stand in their place.
-
-        So long a point moves that turns about a joint, along one axis or another: eps of it is what rounding makes of
-        an entry, also where that is small itself.
-        """
-        squares = [[x * w * x for x, w in zip(column, self._metric, strict=True)] for column in self._columns]
-        places = [self._graph.sum(entries) for entries in zip(*squares, strict=True)]
-        return [
-            self._graph.sum(place for place, x in zip(places, column, strict=True) if not x.is_zero)
-            for column in self._columns
-        ]
 
     def solve(self, b: Vector, c: Vector, again: bool = False) -> tuple[Vector, Vector]:
         """y and l of y + A l = b, A^T W y = c.

@@ -38,32 +38,46 @@ def test_of_several_steps_what_one_loses_ordinarily_hardly_counts() -> None:
     assert lost == pytest.approx(6e-9 * 6 / 7)
 
 
-def left_of_three(x: float, y: float) -> float:
-    """What is compared for the columns (1, 0, x), (0, 1, y) and (1, 1, 1), beside its scale; all weights are 1."""
+def left_of_three(x: float, y: float, faint: float = 1.0, few: bool = False) -> float:
+    """What is compared for the columns (1, 0, x), (0, 1, y) and (1, 1, 1), beside its scale; all weights are 1.
+
+    The first one is `faint` times that; `few` rows are those that something else tells the ranks of.
+    """
     graph = Graph()
-    one, zero = graph.one, graph.zero
-    columns = (one, zero, graph.symbol("x")), (zero, one, graph.symbol("y")), (one, one, one)
-    *before, guard = WeightedGramSchmidt(graph, columns, (one, one, one)).regularity()
+    one, zero, t = graph.one, graph.zero, graph.symbol("t")
+    columns = (t, zero, t * graph.symbol("x")), (zero, one, graph.symbol("y")), (one, one, one)
+    causes = (Guard(Status.CONSTRAINT_RANK, t, 2),) if few else ()
+    *before, guard = WeightedGramSchmidt(graph, columns, (one, one, one)).regularity(causes)
     assert [one.scale for one in before] == [one.denominator for one in before]
     assert guard.scale is not None
-    left, scale = Evaluator([guard.denominator, guard.scale])({"x": x, "y": y})
+    left, scale = Evaluator([guard.denominator, guard.scale])({"t": faint, "x": x, "y": y})
     return left / scale
 
 
 def test_orthogonal_columns_are_tested_by_what_is_left_of_each_beside_its_length() -> None:
-    """Of lengths that have each entry as long as all in its place: (2, 2, 1 + x^2 + y^2), summed where a column is."""
     x, y = 0.5, 0.25
-    place = 1 + x * x + y * y
-    lengths = 2 + place, 2 + place, 4 + place
     second = 1 + y * y - (x * y) ** 2 / (1 + x * x)
     third = (1 - x - y) ** 2 / ((1 + x * x) * second)  # by the determinant
-    shares = [left / length for left, length in zip((1 + x * x, second, third), lengths, strict=True)]
+    shares = [left / length for left, length in ((second, 1 + y * y), (third, 3))]
     kept = [6 * share / (1 + 5 * share) for share in shares]
-    assert left_of_three(x, y) == pytest.approx(kept[0] * kept[1] * kept[2], rel=1e-12)
+    assert left_of_three(x, y) == pytest.approx(kept[0] * kept[1], rel=1e-12)
+
+
+def test_a_row_of_few_that_is_lost_counts_for_its_share_of_all_that_it_is_made_of() -> None:
+    """Of three rows for a third of s in place of 6 s."""
+    assert left_of_three(0.5, 0.25, few=True) == pytest.approx(left_of_three(0.5, 0.25) / 18, rel=1e-12)
 
 
 def test_columns_that_all_but_depend_on_each_other_are_beneath_any_threshold_of_float32() -> None:
     assert left_of_three(0.5, 0.5 - 1e-8) < (8 * 3 * EPS) ** 2 < left_of_three(0.5, 0.499)
+
+
+@pytest.mark.parametrize("few", [False, True])
+@pytest.mark.parametrize("faint", [1e-16, 1e-6, 1e6, 1e16])
+def test_a_row_counts_the_same_however_short_it_is_beside_the_others(faint: float, few: bool) -> None:
+    """One that all but vanishes leaves others what they have, and is missed where another follows from it."""
+    assert left_of_three(0.5, 0.25, faint, few) == pytest.approx(left_of_three(0.5, 0.25, few=few), rel=1e-9)
+    assert left_of_three(0.5, 0.5 - 1e-8, faint, few) < (8 * 3 * EPS) ** 2
 
 
 def test_a_row_that_vanishes_is_taken_for_a_millionth_of_the_others() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from itertools import chain
 from pathlib import Path
@@ -11,7 +12,7 @@ from rows_that_meet import wheels
 
 from symgen.generation.runnable import SCALARS, STRESSED, RunnableKernels, rounded_state
 from symgen.ir.interpret import Interpreter
-from symgen.ir.kernel import Scalar
+from symgen.ir.kernel import Scalar, Status
 from symgen.laboratory.stress.families import search
 from symgen.laboratory.stress.statuses.rule import Held, breaches, counted
 from symgen.laboratory.stress.statuses.rule_states import CLOSEST, DECADES, Pushed, far_apart, towards_singular_sets
@@ -165,4 +166,43 @@ def test_rows_that_masses_make_one_have_a_status() -> None:
             assert status == expected
             if not status:
                 one = by_quantity[kernel.name]
+                assert one.in_units(one.distance(entries)) <= 16
+
+
+FAINT_ROW = """
+model: faint_row
+coordinates: {a: {unit: rad}, b: {unit: m}, c: {unit: m}, d: {unit: m}, e: {unit: m}}
+parameters:
+  m: {value: 2, unit: kg}
+kinetic_energy: 1/2*a_dot**2 + m/2*(b_dot**2 + c_dot**2 + d_dot**2 + 2*e_dot**2) + b_dot*c_dot/3
+constraints:
+  nonholonomic:
+    faint: sin(a)*(b_dot + 2*c_dot)
+    one: b_dot + c_dot - d_dot + e_dot
+    other: 4*cos(a)*b_dot + 3*c_dot - d_dot + e_dot
+inputs: {push: {unit: N, acts_on: {d: 1}}, turn: {unit: N*m, acts_on: {a: 1}}}
+outputs: [forward_dynamics, multipliers]
+"""
+
+
+@pytest.mark.parametrize("scalar", SCALARS)
+def test_a_row_that_all_but_vanishes_is_no_lost_row(scalar: Scalar) -> None:
+    """However short it is beside the others, what it holds is known.  Where one row follows from others is a status.
+
+    With a = 0 the faint row is 0, and with cos(a) = 1/2 the last row is the sum of the directions of the others.
+    """
+    model = load_text(FAINT_ROW, "faint_row")
+    reference = Reference(model)
+    derived = derive_quantities(model, model.outputs, dict.fromkeys(model.outputs, "schur_qr"))
+    program = schedule(derived.mechanics, derived.quantities, (scalar,))[scalar]
+    regular, lost = (1.0, 1e-4, 1e-16, -1e-18), (0.0, math.pi / 3)
+    cases = [*((a, Status.OK) for a in regular), *((a, Status.CONSTRAINT_RANK) for a in lost)]
+    for a, expected in cases:
+        state = rounded_state(State((a, 0.3, 0.2, 0.1, 0), (0.7, 0, 0, 0, 0), (0.0,) * 5, (1, 2), (2,)), scalar)
+        for kernel in program.kernels:
+            run = Interpreter(program.sincos, scalar).run
+            status, entries = run(kernel, {"q": state.q, "qd": state.qd, "u": state.u}, state.parameters)
+            assert status == expected, (kernel.name, a)
+            if not status:
+                one = expectations(reference, state, model.outputs, scalar, "faint")[kernel.name]
                 assert one.in_units(one.distance(entries)) <= 16

@@ -18,7 +18,6 @@ from symgen.linear_algebra.orthogonal import PivotedGramSchmidt, WeightedGramSch
 from symgen.linear_algebra.refinement import Solution, less_forces, missing, of_columns, refined
 from symgen.mechanics.never_zero import Definite
 from symgen.methods.forward_dynamics.motion import Motion, Problem
-from symgen.symbolic.graph import Graph
 from symgen.symbolic.matrix import Matrix, Vector, subtract_vectors
 from symgen.symbolic.scalar import Scalar
 
