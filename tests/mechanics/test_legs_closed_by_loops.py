@@ -98,14 +98,17 @@ def test_accelerations_measure_the_rank_of_b_where_they_reflect(platform: Model)
     derived = articulated(platform, genericity(System(platform)))
     assert derived is not None
     mechanics, motion = derived
-    guards = [guard for guard in motion.guards if guard.status == Status.CONSTRAINT_RANK]
-    (guard,) = guards
-    evaluate = Evaluator([guard.denominator])
+    *before, guard = (guard for guard in motion.guards if guard.status == Status.CONSTRAINT_RANK)
+    # what is divided by on the way is compared with 0 alone
+    assert all(one.scale is one.denominator for one in before)
+    assert guard.scale is not None
+    evaluate = Evaluator([guard.denominator, guard.scale])
     point = parameter_values(mechanics) | {c.name: 0.1 for c in platform.coordinates}
     point |= {name: float(value) for name, value in platform.configuration}
 
     def measured(length: float, legs: int) -> float:
-        return abs(evaluate(point | {f"s_{k}": length for k in range(1, legs + 1)})[0])
+        left, scale = evaluate(point | {f"s_{k}": length for k in range(1, legs + 1)})
+        return abs(left / scale)
 
     assert measured(0.9, 1) > 1e-9
     assert measured(1e-7, 1) > 1e-12
