@@ -204,9 +204,9 @@ springs: {pull: {between: [post, body], stiffness: 10, length: 3}}
     assert data["ties"] == [{"kind": "spring", "ends": [2, 0]}]
     # the post stands in the world; the body is a bar from its origin to the wheel
     assert data["links"] == [
-        {"frame": 0, "places": [[0, 0.2, 0], [0, 0, 0]]},
-        {"frame": 1, "places": [[0, 0, 0], [0.01, 0, 0]]},
-        {"frame": -1, "places": [[3, 0, 0]]},
+        {"frame": 0, "places": [[0, 0.2, 0], [0, 0, 0]], "shown": True},
+        {"frame": 1, "places": [[0, 0, 0], [0.01, 0, 0]], "shown": True},
+        {"frame": -1, "places": [[3, 0, 0]], "shown": True},
     ]
     assert [ball["share"] for ball in data["balls"]] == [1.0, 0.125]
     assert data["turned"] == [0, 1]
