@@ -6,6 +6,7 @@ import ctypes
 from collections.abc import Iterable, Sequence
 
 from symgen.ir.kernel import Kernel
+from symgen.verify.given import entries
 from symgen.verify.reference.reference import State
 from symgen.verify.running.compile import CFunction, Outcome, c_array
 
@@ -19,7 +20,7 @@ def alone(
         single = CFunction(library, name, kernel, "float64")
         made[kernel.name] = [
             single(
-                {a.name: c_array("float64", getattr(s, a.name)) for a in kernel.arguments},
+                {a.name: c_array("float64", entries(s, a)) for a in kernel.arguments},
                 c_array("float64", s.parameters),
             )
             for s in states

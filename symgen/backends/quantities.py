@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from symgen.ir.kernel import Kernel
 from symgen.ir.pairs.wide_functions import works_with_pairs
-from symgen.model.quantities import MAIN, ROWS
+from symgen.model.quantities import GIVEN_MOTIONS, GIVEN_PLACES, MAIN, ROWS
 
 # Those with a kernel for many states: what trajectories, sampling and simulations evaluate by the million.
-BATCHED = MAIN
+BATCHED = (*MAIN, *GIVEN_PLACES, *GIVEN_MOTIONS)
+# Those with kernels that take parameters prepared, and sines from the caller: what a control loop repeats.
+IN_FORMS = MAIN
 
 
 def output_argument(quantity: str) -> str:

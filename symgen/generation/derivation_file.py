@@ -11,7 +11,7 @@ from typing import Any
 
 from symgen import __version__
 from symgen.backends.operations import count_operations
-from symgen.backends.quantities import BATCHED
+from symgen.backends.quantities import IN_FORMS
 from symgen.generation.draft import Draft
 from symgen.ir.bounded import Bound
 from symgen.ir.bounded_coordinates import CoordinateBound
@@ -50,11 +50,11 @@ def derivation_json(draft: Draft) -> str:
             "operations": _operations(kernel),
             "statuses": sorted({check.status.name for block in kernel.blocks for check in block.checks}),
         }
-    prepared = prepare(program, BATCHED)
+    prepared = prepare(program, IN_FORMS)
     for kernel in () if prepared is None else prepared.kernels:
         kernels[kernel.name]["operations_prepared"] = _operations(kernel)
     for kernel in program.kernels:
-        if kernel.name in BATCHED and (given := given_trig(kernel)) is not None:
+        if kernel.name in IN_FORMS and (given := given_trig(kernel)) is not None:
             kernels[kernel.name]["operations_sines_given"] = _operations(given.kernel)
     content = {
         "symgen": __version__,

@@ -11,7 +11,7 @@ from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from symgen.model.quantities import MAIN, MOTIONS
+from symgen.model.quantities import GIVEN_MOTIONS, GIVEN_PLACES, MAIN, MOTIONS
 from symgen.records import dataclass
 
 if TYPE_CHECKING:
@@ -59,10 +59,6 @@ def _method(
 
 
 _U, _PROJECTOR = ("inverse_dynamics",), ("nullspace_projector",)
-_GIVEN_PLACES = ("configuration_from_measured", "configuration_from_task")
-_GIVEN_MOTIONS = (
-    "velocity_from_measured", "acceleration_from_measured", "velocity_from_task", "acceleration_from_task",
-)  # fmt: skip
 _GRADIENTS = ("inverse_dynamics_gradient", "forward_dynamics_gradient", "inverse_dynamics_hessian_product")
 _JACOBIANS = (
     "inverse_dynamics_jacobian", "inverse_dynamics_parameter_jacobian", "forward_dynamics_jacobian",
@@ -95,8 +91,8 @@ METHODS: tuple[MethodRow, ...] = (
     _method("articulated_by_bodies", MOTIONS, "forward_dynamics.articulated", "BY_BODIES", Use.SPARE),
     _method("minor", _PROJECTOR, "projector", "MINOR", Use.ASKED),
     _method("householder", _PROJECTOR, "projector", "HOUSEHOLDER", Use.ASKED),
-    _method("closed", _GIVEN_PLACES, "given.closed", "CLOSED"),
-    _method("legs", _GIVEN_MOTIONS, "given.legs", "BY_LEGS"),
+    _method("closed", GIVEN_PLACES, "given.closed", "CLOSED"),
+    _method("legs", GIVEN_MOTIONS, "given.legs", "BY_LEGS"),
     _method("elimination", _REGRESSORS, "columns_eliminated", "COLUMNS_ELIMINATED"),
     _method("implicit", _OF_U, "derivatives.of_inputs", "IMPLICIT"),
     _method("implicit", _OF_MOTIONS, "derivatives.of_motions", "IMPLICIT"),

@@ -207,10 +207,16 @@ QUANTITIES: tuple[QuantityRow, ...] = (
 # fmt: on
 ROWS = {quantity.name: quantity for quantity in QUANTITIES}
 MAIN = tuple(quantity.name for quantity in QUANTITIES if quantity.main)
-"""u, q̈ and λ, which take methods of their own and have kernels for many states."""
+"""u, q̈ and λ, which take methods of their own."""
 MOTIONS = MAIN[1:]
 """q̈ and λ, which follow from inputs: methods make them together."""
 MULTIPLIERS = MOTIONS[1]
+GIVEN_PLACES = ("configuration_from_measured", "configuration_from_task")
+"""q of what encoders or a plan say of it."""
+GIVEN_MOTIONS = (
+    "velocity_from_measured", "acceleration_from_measured", "velocity_from_task", "acceleration_from_task",
+)  # fmt: skip
+"""q̇ and q̈ of what encoders or a plan say of them."""
 # Whose columns have names: those of the inertial parameters.
 REGRESSOR = "regressor"
 # The columns of this one are some of these, and belong to combinations that `explain` tells of by their name.

@@ -12,7 +12,7 @@ from symgen.backends.c.endings import PREPARED, SINES_GIVEN
 from symgen.backends.c.names import c_members
 from symgen.backends.literals import decimal_text
 from symgen.backends.locals import array_arguments
-from symgen.backends.quantities import BATCHED
+from symgen.backends.quantities import IN_FORMS
 from symgen.backends.render import render
 from symgen.backends.scalars import C_TYPE, SUFFIX, file_stem
 from symgen.ir.given_trig import GivenTrig, given_trig
@@ -102,7 +102,7 @@ def emit_fuzz(model: Model, programs: Sequence[Program]) -> dict[str, str]:
 
 def _prepared(programs: Sequence[Program]) -> tuple[Kernel, ...]:
     """The kernels with prepared parameters that both scalar types have."""
-    made = [prepared.kernels if (prepared := prepare(p, BATCHED)) else () for p in programs]
+    made = [prepared.kernels if (prepared := prepare(p, IN_FORMS)) else () for p in programs]
     common = set.intersection(*({kernel.name for kernel in kernels} for kernels in made))
     return tuple(kernel for kernel in made[0] if kernel.name in common)
 
@@ -125,7 +125,7 @@ def _given(
 
 
 def _with_trig(program: Program) -> Iterator[GivenTrig]:
-    variants = (given_trig(kernel) for kernel in program.kernels if kernel.name in BATCHED)
+    variants = (given_trig(kernel) for kernel in program.kernels if kernel.name in IN_FORMS)
     return (one for one in variants if one is not None)
 
 

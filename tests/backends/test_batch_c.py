@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import subprocess
 from collections.abc import Callable
 from dataclasses import replace
@@ -13,61 +12,16 @@ import handmade
 import numpy as np
 import pytest
 import shipped
+from batch_library import NATIVE, Library
 
 from symgen.backends.c.batch import BLOCK, VECTOR, emit_c_batch
 from symgen.backends.c.plain import emit_c
-from symgen.backends.defaults import default_values
-from symgen.backends.locals import array_arguments
 from symgen.backends.quantities import BATCHED
 from symgen.ir.kernel import Kernel, Program, Scalar, Status
+from symgen.model.quantities import MAIN
 
 pytestmark = pytest.mark.toolchain
-NATIVE = ["-O3", "-march=native", "-fno-math-errno"]
-STRICT = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wdouble-promotion", "-Wshadow", "-Werror"]
 MODELS = ("front_car", "rapkm_2rrr_rr")
-
-
-class Library:
-    """C of a model with its batch kernels, compiled and called through arrays."""
-
-    def __init__(self, folder: Path, model: Any, program: Program, command: list[str]) -> None:
-        files = emit_c(model, program) | emit_c_batch(model, program)
-        for path, text in files.items():
-            (folder / Path(path).name).write_text(text)
-        sources = [str(folder / Path(path).name) for path in files if path.endswith(".c")]
-        flags = ["-std=c99", "-ffp-contract=off", "-shared", "-fPIC", "-o", str(folder / "lib.so")]
-        subprocess.run([*command, *STRICT, *flags, *sources, "-lm"], check=True)
-        self._library = ctypes.CDLL(str(folder / "lib.so"))
-        self._suffix = "" if program.scalar == "float64" else "_f"
-        self.prefix, self.dtype = model.name, np.dtype(program.scalar)
-        self.parameters = np.array([float(v) for v in default_values(model).values()] or [0.0], dtype=self.dtype)
-
-    def one(self, kernel: Kernel, rows: dict[str, Any], k: int) -> tuple[int, Any]:
-        """Status and entries of state k by the kernel for one state; NaN where there is no result."""
-        function = self._library[f"{self.prefix}_{kernel.name}{self._suffix}"]
-        arrays = [np.ascontiguousarray(rows[a.name][:, k]) for a in array_arguments(kernel)]
-        result = np.full(len(kernel.outputs), np.nan, dtype=self.dtype)
-        status = function(*map(pointer, [*arrays, self.parameters, result]))
-        return status, result
-
-    def batch(
-        self, kernel: Kernel, rows: dict[str, Any], count: int, result: Any = None, with_status: bool = True
-    ) -> tuple[int, Any, Any]:
-        """The number of refused states, the statuses and the results (size, stride) of `count` states."""
-        function = self._library[f"{self.prefix}_{kernel.name}_batch{self._suffix}"]
-        function.restype = ctypes.c_size_t
-        arrays = [rows[a.name] for a in array_arguments(kernel)]
-        stride = arrays[0].shape[1]
-        result = np.full((len(kernel.outputs), stride), 7.0, dtype=self.dtype) if result is None else result
-        statuses = np.full(stride, 99, dtype=np.uint8)
-        status = pointer(statuses) if with_status else None
-        sizes = ctypes.c_size_t(count), ctypes.c_size_t(stride)
-        refused = function(*sizes, *map(pointer, [*arrays, self.parameters, result]), status)
-        return refused, statuses, result
-
-
-def pointer(array: Any) -> Any:
-    return ctypes.c_void_p(array.ctypes.data)
 
 
 def rows_of(kernel: Kernel, dtype: Any, stride: int) -> dict[str, Any]:
@@ -81,8 +35,8 @@ def rows_of(kernel: Kernel, dtype: Any, stride: int) -> dict[str, Any]:
 
 
 def batched(program: Program) -> Program:
-    """The kernels that have a batch kernel, for the sake of the compiler's time."""
-    return replace(program, kernels=tuple(kernel for kernel in program.kernels if kernel.name in BATCHED))
+    """u, q̈ and λ, for the sake of the compiler's time; what encoders and a task determine wants other states."""
+    return replace(program, kernels=tuple(kernel for kernel in program.kernels if kernel.name in MAIN))
 
 
 @pytest.mark.parametrize("scalar", shipped.SCALARS)
@@ -162,15 +116,28 @@ def test_nested_checks_tell_their_statuses(tool: Callable[[str], str], tmp_path:
 @pytest.mark.parametrize("scalar", shipped.SCALARS)
 @pytest.mark.parametrize("flags", [["-O2"], ["-O3"], ["-O3", "-march=native"]], ids=" ".join)
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
+@pytest.mark.parametrize(
+    ("name", "quantity"),
+    [
+        ("front_car", "inverse_dynamics"),
+        ("five_bar", "configuration_from_task"),  # in closed form
+        ("delta", "configuration_from_measured"),  # by steps
+    ],
+)
 def test_loop_over_states_is_vector_code(
-    tool: Callable[[str], str], tmp_path: Path, compiler: str, flags: list[str], scalar: Scalar
+    tool: Callable[[str], str],
+    tmp_path: Path,
+    name: str,
+    quantity: str,
+    compiler: str,
+    flags: list[str],
+    scalar: Scalar,
 ) -> None:
     """The compilers' own reports name the loop; `-fno-math-errno` is for square roots (README)."""
-    kernels = shipped.programs("front_car")[scalar].kernels
-    kept = tuple(kernel for kernel in kernels if kernel.name == "inverse_dynamics")
-    program = replace(shipped.programs("front_car")[scalar], kernels=kept)
-    files = emit_c_batch(shipped.model("front_car"), program)
-    header = emit_c(shipped.model("front_car"), program)
+    model, whole = shipped.model(name), shipped.programs(name)[scalar]
+    program = replace(whole, kernels=tuple(kernel for kernel in whole.kernels if kernel.name == quantity))
+    files = emit_c_batch(model, program)
+    header = emit_c(model, program)
     for path, text in (files | header).items():
         (tmp_path / Path(path).name).write_text(text)
     source = next(tmp_path / Path(path).name for path in files if path.endswith(".c"))

@@ -82,3 +82,41 @@ def test_wrong_batch_kernels_are_found(
     tool("cc")
     messages = complaints(tmp_path, lambda text: text.replace(old, new))
     assert any(complaint in text for text in messages), messages
+
+
+def of_encoders(folder: Path, edit: Callable[[str], str]) -> set[str]:
+    """Of which quantities of encoders a comparison complains after an edit of the batch's files."""
+    name, compiler = "five_bar", find_compiler()
+    assert compiler is not None
+    model, whole = shipped.model(name), shipped.programs(name)["float64"]
+    made = replace(whole, kernels=tuple(kernel for kernel in whole.kernels if kernel.name.endswith("_from_measured")))
+    source = generated_sources(model, emit_c(model, made) | emit_c_batch(model, made))[0]["float64"]
+    edited = replace(source, companions=tuple((file, edit(text)) for file, text in source.companions))
+    library = Compilation(compiler, edited, folder).library()
+    parameters = tuple(float(value) for value in default_values(model).values())
+    q = tuple(float(dict(model.configuration)[coordinate.name]) for coordinate in model.coordinates)
+    rates = [(0.2, -0.3, 0.5, 0.1), (-1.0, 0.4, 0.3, 0.6)]
+    states = [State(q, qd, qd[::-1], (0.0,) * model.m, parameters) for qd in rates]
+    by_themselves = alone(library, name, made.kernels, states)
+    assert all(outcome.valid for outcomes in by_themselves.values() for outcome in outcomes)
+    samples = [Sample(state, True, (1.0, 1.0)) for state in states]
+    outcomes, faults = run_batch(library, name, made.kernels, "float64", samples, by_themselves)
+    assert set(outcomes) == {kernel.name for kernel in made.kernels}
+    return {fault.quantity for fault in faults}
+
+
+def test_batches_of_what_is_measured_are_compared_with_values_of_encoders(
+    tool: Callable[[str], str], tmp_path: Path
+) -> None:
+    tool("cc")
+    every = {f"{what}_from_measured" for what in ("configuration", "velocity", "acceleration")}
+    for number, (old, new, found) in enumerate(
+        [
+            ("", "", set()),
+            ("result[1][k] = ", "result[1][k] = 0.5 * ", every),
+            ("= qd_m + 1 *", "= qd_m + 0 *", every - {"configuration_from_measured"}),
+        ]
+    ):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        assert of_encoders(folder, lambda text, old=old, new=new: text.replace(old, new) if old else text) == found

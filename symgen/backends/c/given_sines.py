@@ -9,7 +9,7 @@ from symgen.backends.c.endings import SINES_GIVEN
 from symgen.backends.c.file import StructView, file_view, files
 from symgen.backends.c.names import global_name, variant_names
 from symgen.backends.comments import c_comment
-from symgen.backends.quantities import BATCHED, meaning
+from symgen.backends.quantities import IN_FORMS, meaning
 from symgen.backends.scalars import file_stem
 from symgen.ir.given_trig import GivenTrig, given_trig
 from symgen.ir.kernel import Program
@@ -23,7 +23,7 @@ _ABOUT = (
 
 def emit_c_sc(model: Model, program: Program) -> dict[str, str]:
     """`c/<model>_sc.h`, `.c` (float32: `_sc_f`), or nothing where no kernel has a sine of coordinates."""
-    made = [made for kernel in program.kernels if kernel.name in BATCHED and (made := given_trig(kernel))]
+    made = [made for kernel in program.kernels if kernel.name in IN_FORMS and (made := given_trig(kernel))]
     if not made:
         return {}
     kernels = tuple(one.kernel for one in made)

@@ -12,7 +12,7 @@ from symgen.backends.c.names import global_name, variant_names
 from symgen.backends.c.statements import CStatements
 from symgen.backends.locals import Names
 from symgen.backends.operations import count_operations
-from symgen.backends.quantities import BATCHED, meaning
+from symgen.backends.quantities import IN_FORMS, meaning
 from symgen.backends.scalars import C_TYPE, SUFFIX, file_stem
 from symgen.ir.kernel import Block, Kernel, Program
 from symgen.ir.prepare import Prepared, prepare
@@ -26,7 +26,7 @@ _ABOUT = (
 
 def emit_c_prepared(model: Model, program: Program) -> dict[str, str]:
     """`c/<model>_prepared.h`, `.c` (float32: `_prepared_f`), or nothing where no kernel would save enough."""
-    prepared = prepare(program, BATCHED)
+    prepared = prepare(program, IN_FORMS)
     if prepared is None:
         return {}
     kinds = ("prepared", "params", "prepare")

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from symgen.backends.c.endings import PREPARED, SINES_GIVEN
 from symgen.backends.c.names import global_name
 from symgen.backends.locals import array_arguments
-from symgen.backends.quantities import BATCHED
+from symgen.backends.quantities import IN_FORMS
 from symgen.backends.scalars import C_TYPE, file_stem
 from symgen.ir.given_trig import given_trig
 from symgen.ir.kernel import Kernel, Program, Scalar
@@ -64,9 +64,9 @@ def plain_entries(model: Model, program: Program) -> Entries:
 def with_companions(model: Model, entries: Entries, program: Program) -> Entries:
     """Those of the prepared and `_sc` files of a program as well."""
     plain = {kernel.name: kernel for kernel in program.kernels}
-    prepared = prepare(program, BATCHED)
+    prepared = prepare(program, IN_FORMS)
     ready = () if prepared is None else prepared.kernels
-    given = [made for kernel in program.kernels if kernel.name in BATCHED and (made := given_trig(kernel))]
+    given = [made for kernel in program.kernels if kernel.name in IN_FORMS and (made := given_trig(kernel))]
     functions = (
         *entries.functions,
         *(_entry(model, program.scalar, kernel, plain[kernel.name], PREPARED) for kernel in ready),

@@ -13,6 +13,7 @@ from symgen.backends.locals import array_arguments
 from symgen.backends.quantities import BATCHED
 from symgen.ir.kernel import Kernel, Scalar
 from symgen.verify.certificate import Fault
+from symgen.verify.given import entries
 from symgen.verify.reference.reference import State
 from symgen.verify.running.compile import C_TYPES, CFunction, Outcome, c_array
 from symgen.verify.sampling.states import Sample
@@ -37,7 +38,7 @@ class BatchFunction:
         self._result = C_TYPES[scalar] * (self._size * self._stride)
         self._rows = []
         for argument in array_arguments(kernel):
-            columns = [[float(v) for v in getattr(s, argument.name)] for s in states]
+            columns = [[float(v) for v in entries(s, argument)] for s in states]
             columns += [[value] * argument.length for value in HARD]
             spare = [0.0] * SPARE
             self._rows.append(c_array(scalar, [x for row in zip(*columns, strict=True) for x in (*row, *spare)]))
@@ -51,7 +52,7 @@ class BatchFunction:
         if refused != sum(map(bool, statuses[: self._count])):
             return [Outcome(-1, ())] * self._count
         columns = [tuple(result[k :: self._stride]) for k in range(self._count)]
-        return [Outcome(statuses[k], entries) for k, entries in enumerate(columns)]
+        return [Outcome(statuses[k], column) for k, column in enumerate(columns)]
 
 
 def run_batch(
