@@ -84,11 +84,11 @@ def test_same_bits_as_single_states(tool: Callable[[str], str], tmp_path: Path, 
     program = programs(name)[scalar]
     library = Library(tmp_path, shipped.model(name), program, [tool("gcc"), *NATIVE])
     rows = rows_of(name, library, program)
-    found = {kernel.name: assert_same(library, kernel, rows) for kernel in program.kernels if kernel.name in GIVEN}
-    assert {*found} == {*GIVEN}
+    statuses = {kernel.name: assert_same(library, kernel, rows) for kernel in program.kernels if kernel.name in GIVEN}
+    assert {*statuses} == {*GIVEN}
     for quantity in GIVEN_PLACES:
-        assert found[quantity] & {Status.BRANCH, Status.NOT_CLOSED}
-        assert len(found[quantity]) > 2
+        assert statuses[quantity] & {Status.BRANCH, Status.NOT_CLOSED}
+        assert len(statuses[quantity]) > 2
 
 
 def assert_same(library: Library, kernel: Kernel, rows: dict[str, Any]) -> set[int]:

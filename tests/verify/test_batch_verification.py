@@ -110,7 +110,7 @@ def test_batches_of_what_is_measured_are_compared_with_values_of_encoders(
 ) -> None:
     tool("cc")
     every = {f"{what}_from_measured" for what in ("configuration", "velocity", "acceleration")}
-    for number, (old, new, found) in enumerate(
+    for number, (old, new, complained) in enumerate(
         [
             ("", "", set()),
             ("result[1][k] = ", "result[1][k] = 0.5 * ", every),
@@ -119,4 +119,4 @@ def test_batches_of_what_is_measured_are_compared_with_values_of_encoders(
     ):
         folder = tmp_path / str(number)
         folder.mkdir()
-        assert of_encoders(folder, lambda text, old=old, new=new: text.replace(old, new) if old else text) == found
+        assert of_encoders(folder, lambda text, old=old, new=new: text.replace(old, new) if old else text) == complained
