@@ -129,7 +129,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t169, t211, t405, t444, t636, t710. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t104, t215, t396, t515, t746, t862. */
 void eva_forward_dynamics(void) {
     float q[7];
     float qd[7];

@@ -22,6 +22,28 @@
 extern "C" {
 #endif
 
+/** q(q_m): the configuration with the measured coordinates, or nearest to them, on the branch of q; q_result has
+    6 rows */
+size_t delta_configuration_from_measured_batch_f(size_t count, size_t stride, const float *q_m, const float *q, const delta_params_f *p, float *q_result, unsigned char *status);
+
+/** q̇(q̇_m): the admissible velocity with the measured rates, or nearest to them; qd_result has 6 rows */
+size_t delta_velocity_from_measured_batch_f(size_t count, size_t stride, const float *q, const float *qd_m, const delta_params_f *p, float *qd_result, unsigned char *status);
+
+/** q̈(q̈_m): the admissible acceleration with the measured ones, or nearest to them, at the measured velocity;
+    qdd_result has 6 rows */
+size_t delta_acceleration_from_measured_batch_f(size_t count, size_t stride, const float *q, const float *qd_m, const float *qdd_m, const delta_params_f *p, float *qdd_result, unsigned char *status);
+
+/** q(x): the configuration with these coordinates of the task, or nearest to them, on the branch of q; q_result
+    has 6 rows */
+size_t delta_configuration_from_task_batch_f(size_t count, size_t stride, const float *x_t, const float *q, const delta_params_f *p, float *q_result, unsigned char *status);
+
+/** q̇(ẋ): the admissible velocity with these rates of the task, or nearest to them; qd_result has 6 rows */
+size_t delta_velocity_from_task_batch_f(size_t count, size_t stride, const float *q, const float *xd_t, const delta_params_f *p, float *qd_result, unsigned char *status);
+
+/** q̈(ẍ): the admissible acceleration with these ones of the task, or nearest to them, at that velocity;
+    qdd_result has 6 rows */
+size_t delta_acceleration_from_task_batch_f(size_t count, size_t stride, const float *q, const float *xd_t, const float *xdd_t, const delta_params_f *p, float *qdd_result, unsigned char *status);
+
 /** u: the smallest inputs that produce the motion, (27); u has 3 rows */
 size_t delta_inverse_dynamics_batch_f(size_t count, size_t stride, const float *q, const float *qd, const float *qdd, const delta_params_f *p, float *u, unsigned char *status);
 

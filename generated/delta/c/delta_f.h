@@ -28,8 +28,8 @@
  * velocity_from_task               30     43      3      0      3      0
  * acceleration_from_task           69    105      6      0      3      0
  * inverse_dynamics                 52     71      1      0      3      0
- * forward_dynamics                173    287     11      2      3      0
- * multipliers                     163    268     11      2      3      0
+ * forward_dynamics                137    234      5      0      3      0
+ * multipliers                     127    215      5      0      3      0
  * singularity                      56    107     13      3      3      0
  * (changes of sign are not counted)
  *

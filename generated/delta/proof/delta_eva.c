@@ -367,7 +367,7 @@ void eva_inverse_dynamics(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t57, t88, t135, t158, t194, t226, t237, t303, t292. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t51, t106, t178. */
 void eva_forward_dynamics(void) {
     static const double low_0[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
     static const double high_0[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};
@@ -421,7 +421,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t57, t88, t135, t158, t194, t226, t237, t303, t292. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t51, t106, t178. */
 void eva_multipliers(void) {
     static const double low_0[] = {-0x1.3333333333333p-1, -0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d19p-1, 0x1.fc430dd5549c0p-1};
     static const double high_0[] = {-0x1.79f56e3e9464dp-2, -0x1.1b08ec2d84c68p-3, 0x1.7bb208443e794p-4, 0x1.4b5d7a38e19fep-2, 0x1.1be7393059d0cp-1, 0x1.921fb54442d18p-1, 0x1.fc430dd5549c0p-1, 0x1.3333333333333p+0};

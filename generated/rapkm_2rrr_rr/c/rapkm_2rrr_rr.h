@@ -33,7 +33,7 @@
  * constraint_pseudoinverse            142    218     14      4      6      0
  * nullspace_projector                 122    198      9      4      6      0
  * nullspace_projector_dot             383    549     14      4      6      0
- * weighted_pseudoinverse              283    491      1      0      6      0
+ * weighted_pseudoinverse              280    488      1      0      6      0
  * weighted_nullspace_projector        224    350     22      4      6      0
  * control_matrix                        0      0      0      0      0      0
  * projected_control_matrix            101    177      1      0      6      0
@@ -62,8 +62,8 @@
  * acceleration_from_task               39     69     12      0      6      0
  * inverse_dynamics                     51     79      3      0      5      0
  * inverse_dynamics_residual             0      0      0      0      0      0
- * forward_dynamics                    273    430     29      3      6      0
- * multipliers                         231    379     29      3      6      0
+ * forward_dynamics                    195    317     18      0      6      0
+ * multipliers                         153    266     18      0      6      0
  * energy                               20     31      0      0      3      0
  * singularity                          55     96     17      4      6      0
  * (changes of sign are not counted)
@@ -94,7 +94,7 @@
  *   configuration_from_task l_1 <= 53, l_2 <= 3
  *   acceleration_from_task l_2 <= 3
  *   inverse_dynamics |m_payload| <= 310
- *   forward_dynamics m_1 <= 1700, J_1 <= 17, J_2 <= 170, J_motor <= 170
+ *   forward_dynamics m_1 <= 1700, J_1 <= 17, J_2 <= 170, J_motor <= 1.7
  *   forward_dynamics |m_payload| <= 10
  *   multipliers J_2 <= 0.1, |m_payload| <= 17
  *   energy |m_payload| <= 10

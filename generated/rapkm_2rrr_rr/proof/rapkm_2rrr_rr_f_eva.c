@@ -1019,7 +1019,7 @@ void eva_projected_configuration(void) {
 
 void eva_configuration_from_measured(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t79, t83, t109, t155, t151, t199, t258, t255, t47, t304, t113, t205, t306, t554, t569, t663, t668, t694, t747, t778, t702, t755, t780, t1058, t1151, t1226, t1231, t1257, t1310, t1341, t1265, t1318, t1343, t1621, t1714, t1789, t1794, t1820, t1873, t1904, t1828, t1881, t1906, t2184, t2277, t2334, t2337, t2405, t2409, t2464, t2470, t2528, t2524, t2689, t2768. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t41, t79, t83, t109, t155, t151, t199, t258, t255, t300, t342, t47, t113, t205, t306, t469, t663, t668, t694, t747, t778, t702, t755, t780, t1058, t1151, t1226, t1231, t1257, t1310, t1341, t1265, t1318, t1343, t1621, t1714, t1789, t1794, t1820, t1873, t1904, t1828, t1881, t1906, t2184, t2277, t2334, t2337, t2405, t2409, t2464, t2470, t2528, t2524, t2689, t2768. */
 void eva_configuration_from_measured(void) {
     float q_m[3];
     float q[6];
@@ -1430,7 +1430,7 @@ void eva_inverse_dynamics_residual(void) {
 
 void eva_forward_dynamics(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t56, t95, t104, t180, t168, t284, t276, t322, t359, t259, t407, t489, t499, t504, t475. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t44, t94, t128, t132, t191, t259. */
 void eva_forward_dynamics(void) {
     float q[6];
     float qd[6];
@@ -1473,7 +1473,7 @@ void eva_forward_dynamics(void) {
 
 void eva_multipliers(void);
 
-/* Intervals of the ideal operations alone do not keep these denominators from 0: t47, t56, t95, t104, t180, t168, t284, t276, t322, t359, t259, t407, t489, t499, t504, t475. */
+/* Intervals of the ideal operations alone do not keep these denominators from 0: t39, t44, t94, t128, t132, t191, t259. */
 void eva_multipliers(void) {
     float q[6];
     float qd[6];
