@@ -17,8 +17,8 @@ Array = NDArray[np.float64]
 FEWEST_CHUNKS = 32
 # States of a chunk at least: fewer take less time than handing them out does.
 FEWEST_CHUNK_STATES = 16_384
-# States of a chunk at most, of which a core makes ten a second: what is lost where it is interrupted.
-MOST_CHUNK_STATES = 2**22
+# States of a chunk at most, of which a core makes three a second: what is lost where it is interrupted.
+MOST_CHUNK_STATES = 2**24
 # Chunks from which on they get larger instead: 8 for each of 1 000 cores, as many as a scheduler hands out in 10 s.
 MANY_CHUNKS = 8192
 # States of such a larger chunk at most: a core takes 3 s.
