@@ -69,19 +69,24 @@ class _Raising:
         checks: list[Check] = []
         limits: dict[Operand, Operand] = {}
         for check in block.checks:
-            if check.status not in self._statuses:
-                checks.append(check)
-                continue
-            if check.first is not None:
+            alone = check
+            if check.first is not None and self._raises(check):
                 cause = self.block(check.first)
                 statements += cause.statements
                 checks += cause.checks
+                alone = replace(check, first=None, apart=False)
+            if check.status not in self._statuses:
+                checks.append(alone)
+                continue
             if check.limit not in limits:
                 limits[check.limit] = self._raised(check.limit, statements)
-            checks += [
-                replace(check, limit=limit, first=None, apart=False) for limit in (limits[check.limit], self._least)
-            ]
+            checks += [replace(alone, limit=limit) for limit in (limits[check.limit], self._least)]
         return Block(tuple(statements), tuple(checks))
+
+    def _raises(self, check: Check) -> bool:
+        """Whether its threshold is raised, or one of those that name its cause: masses may be lost where rows are."""
+        named = () if check.first is None else check.first.checks
+        return check.status in self._statuses or any(map(self._raises, named))
 
     def _new(self, statements: Iterable[Statement]) -> Iterator[Statement]:
         """Those that nothing before has worked out: causes may do so for themselves."""

@@ -334,3 +334,22 @@ def test_sweeps_meet_states_on_the_constraints_there() -> None:
     on = walker.refined(beside, defaults, ranks.geometric)
     assert np.allclose(on, on[0] * np.array([1, -2, 1, 1, -2]), rtol=1e-14, atol=0)
     assert not np.allclose(*walker.refined(beside, defaults)[[0, 3]], rtol=0.1, atol=0)
+
+
+def test_a_rank_that_would_name_why_masses_are_lost_is_looked_at_before_them() -> None:
+    """Rows that lose rank may keep enough of their masses' measure, whose own threshold stays."""
+    value, scale = Local("value"), Local("scale")
+    again = Statement(("twice",), "add", (value, value))
+    cause = Block((again,), (Check(Status.CONSTRAINT_RANK, Local("twice"), scale),))
+    load = Load("value", "q", 0)
+    check = Check(Status.MASS_RANK, value, scale, first=cause, apart=True)
+    limit = Statement(("scale",), "mul", (value, value))
+    kernel = Kernel("masses", (), (load,), (Block((limit,), (check,)),), (value,), (1,))
+    (block,) = with_raised_thresholds(kernel, "float64", Raised(ranks=2)).blocks
+    assert [one.status for one in block.checks] == [Status.CONSTRAINT_RANK, Status.CONSTRAINT_RANK, Status.MASS_RANK]
+    assert block.checks[-1] == replace(check, first=None, apart=False)
+    assert [one.targets[0] for one in block.statements] == ["scale", "twice", "raised_1"]
+    # where masses alone are raised rows are looked at as before
+    (block,) = with_raised_thresholds(kernel, "float64", Raised(masses=2)).blocks
+    assert [one.status for one in block.checks] == [Status.CONSTRAINT_RANK, Status.MASS_RANK, Status.MASS_RANK]
+    assert block.checks[0].limit is scale
