@@ -8,6 +8,7 @@ import subprocess
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
+from math import inf
 from pathlib import Path
 
 import numpy as np
@@ -25,8 +26,9 @@ from symgen.backends.literals import round_to
 from symgen.backends.locals import array_arguments
 from symgen.backends.python.module import emit_python
 from symgen.ir.interpret import Interpreter
-from symgen.ir.kernel import Program, Scalar, Status
+from symgen.ir.kernel import Kernel, Local, Program, Scalar, Status
 from symgen.ir.pairs.wide import widened
+from symgen.ir.split import names_of_check
 
 # A car that may stand across its way, masses on a rope, and a parallel robot: tests, roots, choices and functions.
 MODELS = ("rear_car", "rapkm_two_drives")
@@ -132,10 +134,26 @@ def test_python(tmp_path: Path, name: str) -> None:
                 assert np.isnan(outputs).all()
 
 
+def alive_at_once(kernel: Kernel) -> int:
+    """The most values that are known at one step and read then or later, its own results among them."""
+    known, last = {load.local: -1 for load in kernel.loads}, {load.local: -1 for load in kernel.loads}
+    count = 0
+    for block in kernel.blocks:
+        for step, statement in enumerate(block.statements, count):
+            last |= {operand.name: step for operand in statement.operands if isinstance(operand, Local)}
+            known |= dict.fromkeys(statement.targets, step)
+            last |= dict.fromkeys(statement.targets, step)
+        count += len(block.statements)
+        last |= {name: count - 0.5 for check in block.checks for name in names_of_check(check)}
+    last |= {output.name: inf for output in kernel.outputs if isinstance(output, Local)}
+    return max(sum(known[name] <= k <= last[name] for name in known) for k in range(count))
+
+
 def test_values_share_places() -> None:
-    """As many as are alive at once, a few hundred of ten thousand."""
+    """As many as are alive at once, and numbers."""
     made = program("rapkm_two_drives", "float64")
     kernel = max(made.kernels[::2], key=lambda one: len(one.statements))
     step_table = table(kernel, made)
-    assert len(step_table.rows) == len(kernel.statements) > 4 * step_table.size
+    assert len(step_table.rows) == len(kernel.statements)
+    assert step_table.size == len(step_table.constants) + alive_at_once(kernel) < len(step_table.rows) / 2
     assert max(place for row in step_table.rows for place in row[1:]) < step_table.size
