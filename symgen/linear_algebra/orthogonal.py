@@ -216,8 +216,9 @@ class PivotedGramSchmidt(WeightedGramSchmidt):
         base = WeightedGramSchmidt(graph, self.chosen(rows), (graph.one,) * len(rows[0]))
         return base, transpose(tuple(map(base.shares, rows)), len(self._choices))
 
-    def regularity(self, causes: tuple[Guard, ...] = ()) -> tuple[Guard, ...]:  # noqa: ARG002 - of independent rows only
-        """What is left of each chosen column, in units of its length."""
+    def regularity(self, causes: tuple[Guard, ...] = ()) -> tuple[Guard, ...]:
+        """What is left of each chosen column, in units of its length; causes are told of independent rows alone."""
+        assert not causes
         return multiplied(Status.CONSTRAINT_RANK, self._measures, [self._graph.one] * len(self._measures))
 
 

@@ -4,10 +4,20 @@ from __future__ import annotations
 
 from symgen.model.blocks.joint_forms import JOINTS
 from symgen.model.blocks.loops import LOOPS
-from symgen.model.file.common_shapes import ACTION, AXIS, DESCRIPTION, MAIN_AXIS, VECTOR
-from symgen.model.file.shape import Either, ExpressionShape, Key, Listing, RecordShape, TableShape, Word
+from symgen.model.file.listed_shapes import AXIS, MAIN_AXIS, VECTOR
+from symgen.model.file.shape import Either, ExpressionShape, Key, Listing, RecordShape, TableShape, Text, Word
 from symgen.model.mechanism import INERTIA_ELEMENTS
 
+DESCRIPTION = Key("description", Text(), "what it is, in a few words; stands in headers and reports")
+# Where a force or a torque acts, of force elements and of inputs.
+ACTION = (
+    Key("point", Word(), "a point (or frame, for its origin) where a force acts, along `direction`"),
+    Key("torque_on", Word(), "a frame on which a torque acts, about `direction`"),
+    Key("direction", VECTOR, "unit vector of the force or torque"),
+    Key("axes", Word(), "the frame whose axes the direction is given in, world if absent"),
+    Key("reaction", Word(), "the point or frame on which the opposite force or torque acts"),
+    Key("cable", Listing(Word(), 2), "points that a cable runs through; the force is its tension"),
+)
 TURNS = Listing(Listing(Either((ExpressionShape(), VECTOR)), 2, 2))
 FRAME = RecordShape(
     "a frame",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from symgen.model.file.common_shapes import MATRIX, NAMES
+from symgen.model.file.listed_shapes import MATRIX, NAMES
 from symgen.model.file.shape import EitherRecord, ExpressionShape, Key, Listing, RecordShape, TableShape, Text, Word
 
 _EQUATION = Key("equation", Text(), 'its number where it was printed, such as "(44)"', required=True)

@@ -2,8 +2,21 @@
 
 from __future__ import annotations
 
-from symgen.model.file.common_shapes import ACTION, DESCRIPTION, NAMES, RANGE, UNIT, VECTOR
-from symgen.model.file.mechanism_shapes import BODY, FORCE, FRAME, FRICTION, JOINT, LOOP, PICTURE, POINT, SPRING, WHEEL
+from symgen.model.file.listed_shapes import NAMES, RANGE, VECTOR
+from symgen.model.file.mechanism_shapes import (
+    ACTION,
+    BODY,
+    DESCRIPTION,
+    FORCE,
+    FRAME,
+    FRICTION,
+    JOINT,
+    LOOP,
+    PICTURE,
+    POINT,
+    SPRING,
+    WHEEL,
+)
 from symgen.model.file.published_shapes import PUBLISHED
 from symgen.model.file.shape import (
     Either,
@@ -19,6 +32,7 @@ from symgen.model.file.shape import (
 )
 from symgen.model.quantities import QUANTITIES
 
+UNIT = Key("unit", Text(), "SI unit such as m, kg*m**2, N*m, rad; a declaration, nothing is converted")
 _OUTPUT = Word(("all", *(quantity.name for quantity in QUANTITIES)))
 _QUANTITY_NAME = Word(tuple(quantity.name for quantity in QUANTITIES))
 _TOGETHER = RecordShape(
