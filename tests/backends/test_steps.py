@@ -26,9 +26,9 @@ from symgen.backends.literals import round_to
 from symgen.backends.locals import array_arguments
 from symgen.backends.python.module import emit_python
 from symgen.ir.interpret import Interpreter
-from symgen.ir.kernel import Kernel, Local, Program, Scalar, Status
+from symgen.ir.kernel import Kernel, Program, Scalar, Status
 from symgen.ir.pairs.wide import widened
-from symgen.ir.split import names_of_check
+from symgen.ir.split import names_in, names_of_check
 
 # A car that may stand across its way, masses on a rope, and a parallel robot: tests, roots, choices and functions.
 MODELS = ("rear_car", "rapkm_two_drives")
@@ -140,12 +140,11 @@ def alive_at_once(kernel: Kernel) -> int:
     count = 0
     for block in kernel.blocks:
         for step, statement in enumerate(block.statements, count):
-            last |= {operand.name: step for operand in statement.operands if isinstance(operand, Local)}
             known |= dict.fromkeys(statement.targets, step)
-            last |= dict.fromkeys(statement.targets, step)
+            last |= dict.fromkeys((*names_in(statement.operands), *statement.targets), step)
         count += len(block.statements)
         last |= {name: count - 0.5 for check in block.checks for name in names_of_check(check)}
-    last |= {output.name: inf for output in kernel.outputs if isinstance(output, Local)}
+    last |= dict.fromkeys(names_in(kernel.outputs), inf)
     return max(sum(known[name] <= k <= last[name] for name in known) for k in range(count))
 
 
