@@ -62,7 +62,9 @@ def in_moving_axes(mechanics: System, derived: Quantity) -> Quantity:
         # beside what it is made of, some parts find others to share, and some the longer functions they are to replace
         for graph in (mechanics.graph, Graph()) if numbers.may_turn(heading) else ():
             turned = _turned(mechanics, derived, heading, graph)
-            if turned is not None and (weight := counted_weight(turned)) <= least - worth:
+            if turned is None:
+                break  # it is another one on any graph
+            if (weight := counted_weight(turned)) <= least - worth:
                 best, least = turned, weight
     return best
 

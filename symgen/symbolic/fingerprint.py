@@ -15,6 +15,8 @@ from fractions import Fraction
 
 # 2 q + 1 with a prime q: doubling comes back to its start after q times at the earliest (modulo 2^127 - 1 after 127)
 PRIME = 2**127 - 2721
+# Of families: small numbers are multiplied several times as fast.
+FAMILIES = 2**61 - 1
 
 
 def residue(value: Fraction) -> int:
@@ -25,6 +27,32 @@ def residue(value: Fraction) -> int:
 def opaque(*key: object) -> int:
     """A fixed pseudo-random residue, the same in every run and on every machine."""
     return random.Random(repr(key)).randrange(1, PRIME)
+
+
+def family(op: str, value: int, families: Sequence[int]) -> int:
+    """What products have in common that differ in numbers, in sines and cosines, or in the signs of their factors.
+
+    `value` is that of the operation, `families` are those of its arguments.  That of products is the product of those
+    of their factors.
+    """
+    match op:
+        case "add" | "sub" | "symbol":
+            return _of_factor(value)
+        case "mul":
+            return families[0] * families[1] % FAMILIES
+        case "neg":
+            return families[0]
+        case "div":
+            return families[0] * pow(families[1], -1, FAMILIES) % FAMILIES
+        case "const" | "sin" | "cos":
+            return 1
+        case _:
+            return _of_factor(value)
+
+
+def _of_factor(value: int) -> int:
+    """The same for what is no product: x and -x have the same square; what is 0 unseen may be divided by, too."""
+    return value * value % PRIME % FAMILIES or 1
 
 
 def leaf_pair(value: int) -> tuple[int, int]:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from symgen.runtime.effort import SCALAR, spend
 from symgen.symbolic.angles.angle_forms import Angles
-from symgen.symbolic.fingerprint import PRIME, combine, opaque, residue
+from symgen.symbolic.fingerprint import FAMILIES, PRIME, combine, family, opaque, residue
 from symgen.symbolic.functions import expanded, simplified
 from symgen.symbolic.products import Products
 from symgen.symbolic.scalar import Number, Scalar
@@ -86,7 +86,9 @@ class Graph:
         self._serials.append(node)
         if op == "mul":
             node.value = args[0].value * args[1].value % PRIME
-        elif op == "add":
+            node.family = args[0].family * args[1].family % FAMILIES
+            return node
+        if op == "add":
             node.value = (args[0].value + args[1].value) % PRIME
         elif op == "const":
             assert isinstance(payload, Fraction)
@@ -99,6 +101,7 @@ class Graph:
             node.value = combine(op, (args[0].value, args[1].value), payload)
         else:
             node.value = combine(op, [a.value for a in args], payload)
+        node.family = family(op, node.value, [a.family for a in args])
         return node
 
     def at(self, serial: int) -> Scalar:

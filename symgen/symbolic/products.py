@@ -32,7 +32,8 @@ def _held(rule: str, same: bool, rewritten: Scalar, asked: Callable[[], Scalar])
     return rewritten
 
 
-_COMPOSED = frozenset({"const", "neg", "mul", "div"})
+def _is_composed(a: Scalar) -> bool:
+    return a.op in ("neg", "mul", "div")
 
 
 class Products:
@@ -49,30 +50,38 @@ class Products:
         known = self._known.get(a)
         if known is not None:
             return known
-        if a.op not in _COMPOSED:
-            sign, factor = self._upright(a)
-            result: Monomial = (sign, {factor: 1})
-        elif (value := a.constant) is not None:
-            result = (_whole(value), {})
-        elif a.op == "neg":
-            coefficient, powers = self.monomial(a.args[0])
-            result = (-coefficient, powers)
-        else:
-            sign = 1 if a.op == "mul" else -1
-            (k1, left), (k2, right) = self.monomial(a.args[0]), self.monomial(a.args[1])
-            if len(left) + len(right) > MOST_FACTORS or (sign < 0 and k2 == 0):
-                result = (1, {a: 1})
+        # a product may be as deep as a model is long
+        waiting = [a]
+        while waiting:
+            node = waiting[-1]
+            unknown = [x for x in node.args if x not in self._known] if _is_composed(node) else []
+            if unknown:
+                waiting += reversed(unknown)
             else:
-                powers = dict(left)
-                for factor, count in right.items():
-                    powers[factor] = powers.get(factor, 0) + sign * count
-                result = (k1 * k2 if sign > 0 else _whole(Fraction(k1) / k2), {f: c for f, c in powers.items() if c})
-        self._known[a] = result
-        for factor in result[1]:
-            if factor.op == "sin" or factor.op == "cos":
-                self._turning.add(a)
-                break
-        return result
+                waiting.pop()
+                self._known[node] = result = self._taken_apart(node)
+                if any(factor.op in ("sin", "cos") for factor in result[1]):
+                    self._turning.add(node)
+        return self._known[a]
+
+    def _taken_apart(self, a: Scalar) -> Monomial:
+        """A monomial, those of what it is composed of being known."""
+        if (value := a.constant) is not None:
+            return _whole(value), {}
+        if not _is_composed(a):
+            sign, factor = self._upright(a)
+            return sign, {factor: 1}
+        if a.op == "neg":
+            coefficient, powers = self._known[a.args[0]]
+            return -coefficient, powers
+        sign = 1 if a.op == "mul" else -1
+        (k1, left), (k2, right) = self._known[a.args[0]], self._known[a.args[1]]
+        if len(left) + len(right) > MOST_FACTORS or (sign < 0 and k2 == 0):
+            return 1, {a: 1}
+        powers = dict(left)
+        for factor, count in right.items():
+            powers[factor] = powers.get(factor, 0) + sign * count
+        return k1 * k2 if sign > 0 else _whole(Fraction(k1) / k2), {f: c for f, c in powers.items() if c}
 
     def _upright(self, a: Scalar) -> tuple[int, Scalar]:
         """A factor as a sign times one that is known: -1 - x as -(1 + x) where that was met before."""
@@ -106,6 +115,9 @@ class Products:
 
     def combined(self, a: Scalar, b: Scalar, sign: int) -> Scalar | None:
         """a + sign * b where the two are products that differ in constants or in two sines and cosines only."""
+        # most are sums of products that have nothing in common, which it would take long to take apart
+        if a.family != b.family:
+            return None
         (k1, left), (k2, right) = self.monomial(a), self.monomial(b)
         if left == right and k1:
             return a * (Fraction(k1 + sign * k2) / k1)

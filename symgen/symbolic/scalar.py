@@ -21,7 +21,10 @@ LONGEST_TEXT = 500
 class Scalar:
     """One node; compared by identity because equal nodes are the same object within a graph."""
 
-    __slots__ = ("args", "constant", "graph", "is_one", "is_zero", "op", "payload", "serial", "size", "stands", "value")
+    __slots__ = (
+        *("args", "constant", "family", "graph", "is_one", "is_zero", "op", "payload", "serial", "size", "stands"),
+        "value",
+    )
 
     def __init__(self, graph: Graph, serial: int, op: str, args: tuple[Scalar, ...], payload: object) -> None:
         self.graph = graph
@@ -50,6 +53,8 @@ class Scalar:
         else:
             self.size = self.stands = 0
         self.value = 0
+        # equal for products of which one may be the other but for numbers, sines and cosines
+        self.family = 1
 
     def __add__(self, other: Number) -> Scalar:
         return self.graph.add(self, other if other.__class__ is Scalar else self.graph.lift(other))
