@@ -58,10 +58,11 @@ SHARED_PRODUCTS = Step(SHARED_PARTS, "of products", lambda graph, _, outputs: wi
 LONE_RECIPROCALS = Step(QUOTIENTS, "of reciprocals", lambda graph, _, outputs: with_quotients(graph, outputs))
 # In their order: what two sums held is found in more of them once those two are one, so that three are taken twice.
 STEPS = (*(LONE_FACTORS, SHARED_SUMS, SHARED_PRODUCTS) * 2, LONE_RECIPROCALS)
-# Scalars of outputs beyond which each is taken once: again takes seconds of these and finds half a percent.
+# Scalars of outputs beyond which each is taken once, and nothing begins: all that again takes seconds of these and
+# finds half a percent.
 LONG_OUTPUTS = 12_000
-# What comes out of sums first decides what is found later, and what cancels exactly.  Outputs of no more scalars begin
-# with each of these, and with none; longer ones with the first.
+# What comes out of sums first decides what is found later, and what cancels exactly.  Outputs of few scalars begin with
+# each of these, and with none; longer ones with the first.
 BEGINNINGS = (ALL_FACTORS, PARAMETER_FACTORS)
 # Scalars of outputs up to which these begin with each of BEGINNINGS, and with none.
 SHORT_OUTPUTS = 400
@@ -80,10 +81,10 @@ def grouped(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> li
     improved = _Improvement(graph, factoring)
     start = _weighed(without_twins(graph, outputs))
     held = len(reached(outputs))
-    short = held <= SHORT_OUTPUTS
-    begun = [improved(start, (one,)) for one in (BEGINNINGS if short else BEGINNINGS[:1])]
-    starts = dict.fromkeys((*begun, start) if short else begun)
-    steps = tuple(dict.fromkeys(STEPS)) if held > LONG_OUTPUTS else STEPS
+    short, long = held <= SHORT_OUTPUTS, held > LONG_OUTPUTS
+    begun = [improved(start, (one,)) for one in (BEGINNINGS if short else BEGINNINGS[:1]) if not long]
+    starts = dict.fromkeys(begun if begun and not short else (*begun, start))
+    steps = tuple(dict.fromkeys(STEPS)) if long else STEPS
     best = min((improved(one, steps) for one in starts), key=lambda one: one.weight)
     same_values("regrouping", outputs, best.outputs)
     return list(best.outputs)

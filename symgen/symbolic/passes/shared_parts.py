@@ -115,17 +115,13 @@ class _Sharing:
 
 def _pairs(terms: Sequence[Term]) -> set[_Pair]:
     """The pairs of different terms, the older one first and positive."""
-    pairs = set()
-    for k, one in enumerate(terms):
-        for other in terms[k + 1 :]:
-            if one[1] is not other[1]:
-                pairs.add(_pair(one, other))
+    pairs: set[_Pair] = set()
+    for k, (sign, a) in enumerate(terms):
+        for second, b in terms[k + 1 :]:
+            if a is not b:
+                older, newer = (a, b) if a.serial < b.serial else (b, a)
+                pairs.add(((1, older), (sign * second, newer)))
     return pairs
-
-
-def _pair(one: Term, other: Term) -> _Pair:
-    (sign, a), (second, b) = (one, other) if one[1].serial < other[1].serial else (other, one)
-    return (1, a), (sign * second, b)
 
 
 def _ranked(pair: _Pair, nodes: Collection[Scalar]) -> tuple[int, int, int, int, _Pair]:
