@@ -134,7 +134,7 @@ class FarStates:
         By side, quarter of a power of ten, parameter that moves them and state: each step starts where the one before
         it ended.  Where that leads nowhere each power of ten is looked for from the state itself, and quarters beyond
         one at which a state does not close are left out; where none of the states closes, a parameter is not led
-        further.
+        further on that side.
         """
         leading, steps = [*self._moving], round(FURTHEST / QUARTER)
         n = self._starts["q"].shape[1]
@@ -143,29 +143,31 @@ class FarStates:
         count = len(starts["q"])
         shape = len(SIDES), steps, len(leading), count
         configurations, shut = np.empty((*shape, n)), np.zeros(shape, dtype=bool)
-        for side, sign in enumerate(SIDES):
-            led = np.arange(len(leading))
-            q, lost = np.tile(starts["q"], (len(leading), 1)), np.zeros(len(leading) * count, dtype=bool)
-            for step in range(steps):
-                power, place = QUARTER * (step + 1), np.tile(np.arange(count), len(led))
-                p = starts["p"][place]
-                p[np.arange(len(place)), np.array(leading)[led].repeat(count)] *= power_of_ten(sign * power)
-                whole = power.is_integer()
-                closed, tried = np.zeros(len(q), dtype=bool), np.flatnonzero(~lost | whole)
-                q[tried], closed[tried] = self._newton(q[tried], p[tried])
-                for look in (self._loops.damped, self._further) if whole else ():
-                    still = np.flatnonzero(~closed)
-                    with np.errstate(all="ignore"):
-                        reached = look(starts["q"][place[still]], p[still])
-                    q[still], closed[still] = self._newton(reached, p[still])
-                q = np.where(closed[:, None], q, starts["q"][place])
-                configurations[side, step, led] = q.reshape(len(led), count, n)
-                shut[side, step, led] = by_parameter = closed.reshape(len(led), count)
-                if whole:
-                    kept = by_parameter.any(axis=1).repeat(count)
-                    led, q, lost = led[kept[::count]], q[kept], ~closed[kept]
-                if not len(led):
-                    break
+        # both sides of all parameters together: a few hundred states take hardly longer than half of them
+        sides, which = np.divmod(np.arange(len(SIDES) * len(leading)), len(leading))
+        moved, signs = np.array(leading)[which], np.array(SIDES)[sides]
+        led = np.arange(len(which))
+        q, lost = np.tile(starts["q"], (len(led), 1)), np.zeros(len(led) * count, dtype=bool)
+        for step in range(steps):
+            power, place = QUARTER * (step + 1), np.tile(np.arange(count), len(led))
+            p = starts["p"][place]
+            p[np.arange(len(place)), moved[led].repeat(count)] *= power_of_ten(signs[led] * power).repeat(count)
+            whole = power.is_integer()
+            closed, tried = np.zeros(len(q), dtype=bool), np.flatnonzero(~lost | whole)
+            q[tried], closed[tried] = self._newton(q[tried], p[tried])
+            for look in (self._loops.damped, self._further) if whole else ():
+                still = np.flatnonzero(~closed)
+                with np.errstate(all="ignore"):
+                    reached = look(starts["q"][place[still]], p[still])
+                q[still], closed[still] = self._newton(reached, p[still])
+            q = np.where(closed[:, None], q, starts["q"][place])
+            configurations[sides[led], step, which[led]] = q.reshape(len(led), count, n)
+            shut[sides[led], step, which[led]] = by_parameter = closed.reshape(len(led), count)
+            if whole:
+                kept = by_parameter.any(axis=1).repeat(count)
+                led, q, lost = led[kept[::count]], q[kept], ~closed[kept]
+            if not len(led):
+                break
         return configurations, shut
 
     def _newton(self, q: Lanes, p: Lanes) -> tuple[Lanes, Lanes]:
