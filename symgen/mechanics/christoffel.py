@@ -1,6 +1,7 @@
 """What G changes by along coordinates and what follows from it by Christoffel symbols: C, and C q_dot.
 
-C q_dot takes each symbol once for a pair of rates, and only those that may not be 0.
+C q_dot takes each symbol once for a pair of rates, and only those that may not be 0.  C has the symbols of whole rows,
+and what momenta change by in place of them: where much moves together that is far shorter.
 """
 
 from __future__ import annotations
@@ -8,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TypeAlias
 
-from symgen.symbolic.calculus import derivative_along
+from symgen.symbolic.calculus import derivative_along, jacobian
 from symgen.symbolic.graph import Graph
 from symgen.symbolic.hidden_zeros import without_hidden_zeros
 from symgen.symbolic.matrix import Matrix, Vector, dot
@@ -57,6 +58,19 @@ def by_christoffel_symbols(graph: Graph, d: Sequence[Matrix], velocity: Vector) 
     half = graph.const(1) / 2
     return tuple(
         tuple((symmetric[i][j] + (gyroscopic[i][j] - gyroscopic[j][i])) * half for j in range(n)) for i in range(n)
+    )
+
+
+def by_momenta(graph: Graph, q: Vector, qd: Vector, mass_matrix: Matrix, momentum: Vector) -> Matrix:
+    """The same along q_dot, 1/2 (G_dot + dp/dq - (dp/dq)^T) with p = G q_dot (n): the n^2 slopes of p are the sums
+    over k of the n^3 of G."""
+    n, half = len(q), graph.const(1) / 2
+    upper = [(i, j) for i in range(n) for j in range(i, n)]
+    rates = derivative_along(graph, [mass_matrix[i][j] for i, j in upper], dict(zip(q, qd, strict=True)))
+    moved = dict(zip(upper, rates, strict=True))
+    slopes = jacobian(graph, momentum, q)
+    return tuple(
+        tuple((moved[min(i, j), max(i, j)] + (slopes[i][j] - slopes[j][i])) * half for j in range(n)) for i in range(n)
     )
 
 
