@@ -46,8 +46,9 @@ from symgen.verify.tolerance import FACTOR, is_beyond
 BEFORE_A_LOSS = 1.0
 # Digits in which a bound is given.
 BOUND_DIGITS = 2
-# Powers of ten that are looked at together.
+# Powers of ten that are looked at together, all where that makes few states: so few take hardly longer than one.
 TOGETHER_AWAY = 3
+FEW_STATES = 512
 # States at which that is looked at, fewer for long kernels.
 FAR_STATES = 8
 # Half of them are the worst of so many at these powers of ten, of which two thirds are where either type loses most far
@@ -175,12 +176,14 @@ class _Bounds:
         chosen = self._chosen(read, states)
         self._far.record_search(self._kernels["float64"].name, states)
         first: dict[Scalar, dict[tuple[int, int], float]] = {scalar: {} for scalar in self._kernels}
-        for nearest in range(1, FURTHEST + 1, TOGETHER_AWAY):
+        few = len(read) * len(SIDES) * FURTHEST * max(states, led) <= FEW_STATES
+        together = FURTHEST if few else TOGETHER_AWAY
+        for nearest in range(1, FURTHEST + 1, together):
             # nothing is looked for beyond the first loss
             left = [(k, sign) for k in read for sign in SIDES if any((k, sign) not in one for one in first.values())]
             if not left:
                 break
-            powers = range(nearest, min(nearest + TOGETHER_AWAY, FURTHEST + 1))
+            powers = range(nearest, min(nearest + together, FURTHEST + 1))
             steps = [(k, sign * power) for k, sign in left for power in powers]
             lost = self._lost(self._far.states.led(steps, states, chosen, led))
             for scalar, far in lost.items():
