@@ -46,8 +46,9 @@ from symgen.verify.tolerance import FACTOR, is_beyond
 BEFORE_A_LOSS = 1.0
 # Digits in which a bound is given.
 BOUND_DIGITS = 2
-# Powers of ten that are looked at together, all where that makes few states: so few take hardly longer than one.
+# Powers of ten that are looked at together.
 TOGETHER_AWAY = 3
+# States up to which all powers are looked at together: so few take hardly longer than one.
 FEW_STATES = 512
 # States at which that is looked at, fewer for long kernels.
 FAR_STATES = 8
