@@ -6,20 +6,13 @@ because several quantities are evaluated along a projected velocity rather than 
 
 from __future__ import annotations
 
-from contextlib import suppress
 from functools import cached_property, lru_cache
 
 from symgen.mechanics.absolute_angles import AbsoluteAngles
-from symgen.mechanics.christoffel import (
-    Slopes,
-    by_christoffel_symbols,
-    by_momenta,
-    by_products_of_rates,
-    slopes_of,
-    with_zeros,
-)
+from symgen.mechanics.christoffel import Slopes, by_products_of_rates, slopes_of, with_zeros
 from symgen.mechanics.given_forces import GivenForces
 from symgen.mechanics.held_rows import HeldRows, acceleration_bias, geometric_jacobian
+from symgen.mechanics.matrices import Matrices
 from symgen.mechanics.rigid_bodies.bodies import Bodies, Vector3
 from symgen.mechanics.rigid_bodies.joint_axes import along_joints
 from symgen.model.checks.signs import nonnegative_parameters, positive_parameters
@@ -28,18 +21,13 @@ from symgen.model.kinematics.components import components_in, definitions_before
 from symgen.model.kinematics.triples import Rows
 from symgen.model.model import Model
 from symgen.model.quantities import MEASURED_ARGUMENTS, FurtherName
-from symgen.runtime.effort import TooLongError, at_most, done
 from symgen.symbolic.calculus import derivative_along, gradient
 from symgen.symbolic.graph import Graph
-from symgen.symbolic.matrix import Matrix, Vector, flatten, matvec, subtract_vectors, transpose
+from symgen.symbolic.matrix import Matrix, Vector, matvec, subtract_vectors, transpose
 from symgen.symbolic.passes.factoring import Factoring
 from symgen.symbolic.scalar import Scalar
 from symgen.symbolic.translate import translate
 from symgen.symbolic.traverse import cost, substitute
-
-# Times what C takes by momenta, after which Christoffel symbols are not looked at: theirs take as much, where less is
-# counted in the end.
-SYMBOLS_TAKEN = 2
 
 
 class System:
@@ -185,27 +173,15 @@ class System:
         """dG/dq^k for every k."""
         return with_zeros(self.graph, self._mass_slopes, self.n)
 
-    def coriolis_matrix(self, velocity: Vector) -> Matrix:
-        """C (3) along a velocity, from Christoffel symbols or from what momenta change by, whichever counts less."""
-        if not self._momenta_count_less:
-            return by_christoffel_symbols(self.graph, self.mass_matrix_gradient, velocity)
-        flat = flatten(self._coriolis_matrix_by_momenta)
-        along = flat if velocity == self.qd else substitute(self.graph, flat, dict(zip(self.qd, velocity, strict=True)))
-        return tuple(tuple(along[i * self.n : (i + 1) * self.n]) for i in range(self.n))
-
     @cached_property
-    def _coriolis_matrix_by_momenta(self) -> Matrix:
-        return by_momenta(self.graph, self.q, self.qd, self.mass_matrix, self.momentum)
+    def matrices(self) -> Matrices:
+        """G and C by the shortest ways, for what is made of them as they are."""
+        return Matrices(self)
 
-    @cached_property
-    def _momenta_count_less(self) -> bool:
-        """Found on graphs apart: what either leaves behind would come into other quantities."""
-        before, momenta = done(), flatten(self.apart()._coriolis_matrix_by_momenta)
-        with suppress(TooLongError), at_most(SYMBOLS_TAKEN * (done() - before)):
-            seen = self.apart()
-            symbols = flatten(by_christoffel_symbols(seen.graph, seen.mass_matrix_gradient, seen.qd))
-            return cost(momenta).weight < cost(symbols).weight
-        return True
+    @property
+    def is_of_bodies_alone(self) -> bool:
+        """Whether all that has mass are bodies, which move by the model's own coordinates."""
+        return self.change is None and self.model.mechanism.has_mass and self._written_energy.is_zero
 
     @cached_property
     def potential_force(self) -> Vector:

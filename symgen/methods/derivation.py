@@ -243,13 +243,13 @@ class Derivation:
 
     def projected_mass_matrix(self) -> Matrix:
         """G~ = N G N."""
-        return self._projected_square(self.mechanics.mass_matrix)
+        return self._projected_square(self.mechanics.matrices.mass_matrix)
 
     def projected_coriolis_matrix(self) -> Matrix:
         """C~ = N (C N + G N_dot), both along N q_dot."""
         graph, n, space = self.graph, self.n, self.space
-        coriolis = matmul(graph, self.mechanics.coriolis_matrix(self.admissible), space.projector, n)
-        inertial = matmul(graph, self.mechanics.mass_matrix, self.projector_dot(self.admissible), n)
+        coriolis = matmul(graph, self.mechanics.matrices.coriolis_matrix(self.admissible), space.projector, n)
+        inertial = matmul(graph, self.mechanics.matrices.mass_matrix, self.projector_dot(self.admissible), n)
         return matmul(graph, space.projector, add(coriolis, inertial), n)
 
     # weighted projection (17), (19) ----------------------------------------------------------------------------------

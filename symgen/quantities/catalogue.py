@@ -119,8 +119,8 @@ def _configuration(given_by: GivenBy) -> _Derived:
 
 _BY_METHODS = (None, _none)
 _DERIVED: dict[str, _Derived] = {
-    "mass_matrix": (lambda d: flatten(d.mechanics.mass_matrix), _none),
-    "coriolis_matrix": (lambda d: flatten(d.mechanics.coriolis_matrix(d.mechanics.qd)), _none),
+    "mass_matrix": (lambda d: flatten(d.mechanics.matrices.mass_matrix), _none),
+    "coriolis_matrix": (lambda d: flatten(d.mechanics.matrices.coriolis_matrix(d.mechanics.qd)), _none),
     "coriolis_force": (lambda d: d.mechanics.coriolis_force, _none),
     "potential_force": (lambda d: d.mechanics.potential_force, _none),
     "applied_force": (lambda d: d.mechanics.applied_force, _none),
@@ -143,7 +143,7 @@ _DERIVED: dict[str, _Derived] = {
     "projected_coriolis_matrix": (lambda d: flatten(d.projected_coriolis_matrix()), _constraint),
     "projected_potential_force": (lambda d: d.space.project(d.mechanics.potential_force), _constraint),
     "projected_applied_force": (lambda d: d.space.project(d.mechanics.applied_force_at(d.admissible)), _constraint),
-    "minimal_mass_matrix": (lambda d: flatten(d.minimal.matrix(d.mechanics.mass_matrix)), _partition),
+    "minimal_mass_matrix": (lambda d: flatten(d.minimal.matrix(d.mechanics.matrices.mass_matrix)), _partition),
     "minimal_coriolis_matrix": (lambda d: flatten(d.minimal.coriolis_matrix), _partition_rate),
     "minimal_potential_force": (lambda d: d.minimal.vector(d.mechanics.potential_force), _partition),
     "minimal_applied_force": (lambda d: d.minimal.vector(d.mechanics.applied_force), _partition),

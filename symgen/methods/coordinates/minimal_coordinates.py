@@ -76,6 +76,6 @@ class MinimalCoordinates:
     def coriolis_matrix(self) -> Matrix:
         """C- = F^T (C F + G F_dot), along q_dot as given."""
         graph, delta, qd = self._graph, self._generic.delta, self._mechanics.qd
-        coriolis = matmul(graph, self._mechanics.coriolis_matrix(qd), self.complement, delta)
-        inertial = matmul(graph, self._mechanics.mass_matrix, self.complement_dot(qd), delta)
+        coriolis = matmul(graph, self._mechanics.matrices.coriolis_matrix(qd), self.complement, delta)
+        inertial = matmul(graph, self._mechanics.matrices.mass_matrix, self.complement_dot(qd), delta)
         return matmul(graph, transpose(self.complement, delta), add(coriolis, inertial), delta)

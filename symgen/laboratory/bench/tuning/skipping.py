@@ -13,6 +13,7 @@ from functools import cached_property
 from symgen.linear_algebra.exterior import ActuationForms
 from symgen.linear_algebra.null_space.null_spaces import MinorSpace
 from symgen.mechanics.absolute_angles import absolute_angles
+from symgen.mechanics.christoffel import by_christoffel_symbols
 from symgen.mechanics.genericity import Genericity, genericity
 from symgen.mechanics.system import System
 from symgen.methods.derivation import Derivation
@@ -102,8 +103,16 @@ class _HidingSystem(System):
         return tuple(self._behind() if self._forces and x.is_zero else x for x in plain)
 
 
-class _FullMatrices(System):
-    """A system whose G and C hold numbers at run time where they hold zeros."""
+class _WrittenMatrices(System):
+    """A system with C as it is written down, by Christoffel symbols."""
+
+    def coriolis_matrix(self) -> Matrix:
+        """C along q_dot."""
+        return by_christoffel_symbols(self.graph, self.mass_matrix_gradient, self.qd)
+
+
+class _FullMatrices(_WrittenMatrices):
+    """The same with numbers at run time where G and C hold zeros."""
 
     def _full(self, matrix: Matrix, name: str) -> Matrix:
         return tuple(
@@ -116,9 +125,9 @@ class _FullMatrices(System):
         """G without zeros; differentiated, what stands for them has no rate."""
         return self._full(super().mass_matrix, "G")
 
-    def coriolis_matrix(self, velocity: Vector) -> Matrix:
+    def coriolis_matrix(self) -> Matrix:
         """C without zeros."""
-        return self._full(super().coriolis_matrix(velocity), "C")
+        return self._full(super().coriolis_matrix(), "C")
 
 
 class _WorldAxes(Elimination):
@@ -170,7 +179,7 @@ def _of_minors(plain: System, generic: Genericity, outputs: Vector) -> Iterator[
     vanishing = any(x.is_zero for x in plain.potential_force)
     forces = weight(_HidingSystem(model, lambda _: False, nowhere, True)) if vanishing else None
     yield KeptWeight("forces that vanish", forces, minor)
-    yield KeptWeight("τ without G and C", counted_cost(_by_matrices(System(model), generic)), minor)
+    yield KeptWeight("τ without G and C", counted_cost(_by_matrices(_WrittenMatrices(model), generic)), minor)
     square = generic.m == generic.delta == generic.alpha and generic.rank == generic.r
     yield KeptWeight("m = δ", counted_cost(_summed(model, generic)) if square else None, minor)
     yield KeptWeight("groups of parameters", _each_time(plain, outputs), minor)
@@ -180,7 +189,8 @@ def _of_minors(plain: System, generic: Genericity, outputs: Vector) -> Iterator[
 
 def _of_matrices(model: Model, generic: Genericity) -> Iterator[KeptWeight]:
     """What the matrices G and C skip, where u is formed from them."""
-    plain, full = (counted_cost(_by_matrices(system, generic)) for system in (System(model), _FullMatrices(model)))
+    systems = _WrittenMatrices(model), _FullMatrices(model)
+    plain, full = (counted_cost(_by_matrices(system, generic)) for system in systems)
     yield KeptWeight("zeros of G and C", full if full != plain else None, plain)
 
 
@@ -203,11 +213,11 @@ def _minor(mechanics: System, generic: Genericity) -> Vector:
     return Derivation(mechanics, generic, space).inverse_dynamics
 
 
-def _by_matrices(mechanics: System, generic: Genericity) -> Vector:
+def _by_matrices(mechanics: _WrittenMatrices, generic: Genericity) -> Vector:
     """u from G q_ddot + C q_dot + Q - Q_a with the matrices G and C."""
     graph, qd = mechanics.graph, mechanics.qd
     inertial = matvec(graph, mechanics.mass_matrix, mechanics.qdd)
-    coriolis = matvec(graph, mechanics.coriolis_matrix(qd), qd)
+    coriolis = matvec(graph, mechanics.coriolis_matrix(), qd)
     forces = zip(inertial, coriolis, mechanics.potential_force, mechanics.applied_force, strict=True)
     space = MinorSpace(graph, mechanics.constraint_jacobian, mechanics.n, generic.rank)
     forms, restriction = space.listed_actuation(mechanics.inputs, generic.alpha)
