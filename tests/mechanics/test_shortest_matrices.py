@@ -10,7 +10,7 @@ from symgen.mechanics.system import System
 from symgen.model.load import load_text
 from symgen.symbolic.evaluate import Evaluator, inner_point
 from symgen.symbolic.matrix import Matrix, Vector, flatten
-from symgen.symbolic.traverse import cost
+from symgen.symbolic.traverse import cost, reached
 
 # Rounding of numbers about 1, by some thousand operations.
 CLOSE = 1e-12
@@ -49,6 +49,21 @@ bodies:
   geared: {{mass: k, com: [0.1, 0.05, 0.2], inertia: {{xx: 0.02, yy: 0.03, zz: 0.04}}}}
   branch: {{mass: m, com: [0, 0.1, 0]}}
 rotor_inertias: {{c: J}}
+inputs:
+  u: {{acts_on: {{a: 1}}}}
+"""
+# A wheel is the same however far it has turned.
+WHEEL = f"""
+model: wheel
+{PARAMETERS}
+coordinates: {{a: {{unit: rad}}, tilt: {{unit: rad}}, wheel_angle: {{unit: rad}}}}
+frames:
+  column: {{rotation: [[z, a]]}}
+  fork: {{parent: column, translation: [l, 0, 0], rotation: [[x, tilt]]}}
+  wheel: {{parent: fork, translation: [0, 0.1, 0], rotation: [[y, wheel_angle]]}}
+bodies:
+  column: {{mass: m, com: [l/2, 0, 0], inertia: {{xx: 0.01, yy: 0.02, zz: 0.03}}}}
+  wheel: {{mass: k, com: [0, 0.05, 0], inertia: {{xx: J, yy: 0.03, zz: J}}}}
 inputs:
   u: {{acts_on: {{a: 1}}}}
 """
@@ -100,7 +115,7 @@ def near(system: System, one: Matrix, other: Matrix) -> bool:
 
 @pytest.mark.parametrize("in_world_axes", [False, True])
 @pytest.mark.parametrize("lumped", [False, True])
-@pytest.mark.parametrize("text", [BALLS, TREE, chain(4)], ids=["balls", "tree", "chain"])
+@pytest.mark.parametrize("text", [BALLS, TREE, WHEEL, chain(4)], ids=["balls", "tree", "wheel", "chain"])
 def test_composite_bodies_have_what_energies_have(text: str, lumped: bool, in_world_axes: bool) -> None:
     """G of the kinetic energy and C of Christoffel symbols, off constraints too."""
     system = system_of(text)
@@ -118,6 +133,15 @@ def test_what_is_taken_is_that_of_christoffel(text: str) -> None:
         assert near(system, system.matrices.coriolis_matrix(velocity), symbols(system, velocity))
     assert near(system, system.matrices.mass_matrix, system.mass_matrix)
     assert near(system, momenta(system), symbols(system, system.qd))
+
+
+@pytest.mark.parametrize("in_world_axes", [False, True])
+def test_a_wheel_leaves_no_rounding_of_its_turns(in_world_axes: bool) -> None:
+    """G and C hold its rate, which moves other axes, and not its angle."""
+    system = system_of(WHEEL)
+    for matrix in composite_matrices(system.bodies, lumped=True, in_world_axes=in_world_axes):
+        assert system.q[2] not in reached(flatten(matrix))
+        assert system.q[1] in reached(flatten(matrix))
 
 
 def test_what_moves_together_takes_momenta_where_there_are_no_bodies() -> None:

@@ -20,10 +20,10 @@ from collections.abc import Iterator, Mapping
 from symgen.mechanics.rigid_bodies.bodies import Bodies, Vector3
 from symgen.mechanics.rigid_bodies.lumps import Lump, lumped_bodies
 from symgen.model.kinematics.triples import Rows, applied, cross, inner, plus, product, transposed, triple
-from symgen.model.mechanism import WORLD
+from symgen.model.mechanism import WORLD, RotorInertia
 from symgen.records import dataclass
 from symgen.symbolic.calculus import derivative_along, gradient
-from symgen.symbolic.matrix import Matrix
+from symgen.symbolic.matrix import Matrix, flatten
 from symgen.symbolic.scalar import Scalar
 
 
@@ -47,9 +47,9 @@ class Direction:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
-    """A frame against its parent: axes (None where both have those of the world), the place of its origin and what that
-    changes by; by coordinates what turns it, in its axes, and what shifts it, in the parent's."""
+class JointStep:
+    """A frame against its parent: axes (None where both are looked at in the same), the place of its origin and what
+    that changes by; by coordinates what turns it, in its axes, and what shifts it, in the parent's."""
 
     axes: Rows[Scalar] | None
     place: Vector3
@@ -59,7 +59,7 @@ class Step:
 
 
 @dataclass(frozen=True, slots=True)
-class Load:
+class RateLoad:
     """What one rate takes of all elements, about the origin of a frame: the five sums."""
 
     force: Vector3  # int u_dot
@@ -75,11 +75,11 @@ def composite_matrices(bodies: Bodies, lumped: bool, in_world_axes: bool) -> tup
     `lumped` tells whether parameters are regrouped first (`lumps.py`).  Where all turns share an axis those of the
     world are the shorter ones, elsewhere each frame has its own.
     """
-    return _Recursion(bodies, in_world_axes).matrices(lumped)
+    return _CompositeRecursion(bodies, lumped, in_world_axes).matrices()
 
 
-class _Recursion:
-    def __init__(self, bodies: Bodies, in_world_axes: bool) -> None:
+class _CompositeRecursion:
+    def __init__(self, bodies: Bodies, lumped: bool, in_world_axes: bool) -> None:
         self._bodies, self._kinematics, self._in_world_axes = bodies, bodies.kinematics, in_world_axes
         zero, n = bodies.graph.zero, len(bodies.q)
         self._none: Vector3 = (zero, zero, zero)
@@ -89,13 +89,15 @@ class _Recursion:
             loaded.update(self._kinematics.lineage(body.frame))
         # from the root outwards
         self._frames = [frame.name for frame in bodies.mechanism.frames if frame.name in loaded]
+        self._lumps, self._rotors = lumped_bodies(bodies, self._frames) if lumped else self._as_they_are()
+        self._axes = {name: self._described_in(name) for name in self._frames}
         self._steps = {name: self._step(name) for name in self._frames}
         self._mass = [[zero] * n for _ in range(n)]
         self._coriolis = [[zero] * n for _ in range(n)]
 
-    def matrices(self, lumped: bool) -> tuple[Matrix, Matrix]:
+    def matrices(self) -> tuple[Matrix, Matrix]:
         """G and C."""
-        carried, rotors = self._carried(lumped)
+        carried = {name: self._rigid(name, lump) for name, lump in self._lumps.items()}
         for name in reversed(self._frames):
             step, parent = self._steps[name], self._kinematics.frames[name].parent
             above = _turned_composite(step.axes, carried[name])
@@ -103,66 +105,71 @@ class _Recursion:
                 self._enter(name, j, carried[name], above)
             if parent != WORLD:
                 carried[parent] = _sum(carried[parent], _shifted_composite(above, step))
-        for coordinate, inertia in rotors:
-            shares = gradient(self._bodies.graph, self._bodies.names[f"{coordinate}_dot"], self._bodies.qd)
+        for rotor in self._rotors:
+            shares = gradient(self._bodies.graph, self._bodies.names[f"{rotor.coordinate}_dot"], self._bodies.qd)
+            inertia = self._bodies.scalars.value(rotor.inertia)
             for i, one in enumerate(shares):
                 for j, other in enumerate(shares):
                     self._mass[i][j] = self._mass[i][j] + one * other * inertia
         return tuple(map(tuple, self._mass)), tuple(map(tuple, self._coriolis))
 
-    def _carried(self, lumped: bool) -> tuple[dict[str, Composite], list[tuple[str, Scalar]]]:
-        """What each frame carries itself, and the rotors with their inertias."""
-        bodies, zero = self._bodies, self._bodies.graph.zero
-        if lumped:
-            lumps, rotors = lumped_bodies(bodies, self._frames)
-        else:
-            rows = (self._none, self._none, self._none)
-            lumps, rotors = {name: Lump(zero, self._none, rows) for name in self._frames}, []
-            for body in bodies.mechanism.bodies:
-                if body.frame != WORLD:
-                    mass, com = bodies.scalars.value(body.mass), self._kinematics.space.values(body.com)
-                    first = triple([mass * x for x in com])
-                    own = Lump(mass, first, _added(bodies.inertia(body.name), _around(_outer(com, first))))
-                    lumps[body.frame] = _sum_of_lumps(lumps[body.frame], own)
-            rotors = list(bodies.mechanism.rotor_inertias)
-        made = {name: self._rigid(name, lump) for name, lump in lumps.items()}
-        return made, [(rotor.coordinate, bodies.scalars.value(rotor.inertia)) for rotor in rotors]
+    def _as_they_are(self) -> tuple[dict[str, Lump], list[RotorInertia]]:
+        """What each frame carries itself, and all rotors."""
+        bodies = self._bodies
+        nothing = Lump(bodies.graph.zero, self._none, (self._none, self._none, self._none))
+        lumps = dict.fromkeys(self._frames, nothing)
+        for body in bodies.mechanism.bodies:
+            if body.frame != WORLD:
+                mass, com = bodies.scalars.value(body.mass), self._kinematics.space.values(body.com)
+                first = _times(mass, com)
+                own = Lump(mass, first, _added(bodies.inertia(body.name), _around(_outer(com, first))))
+                lumps[body.frame] = _sum_of_lumps(lumps[body.frame], own)
+        return lumps, list(bodies.mechanism.rotor_inertias)
+
+    def _described_in(self, name: str) -> str:
+        """The frame in whose axes a lump is known: the parent of a wheel, which is the same however it is turned.
+
+        In its own axes it would leave a rounding of itself, turned there and back.
+        """
+        parent = self._kinematics.frames[name].parent
+        if any(self._kinematics.frames[other].parent == name for other in self._frames):
+            return name
+        lump, axes = self._lumps[name], self._kinematics.joint(name).axes
+        known = (*lump.first, *flatten(lump.tensor))
+        turned = (*applied(axes, lump.first), *flatten(_turned_rows(axes, lump.tensor)))
+        return parent if all(x.value == y.value for x, y in zip(known, turned, strict=True)) else name
 
     def _rigid(self, name: str, lump: Lump) -> Composite:
         """A lump that turns with its frame: h_dot = w x h, K = -[w]x (tr T / 2 - T)."""
         (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = lump.tensor
         half = (xx + yy + zz) * (self._bodies.graph.one / 2)
-        second = ((half - xx, -xy, -xz), (-yx, half - yy, -yz), (-zx, -zy, half - zz))
-        first, tensor, spin = lump.first, lump.tensor, self._spin(name)
-        if self._in_world_axes:
-            axes = self._kinematics.axes(name)
-            first, tensor, second = applied(axes, first), _turned_rows(axes, tensor), _turned_rows(axes, second)
-        columns = [cross(column, spin) for column in transposed(second)]
+        second: Rows[Scalar] = ((half - xx, -xy, -xz), (-yx, half - yy, -yz), (-zx, -zy, half - zz))
+        shown = self._shown(self._axes[name])
+        first, spin = applied(shown, lump.first), self._spin(name, self._axes[name])
+        columns = [cross(column, spin) for column in transposed(_turned_rows(shown, second))]
         rate = transposed((columns[0], columns[1], columns[2]))
-        return Composite(lump.mass, first, tensor, cross(spin, first), rate)
+        return Composite(lump.mass, first, _turned_rows(shown, lump.tensor), cross(spin, first), rate)
 
-    def _spin(self, name: str) -> Vector3:
-        """The angular velocity of a frame, in the axes that are used for it."""
-        return self._kinematics.twist(name, WORLD if self._in_world_axes else name).angular
+    def _shown(self, frame: str) -> Rows[Scalar]:
+        """What brings components in a frame's axes to those that are used for it."""
+        return self._kinematics.axes(frame) if self._in_world_axes else self._kinematics.space.identity
 
-    def _step(self, name: str) -> Step:
-        parent = self._kinematics.frames[name].parent
-        joint, spin, spin_above = self._kinematics.joint(name), self._spin(name), self._spin(parent)
-        turning, shifting = self._directions(joint.turning), self._directions(joint.place_rate)
-        axes, place, place_rate = joint.axes, joint.place, joint.place_rate
-        if self._in_world_axes:
-            own, above = self._kinematics.axes(name), self._kinematics.axes(parent)
-            turning = {j: Direction(applied(own, one.along), applied(own, one.change)) for j, one in turning.items()}
-            shifting = {
-                j: Direction(applied(above, one.along), applied(above, one.change)) for j, one in shifting.items()
-            }
-            place, place_rate = applied(above, place), applied(above, place_rate)
-        return Step(
-            None if self._in_world_axes else axes,
+    def _spin(self, name: str, frame: str) -> Vector3:
+        """The angular velocity of `name`, in the axes that are used for components in those of `frame`."""
+        return self._kinematics.twist(name, WORLD if self._in_world_axes else frame).angular
+
+    def _step(self, name: str) -> JointStep:
+        joint, parent, own = self._kinematics.joint(name), self._kinematics.frames[name].parent, self._axes[name]
+        spin, spin_above = self._spin(own, own), self._spin(parent, parent)
+        turning = joint.turning if own == name else joint.turning_before
+        above = self._shown(parent)
+        place = applied(above, joint.place)
+        return JointStep(
+            joint.axes if own == name and not self._in_world_axes else None,
             place,
-            plus(place_rate, cross(spin_above, place)),
-            {j: _carried_on(one, spin) for j, one in turning.items()},
-            {j: _carried_on(one, spin_above) for j, one in shifting.items()},
+            plus(applied(above, joint.place_rate), cross(spin_above, place)),
+            {j: _seen(self._shown(own), one, spin) for j, one in self._directions(turning).items()},
+            {j: _seen(above, one, spin_above) for j, one in self._directions(joint.place_rate).items()},
         )
 
     def _directions(self, rates: Vector3) -> dict[int, Direction]:
@@ -180,7 +187,7 @@ class _Recursion:
 
         The frame carries `own`, in its axes, which are `above` in its parent's.
         """
-        step, nothing = self._steps[name], Load(*[self._none] * 5)
+        step, nothing = self._steps[name], RateLoad(*[self._none] * 5)
         turned = _load_of_turning(step.turning[j], own) if j in step.turning else nothing
         shifted = _load_of_shifting(step.shifting[j], above) if j in step.shifting else nothing
         inside = turned if shifted is nothing else _sum_of_loads(turned, _turned_load(_back(step.axes), shifted))
@@ -211,14 +218,15 @@ class _Recursion:
         self._coriolis[i][j] = self._coriolis[i][j] + coriolis
 
 
-def _carried_on(one: Direction, spin: Vector3) -> Direction:
-    """What changes in axes that turn, against the world."""
-    return Direction(one.along, plus(one.change, cross(spin, one.along)))
+def _seen(axes: Rows[Scalar], one: Direction, spin: Vector3) -> Direction:
+    """In other axes, and what it changes by against the world where its components are those in axes that turn."""
+    along = applied(axes, one.along)
+    return Direction(along, plus(applied(axes, one.change), cross(spin, along)))
 
 
-def _load_of_turning(one: Direction, body: Composite) -> Load:
+def _load_of_turning(one: Direction, body: Composite) -> RateLoad:
     s, change = one.along, one.change
-    return Load(
+    return RateLoad(
         plus(cross(change, body.first), cross(s, body.first_rate)),
         plus(applied(body.inertia, change), applied(body.inertia_rate, s)),
         cross(s, body.first),
@@ -227,9 +235,9 @@ def _load_of_turning(one: Direction, body: Composite) -> Load:
     )
 
 
-def _load_of_shifting(one: Direction, body: Composite) -> Load:
+def _load_of_shifting(one: Direction, body: Composite) -> RateLoad:
     v, change = one.along, one.change
-    return Load(
+    return RateLoad(
         _times(body.mass, change),
         cross(body.first, change),
         _times(body.mass, v),
@@ -238,11 +246,11 @@ def _load_of_shifting(one: Direction, body: Composite) -> Load:
     )
 
 
-def _turned_load(axes: Rows[Scalar] | None, load: Load) -> Load:
+def _turned_load(axes: Rows[Scalar] | None, load: RateLoad) -> RateLoad:
     """In the axes of the parent."""
     if axes is None:
         return load
-    return Load(
+    return RateLoad(
         applied(axes, load.force),
         applied(axes, load.moment),
         applied(axes, load.momentum),
@@ -251,9 +259,9 @@ def _turned_load(axes: Rows[Scalar] | None, load: Load) -> Load:
     )
 
 
-def _shifted_load(load: Load, step: Step) -> Load:
+def _shifted_load(load: RateLoad, step: JointStep) -> RateLoad:
     """About the origin of the parent, in whose axes it stands."""
-    return Load(
+    return RateLoad(
         load.force,
         plus(load.moment, cross(step.place, load.force)),
         load.momentum,
@@ -262,8 +270,8 @@ def _shifted_load(load: Load, step: Step) -> Load:
     )
 
 
-def _sum_of_loads(one: Load, other: Load) -> Load:
-    return Load(
+def _sum_of_loads(one: RateLoad, other: RateLoad) -> RateLoad:
+    return RateLoad(
         plus(one.force, other.force),
         plus(one.moment, other.moment),
         plus(one.momentum, other.momentum),
@@ -284,7 +292,7 @@ def _turned_composite(axes: Rows[Scalar] | None, body: Composite) -> Composite:
     )
 
 
-def _shifted_composite(body: Composite, step: Step) -> Composite:
+def _shifted_composite(body: Composite, step: JointStep) -> Composite:
     """About the origin of the parent, in whose axes it stands: r + d for r, r_dot + d_dot for r_dot."""
     first = plus(body.first, _times(body.mass, step.place))
     moved = _added(_outer(step.place, first), _outer(body.first, step.place))
