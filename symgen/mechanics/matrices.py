@@ -8,7 +8,7 @@ other quantities.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import suppress
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, TypeAlias
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 # Times what the first way takes to be made, after which another is not looked at: what takes more counts more.
 TAKEN = 3
+SYMBOLS = "Christoffel symbols"
 _Way: TypeAlias = "Callable[[System], Matrix]"
 
 
@@ -36,16 +37,26 @@ class Matrices:
     @cached_property
     def mass_matrix(self) -> Matrix:
         """G (3)."""
-        return self._shortest({**self._composites(0), "energies": lambda system: system.mass_matrix})
+        ways: dict[str, _Way] = {**self._composites(0), "energies": lambda system: system.mass_matrix}
+        return ways[self._shortest(ways)](self._system)
+
+    @cached_property
+    def _of_coriolis(self) -> dict[str, _Way]:
+        return {**self._composites(1), "momenta": _by_momenta, SYMBOLS: _by_symbols}
+
+    @cached_property
+    def _coriolis_way(self) -> str:
+        return self._shortest(self._of_coriolis)
 
     @cached_property
     def _coriolis_matrix(self) -> Matrix:
-        ways: dict[str, _Way] = {"momenta": _by_momenta, "Christoffel symbols": _by_symbols}
-        return self._shortest({**self._composites(1), **ways})
+        return self._of_coriolis[self._coriolis_way](self._system)
 
     def coriolis_matrix(self, velocity: Vector) -> Matrix:
         """C (3) along a velocity: that of Christoffel symbols, by whichever way."""
         system, n = self._system, self._system.n
+        if self._coriolis_way == SYMBOLS:
+            return by_christoffel_symbols(system.graph, system.mass_matrix_gradient, velocity)
         if velocity == system.qd:
             return self._coriolis_matrix
         rates = dict(zip(system.qd, velocity, strict=True))
@@ -61,15 +72,15 @@ class Matrices:
             for axes, in_world_axes in (("own axes", False), ("axes of the world", True))
         }
 
-    def _shortest(self, ways: Mapping[str, _Way]) -> Matrix:
-        """By the way that counts least, the first of those that count as much."""
+    def _shortest(self, ways: dict[str, _Way]) -> str:
+        """The way that counts least, the last of those that count as much."""
         most, weights = math.inf, dict[str, int]()
         for name, way in ways.items() if len(ways) > 1 else ():
             before = done()
             with suppress(TooLongError), at_most(most):
                 weights[name] = cost(flatten(way(self._system.apart()))).weight
             most = min(most, TAKEN * (done() - before))
-        return ways[min(ways, key=lambda name: weights.get(name, math.inf))](self._system)
+        return min(reversed(ways), key=lambda name: weights.get(name, math.inf))
 
 
 def _by_composites(which: int, system: System, in_world_axes: bool) -> Matrix:

@@ -58,11 +58,10 @@ SHARED_PRODUCTS = Step(SHARED_PARTS, "of products", lambda graph, _, outputs: wi
 LONE_RECIPROCALS = Step(QUOTIENTS, "of reciprocals", lambda graph, _, outputs: with_quotients(graph, outputs))
 # In their order: what two sums held is found in more of them once those two are one, so that three are taken twice.
 STEPS = (*(LONE_FACTORS, SHARED_SUMS, SHARED_PRODUCTS) * 2, LONE_RECIPROCALS)
-# Scalars of outputs beyond which each is taken once, and nothing begins: all that again takes seconds of these and
-# finds half a percent.
+# Scalars of outputs beyond which each is taken once: again takes seconds of these and finds half a percent.
 LONG_OUTPUTS = 12_000
 # What comes out of sums first decides what is found later, and what cancels exactly.  Outputs of few scalars begin with
-# each of these, and with none; longer ones with the first.
+# each of these, and with none; longer ones with the first, and long ones with none.
 BEGINNINGS = (ALL_FACTORS, PARAMETER_FACTORS)
 # Scalars of outputs up to which these begin with each of BEGINNINGS, and with none.
 SHORT_OUTPUTS = 400
