@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
 
+from symgen.identification.acting import acting
 from symgen.identification.arrays import Array
 from symgen.identification.text import combination
 from symgen.model.combinations.base_parameters import BaseParameters
-from symgen.model.combinations.geometry import names_reached
+from symgen.model.combinations.geometry import geometric_expressions, names_reached
+from symgen.model.configurations.mechanics import default_values
 from symgen.model.expressions.expression import Expression, Number
 from symgen.model.expressions.walk import evaluate
-from symgen.model.inertial_parameters import values
+from symgen.model.inertial_parameters import expressions, values
 from symgen.model.model import Model
 from symgen.records import dataclass
 
@@ -39,14 +42,25 @@ class Combinations(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class BodyCombinations:
-    """Base parameters of bodies, by the matrix `base_map`."""
+    """Base parameters of bodies, by the matrix `base_map`; those with numbers in `known` are taken as in the file."""
 
     base: BaseParameters
+    known: tuple[int, ...] = ()
+
+    @property
+    def kept(self) -> list[int]:
+        """The numbers of those that are not known."""
+        return [k for k in range(len(self.base.base)) if k not in self.known]
+
+    @property
+    def matrix(self) -> Array:
+        """Those that are not known (b) from inertial parameters (p)."""
+        return base_map(self.base)[self.kept]
 
     @property
     def labels(self) -> tuple[str, ...]:
         """Sums of inertial parameters."""
-        return tuple(map(combination, self.base.base))
+        return tuple(combination(self.base.base[k]) for k in self.kept)
 
     @property
     def reached(self) -> set[str]:
@@ -55,12 +69,25 @@ class BodyCombinations:
 
     @property
     def held(self) -> set[str]:
-        """None but those that act elsewhere."""
-        return set()
+        """What the file says is fixed."""
+        said = self.base.model.identify
+        return set() if said is None else {*said.fixed}
 
     def at(self, numbers: Mapping[str, float]) -> Array:
         """Base parameters (b)."""
-        return np.asarray(base_map(self.base) @ inertial_values(self.base.model, numbers), dtype=np.float64)
+        return np.asarray(self.matrix @ inertial_values(self.base.model, numbers), dtype=np.float64)
+
+    def as_numbers_say(self) -> BodyCombinations:
+        """The same, where sums of what the file gives as numbers other than 0, or holds, are known."""
+        model = self.base.model
+        bound = names_reached(model, [*geometric_expressions(model), *acting(model)]) | self.held
+        free = {p.name for p in model.parameters if isinstance(p.value, Number) and p.name not in bound}
+        reached = [free & names_reached(model, [expression]) for expression in expressions(model.mechanism)]
+        told = np.array([not names for names in reached])
+        parts = base_map(self.base) != 0
+        values = inertial_values(model, default_values(model.parameters))
+        known = np.all(told | ~parts, axis=1) & np.any(parts & (values != 0), axis=1)
+        return replace(self, known=tuple(map(int, np.flatnonzero(known))))
 
 
 def inertial_values(model: Model, numbers: Mapping[str, float]) -> Array:

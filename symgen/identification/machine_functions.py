@@ -13,7 +13,7 @@ import numpy as np
 from symgen.generation.rejections import rejected_lines
 from symgen.generation.results import Options, Result
 from symgen.identification.arrays import Array
-from symgen.identification.combinations import BodyCombinations, Combinations, default_like
+from symgen.identification.combinations import BodyCombinations, default_like
 from symgen.identification.energies.energy_terms import EnergyTerms
 from symgen.identification.energies.shown_terms import ShownTerms, columns_of_terms, shown_terms
 from symgen.identification.not_identified import NotIdentifiedError
@@ -56,7 +56,7 @@ class MachineFunctions:
     ) -> None:
         model = base.model
         self.base = base
-        self.combinations: Combinations
+        self.combinations: BodyCombinations | ShownTerms
         self.model = _prepared(model, measured)
         if isinstance(base, EnergyTerms):
             self.combinations = ShownTerms(base, tuple(range(len(base.monomials))), np.eye(len(base.monomials)))
@@ -112,19 +112,24 @@ class MachineFunctions:
 
     def columns(self, state: tuple[Array, Array, Array]) -> Array:
         """Those of the combinations (N, m, b) at (q, qd, qdd), with all parameters of the file as they are."""
-        if not isinstance(self.combinations, ShownTerms):
-            return self.quantity(BASE_REGRESSOR, *state)
+        if isinstance(self.combinations, BodyCombinations):
+            every = self.quantity(BASE_REGRESSOR, *state)
+            return every[..., self.combinations.kept] if self.combinations.known else every
         made = columns_of_terms(
             self.combinations.terms, self.parameters, lambda changed: self.inputs(state, self._followed(changed))
         )
         return made[..., list(self.combinations.kept)]
 
     def telling_apart(self, state: tuple[Array, Array, Array]) -> MachineFunctions:
-        """The same with what a motion (q, qd, qdd) tells apart in place of all combinations of energies."""
-        if not isinstance(self.combinations, ShownTerms):
-            return self
-        made = copy(self)
-        made.combinations = shown_terms(self.combinations.terms, self.columns(state))
+        """The same with what a motion (q, qd, qdd) tells apart in place of all combinations of energies.
+
+        Where gains are asked, sums that the file knows are no combinations: they say what drives are loaded by.
+        """
+        made, said = copy(self), self.model.identify
+        if isinstance(self.combinations, ShownTerms):
+            made.combinations = shown_terms(self.combinations.terms, self.columns(state))
+        elif said is not None and said.gains:
+            made.combinations = self.combinations.as_numbers_say()
         return made
 
     def _followed(self, changed: Mapping[str, float]) -> dict[str, float]:

@@ -235,10 +235,15 @@ class FurtherArgument:
 
 @dataclass(frozen=True, slots=True)
 class IdentifyChoice:
-    """Parameters of energies that identification takes for known: as `geometry`, or `fixed` at their values."""
+    """Parameters that identification takes for known: as `geometry` of energies, or `fixed` at their values.
+
+    `gains` are factors of inputs that it estimates.  What is known of energies `is_said` here, or follows from units.
+    """
 
     geometry: tuple[str, ...]
     fixed: tuple[str, ...]
+    gains: tuple[str, ...] = ()
+    is_said: bool = True
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,6 +26,7 @@ from symgen.model.blocks.rough_places import read_rough_places
 from symgen.model.blocks.task import read_task
 from symgen.model.checks.all_checks import check_mechanics, notice_efforts, notice_empty_outputs
 from symgen.model.checks.dimensions import check_units
+from symgen.model.checks.gains import check_gains
 from symgen.model.configurations.mechanics import default_values
 from symgen.model.expressions.combine import plus
 from symgen.model.expressions.expression import Call, Expression, Number
@@ -126,6 +127,7 @@ def resolve(scope: Scope, tree: MappingNode, text: str) -> Model:
     )
     as_written = replace(model, potential_energy=potential, forces=elements, mechanism=model.pictured)
     scope.mistakes.extend(check_units(tree, as_written, (*fits, *fits_of_friction, *rough.fits)))
+    scope.mistakes.extend(check_gains(tree, model) if whole else ())
     model = check_mechanics(scope, tree, model, kinetic_read, whole)
     if not scope.mistakes:
         model = with_inertial_base(model, model.outputs)

@@ -11,7 +11,7 @@ from identified_machines import FOUR_BAR_WITH_NAMES, WHEEL
 from machines import rusr_linkage
 
 from symgen.identification.bodies.nearest_bodies import NearestBodies
-from symgen.identification.combinations import base_map, inertial_values
+from symgen.identification.combinations import BodyCombinations, base_map, inertial_values
 from symgen.identification.estimates import whole_bodies
 from symgen.identification.estimates.least_squares import LinearEstimate
 from symgen.identification.estimates.linear_terms import EstimatedNames
@@ -53,7 +53,7 @@ def whole_of(name: str, changes: Mapping[str, float]) -> WholeBodies:
     base = base_of_text(name)
     names = EstimatedNames((), (), ())
     numbers = default_values(base.model.parameters)
-    return whole_bodies.whole_bodies(base.model, base, names, numbers, estimate_of(name, changes))
+    return whole_bodies.whole_bodies(base.model, BodyCombinations(base), names, numbers, estimate_of(name, changes))
 
 
 def drawn_changes(name: str, seed: int) -> dict[str, float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
@@ -50,6 +50,13 @@ class SimulatedLog:
     qdd: Array
     u: Array
     noise: Array
+
+    def divided(self, factors: Mapping[str, float]) -> SimulatedLog:
+        """The same text with some columns divided by factors."""
+        names, *rows = (line.split(",") for line in self.text.splitlines())
+        by = [factors.get(name, 1.0) for name in names]
+        lines = [",".join(f"{float(x) / f:.9g}" for x, f in zip(row, by, strict=True)) for row in rows]
+        return replace(self, text="\n".join([",".join(names), *lines]) + "\n")
 
     def write(self, folder: Path) -> Path:
         path = folder / "log.csv"

@@ -10,9 +10,9 @@ import numpy as np
 from symgen.diagnostics import Span
 from symgen.identification.acting import acting
 from symgen.identification.arrays import Array
-from symgen.identification.energies.monomials import Monomial, NotInProductsError, monomials
 from symgen.model.combinations.geometry import geometric_expressions, names_reached
 from symgen.model.expressions.expression import Expression, Number
+from symgen.model.expressions.monomials import Monomial, NotInProductsError, monomials
 from symgen.model.expressions.units import Unit, parse_unit
 from symgen.model.file.source import ScalarNode
 from symgen.model.model import Model, Parameter
@@ -53,14 +53,14 @@ def energy_terms(model: Model) -> EnergyTerms:
     bound = names_reached(model, [*geometric_expressions(model), *acting(model)])
     free = [p for p in model.parameters if p.name in used and p.name not in bound and isinstance(p.value, Number)]
     said = model.identify
-    if said is None:
+    if said is None or not said.is_said:
         chosen = {p.name for p in free if not _is_kinematic(p)}
     else:
         chosen = {p.name for p in free} - {*said.geometry, *said.fixed}
     terms = _polynomial(energies, chosen, dict(_meanings(model)))
     names = tuple(p.name for p in model.parameters if p.name in chosen)
     geometry = tuple(p.name for p in model.parameters if p.name in used and p.name not in chosen)
-    return EnergyTerms(model, names, geometry, tuple(one for one in terms if one), said is not None)
+    return EnergyTerms(model, names, geometry, tuple(one for one in terms if one), said is not None and said.is_said)
 
 
 def _polynomial(

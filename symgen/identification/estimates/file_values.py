@@ -77,8 +77,8 @@ class _Nearest:
         known: Mapping[str, float],
         estimate: LinearEstimate,
     ) -> None:
-        self._model, self._known, self._linear = model, known, names.linear
-        self._names = (*names.inertial, *names.linear)
+        self._model, self._known, self._further = model, known, names.with_columns
+        self._names = (*names.inertial, *names.with_columns)
         self._before = np.array([known[name] for name in self._names])
         self._combinations = combinations
         self._estimate, self._target = estimate, estimate.values[estimate.closed_columns]
@@ -107,10 +107,10 @@ class _Nearest:
         return default_like(self._model, self._known, dict(zip(self._names, map(float, values), strict=True)))
 
     def _combined(self, values: Array) -> Array:
-        """Base parameters and linear ones (c) that the log determines."""
+        """Base parameters and further ones (c) that the log determines."""
         numbers = self._numbers(values)
         combined = self._combinations.at(numbers)
-        return self._estimate.shown(np.concatenate([combined, [numbers[name] for name in self._linear]]))
+        return self._estimate.shown(np.concatenate([combined, [numbers[name] for name in self._further]]))
 
     def _distances(self, values: Array) -> Array:
         """In standard deviations: from the estimates, and from the file."""
@@ -194,7 +194,7 @@ class _Nearest:
 
     def _kept(self, values: Array) -> Array:
         """Bodies as in the file, all else as estimated."""
-        count = len(self._names) - len(self._linear)
+        count = len(self._names) - len(self._further)
         return np.concatenate([self._before[:count], values[count:]])
 
 

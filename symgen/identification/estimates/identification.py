@@ -13,6 +13,7 @@ from symgen.identification.estimates.observations import Observations, rms
 from symgen.identification.estimates.whole_bodies import WholeBodies
 from symgen.identification.logs.filtering import FilterSettings
 from symgen.identification.logs.read_log import MeasuredLog
+from symgen.model.checks.gains import driven_input
 from symgen.model.configurations.mechanics import default_values
 from symgen.model.model import Model
 from symgen.records import dataclass
@@ -84,9 +85,9 @@ class Identification:
     @property
     def parameters(self) -> tuple[EstimatedParameter, ...]:
         """In the order of columns."""
-        labels = [*self.combinations.labels, *self.names.linear]
+        labels = [*self.combinations.labels, *self.names.with_columns]
         numbers = default_values(self.model.parameters)
-        before = [*self.combinations.at(numbers), *(numbers[name] for name in self.names.linear)]
+        before = [*self.combinations.at(numbers), *(numbers[name] for name in self.names.with_columns)]
         rows = zip(labels, self.estimate.values, self.estimate.errors, before, strict=True)
         return tuple(EstimatedParameter(name, float(x), float(e), float(b)) for name, x, e, b in rows)
 
@@ -94,16 +95,32 @@ class Identification:
     def drives(self) -> tuple[DriveFit, ...]:
         """How well each input is predicted."""
         fitted, predicted = rms(self.residuals(self.fitted_to)), rms(self.residuals(self.aside))
-        inputs = rms(self.fitted_to.inputs + self.fitted_to.known)
-        rows = zip(inputs, fitted, predicted, self.fitted_to.noise, self.fitted_to.inner, strict=True)
+        seen = self.fitted_to
+        inputs = rms(seen.inputs + seen.known)
+        inner = seen.inner if seen.drives is None else rms(seen.drives.inner(self.factors))
+        rows = zip(inputs, fitted, predicted, seen.noise, inner, strict=True)
         return tuple(
             DriveFit(one.name, one.unit or "", *map(float, row))
             for one, row in zip(self.model.inputs, rows, strict=True)
         )
 
+    @property
+    def factors(self) -> Array:
+        """What an input of the log has the effect of, by the gains of the file (m): other than 1 with another gain."""
+        made = np.ones(len(self.model.inputs))
+        for one in self.parameters[len(self.parameters) - len(self.names.gains) :]:
+            made[driven_input(self.model, one.name)] = one.value / one.before
+        return made
+
     def residuals(self, seen: Observations) -> Array:
         """Measured less predicted inputs (S, m)."""
-        return np.asarray(seen.inputs - self.estimate.predicted(seen), dtype=np.float64)
+        return np.asarray((seen.inputs - self.estimate.predicted(seen)) / self.factors, dtype=np.float64)
+
+    def predicted(self, seen: Observations) -> Array:
+        """Inputs (S, m) as they would be measured."""
+        effects = self.estimate.predicted(seen) + seen.known
+        made = (effects + (self.factors - 1) * (seen.inputs + seen.known)) / self.factors
+        return np.asarray(made, dtype=np.float64)
 
     @property
     def left_over(self) -> float:

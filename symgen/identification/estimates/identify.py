@@ -8,7 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from symgen.identification.energies.energy_terms import EnergyTerms, energy_terms
+from symgen.identification.energies.shown_terms import ShownTerms
 from symgen.identification.estimates.file_values import file_values
+from symgen.identification.estimates.gains import estimated_with_gains, gains_left_open
 from symgen.identification.estimates.identification import Identification
 from symgen.identification.estimates.least_squares import LinearEstimate, estimated
 from symgen.identification.estimates.linear_terms import EstimatedNames, estimated_names, some_states
@@ -28,6 +30,10 @@ from symgen.records import dataclass
 Progress = Callable[[str], None]
 # Of a log, the last part, which is not fitted but predicted.
 SET_ASIDE = 0.25
+# Why a gain stays.
+NOT_DETERMINED = (
+    "the log does not determine this gain, as little of what its drive moves is known or moved by others, too"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,10 +105,12 @@ def fitted_by(
     names = estimated_names(functions, motion.state)
     seen = observations(functions, names, log, motion, settings)
     first = len(seen.t) - int(SET_ASIDE * len(seen.t))
-    fitted_to, aside = seen.part(slice(0, first)), seen.part(slice(first, None))
-    _check_enough(fitted_to, settings, log.file)
+    _check_enough(seen.part(slice(0, first)), settings, log.file)
     progress("fitting")
-    estimate = estimated(fitted_to)
+    for name in gains_left_open(seen.part(slice(0, first))):
+        seen, names = seen.with_gain_known(name), names.with_gain_kept(name, NOT_DETERMINED)
+    fitted_to, aside = seen.part(slice(0, first)), seen.part(slice(first, None))
+    estimate = estimated_with_gains(fitted_to) if names.gains else estimated(fitted_to)
     if not estimate.closed_columns:
         raise NotIdentifiedError("the motion of this log shows no parameter: record another one", log.file)
     return FittedLog(functions, motion.open_by, names, fitted_to, aside, estimate)
@@ -112,12 +120,13 @@ def identified_by(
     machine: IdentifiableMachine, log: MeasuredLog, settings: FilterSettings, progress: Progress
 ) -> Identification:
     """What a log says of a machine.  Raises NotIdentifiedError where it says nothing."""
-    made, base = fitted_by(machine, log, settings, progress), machine.base
+    made = fitted_by(machine, log, settings, progress)
     functions, estimate = made.functions, made.estimate
-    given = functions.model, functions.combinations, made.names, functions.parameters, estimate
-    values = file_values(*given)
-    whole = None if isinstance(base, EnergyTerms) else whole_bodies(functions.model, base, *given[2:])
-    parts = base.model, log, settings, made.open_by, functions.combinations, made.names
+    model, combinations = functions.model, functions.combinations
+    given = made.names, functions.parameters, estimate
+    values = file_values(model, combinations, *given)
+    whole = None if isinstance(combinations, ShownTerms) else whole_bodies(model, combinations, *given)
+    parts = machine.base.model, log, settings, made.open_by, functions.combinations, made.names
     return Identification(*parts, made.fitted_to, made.aside, estimate, values, whole)
 
 

@@ -76,13 +76,18 @@ class LinearEstimate:
         return np.asarray(seen.columns @ np.nan_to_num(self.values), dtype=np.float64)
 
 
-def estimated(seen: Observations) -> LinearEstimate:
-    """The estimate of all columns of a log."""
+def estimated(seen: Observations, instruments: Array | None = None) -> LinearEstimate:
+    """The estimate of all columns of a log.
+
+    Columns with noise of the log in them have `instruments` (S, m, c): all columns, these as they are without noise.
+    What is left by the fit is orthogonal to instruments, not to columns, and what they do not tell apart is left open.
+    """
     count = seen.columns.shape[2]
-    kept = independent_columns(_flat(seen.columns))
+    kept = independent_columns(_flat(seen.columns if instruments is None else instruments))
     columns = seen.columns[..., kept]
     lengths = np.linalg.norm(columns, axis=(0, 1))
-    rounds = _Rounds(columns / lengths, seen.inputs, seen.directions)
+    chosen = None if instruments is None else _at_unit_length(instruments[..., kept])
+    rounds = _Rounds(columns / lengths, seen.inputs, seen.directions, chosen)
     left = tuple(k for k in range(count) if k not in kept)
     values, root = np.full(count, math.nan), np.zeros((count, count))
     values[kept], root[np.ix_(kept, kept)] = rounds.solution / lengths, rounds.covariance_root() / lengths[:, None]
@@ -98,8 +103,9 @@ def estimated(seen: Observations) -> LinearEstimate:
 class _Rounds:
     """Weights of drives and samples, made anew until they have settled."""
 
-    def __init__(self, columns: Array, inputs: Array, directions: int) -> None:
+    def __init__(self, columns: Array, inputs: Array, directions: int, instruments: Array | None) -> None:
         self._columns, self._inputs, self._directions = columns, inputs, directions
+        self._instruments = instruments
         samples, drives = inputs.shape
         self.weights = np.ones(samples)
         self.sigmas = np.ones(drives)
@@ -125,7 +131,7 @@ class _Rounds:
         Samples beyond the corner of Huber's function take no part in its slope.  Columns are taken along directions in
         which those of the other samples are orthonormal: squares of their condition number never occur.
         """
-        weighted = self._weighted()
+        weighted = self._weighted((self.weights >= 1).astype(float))
         inverse = inverse_root(_flat(weighted[self.weights >= 1]))
         columns = np.asarray(weighted @ inverse, dtype=np.float64)
         samples, drives, count = columns.shape
@@ -139,20 +145,29 @@ class _Rounds:
 
     def condition(self) -> tuple[float, Array]:
         """The condition number of the weighted columns at unit length, and the combination that they show least."""
-        columns = _flat(self._weighted())
+        columns = _flat(self._weighted(np.ones(len(self.weights))))
         _, values, rows = linalg.svd(columns / np.linalg.norm(columns, axis=0), full_matrices=False)
         return float(values[0]) / max(float(values[-1]), 1e-300), np.asarray(rows[-1], dtype=np.float64)
 
-    def _weighted(self) -> Array:
-        return np.asarray(self._columns / self.sigmas[:, None], dtype=np.float64)
+    def _weighted(self, samples: Array) -> Array:
+        """Columns by weights of drives; with instruments what these show of them, by weights of samples (S).
+
+        Least squares of the second stage (Theil, Economic Forecasts and Policy, 1958).
+        """
+        columns = self._columns / self.sigmas[:, None]
+        if self._instruments is None:
+            return np.asarray(columns, dtype=np.float64)
+        root, instruments = np.sqrt(samples)[:, None, None], self._instruments / self.sigmas[:, None]
+        shares = np.linalg.lstsq(_flat(instruments * root), _flat(columns * root), rcond=None)[0]
+        return np.asarray(instruments @ shares, dtype=np.float64)
 
     def _solved(self) -> Array:
         return self.solved_for(self._inputs[..., None])[:, 0]
 
     def solved_for(self, wanted: Array) -> Array:
         """The values (c, k) of the columns that come nearest to wanted ones (S, m, k), by weights as they are."""
-        root = np.sqrt(self.weights)[:, None]
-        flat, wanted = (_flat(of / self.sigmas[:, None] * root[..., None]) for of in (self._columns, wanted))
+        root = np.sqrt(self.weights)[:, None, None]
+        flat, wanted = (_flat(of * root) for of in (self._weighted(self.weights), wanted / self.sigmas[:, None]))
         lengths = np.linalg.norm(flat, axis=0)
         solved = np.linalg.lstsq(flat / lengths, wanted, rcond=None)[0]
         return np.asarray(solved / lengths[:, None], dtype=np.float64)
@@ -161,6 +176,10 @@ class _Rounds:
         sizes = np.median(np.abs(self.residuals), axis=0) / MEDIAN_DEVIATION
         floor = np.finfo(float).eps * np.max(np.abs(self._inputs), axis=0)
         return np.asarray(np.maximum(sizes, np.maximum(floor, 1e-300)), dtype=np.float64)
+
+
+def _at_unit_length(columns: Array) -> Array:
+    return np.asarray(columns / np.linalg.norm(columns, axis=(0, 1)), dtype=np.float64)
 
 
 def _flat(columns: Array) -> Array:

@@ -6,6 +6,7 @@ Which these are is asked of the generated inputs themselves, at states of the lo
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -31,11 +32,24 @@ INERTIAL_CHANGE = 0.5
 
 @dataclass(frozen=True, slots=True)
 class EstimatedNames:
-    """Parameters of the file: those of bodies, others in which u is linear, and what is kept, each with the reason."""
+    """Parameters of the file: those of bodies, others in which u is linear, and what is kept, each with the reason.
+
+    `gains` are factors of inputs.
+    """
 
     inertial: tuple[str, ...]
     linear: tuple[str, ...]
     kept: tuple[tuple[str, str], ...]
+    gains: tuple[str, ...] = ()
+
+    @property
+    def with_columns(self) -> tuple[str, ...]:
+        """Those that have a column of their own, in the order of these."""
+        return (*self.linear, *self.gains)
+
+    def with_gain_kept(self, name: str, why: str) -> EstimatedNames:
+        """The same, where a gain stays as it is."""
+        return replace(self, kept=(*self.kept, (name, why)), gains=tuple(one for one in self.gains if one != name))
 
 
 def some_states(state: State) -> State:
@@ -68,7 +82,8 @@ def estimated_names(functions: MachineFunctions, state: State) -> EstimatedNames
             linear.append(name)
         else:
             kept.append((name, why))
-    return EstimatedNames(tuple(inertial), tuple(linear), tuple(kept))
+    gains = () if model.identify is None else model.identify.gains
+    return EstimatedNames(tuple(inertial), tuple(linear), tuple(kept), gains)
 
 
 class _Linearity:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from symgen.identification.arrays import Array
 from symgen.identification.combinations import default_like
-from symgen.identification.estimates.linear_terms import (
-    EstimatedNames,
-    State,
-    step_of,
-)
+from symgen.identification.estimates.drives_with_gains import DrivesWithGains, drives_with_gains
+from symgen.identification.estimates.linear_terms import EstimatedNames, State, step_of
 from symgen.identification.logs.completed import CompletedMotion
 from symgen.identification.logs.filtering import FilterSettings
 from symgen.identification.logs.read_log import MeasuredLog
@@ -24,6 +23,8 @@ class Observations:
 
     `noise` (m) is the standard deviation of what the filter leaves of white noise, `inner` (m) the rms of what drives
     do against each other, at times `t` (S) in s.  Inputs reach so many `directions` of motion.
+
+    The last columns are those of the `drives` whose gains are estimated.
     """
 
     t: Array
@@ -33,11 +34,27 @@ class Observations:
     noise: Array
     inner: Array
     directions: int
+    drives: DrivesWithGains | None = None
 
     def part(self, chosen: slice) -> Observations:
         """Those at some of the samples."""
         samples = self.t[chosen], self.inputs[chosen], self.known[chosen], self.columns[chosen]
-        return Observations(*samples, self.noise, self.inner, self.directions)
+        drives = None if self.drives is None else self.drives.part(chosen)
+        return Observations(*samples, self.noise, self.inner, self.directions, drives)
+
+    def with_gain_known(self, name: str) -> Observations:
+        """The same, where a gain is that of the file."""
+        assert self.drives is not None
+        place = self.drives.names.index(name)
+        column = self.columns.shape[2] - len(self.drives.names) + place
+        known = self.columns[..., column] * self.drives.before[place]
+        return replace(
+            self,
+            inputs=self.inputs - known,
+            known=self.known + known,
+            columns=np.delete(self.columns, column, axis=-1),
+            drives=self.drives.without(place),
+        )
 
 
 def observations(
@@ -55,7 +72,7 @@ def observations(
     known, columns = (np.concatenate([one[k] for one in made]) for k in (0, 1))
     kept = settings.places(len(log.t))
     inner = settings.kept(measured - given)
-    return Observations(
+    seen = Observations(
         log.t[kept],
         settings.kept(given - known),
         settings.kept(known),
@@ -63,6 +80,17 @@ def observations(
         settings.noise_passed(given - known),
         rms(inner),
         functions.directions,
+    )
+    if not names.gains:
+        return seen
+    drives = drives_with_gains(functions, names.gains, motion.q, (measured, given), (columns, known), settings)
+    of_gains = drives.columns_for(measured)
+    return replace(
+        seen,
+        inputs=seen.inputs + of_gains @ drives.before,
+        known=seen.known - of_gains @ drives.before,
+        columns=np.concatenate([seen.columns, of_gains], axis=-1),
+        drives=drives,
     )
 
 

@@ -23,11 +23,10 @@ from symgen.identification.bodies.pseudo_inertia import (
     ten_parameters,
 )
 from symgen.identification.bodies.semidefinite import by_semidefinite_program
-from symgen.identification.combinations import base_map, inertial_values
+from symgen.identification.combinations import BodyCombinations, base_map, inertial_values
 from symgen.identification.estimates.least_squares import LinearEstimate
 from symgen.identification.estimates.linear_terms import EstimatedNames
 from symgen.identification.estimates.whitened import deviation_before, whitening
-from symgen.model.combinations.base_parameters import BaseParameters
 from symgen.model.inertial_parameters import InertialParameter
 from symgen.model.model import Model
 from symgen.records import dataclass
@@ -69,18 +68,18 @@ class WholeBodies:
 
 
 def whole_bodies(
-    model: Model, base: BaseParameters, names: EstimatedNames, known: Mapping[str, float], estimate: LinearEstimate
+    model: Model, made: BodyCombinations, names: EstimatedNames, known: Mapping[str, float], estimate: LinearEstimate
 ) -> WholeBodies:
     """The full set that a log and a file come to."""
     before = inertial_values(model, known)
     scaled = _scaled(model, before)
     count = scaled.unknowns.shape[1]
     by_name = {p.name: p for p in model.parameters}
-    held = np.array([deviation_before(by_name[name], known[name]) for name in names.linear])
+    held = np.array([deviation_before(by_name[name], known[name]) for name in names.with_columns])
     unknowns = linalg.block_diag(scaled.unknowns, np.diag(held))
-    possible = np.concatenate([scaled.possible, np.array([known[name] for name in names.linear]) / held])
+    possible = np.concatenate([scaled.possible, np.array([known[name] for name in names.with_columns]) / held])
     closed = estimate.closed_columns
-    combined = estimate.shown(linalg.block_diag(base_map(base), np.eye(len(held))) @ unknowns)
+    combined = estimate.shown(linalg.block_diag(made.matrix, np.eye(len(held))) @ unknowns)
     white = whitening(estimate)
     problem = _problem(white @ combined, white @ estimate.values[closed], possible, scaled)
     x, method = _solved(problem)
@@ -91,12 +90,12 @@ def whole_bodies(
     off = white @ (combined @ x - estimate.values[closed])
     edge = problem.least(x) < AT_EDGE
     return WholeBodies(
-        base.parameters,
+        made.base.parameters,
         before,
         values,
         np.asarray(errors, dtype=np.float64),
-        tuple(map(bool, np.any(base_map(base), axis=0))),
-        dict(zip(names.linear, map(float, (unknowns @ x)[len(before) :]), strict=True)),
+        tuple(map(bool, np.any(base_map(made.base), axis=0))),
+        dict(zip(names.with_columns, map(float, (unknowns @ x)[len(before) :]), strict=True)),
         float(np.sqrt(np.mean(off**2))) if len(off) else 0.0,
         tuple(name for name, reached in zip(scaled.owners, edge, strict=True) if reached),
         method,

@@ -35,7 +35,7 @@ def _drawn(figure: Any, made: Identification, drive: int) -> None:
         known, label = part.known[:, drive], {} if k else {"label": "measured"}
         t, measured = part.t[::step], (part.inputs[:, drive] + known)[::step]
         top.plot(t, measured, color=COLOURS[0], linewidth=1.2, **label)
-        predicted = made.estimate.predicted(part)[:, drive] + known
+        predicted = made.predicted(part)[:, drive]
         top.plot(t, predicted[::step], "--", color=COLOURS[1], linewidth=1.2, **({} if k else {"label": "predicted"}))
         middle.plot(t, made.residuals(part)[::step, drive], color=COLOURS[2], linewidth=0.9)
     for axis in (top, middle):

@@ -6,8 +6,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from symgen.identification.combinations import BodyCombinations
 from symgen.identification.energies.shown_terms import ShownTerms
 from symgen.identification.estimates.identification import Identification
+from symgen.identification.text import combination
 
 # Times the noise of the inputs, or standard errors, from which on something is more than noise.
 MORE_THAN_NOISE = 3.0
@@ -23,7 +25,7 @@ def notes(made: Identification) -> tuple[str, ...]:
     """All of them; that the log contradicts the model comes first, and in place of what follows from that."""
     if made.is_of_another_machine:
         return (contradiction(made),)
-    return (*_of_inputs(made), *_of_parameters(made), *_of_energies(made), *_of_the_file(made))
+    return (*_of_inputs(made), *_of_parameters(made), *_of_energies(made), *_of_gains(made), *_of_the_file(made))
 
 
 def contradiction(made: Identification) -> str:
@@ -77,6 +79,12 @@ def _of_energies(made: Identification) -> Iterator[str]:
             f"taken for known, as geometry is: {', '.join(terms.geometry)}; `identify: {{geometry: [...]}}` in the "
             "model file says otherwise"
         )
+
+
+def _of_gains(made: Identification) -> Iterator[str]:
+    if isinstance(made.combinations, BodyCombinations) and made.combinations.known:
+        known = ", ".join(combination(made.combinations.base.base[k]) for k in made.combinations.known)
+        yield f"taken for known, as gains are told by what is: {known}".replace("\u00a0", " ")
 
 
 def _of_the_file(made: Identification) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""Reading what identification takes for known."""
+"""Reading what identification takes for known, and which gains of drives it estimates."""
 
 from __future__ import annotations
 
@@ -17,8 +17,9 @@ def read_identify(scope: Scope, tree: MappingNode, parameters: Sequence[Paramete
     if node is None:
         return None
     names = [p.name for p in parameters]
-    geometry, fixed = (_named(scope, member(node, key), key, names) for key in ("geometry", "fixed"))
-    return IdentifyChoice(geometry, fixed)
+    geometry, fixed, gains = (_named(scope, member(node, key), key, names) for key in ("geometry", "fixed", "gains"))
+    is_said = member(node, "gains") is None or any(member(node, key) is not None for key in ("geometry", "fixed"))
+    return IdentifyChoice(geometry, fixed, gains, is_said)
 
 
 def _named(scope: Scope, node: Node | None, key: str, names: Sequence[str]) -> tuple[str, ...]:

@@ -183,9 +183,10 @@ MODEL = RecordShape(
                 (
                     Key("geometry", NAMES, "parameters of energies that are known from the geometry"),
                     Key("fixed", NAMES, "parameters that keep their values"),
+                    Key("gains", NAMES, "factors of inputs, such as motor constants, that are estimated"),
                 ),
             ),
-            "what `symgen identify` takes for known of energies; absent: parameters whose unit has no mass",
+            "what `symgen identify` takes for known, of energies where absent parameters whose unit has no mass; gains",
         ),
         Key("task", TableShape(ExpressionShape()), "what motions are planned in: functions of the configuration"),
         Key("derivatives", Word(("true", "false")), "whether `outputs: all` takes derivatives"),
