@@ -18,7 +18,7 @@ from symgen.identification.estimates.least_squares import LinearEstimate, estima
 from symgen.identification.logs.filtering import filter_settings
 from symgen.identification.logs.read_log import read_log
 from symgen.identification.not_identified import NotIdentifiedError
-from symgen.identification.reported.notes import notes
+from symgen.identification.reported.notes import MORE_THAN_NOISE, notes
 from symgen.model.configurations.mechanics import default_values
 
 # Standard errors, the share of estimates within them, and logs of a campaign.
@@ -98,9 +98,12 @@ def test_inputs_are_predicted_as_they_were_measured(folder: Path, name: str) -> 
     currents = size.u / [machine.factors.get(one.name, 1.0) for one in made.model.inputs]
     for one, current in zip(made.drives, currents.T, strict=True):
         assert one.predicted < 1.5 * one.noise
-        assert one.inner < 0.5 * one.noise
+        # in the direction that no motion takes there is noise, too
+        assert one.inner < MORE_THAN_NOISE * one.noise
         if name == "arm":
             assert one.inputs == pytest.approx(np.sqrt(np.mean(current**2)), rel=0.1)
+    if name == "rapkm":  # by the gains of the file drives would work against each other
+        assert made.fitted_to.inner.min() > 10 * MORE_THAN_NOISE * min(one.noise for one in made.drives)
     part = made.aside
     left = part.inputs + part.known - made.predicted(part)
     assert np.allclose(left, made.residuals(part), rtol=1e-9, atol=1e-12)

@@ -56,11 +56,10 @@ class DrivesWithGains:
 
     def inner(self, factors: Array) -> Array:
         """What drives do against each other (S, m), where inputs have the effect of so many (m) by the file."""
-        effect = self.given + sum(
-            (factors[place] - 1) * along * self.measured[:, place, None]
-            for along, place in zip(self.along, self.places, strict=True)
-        )
-        return np.asarray(self.settings.kept(self.measured - effect / factors)[self.chosen], dtype=np.float64)
+        made, units = self.measured - self.given, np.eye(len(factors))
+        for along, place in zip(self.along, self.places, strict=True):
+            made = made + (factors[place] - 1) * (units[place] - along) * self.measured[:, place, None]
+        return np.asarray(self.settings.kept(made / factors)[self.chosen], dtype=np.float64)
 
     def predicted(self, values: Array) -> Array:
         """The same columns for the inputs that a motion takes with some values (c) of all but the gains.
