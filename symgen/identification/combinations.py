@@ -82,11 +82,10 @@ class BodyCombinations:
         model = self.base.model
         bound = names_reached(model, [*geometric_expressions(model), *acting(model)]) | self.held
         free = {p.name for p in model.parameters if isinstance(p.value, Number) and p.name not in bound}
-        reached = [free & names_reached(model, [expression]) for expression in expressions(model.mechanism)]
-        told = np.array([not names for names in reached])
+        given = np.array([not free & names_reached(model, [one]) for one in expressions(model.mechanism)])
         parts = base_map(self.base) != 0
         values = inertial_values(model, default_values(model.parameters))
-        known = np.all(told | ~parts, axis=1) & np.any(parts & (values != 0), axis=1)
+        known = np.all(given | ~parts, axis=1) & np.any(parts & (values != 0), axis=1)
         return replace(self, known=tuple(map(int, np.flatnonzero(known))))
 
 

@@ -195,6 +195,31 @@ def test_ratios_are_no_gains(folder: Path) -> None:
     assert "leave one that is known out of `gains`" in text
 
 
+@pytest.mark.parametrize("factor", [0.3, 3.0, -1.0])
+def test_gains_may_be_far_off(folder: Path, factor: float) -> None:
+    """Another order of magnitude, nearly, or a motor that turns the other way."""
+    machine = replace(ARM_BY_CURRENTS, factors={"u_b": factor})
+    made = fitted(folder, machine, ("k_2",), Sensors())
+    assert np.abs(in_errors(made, machine)).max() < WITHIN
+    assert made.estimate.errors[-1] < 0.02 * abs(made.estimate.values[-1])
+
+
+def test_bodies_that_are_fixed_make_gains_known(folder: Path) -> None:
+    """The same as by numbers: what `fixed` names stays, and so do sums of it."""
+    machine = replace(ARM_BY_CURRENTS, factors={"u_a": 0.8, "u_b": 1.25})
+    text = machine.text
+    for before, after in (("m_2: {value: 1.0", "m_2: {value: 0.8"), ("c_2: {value: 0.15", "c_2: {value: 0.17"),
+                          ("J_2: {value: 0.012", "J_2: {value: 0.009")):  # fmt: skip
+        assert before in text
+        text = text.replace(before, after)
+    asked = f"{text}identify: {{gains: [k_1, k_2], fixed: [m_2, c_2, J_2]}}\n"
+    made = of_file(log_of_currents(machine, Sensors()).write(folder), asked, machine.measured)
+    assert made.names.gains == ("k_1", "k_2")
+    assert made.names.inertial == ("m_1", "c_1", "J_1")
+    assert {"elbow.mx", "elbow.Izz"}.isdisjoint(made.combinations.labels)
+    assert np.abs(in_errors(made, machine)).max() < WITHIN
+
+
 def test_what_is_fixed_makes_gains_known(folder: Path) -> None:
     """A spring that was measured: `fixed` holds it, and both gains follow."""
     machine = replace(ARM_BY_CURRENTS, factors={"u_a": 0.8, "u_b": 1.25})

@@ -18,7 +18,7 @@ from symgen.identification.estimates.least_squares import MOST_ROUNDS, SETTLED_F
 from symgen.identification.estimates.observations import Observations
 from symgen.identification.not_identified import NotIdentifiedError
 
-# Of a gain of the file, the standard error up to which a log determines it.
+# Of a gain, or of that of the file where this is larger, the standard error up to which a log determines it.
 LEAST_KNOWN = 0.3
 # Of the change of a gain, what another one changes by where the log says only how both stand to each other.
 TIED_SHARE = 0.01
@@ -32,7 +32,9 @@ def gains_left_open(seen: Observations) -> tuple[str, ...]:
     left: tuple[str, ...] = ()
     while seen.drives is not None and seen.drives.names:
         made, instruments = _settled(seen)
-        errors = made.errors[-len(seen.drives.names) :] / np.abs(seen.drives.before)
+        count = len(seen.drives.names)
+        sizes = np.fmax(np.abs(made.values[-count:]), np.abs(seen.drives.before))
+        errors = made.errors[-count:] / sizes
         errors = np.where(np.isfinite(errors), errors, np.inf)
         worst = int(np.argmax(errors))
         if errors[worst] <= LEAST_KNOWN:

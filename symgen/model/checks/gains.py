@@ -11,21 +11,21 @@ from symgen.model.expressions.monomials import NotInProductsError, monomials
 from symgen.model.file.reading import items, member, text_of
 from symgen.model.file.source import MappingNode
 from symgen.model.inertial_parameters import expressions
-from symgen.model.model import Input, Model
+from symgen.model.model import IdentifyChoice, Input, Model
 
 
 def check_gains(tree: MappingNode, model: Model) -> Iterator[Mistake]:
     """What is wrong with each of the gains that are parameters of the model."""
-    node = tree.get("identify")
+    node, chosen = tree.get("identify"), model.identify
+    if node is None or chosen is None:
+        return
     known = {parameter.name: parameter.value for parameter in model.parameters}
     driven: dict[str, str] = {}
-    for item in items(member(node, "gains")) if node is not None else ():
+    for item in items(member(node, "gains")):
         name = text_of(item)
-        if name is None or name not in known:
-            continue
-        found = _wrong(model, name, known[name], driven)
-        if found is not None:
-            yield Mistake(found[0], found[1], item.span)
+        if name in chosen.gains and (reason := _wrong(model, chosen, name, known[name], driven)) is not None:
+            message, remedy = reason
+            yield Mistake(message, remedy, item.span)
 
 
 def driven_input(model: Model, name: str) -> int:
@@ -34,9 +34,10 @@ def driven_input(model: Model, name: str) -> int:
     return place
 
 
-def _wrong(model: Model, name: str, value: Expression, driven: dict[str, str]) -> tuple[str, str] | None:
+def _wrong(
+    model: Model, chosen: IdentifyChoice, name: str, value: Expression, driven: dict[str, str]
+) -> tuple[str, str] | None:
     """What is wrong with a gain, and what to do; `driven` are inputs with gains so far, and is added to."""
-    assert model.identify is not None
     inputs = [one for one in model.inputs if name in names_reached(model, _of_input(one))]
     meanings = _meanings(model)
     if not inputs:
@@ -60,7 +61,7 @@ def _wrong(model: Model, name: str, value: Expression, driven: dict[str, str]) -
         return f"the gain `{name}` follows from other parameters", "give its value as a number"
     if not value.value:
         return f"the gain `{name}` is 0, which drives nothing", "give the value that the data sheet says"
-    if name in (*model.identify.fixed, *model.identify.geometry):
+    if name in (*chosen.fixed, *chosen.geometry):
         return f"`{name}` is a gain that is estimated, and is taken for known", "name it in one of the lists"
     if one.name in driven:
         if driven[one.name] == name:
