@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from identified_machines import MACHINES_WITH_LOGS
+from identified_machines import MACHINES_WITH_LOGS, ROOT
 from simulated_logs import Motion, Sensors, SimulatedLog, simulated_log
 
 ARM, RAPKM = MACHINES_WITH_LOGS["arm"], MACHINES_WITH_LOGS["rapkm"]
@@ -64,6 +64,17 @@ inputs:
   i_y: {acts_on: {y: k_y}, unit: A}
 """
 
+_SEVEN_JOINTS = (ROOT / "models" / "arm7.yaml").read_text(encoding="utf-8")
+_SEVEN_DRIVES = "".join(f"  u_{k}: {{acts_on: {{q_{k}: k_{k}}}, unit: A}}\n" for k in range(1, 8))
+_SEVEN_GAINS = "".join(f"  k_{k}: {{value: 0.5, unit: N*m/A}}\n" for k in range(1, 8))
+_ANGLES = tuple(f"q_{k}" for k in range(1, 8))
+# The arm with seven joints by currents.
+ARM7_BY_CURRENTS = _replaced(
+    _SEVEN_JOINTS[: _SEVEN_JOINTS.index("inputs:")] + _SEVEN_JOINTS[_SEVEN_JOINTS.index("configuration:") :],
+    ("parameters:\n", f"parameters:\n{_SEVEN_GAINS}"),
+    ("configuration:", f"inputs:\n{_SEVEN_DRIVES}configuration:"),
+)
+
 
 @dataclass(frozen=True)
 class MachineByCurrents:
@@ -88,10 +99,14 @@ MACHINES_BY_CURRENTS = {
     "rapkm": MachineByCurrents(
         RAPKM_BY_CURRENTS, RAPKM.motion, RAPKM.measured, RAPKM.truth, {"drive_2": 0.75, "drive_3": 1.2}
     ),
+    "arm7": MachineByCurrents(
+        ARM7_BY_CURRENTS, Motion(dict.fromkeys(_ANGLES, (0.2, 1.6))), _ANGLES, {},
+        {f"u_{k}": 1 + 0.1 * (k - 4) for k in range(2, 8)},
+    ),
     "slides": MachineByCurrents(
         TWO_SLIDES, Motion({"x": (0.0, 0.3), "y": (0.0, 0.3)}), ("x", "y"), {"m_x": 3.5, "d_x": 3.0}, {"i_y": 1.3}
     ),
-}
+}  # fmt: skip
 
 
 def log_of_currents(machine: MachineByCurrents, sensors: Sensors, seed: int = 0, seconds: float = 10.0) -> SimulatedLog:

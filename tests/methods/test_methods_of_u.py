@@ -8,6 +8,7 @@ from shipped import NAMES, model, sparing
 
 from symgen.ir.interpret import Interpreter
 from symgen.ir.kernel import Program, Scalar, Status
+from symgen.linear_algebra.null_space.null_spaces import LONGEST_PRODUCT
 from symgen.lowering.schedule import schedule
 from symgen.methods.selection import every_method
 from symgen.model.load import load_text
@@ -89,3 +90,17 @@ def test_methods_of_random_systems_agree_with_the_reference(seed: int) -> None:
 def test_reflections_are_compared_with_lengths_and_not_with_the_terms_on_the_way(scalar: Scalar) -> None:
     given = load_text(DELTA, "delta.yaml")
     worst_errors(given, {"householder": programs_of(given)["householder"]}, scalar)
+
+
+def test_many_drives_with_factors_that_may_vanish() -> None:
+    """More pivots that are tested than are multiplied as they stand, and no constraint whose rank could drop."""
+    count = LONGEST_PRODUCT + 1
+    every = [f"x_{k}" for k in range(1, count + 1)]
+    lines = ["model: slides", "coordinates:", *(f"  {x}: {{unit: m}}" for x in every)]
+    lines += ["parameters:", *(f"  k_{x}: {{value: {0.5 + 0.1 * k:.1f}}}" for k, x in enumerate(every))]
+    lines += [f"kinetic_energy: {' + '.join(f'{x}_dot**2' for x in every)}"]
+    lines += ["inputs:", *(f"  u_{x}: {{acts_on: {{{x}: k_{x}}}}}" for x in every)]
+    given = load_text("\n".join([*lines, ""]), "slides.yaml")
+    methods = programs_of(given)
+    assert "elimination" in methods
+    assert_within(worst_errors(given, methods, "float64"))

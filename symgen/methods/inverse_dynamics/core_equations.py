@@ -188,8 +188,9 @@ class CoreEquations:
         """
         graph = self._graph
         # what was solved by tested pivots is no column of the core any more
-        if self.elimination.lengths() or self._mechanics.twist_determinant.constant is None:
-            rows = self.elimination.multipliers_alone or self._mechanics.coordinate_rows
+        rows = self.elimination.multipliers_alone or self._mechanics.coordinate_rows
+        # without rows there is no force of multipliers
+        if rows and (self.elimination.lengths() or self._mechanics.twist_determinant.constant is None):
             return HouseholderSpace(graph, rows, len(rows[0])).volume
         whole = [
             (*column, *effect)
