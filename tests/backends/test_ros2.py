@@ -179,6 +179,7 @@ int main(void) {{
 
 @pytest.mark.toolchain
 @pytest.mark.slow
+@pytest.mark.campaign
 def test_answers_with_the_bits_of_the_c(tool: Callable[[str], str], tmp_path: Path) -> None:
     model, program = shipped.model("front_car"), shipped.programs("front_car")["float64"]
     lines = printed(tool, model, program, tmp_path)

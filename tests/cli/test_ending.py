@@ -72,7 +72,11 @@ ENDINGS = {
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="processes are looked up in /proc")
 @pytest.mark.parametrize(
     ("first", "number"),
-    [*((True, number) for number in ENDINGS), (False, signal.SIGTERM)],
+    [
+        *(pytest.param(True, number, marks=pytest.mark.campaign) for number in ENDINGS if number != signal.SIGTERM),
+        (True, signal.SIGTERM),
+        pytest.param(False, signal.SIGTERM, marks=pytest.mark.campaign),
+    ],
     ids=lambda given: given.name if isinstance(given, signal.Signals) else "nothing" if given else "one model",
 )
 def test_a_signal_ends_compilers_and_says_what_was_written(

@@ -38,6 +38,9 @@ from symgen.model.load import load_model, load_text
 
 MODELS = Path(__file__).parents[2] / "models"
 LONG = ("delta", "rapkm_bodies", "five_bar", "gough_stewart", "three_rrr", "rolling_disc", "chain8", "slider_crank")
+# Those of them that are derived in no time, and the others in the campaign of tests.
+SHORT_TO_DERIVE = ("rapkm_bodies", "five_bar", "rolling_disc", "slider_crank")
+LONG_TESTED = [pytest.param(name, marks=() if name in SHORT_TO_DERIVE else pytest.mark.campaign) for name in LONG]
 
 
 @cache
@@ -167,7 +170,7 @@ def error(forms: ClosedForms, point: RingPoint, law: MatrixLaw) -> mpmath.mpf:
     return mpmath.norm(values.term(law.term) - right) / mpmath.norm(right)
 
 
-@pytest.mark.parametrize("name", LONG)
+@pytest.mark.parametrize("name", LONG_TESTED)
 def test_laws_give_the_models_own_matrices(name: str) -> None:
     mp.dps = 50
     forms, laws = shipped(name)

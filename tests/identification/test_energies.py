@@ -110,6 +110,7 @@ def test_sums_are_those_of_the_arm(said: Identification) -> None:
     assert sums["J_2"] == "J_2 + c_2**2*m_2"
 
 
+@pytest.mark.campaign
 def test_a_loop_with_a_rod_whose_inertia_follows_from_its_mass(tmp_path: Path) -> None:
     """The shipped slider-crank: three masses, a spring, a damper, the drive's torque alone."""
     text = (ROOT / "models" / "slider_crank.yaml").read_text(encoding="utf-8")

@@ -59,7 +59,9 @@ def added_to_noise(made: Identification, machine: str) -> Array:
     return np.asarray(np.sqrt(np.mean(made.residuals(seen) ** 2, axis=0)) / left)
 
 
-@pytest.mark.parametrize("machine", ["arm", "four_bar", pytest.param("rapkm", marks=pytest.mark.campaign)])
+@pytest.mark.parametrize(
+    "machine", ["arm", *(pytest.param(name, marks=pytest.mark.campaign) for name in ("four_bar", "rapkm"))]
+)
 def test_estimates_are_within_their_errors(folder: Path, machine: str) -> None:
     made = known(folder, machine)
     assert np.abs(in_errors(made, machine)).max() < WITHIN
@@ -84,6 +86,7 @@ def test_errors_are_honest_over_many_logs(tmp_path: Path, machine: str) -> None:
     assert np.mean(added < ADDED) >= SHARE
 
 
+@pytest.mark.campaign
 def test_a_preload_changes_nothing(folder: Path) -> None:
     """Drives that work against each other as hard as they drive: 0.1 of a standard error at most."""
     plain, loaded = (known(folder, "four_bar", Sensors(preload=p)) for p in (0.0, 1.0))

@@ -51,7 +51,7 @@ def test_the_arm_keeps_all_limits_between_samples() -> None:
     assert made.shares[made.limits.names.index("u_a")] == pytest.approx(np.max(np.abs(u[:, 0])) / 16, rel=1e-3)
 
 
-@pytest.mark.parametrize("name", [*TEXTS])
+@pytest.mark.parametrize("name", ["arm", pytest.param("four_bar", marks=pytest.mark.campaign)])
 def test_it_begins_and_ends_at_rest(name: str) -> None:
     made = designed_once(TEXTS[name])
     for end in (0, -1):
@@ -115,7 +115,7 @@ def in_errors(made: Excitation, name: str, draw: int) -> Array:
     return np.asarray((result.estimate.values - np.array(true)) / result.estimate.errors)
 
 
-@pytest.mark.parametrize("name", [*TEXTS])
+@pytest.mark.parametrize("name", ["arm", pytest.param("four_bar", marks=pytest.mark.campaign)])
 def test_a_log_of_it_gives_the_truth(name: str) -> None:
     assert np.abs(in_errors(designed_once(TEXTS[name]), name, draw=0)).max() < 3
 

@@ -69,6 +69,7 @@ def test_identify_reads_the_file(tmp_path: Path) -> None:
         assert one["value"] == pytest.approx(one["before"], abs=2e-3 + 0.02 * abs(one["before"]))
 
 
+@pytest.mark.campaign
 def test_what_the_file_leaves_open_is_taken_and_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert excite(tmp_path, ARM_WITH_FRICTION, *PERIOD) == 0
     printed = " ".join(capsys.readouterr().out.split())
@@ -112,6 +113,7 @@ def test_no_motion_within_limits(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.campaign
 def test_a_distance_that_the_configuration_does_not_have(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert excite(tmp_path, SWINGING_FOUR_BAR, "--distance", "0.9") == 1
     errors = said(capsys)

@@ -64,7 +64,7 @@ def test_bodies_stay_such_as_can_be(asked: float) -> None:
     assert numbers["I_z"] == pytest.approx(0.7 if asked > 0 else 0.1, rel=0.01)
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", [1, *(pytest.param(k, marks=pytest.mark.campaign) for k in (0, 2, 3, 4, 5, 6, 7))])
 @pytest.mark.parametrize("text", [ARM_WITH_FRICTION, FOUR_BAR_WITH_NAMES])
 def test_what_is_well_known_holds_where_the_rest_is_impossible(text: str, seed: int) -> None:
     """Light links, and errors of combinations between 1e-8 and 10: bodies that can be are no further off than the

@@ -95,6 +95,7 @@ def test_the_model_file_is_as_good_as_the_estimates(folder: Path) -> None:
         assert abs(one["value"] - one["before"]) < one["standard_error"]
 
 
+@pytest.mark.campaign
 def test_the_record_is_the_same_each_time(folder: Path) -> None:
     assert run(folder, "log.csv", "first", "--quiet") == run(folder, "log.csv", "again", "--quiet") == 0
     texts = [

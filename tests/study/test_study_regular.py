@@ -29,6 +29,7 @@ def parts_of(folder: Path, model: Path, over: list[str]) -> tuple[np.ndarray, np
     return results.regular.values == 1, parts == parts[middle], int(results.modes.values[..., 0].sum())
 
 
+@pytest.mark.campaign
 def test_a_five_bar_stays_within_its_ranges(tmp_path: Path) -> None:
     regular, around, _ = parts_of(tmp_path, FIVE_BAR_FILE, ["x=-0.4:0.4:81", "y=-0.4:0.4:81"])
     assert 500 < around.sum() < 1500

@@ -56,6 +56,7 @@ def test_a_study_file_from_end_to_end(tmp_path: Path, capsys: pytest.CaptureFixt
     assert "path swing, 41 states" in page
 
 
+@pytest.mark.campaign
 def test_more_states_than_anybody_asks_for_by_mistake(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -133,6 +133,7 @@ def test_a_chunk_that_fails_twice_is_reported_with_its_states(
     assert "m 4.5 to 4.5" in (tmp_path / "arm" / "study.html").read_text()
 
 
+@pytest.mark.campaign
 def test_a_full_disk_ends_a_study_that_goes_on_later(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -52,6 +52,7 @@ def gantry(folder: Path, rotors: str) -> Path:
     return path
 
 
+@pytest.mark.campaign
 def test_a_motor_at_a_drive_is_the_model_with_its_inertia(catalogue: Path, tmp_path: Path) -> None:
     """What the third input, which hardly takes part, leaves to the two drives is what they would do with the inertia of
     the motor in the model, reflected by its gear."""

@@ -49,6 +49,7 @@ def test_without_the_option_they_are_not_made(tool: Callable[[str], str], tmp_pa
     assert not [one for one in certificate(tmp_path)["errors"] if "fused" in one["target"]]
 
 
+@pytest.mark.campaign
 def test_what_they_lose_counts(
     tool: Callable[[str], str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -125,6 +125,7 @@ def test_outputs_that_are_named_hold_what_the_witness_compares() -> None:
     assert firsts == set(MAIN)
 
 
+@pytest.mark.campaign
 def test_some_systems_want_outputs_in_one_call() -> None:
     """Of those that they name; the commands' own table says how many of them there are."""
     drawn = [draw(1600, index, "") for index in range(60)]
