@@ -13,7 +13,7 @@ CONDITIONS = re.compile(r"condition number ([\d.]+) of 7 parameters.* drawn moti
 
 @pytest.mark.campaign
 def test_the_press_moves(tmp_path: Path) -> None:
-    (model,) = Page("identification.md", tmp_path).blocks("yaml")
+    model = Page("identification.md", tmp_path).blocks("yaml")[0]
     page = Page("excitation.md", tmp_path)
     (command,), (printed,) = page.blocks("sh"), page.blocks("text")
     page.write("press.yaml", model)
