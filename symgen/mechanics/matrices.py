@@ -22,7 +22,7 @@ from symgen.symbolic.traverse import cost, substitute
 if TYPE_CHECKING:
     from symgen.mechanics.system import System
 
-# Times what the first way takes to be made, after which another is not looked at: what takes more counts more.
+# Times what the shortest of the ways so far took to be made, after which another is given up: it would count more.
 TAKEN = 3
 SYMBOLS = "Christoffel symbols"
 _Way: TypeAlias = "Callable[[System], Matrix]"
@@ -84,7 +84,7 @@ class Matrices:
 
 
 def _by_composites(which: int, system: System, in_world_axes: bool) -> Matrix:
-    return composite_matrices(system.bodies, lumped=True, in_world_axes=in_world_axes)[which]
+    return composite_matrices(system.bodies, in_world_axes)[which]
 
 
 def _by_momenta(system: System) -> Matrix:

@@ -15,6 +15,7 @@ from symgen.diagnostics import Notice, Span
 from symgen.model.configurations.assembly import Assembly
 from symgen.model.configurations.friction_steps import FrictionSteps
 from symgen.model.expressions.expression import Expression
+from symgen.model.identify_choice import IdentifyChoice
 from symgen.model.inertial_base import InertialBase
 from symgen.model.mechanism import NO_MECHANISM, Mechanism
 from symgen.model.published import Published
@@ -231,19 +232,6 @@ class FurtherArgument:
     name: FurtherName
     places: tuple[int, ...]
     names: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class IdentifyChoice:
-    """Parameters that identification takes for known: as `geometry` of energies, or `fixed` at their values.
-
-    `gains` are factors of inputs that it estimates.  What is known of energies `is_said` here, or follows from units.
-    """
-
-    geometry: tuple[str, ...]
-    fixed: tuple[str, ...]
-    gains: tuple[str, ...] = ()
-    is_said: bool = True
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,14 +32,10 @@ def opaque(*key: object) -> int:
 def family(op: str, value: int, families: Sequence[int]) -> int:
     """What products have in common that differ in numbers, in sines and cosines, or in the signs of their factors.
 
-    `value` is that of the operation, `families` are those of its arguments.  That of products is the product of those
-    of their factors.
+    `value` is that of the operation, `families` are those of its arguments; of the product of two it is their product
+    modulo FAMILIES.
     """
     match op:
-        case "add" | "sub" | "symbol":
-            return _of_factor(value)
-        case "mul":
-            return families[0] * families[1] % FAMILIES
         case "neg":
             return families[0]
         case "div":
@@ -47,12 +43,8 @@ def family(op: str, value: int, families: Sequence[int]) -> int:
         case "const" | "sin" | "cos":
             return 1
         case _:
-            return _of_factor(value)
-
-
-def _of_factor(value: int) -> int:
-    """The same for what is no product: x and -x have the same square; what is 0 unseen may be divided by, too."""
-    return value * value % PRIME % FAMILIES or 1
+            # a factor: x and -x have the same square; what is 0 unseen may be divided by, too
+            return value * value % PRIME % FAMILIES or 1
 
 
 def leaf_pair(value: int) -> tuple[int, int]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from identified_machines import MACHINES_WITH_LOGS, ROOT
+from identified_machines import MACHINES_WITH_LOGS, ROOT, IdentifiedMachine
 from simulated_logs import Motion, Sensors, SimulatedLog, simulated_log
 
 ARM, RAPKM = MACHINES_WITH_LOGS["arm"], MACHINES_WITH_LOGS["rapkm"]
@@ -77,13 +77,9 @@ ARM7_BY_CURRENTS = _replaced(
 
 
 @dataclass(frozen=True)
-class MachineByCurrents:
-    """A model file without gains under `identify`, what moves it and is measured, the truth, gains as true by file."""
+class MachineByCurrents(IdentifiedMachine):
+    """One with the true gains of its inputs over those of the file, without gains under `identify`."""
 
-    text: str
-    motion: Motion
-    measured: tuple[str, ...]
-    truth: Mapping[str, float]
     factors: Mapping[str, float]
 
     def asked(self, *gains: str) -> str:

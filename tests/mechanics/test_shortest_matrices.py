@@ -114,12 +114,11 @@ def near(system: System, one: Matrix, other: Matrix) -> bool:
 
 
 @pytest.mark.parametrize("in_world_axes", [False, True])
-@pytest.mark.parametrize("lumped", [False, True])
 @pytest.mark.parametrize("text", [BALLS, TREE, WHEEL, chain(4)], ids=["balls", "tree", "wheel", "chain"])
-def test_composite_bodies_have_what_energies_have(text: str, lumped: bool, in_world_axes: bool) -> None:
+def test_composite_bodies_have_what_energies_have(text: str, in_world_axes: bool) -> None:
     """G of the kinetic energy and C of Christoffel symbols, off constraints too."""
     system = system_of(text)
-    mass_matrix, coriolis_matrix = composite_matrices(system.bodies, lumped, in_world_axes)
+    mass_matrix, coriolis_matrix = composite_matrices(system.bodies, in_world_axes)
     assert near(system, mass_matrix, system.mass_matrix)
     assert near(system, coriolis_matrix, symbols(system, system.qd))
 
@@ -139,7 +138,7 @@ def test_what_is_taken_is_that_of_christoffel(text: str) -> None:
 def test_a_wheel_leaves_no_rounding_of_its_turns(in_world_axes: bool) -> None:
     """G and C hold its rate, which moves other axes, and not its angle."""
     system = system_of(WHEEL)
-    for matrix in composite_matrices(system.bodies, lumped=True, in_world_axes=in_world_axes):
+    for matrix in composite_matrices(system.bodies, in_world_axes):
         assert system.q[2] not in reached(flatten(matrix))
         assert system.q[1] in reached(flatten(matrix))
 

@@ -20,7 +20,7 @@ from collections.abc import Iterator, Mapping
 from symgen.mechanics.rigid_bodies.bodies import Bodies, Vector3
 from symgen.mechanics.rigid_bodies.lumps import Lump, lumped_bodies
 from symgen.model.kinematics.triples import Rows, applied, cross, inner, plus, product, transposed, triple
-from symgen.model.mechanism import WORLD, RotorInertia
+from symgen.model.mechanism import WORLD
 from symgen.records import dataclass
 from symgen.symbolic.calculus import derivative_along, gradient
 from symgen.symbolic.matrix import Matrix, flatten
@@ -69,17 +69,17 @@ class RateLoad:
     drift: Vector3  # int r_dot x u
 
 
-def composite_matrices(bodies: Bodies, lumped: bool, in_world_axes: bool) -> tuple[Matrix, Matrix]:
+def composite_matrices(bodies: Bodies, in_world_axes: bool) -> tuple[Matrix, Matrix]:
     """G and C (n x n) of the bodies and rotors, C along q_dot; energies that are written out are no part of them.
 
-    `lumped` tells whether parameters are regrouped first (`lumps.py`).  Where all turns share an axis those of the
-    world are the shorter ones, elsewhere each frame has its own.
+    Parameters are regrouped first (`lumps.py`).  Where all turns share an axis those of the world are the shorter ones,
+    elsewhere each frame has its own.
     """
-    return _CompositeRecursion(bodies, lumped, in_world_axes).matrices()
+    return _CompositeRecursion(bodies, in_world_axes).matrices()
 
 
 class _CompositeRecursion:
-    def __init__(self, bodies: Bodies, lumped: bool, in_world_axes: bool) -> None:
+    def __init__(self, bodies: Bodies, in_world_axes: bool) -> None:
         self._bodies, self._kinematics, self._in_world_axes = bodies, bodies.kinematics, in_world_axes
         zero, n = bodies.graph.zero, len(bodies.q)
         self._none: Vector3 = (zero, zero, zero)
@@ -89,7 +89,7 @@ class _CompositeRecursion:
             loaded.update(self._kinematics.lineage(body.frame))
         # from the root outwards
         self._frames = [frame.name for frame in bodies.mechanism.frames if frame.name in loaded]
-        self._lumps, self._rotors = lumped_bodies(bodies, self._frames) if lumped else self._as_they_are()
+        self._lumps, self._rotors = lumped_bodies(bodies, self._frames)
         self._axes = {name: self._described_in(name) for name in self._frames}
         self._steps = {name: self._step(name) for name in self._frames}
         self._mass = [[zero] * n for _ in range(n)]
@@ -112,19 +112,6 @@ class _CompositeRecursion:
                 for j, other in enumerate(shares):
                     self._mass[i][j] = self._mass[i][j] + one * other * inertia
         return tuple(map(tuple, self._mass)), tuple(map(tuple, self._coriolis))
-
-    def _as_they_are(self) -> tuple[dict[str, Lump], list[RotorInertia]]:
-        """What each frame carries itself, and all rotors."""
-        bodies = self._bodies
-        nothing = Lump(bodies.graph.zero, self._none, (self._none, self._none, self._none))
-        lumps = dict.fromkeys(self._frames, nothing)
-        for body in bodies.mechanism.bodies:
-            if body.frame != WORLD:
-                mass, com = bodies.scalars.value(body.mass), self._kinematics.space.values(body.com)
-                first = _times(mass, com)
-                own = Lump(mass, first, _added(bodies.inertia(body.name), _around(_outer(com, first))))
-                lumps[body.frame] = _sum_of_lumps(lumps[body.frame], own)
-        return lumps, list(bodies.mechanism.rotor_inertias)
 
     def _described_in(self, name: str) -> str:
         """The frame in whose axes a lump is known: the parent of a wheel, which is the same however it is turned.
@@ -314,10 +301,6 @@ def _sum(one: Composite, other: Composite) -> Composite:
         plus(one.first_rate, other.first_rate),
         _added(one.inertia_rate, other.inertia_rate),
     )
-
-
-def _sum_of_lumps(one: Lump, other: Lump) -> Lump:
-    return Lump(one.mass + other.mass, plus(one.first, other.first), _added(one.tensor, other.tensor))
 
 
 def _around(second: Rows[Scalar]) -> Rows[Scalar]:

@@ -8,7 +8,8 @@ from symgen.model.expressions.names import did_you_mean
 from symgen.model.file.reading import items, member, text_of
 from symgen.model.file.scope import Scope
 from symgen.model.file.source import MappingNode, Node
-from symgen.model.model import IdentifyChoice, Parameter
+from symgen.model.identify_choice import IdentifyChoice
+from symgen.model.model import Parameter
 
 
 def read_identify(scope: Scope, tree: MappingNode, parameters: Sequence[Parameter]) -> IdentifyChoice | None:

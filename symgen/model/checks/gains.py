@@ -10,8 +10,9 @@ from symgen.model.expressions.expression import Expression, Number
 from symgen.model.expressions.monomials import NotInProductsError, monomials
 from symgen.model.file.reading import items, member, text_of
 from symgen.model.file.source import MappingNode
+from symgen.model.identify_choice import IdentifyChoice
 from symgen.model.inertial_parameters import expressions
-from symgen.model.model import IdentifyChoice, Input, Model
+from symgen.model.model import Input, Model
 
 
 def check_gains(tree: MappingNode, model: Model) -> Iterator[Mistake]:

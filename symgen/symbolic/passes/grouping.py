@@ -80,11 +80,11 @@ def grouped(graph: Graph, factoring: Factoring, outputs: Sequence[Scalar]) -> li
     improved = _Improvement(graph, factoring)
     start = _weighed(without_twins(graph, outputs))
     held = len(reached(outputs))
-    short, long = held <= SHORT_OUTPUTS, held > LONG_OUTPUTS
-    begun = [improved(start, (one,)) for one in (BEGINNINGS if short else BEGINNINGS[:1]) if not long]
-    starts = dict.fromkeys(begun if begun and not short else (*begun, start))
-    steps = tuple(dict.fromkeys(STEPS)) if long else STEPS
-    best = min((improved(one, steps) for one in starts), key=lambda one: one.weight)
+    beginnings = BEGINNINGS if held <= SHORT_OUTPUTS else BEGINNINGS[:1] if held <= LONG_OUTPUTS else ()
+    begun = [improved(start, (one,)) for one in beginnings]
+    starts = begun if len(begun) == 1 else [*begun, start]
+    steps = tuple(dict.fromkeys(STEPS)) if held > LONG_OUTPUTS else STEPS
+    best = min((improved(one, steps) for one in dict.fromkeys(starts)), key=lambda one: one.weight)
     same_values("regrouping", outputs, best.outputs)
     return list(best.outputs)
 
