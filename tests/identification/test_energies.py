@@ -15,6 +15,7 @@ from symgen.identification.combinations import default_like
 from symgen.identification.energies.energy_terms import energy_terms
 from symgen.identification.estimates.identification import Identification
 from symgen.identification.reported.notes import notes
+from symgen.model.configurations.mechanics import default_values
 from symgen.model.load import load_model, load_text
 
 ARM = MACHINES_WITH_LOGS["arm"]
@@ -139,7 +140,7 @@ def test_values_go_into_the_file(folder: Path) -> None:
     (folder / "said.yaml").write_text(SAID, encoding="utf-8")
     assert main(["identify", str(folder / "said.yaml"), str(folder / "log.csv"), "--quiet", "--out", str(folder)]) == 0
     model = load_model(folder / "arm_with_friction" / "said.identified.yaml")
-    values = {p.name: float(p.value.value) for p in model.parameters}  # type: ignore[union-attr]
+    values = default_values(model.parameters)
     for name in ("k", "d_1", "f_1", "d_2"):
         assert values[name] == pytest.approx(ARM.truth[name], rel=0.05)
     assert values["c_2"] * values["m_2"] == pytest.approx(ARM.truth["c_2"] * ARM.truth["m_2"], rel=0.05)

@@ -14,6 +14,7 @@ from simulated_logs import Sensors
 from symgen.cli.main import main
 from symgen.generation.results import Options
 from symgen.identification import machine_functions
+from symgen.model.configurations.mechanics import default_values
 from symgen.model.load import load_model
 
 
@@ -45,7 +46,7 @@ def test_gains_are_printed_and_written(tmp_path: Path, capsys: pytest.CaptureFix
     assert any(note.startswith("taken for known, as gains are told by what is") for note in record["notes"])
     (written,) = (one["value"] for one in record["file"] if one["name"] == "k_2")
     model = load_model(made / "machine.identified.yaml")
-    values = {p.name: float(p.value.value) for p in model.parameters}  # type: ignore[union-attr]
+    values = default_values(model.parameters)
     assert values["k_2"] == pytest.approx(written, rel=1e-5)
     assert model.identify is not None
     assert model.identify.gains == ("k_1", "k_2")

@@ -77,7 +77,7 @@ def test_from_a_log_to_a_model_file(folder: Path, capsys: pytest.CaptureFixture[
     assert "shoulder.mx + l elbow.m" in printed.out
     assert "w stays as it is: the inputs are not linear in it" in printed.out
     model = load_model(made / "arm.identified.yaml")
-    values = {p.name: float(p.value.value) for p in model.parameters}  # type: ignore[union-attr]
+    values = default_values(model.parameters)
     for name in ("d_1", "f_1", "d_2", "k"):
         assert values[name] == pytest.approx(ARM_MACHINE.truth[name], rel=0.05)
     assert "# upper arm" in (made / "arm.identified.yaml").read_text(encoding="utf-8")

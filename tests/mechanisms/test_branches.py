@@ -19,6 +19,7 @@ from symgen.lowering.schedule import schedule
 from symgen.mechanics.genericity import genericity, parameter_values
 from symgen.mechanics.system import System
 from symgen.model.configurations.assembly import ConfigurationRanks, RankedConfiguration
+from symgen.model.configurations.mechanics import default_values
 from symgen.model.load import load_text
 from symgen.model.model import Model
 from symgen.quantities.select import derive_quantities
@@ -32,7 +33,7 @@ def inverse(model: Model, q: Sequence[float]) -> tuple[Status, tuple[float, ...]
     """The status and u at rest."""
     derived = derive_quantities(model, ["inverse_dynamics"])
     program = schedule(derived.mechanics, derived.quantities, ("float64",))["float64"]
-    numbers = [float(p.value.value) for p in model.parameters]  # type: ignore[union-attr]
+    numbers = [*default_values(model.parameters).values()]
     zeros = [0.0] * model.n
     status, u = Interpreter(program.sincos).run(program.kernels[0], {"q": q, "qd": zeros, "qdd": zeros}, numbers)
     return status, tuple(u)
