@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
+from symgen.laboratory.zoo.dice import Dice
 from symgen.laboratory.zoo.draws.describe import MISTAKE, Description
+from symgen.laboratory.zoo.draws.drawn import DrawnEquations
 from symgen.laboratory.zoo.refusals import judged
 from symgen.laboratory.zoo.verdict import NOTICED, REFUSED, VERIFIED, DrawVerdict
+from symgen.laboratory.zoo.witness.kkt import EquationEvaluator
+from symgen.laboratory.zoo.witness.numbers.tape import NodeProgram
+from symgen.laboratory.zoo.witness.reading.mechanics import equations
+from symgen.laboratory.zoo.witness.states import Walker
 
 FREE = {
     "model": "zoo",
@@ -23,6 +30,14 @@ STRETCHED = {
     "kinetic_energy": "x_dot**2 + y_dot**2 + z_dot**2",
     "constraints": {"geometric": {"one": "x**2 + y**2 - 1", "two": "(x - 2)**2 + y**2 - 1"}},
 }
+# an arm whose tip is held as far from its foot as it reaches, and a coordinate beside it
+STRETCHED_ARM = {
+    **FREE,
+    "coordinates": {"a": {}, "b": {}, "z": {}},
+    "kinetic_energy": "a_dot**2 + b_dot**2 + z_dot**2",
+    "constraints": {"geometric": {"east": "0.5*cos(a) + 0.9*cos(b) - 1.4", "north": "0.5*sin(a) + 0.9*sin(b)"}},
+}
+ARM_STRETCHED = {"a": 0.0, "b": 0.0, "z": 0.1}
 # a point mass on a ball joint whose place two rods hold: it turns about the line to itself, which rounding moves
 TOP = {
     "model": "zoo",
@@ -77,3 +92,12 @@ def test_a_mistake_that_is_not_told_is_a_failure(ending: str) -> None:
     assert judged(mistaken, DrawVerdict(ending)).kind == "mistake not told"
     assert not judged(mistaken, DrawVerdict(REFUSED, signature="`.` is reserved")).failed
     assert not judged(Description("", FREE, HELD), DrawVerdict(ending)).failed
+
+
+def test_no_walk_takes_a_pose_that_closes_alone_for_a_smooth_place() -> None:
+    system = DrawnEquations(STRETCHED_ARM, ARM_STRETCHED).system
+    system_equations = equations(system)
+    evaluate = EquationEvaluator(NodeProgram(system.tape, system_equations.flat), system_equations)
+    for seed in range(300):
+        walker = Walker(system, evaluate, ARM_STRETCHED, Dice(str(seed)))
+        assert not walker.is_regular(np.array(list(ARM_STRETCHED.values())), {})

@@ -38,6 +38,23 @@ measured: [k_1]
 outputs: [velocity_from_measured, configuration_from_measured]
 """
 
+# Two loops of which one is closed twice, its rows a million apart, and more encoders than it takes.
+TWICE = """
+model: twice
+coordinates: {a: {}, b: {}, c: {}, d: {}, e: {}}
+kinetic_energy: a_dot**2 + b_dot**2 + c_dot**2 + d_dot**2 + e_dot**2
+constraints:
+  geometric:
+    east: 0.5*cos(a) + 0.9*cos(a + b) + 0.6*cos(a + b + c) - 0.65
+    north: 250*(0.5*sin(a) + 0.9*sin(a + b) + 0.6*sin(a + b + c) + 0.2)
+    tip_east: 0.5*cos(a) + 0.9*cos(a + b) + 0.6*cos(a + b + d) + 0.2*cos(a + b + d + e) - 1.5
+    tip_north: 1e6*(0.5*sin(a) + 0.9*sin(a + b) + 0.6*sin(a + b + d) + 0.2*sin(a + b + d + e) - 0.2)
+    again: 2*(0.5*cos(a) + 0.9*cos(a + b) + 0.6*cos(a + b + d) + 0.2*cos(a + b + d + e) - 1.5)
+measured: [c, d]
+outputs: [configuration_from_measured]
+configuration: {a: -0.86, b: 1.89, c: -2.81, d: -1.27, e: -0.48}
+"""
+
 
 def _knees(quantity: str) -> list[float]:
     """The angles of the second knee in the states that a quantity is verified at."""
@@ -55,3 +72,12 @@ def test_states_on_a_branch_where_nothing_measured_moves_are_left_out() -> None:
 def test_configurations_are_looked_for_where_newtons_method_goes_a_short_way() -> None:
     # at pi + 0.002 a move of half a thousandth leads 13 rad away, and back by 1.5 with the second step
     assert all(abs(knee - round(knee / pi) * pi) > 0.01 for knee in _knees("configuration_from_measured"))
+
+
+def test_steps_end_where_rows_in_units_far_apart_round_them() -> None:
+    reference = Reference(load_text(TWICE, "twice.yaml"))
+    for sample in sample_states(reference, ("configuration_from_measured",), 8):
+        (found,) = reference.evaluate(sample.state, ("configuration_from_measured",)).values()
+        residual, _ = reference.system.geometry(found, [], reference.literals())
+        rows = zip(residual.entries(), (1, 250, 1, 1e6, 2), strict=True)
+        assert all(abs(float(row)) < 1e-14 * size for row, size in rows)

@@ -31,6 +31,8 @@ ROOT_AT_ZERO = 1e-30
 ELSEWHERE = 1e-6
 # a step that shows whether V is smooth, and how much further than its square Newton's method may lead
 SHORT, STRAY = 1e-4, 1e3
+# so many of them: one in ten is all but across the direction that is none, and shows nothing
+SHORT_STEPS = 8
 # rows whose gradients vanish on V do so to the root of what rounding leaves of their values
 DEPENDENT = 1e-6
 # how far rows, inputs and masses are apart at states that are compared, and how far of what they are at best where that
@@ -190,7 +192,7 @@ class Walker:
             return free[int((values > DEPENDENT * values.max(initial=0.0)).sum()) :].T
 
         free = directions(q)
-        for _ in range(3):
+        for _ in range(SHORT_STEPS):
             step = free @ np.array([self._dice.uniform(-1, 1) for _ in range(free.shape[1])])
             there = self.closed(q + SHORT * step, parameters)
             if there is None or np.abs(there - q - SHORT * step).max() > STRAY * SHORT**2:

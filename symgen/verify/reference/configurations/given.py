@@ -8,9 +8,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
+from math import hypot
 from typing import Any
 
-from flint import arb, arb_mat, ctx
+from flint import arb, arb_mat
 
 from symgen.verify.reference.arithmetic.linear import column, norm, right_pseudoinverse
 from symgen.verify.reference.evaluation import Evaluation
@@ -27,8 +28,6 @@ NOTHING_LEFT = 2.0**-40
 # Times as fast as what is given that other coordinates move at most: gears do by their ratio, and beyond that something
 # moves where what is given stands still, as on a branch of its own.
 FASTEST = 1e5
-# Of the binary digits, what rounding may keep from standing still.
-RESTLESS = 24
 
 
 @dataclass(frozen=True)
@@ -108,13 +107,14 @@ def _still(e: Evaluation, given: GivenValues) -> Any:
 
 
 def _configuration(e: Evaluation, given: GivenValues) -> Any:
-    """By Gauss and Newton's method from q, until nothing moves any more.
+    """By Gauss and Newton's method from q, until nothing moves by more than rounding may move it.
 
+    Rows in units far apart lose digits, and steps never get shorter than these; balls hold what is lost.
     Raises ZeroDivisionError where its steps grow: q is not near what they lead to.
     """
     first, before = 0.0, 0.0
     for k, (q, length) in enumerate(islice(_places(e, given), MOST_NEWTON_STEPS)):
-        if length <= 2.0 ** (RESTLESS - ctx.prec) * (1 + norm(q)):
+        if length <= hypot(*(float(x.rad()) for x in q.entries())):
             return q
         if k and length > max(before, first) / 2:
             break
