@@ -30,6 +30,7 @@ from symgen.verify.lanes.rounding import RoundingErrors
 from symgen.verify.reference.reference import ReferenceValueError
 from symgen.verify.running.compile import Outcome
 from symgen.verify.sampling.inertias import DIVIDED_BY_MASSES, REGULAR_INERTIA
+from symgen.verify.sampling.judged import numbers_hide, worst_judged
 from symgen.verify.sampling.nearby import Surroundings
 from symgen.verify.sampling.nearby_states import Nearby, joined, of_samples
 from symgen.verify.sampling.settling import NEARER, Settling
@@ -110,6 +111,9 @@ class WorstStateSearch:
             # beside those that estimates tell of, not in their places
             lost = lost_in_float32(kernel, made.states.parts) / float(UNIT_ROUNDOFF["float32"])
             chosen += self._brought(kernel, made.states, made.in_units(lost), MEASURED)
+        doubtful = np.max(made.estimated, axis=0) > DOUBTFUL
+        if doubtful.any() and numbers_hide(self._expected, kernel, errors):
+            chosen += worst_judged(self._expected, self._settling(kernel.name), kernel, made.states, doubtful)
         known = self._states[kernel.name]
         known += [sample for sample in dict.fromkeys(chosen) if sample not in known]
 
