@@ -23,7 +23,7 @@ from symgen.mechanics.system import System
 from symgen.model.combinations.base_parameters import BaseParameters, NoBodiesError, base_parameters
 from symgen.model.combinations.coefficient_forms import recognized
 from symgen.model.combinations.constrained_regressor import ConstrainedRegressor
-from symgen.model.combinations.geometry import geometry_values
+from symgen.model.combinations.geometry import angular_parameters, geometry_values
 from symgen.model.combinations.motion_states import BallSystem, motion_states
 from symgen.model.combinations.taylor_balls import WideBallError, ball_precision, may_vanish
 from symgen.model.configurations.mechanics import default_values
@@ -306,3 +306,16 @@ def test_the_command_fits_a_terminal(capsys: pytest.CaptureFixture[str]) -> None
     text = capsys.readouterr().out
     assert max(map(len, text.splitlines())) <= 80
     assert text.startswith("base parameters of front_car_bodies\n7 of 21 inertial parameters can be told apart")
+
+
+def test_what_an_angle_changes_is_no_polynomial_and_lengths_beside_it_keep_their_forms() -> None:
+    """None is looked for: a parameter that stands in sines, or turns a frame, is an angle whatever its unit says."""
+    text = planar_four_bar("[0, -9.81, 0]", GENERIC)
+    text = text.replace("rocker: {type: revolute,", "rocker: {type: revolute, rotation: [[z, tilt]],", 1)
+    text = text.replace("at: [l_1, 0, 0]", "at: [l_1*cos(bend), l_1*sin(bend), 0]", 1)
+    text = text.replace("parameters:", "parameters:\n  tilt: {value: 1/3}\n  bend: {value: 1/4}")
+    model = load_text(text, "bent.yaml")
+    assert angular_parameters(model) == {"tilt", "bend"}
+    forms = [form for one in base_parameters(model).base for _, form in one.added]
+    assert any({"tilt", "bend"}.intersection(form.changed_by) for form in forms)
+    assert any(name.startswith("l_") for form in forms for term in form.terms for name, _ in term.powers)

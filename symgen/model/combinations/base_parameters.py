@@ -23,7 +23,7 @@ from symgen.model.combinations.coefficient_forms import (
     samples_needed,
 )
 from symgen.model.combinations.constrained_regressor import ConstrainedRegressor
-from symgen.model.combinations.geometry import geometry_values
+from symgen.model.combinations.geometry import angular_parameters, geometry_values
 from symgen.model.combinations.motion_states import BallSystem, NoMotionError, motion_states
 from symgen.model.combinations.taylor_balls import (
     FIRST_BALL_BITS,
@@ -114,7 +114,7 @@ class CombinationSearch:
         self._model = model
         self._parameters = inertial_parameters(model.mechanism)
         self._order = sorted(range(len(self._parameters)), key=lambda k: (self._parameters[k].staying, k))
-        self._geometry = geometry_values(model)
+        self._geometry, self._angles = geometry_values(model), angular_parameters(model)
 
     def result(self) -> BaseParameters:
         """All of it."""
@@ -207,12 +207,16 @@ class CombinationSearch:
                 yield (i, j), form
             else:
                 left.append(((i, j), own, changing(own, scaled)))
-        fitted = [len(names) for _, _, names in left if len(names) <= MOST_VARIABLES]
+        fitted = [len(names) for _, _, names in left if self._fits(names)]
         samples = [*self._anywhere(here, max(map(samples_needed, fitted)))] if fitted else []
         for (i, j), own, names in left:
             seen = [CoefficientSample(given, _entry(echelon, here.pivots[i], j)) for given, echelon in samples]
-            form = quotient_form(own, names, seen) if len(names) <= MOST_VARIABLES else None
+            form = quotient_form(own, names, seen) if self._fits(names) else None
             yield (i, j), form or replace(CoefficientForm(float(own.value.mid()), ()), changed_by=names)
+
+    def _fits(self, names: Sequence[str]) -> bool:
+        """Whether a polynomial in these parameters is looked for."""
+        return len(names) <= MOST_VARIABLES and self._angles.isdisjoint(names)
 
     def _anywhere(self, here: Echelon, count: int) -> Iterator[tuple[dict[str, Fraction], Echelon]]:
         """So many times with all parameters of the geometry changed, each time in another way."""
