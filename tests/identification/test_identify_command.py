@@ -180,9 +180,20 @@ def test_numbers_that_are_wrong_lead_to_whole_bodies(folder: Path, capsys: pytes
     assert lower in text
     numbers.write_text(text, encoding="utf-8")
     asked = ["identify", str(numbers), str(folder / "log.csv"), "--out", str(folder / "wider"), "--whole-bodies"]
+    assert main(asked[:-1]) == 0
+    plain = " ".join(capsys.readouterr().out.split())
+    assert "`--whole-bodies` writes bodies that do" in plain
+    assert "numbers, which stay as they are" in plain
     assert main(asked) == 0
-    assert "`--whole-bodies` writes bodies that do" in " ".join(capsys.readouterr().out.split())
+    whole = capsys.readouterr().out
+    assert "--whole-bodies" not in whole
+    assert "which stay as they are" not in whole
     model = load_model(folder / "wider" / "arm_with_friction" / "numbers.identified.yaml")
+    # what is printed of the file is what stands in it
+    printed = dict(re.findall(r"^  ([df]_\d|k) +\S+ +(\S+) +\S+$", whole.split("in the file")[1], re.M))
+    assert sorted(printed) == ["d_1", "d_2", "f_1", "f_2", "k"]
+    written = default_values(model.parameters)
+    assert all(float(x) == pytest.approx(written[name], rel=1e-3) for name, x in printed.items())
     tens = inertial_values(model, default_values(model.parameters))
     truth = ARM_MACHINE.truth
     assert tens[11] == pytest.approx(truth["m_2"] * truth["c_2"], rel=0.05)

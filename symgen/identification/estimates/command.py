@@ -49,7 +49,8 @@ def run_identify(path: Path, log: Path, out: Path, request: IdentifyRequest, qui
         print(*reason_lines(f"{reason.place or path}: not identified: {reason}"), sep="\n", file=sys.stderr)
         return 1
     progress("drawing")
-    written = _model_file(path, made, request.whole_bodies)
+    made = made.with_whole_bodies() if request.whole_bodies else made
+    written = _model_file(path, made)
     files = _files(path, made, written)
     progress("")
     paths = write_files(out / made.model.name, files)
@@ -81,13 +82,12 @@ def _files(path: Path, made: Identification, written: WrittenFile) -> dict[str, 
     return files
 
 
-def _model_file(path: Path, made: Identification, whole_bodies: bool) -> WrittenFile:
+def _model_file(path: Path, made: Identification) -> WrittenFile:
     if made.is_of_another_machine:
         return WrittenFile(None, "the log contradicts the model")
     values = dict(zip(made.values.names, map(float, made.values.values), strict=True))
-    if not whole_bodies or made.whole is None:
-        return with_values(path, values)
-    return with_values(path, dict(made.whole.linear), _as_written(made.model.mechanism, made.whole.values))
+    bodies = made.whole if made.has_whole_bodies else None
+    return with_values(path, values, None if bodies is None else _as_written(made.model.mechanism, bodies.values))
 
 
 def _as_written(mechanism: Mechanism, values: Array) -> WrittenBodies:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from symgen.identification.arrays import Array
@@ -68,7 +70,10 @@ class DriveFit:
 
 @dataclass(frozen=True, slots=True)
 class Identification:
-    """What a log says of a machine; the first samples were `fitted_to`, the last ones were set `aside`."""
+    """What a log says of a machine; the first samples were `fitted_to`, the last ones were set `aside`.
+
+    `values` go into the model file, beside whole bodies where it `has_whole_bodies`.
+    """
 
     model: Model
     log: MeasuredLog
@@ -81,6 +86,17 @@ class Identification:
     estimate: LinearEstimate
     values: FileValues
     whole: WholeBodies | None
+    has_whole_bodies: bool = False
+
+    def with_whole_bodies(self) -> Identification:
+        """The same where whole bodies go into the model file, if there are any."""
+        if self.whole is None:
+            return self
+        errors, before = {one.name: one.error for one in self.parameters}, default_values(self.model.parameters)
+        names, values = tuple(self.whole.linear), np.array([*self.whole.linear.values()])
+        known, off = (np.array([given[name] for name in names]) for given in (before, errors))
+        beside = FileValues(names, known, values, off, self.whole.misfit, (), False)
+        return replace(self, values=beside, has_whole_bodies=True)
 
     @property
     def parameters(self) -> tuple[EstimatedParameter, ...]:

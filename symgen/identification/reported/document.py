@@ -94,7 +94,7 @@ def _written_words(made: Identification, written: WrittenFile) -> Iterator[str]:
         yield f"No model file is written: {written.why}."
     if written.widened:
         yield f"Ranges that the estimates are beyond were widened: {', '.join(written.widened)}."
-    if given := numbers_in_bodies(made.model):
+    if not made.has_whole_bodies and (given := numbers_in_bodies(made.model)):
         yield f"Numbers in the file, which stay as they are: {', '.join(given)}."
     for name, why in made.names.kept:
         yield f"{name} stays as it is: {why}."

@@ -86,7 +86,7 @@ def _whole_lines(whole: WholeBodies) -> list[str]:
 
 def _left(made: Identification) -> list[str]:
     lines = []
-    if numbers := numbers_in_bodies(made.model):
+    if not made.has_whole_bodies and (numbers := numbers_in_bodies(made.model)):
         lines += wrapped(f"numbers, which stay as they are: {', '.join(numbers)}", "  ")
     for name, why in made.names.kept:
         lines += wrapped(f"{name} stays as it is: {why}", "  ")

@@ -26,9 +26,9 @@ from symgen.verify.tolerance import GrowingUnit
 # Times as large as estimated that a unit of error is at some sample: from there on its size hides what is worst.
 HIDDEN = 4.0
 # States that are judged, fewer where the reference takes long.
-LOOKED_AT = 128
+JUDGED_AT_MOST = 128
 # Of the worst of them, how many go further, in how many directions, and how often.
-GOING_ON, WAYS, ROUNDS = 4, 8, 3
+GOING_ON, WAYS, FURTHER_ROUNDS = 4, 8, 3
 
 
 def numbers_hide(expected: Expected, kernel: Kernel, errors: RoundingErrors) -> bool:
@@ -46,12 +46,12 @@ def worst_judged(
     expected: Expected, settling: Settling, kernel: Kernel, states: Nearby, doubtful: Lanes
 ) -> list[Sample]:
     """The worst of states that leave a doubt, looked at as evenly as they were drawn, and of some beside these."""
-    count = affordable_states(expected.reference, [kernel.name], LOOKED_AT)
+    count = affordable_states(expected.reference, [kernel.name], JUDGED_AT_MOST)
     places = np.flatnonzero(doubtful)
     places = np.unique(places[np.linspace(0, len(places) - 1, min(count, len(places))).astype(int)])
     worst = _Worst(expected, kernel)
     worst.judge(_settled(settling, kernel.name, states.only(places)))
-    for number in range(ROUNDS):
+    for number in range(FURTHER_ROUNDS):
         starts = of_samples(worst.kept)
         starts = starts.only(np.arange(len(starts)).repeat(min(WAYS, count)))
         moved = expected.surroundings.moved(starts, f"{kernel.name} judged {number}")

@@ -77,7 +77,7 @@ def test_configurations_are_looked_for_where_newtons_method_goes_a_short_way() -
 def test_steps_end_where_rows_in_units_far_apart_round_them() -> None:
     reference = Reference(load_text(TWICE, "twice.yaml"))
     for sample in sample_states(reference, ("configuration_from_measured",), 8):
-        (found,) = reference.evaluate(sample.state, ("configuration_from_measured",)).values()
-        residual, _ = reference.system.geometry(found, [], reference.literals())
+        (solved,) = reference.evaluate(sample.state, ("configuration_from_measured",)).values()
+        residual, _ = reference.system.geometry(solved, [], reference.literals())
         rows = zip(residual.entries(), (1, 250, 1, 1e6, 2), strict=True)
         assert all(abs(float(row)) < 1e-14 * size for row, size in rows)
