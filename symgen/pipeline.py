@@ -78,7 +78,7 @@ def _generated(path: Path, model: Model, options: Options, progress: Progress, w
     model = with_inertial_base(model, outputs)
     draft: Draft | None = None
     trial: Trial | None = None
-    limits: tuple[CoordinateBounds, ParameterBounds] | None = None
+    limits: tuple[CoordinateBounds | ParameterBounds, ...] = ()
     while True:
         with _reporting(model, options.verify) if "report" in options.parts else nullcontext() as reporting:
             if draft is None:
@@ -97,12 +97,13 @@ def _generated(path: Path, model: Model, options: Options, progress: Progress, w
                     if not draft.program.kernels:
                         return _result(draft, options, {}, replace(tried, left_out=draft.left_out))
                     expected = trial.expected
-                    limits = CoordinateBounds(expected), ParameterBounds(expected)
+                    varied = () if options.fixed_parameters else (ParameterBounds(expected),)
+                    limits = (CoordinateBounds(expected), *varied)
             if trial is not None:
                 with _literals_in_range(path):
                     check_literals(draft.programs)
                 draft = trial.ranks.of(draft)
-            for limit in limits or ():
+            for limit in limits:
                 progress(f"verifying: {limit.WHAT}")
                 draft = limit.of(draft)
             if reporting is not None:

@@ -47,6 +47,7 @@ class Options:
     `trig` says whose sine and cosine the code calls: its own, with the same bits everywhere, or the library's.
     `as_recorded` takes over what the earlier run's verification led to, see `symgen.generation.acceptance.recorded`.
     With `contract` batches are verified with products and sums contracted, too.
+    With `fixed_parameters` functions are called with those of the file: how far others may be is not looked for.
     Without packages that the report needs it is left out where `parts` are those made as a rule (`usual`).
     """
 
@@ -60,6 +61,7 @@ class Options:
     as_recorded: bool = False
     usual: bool = False
     contract: bool = False
+    fixed_parameters: bool = False
     # by quantity, of NAMED_METHODS; without one the cheapest valid
     methods: Mapping[str, str] = field(default_factory=dict)
 

@@ -74,7 +74,7 @@ class MachineFunctions:
         outputs += [self._place] if geometric or given_by == "task" else []
         outputs += [self._rate, self._acceleration] if model.constraints or given_by == "task" else []
         outputs += _PROJECTION if self.is_redundant else []
-        options = Options(outputs=tuple(outputs), scalars=("float64",), parts=("python",))
+        options = Options(outputs=tuple(outputs), scalars=("float64",), parts=("python",), fixed_parameters=True)
         self.verified = _accepted(generate_of(path, self.model, options, progress), outputs)
         (source,) = (text for name, text in self.verified.files.items() if name.endswith(".py"))
         self._module = PythonModule(str(source)).module

@@ -471,6 +471,14 @@ def test_a_bound_is_recorded_told_and_taken_up_again(made: Result, tmp_path: Pat
 
 
 @pytest.mark.campaign
+def test_parameters_that_stay_those_of_the_file_have_none(crane: Path) -> None:
+    fixed = generate(crane, Options(parts=("c",), states=8, fixed_parameters=True), lambda _: None)
+    record = json.loads(fixed.files["derivation.json"])["kernels"][MULTIPLIERS]
+    assert "bounds" not in record
+    assert "PARAMETER_RANGE" not in record["statuses"]
+
+
+@pytest.mark.campaign
 def test_a_type_that_is_left_out_has_no_bounds(crane: Path, expected: Expected) -> None:
     bounds = ParameterBounds(expected)
     draft = bounds.of(draft_of(load_model(crane), (MULTIPLIERS,), Options()))
